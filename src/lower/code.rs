@@ -94,29 +94,16 @@ impl Operation {
 
     /// The values that it is made of.
     pub fn operands(&self) -> Vec<Operand> {
-        match *self {
-            Operation::Input(_) => Vec::new(),
-            Operation::Add(a, b)
-            | Operation::Subtract(a, b)
-            | Operation::Multiply(a, b)
-            | Operation::Least(a, b)
-            | Operation::Greatest(a, b)
-            | Operation::And(a, b)
-            | Operation::Or(a, b)
-            | Operation::Times(a, b) => vec![a, b],
-            Operation::Quotient(a, _)
-            | Operation::Bits(a, _)
-            | Operation::Flip(a, _)
-            | Operation::Number(a)
-            | Operation::Word(a)
-            | Operation::Down(a, _)
-            | Operation::Up(a, _) => vec![a],
-            Operation::Select(Test(_, [a, b]), [c, d]) => vec![a, b, c, d],
-        }
+        let mut operands = Vec::new();
+        self.renamed(|operand| {
+            operands.push(operand);
+            operand
+        });
+        operands
     }
 
     /// The same of other values.
-    pub(crate) fn renamed(self, name: impl Fn(Operand) -> Operand) -> Operation {
+    pub(crate) fn renamed(self, mut name: impl FnMut(Operand) -> Operand) -> Operation {
         match self {
             Operation::Input(_) => self,
             Operation::Add(a, b) => Operation::Add(name(a), name(b)),
@@ -128,7 +115,7 @@ impl Operation {
             Operation::Bits(a, mask) => Operation::Bits(name(a), mask),
             Operation::Flip(a, bit) => Operation::Flip(name(a), bit),
             Operation::Select(Test(function, operands), values) => {
-                Operation::Select(Test(function, operands.map(&name)), values.map(&name))
+                Operation::Select(Test(function, operands.map(&mut name)), values.map(name))
             }
             Operation::Number(a) => Operation::Number(name(a)),
             Operation::Word(a) => Operation::Word(name(a)),
@@ -302,33 +289,16 @@ impl Code {
             }
             // Constants go last, and become one.
             Operation::Add(Constant(c), a) => return Ok(self.make(Operation::Add(a, Constant(c)))),
-            Operation::Add(a, Constant(c)) => match self.operation(a) {
-                Some(Operation::Add(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(c + d)))),
-                Some(Operation::Subtract(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(c - d)))),
-                _ if c < 0 => return Err(Operation::Subtract(a, Constant(-c))),
-                _ => {}
-            },
-            Operation::Subtract(a, Constant(c)) => match self.operation(a) {
-                Some(Operation::Add(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(d - c)))),
-                Some(Operation::Subtract(a, Constant(d))) => {
-                    return Ok(self.make(Operation::Subtract(a, Constant(c + d))));
-                }
-                _ if c < 0 => return Err(Operation::Add(a, Constant(-c))),
-                _ => {}
-            },
+            Operation::Add(a, Constant(c)) => return self.moved(a, c),
+            Operation::Subtract(a, Constant(c)) => return self.moved(a, -c),
             Operation::Subtract(Constant(c), a) => {
                 // c - (d - x) and c - (x + d).
-                match self.operation(a) {
-                    Some(Operation::Subtract(Constant(d), a)) => {
-                        return Ok(self.make(Operation::Add(a, Constant(c - d))));
-                    }
-                    Some(Operation::Add(a, Constant(d))) => {
-                        return Ok(self.make(Operation::Subtract(Constant(c - d), a)));
-                    }
-                    Some(Operation::Subtract(a, Constant(d))) => {
-                        return Ok(self.make(Operation::Subtract(Constant(c + d), a)));
-                    }
-                    _ => {}
+                if let Some(Operation::Subtract(Constant(d), x)) = self.operation(a) {
+                    return Ok(self.make(Operation::Add(x, Constant(c - d))));
+                }
+                let (x, d) = self.offset(a);
+                if d != 0 {
+                    return Ok(self.make(Operation::Subtract(Constant(c - d), x)));
                 }
             }
             Operation::Subtract(a, b) if a == b => return Ok(Constant(0)),
@@ -385,6 +355,24 @@ impl Code {
             _ => {}
         }
         Err(operation)
+    }
+
+    /// A value and a constant that is added to it.
+    fn offset(&self, operand: Operand) -> (Operand, i64) {
+        match self.operation(operand) {
+            Some(Operation::Add(a, Operand::Constant(d))) => (a, d),
+            Some(Operation::Subtract(a, Operand::Constant(d))) => (a, -d),
+            _ => (operand, 0),
+        }
+    }
+
+    /// a + by.
+    fn moved(&self, a: Operand, by: i64) -> Result<Operand, Operation> {
+        match self.offset(a) {
+            (_, 0) if by < 0 => Err(Operation::Subtract(a, Operand::Constant(-by))),
+            (_, 0) => Err(Operation::Add(a, Operand::Constant(by))),
+            (x, d) => Ok(self.make(Operation::Add(x, Operand::Constant(by + d)))),
+        }
     }
 
     /// Whether a test comes out the same in every pixel, and how.

@@ -18,6 +18,30 @@ pub(crate) enum Number<'a> {
 
 use Number::Constant;
 
+/// Operators of a type, each with what it takes and what it makes of that.
+macro_rules! operators {
+    ($($type:ident: $operator:ident $method:ident $other:ty, |$a:ident, $b:ident| $made:expr;)+) => {
+        $(impl $operator<$other> for $type<'_> {
+            type Output = Self;
+            fn $method(self, $b: $other) -> Self {
+                let $a = self;
+                $made
+            }
+        })+
+    };
+}
+operators! {
+    Number: Add add Self, |a, b| a.made(&[b], Operation::Add(a.operand(), b.operand()));
+    Number: Sub sub Self, |a, b| a.made(&[b], Operation::Subtract(a.operand(), b.operand()));
+    Sum: Add add Self, |a, b| a.combined(b, |a, b| a + b);
+    Sum: Sub sub Self, |a, b| a.combined(b, |a, b| a - b);
+    Word: BitAnd bitand Self, |a, b| a.with(b, Operation::And);
+    Word: BitOr bitor Self, |a, b| a.with(b, Operation::Or);
+    Word: Mul mul Self, |a, b| a.with(b, Operation::Times);
+    Word: Shl shl u32, |a, bits| a.with(a, |a, _| Operation::Up(a, bits));
+    Word: Shr shr u32, |a, bits| a.with(a, |a, _| Operation::Down(a, bits));
+}
+
 impl<'a> Number<'a> {
     pub(crate) fn new(code: &'a Code, operand: Operand) -> Number<'a> {
         match operand {
@@ -125,20 +149,6 @@ impl<'a> Number<'a> {
     }
 }
 
-impl<'a> Add for Number<'a> {
-    type Output = Number<'a>;
-    fn add(self, other: Number<'a>) -> Number<'a> {
-        self.made(&[other], Operation::Add(self.operand(), other.operand()))
-    }
-}
-
-impl<'a> Sub for Number<'a> {
-    type Output = Number<'a>;
-    fn sub(self, other: Number<'a>) -> Number<'a> {
-        self.made(&[other], Operation::Subtract(self.operand(), other.operand()))
-    }
-}
-
 impl<'a> Blend for Number<'a> {
     type Weight = Number<'a>;
     const WHOLE: Number<'a> = Constant(256);
@@ -174,6 +184,11 @@ impl<'a> Sum<'a> {
         })
     }
 
+    fn combined(self, other: Sum<'a>, of: impl Fn(Number<'a>, Number<'a>) -> Number<'a>) -> Sum<'a> {
+        let [a, b] = self.alike(other);
+        Sum { value: of(a.value, b.value), halvings: a.halvings }
+    }
+
     /// NUM-2 of the sum divided by `more`: floor((2 n + d) / (2 d)) in steps of 1/d.
     pub(crate) fn rounded_to(self, more: i64) -> Number<'a> {
         let steps = (255 * more) << self.halvings;
@@ -203,22 +218,6 @@ fn over(value: Number<'_>, steps: i64) -> Option<Number<'_>> {
                 _ => None,
             }
         }
-    }
-}
-
-impl<'a> Add for Sum<'a> {
-    type Output = Sum<'a>;
-    fn add(self, other: Sum<'a>) -> Sum<'a> {
-        let [a, b] = self.alike(other);
-        Sum { value: a.value + b.value, halvings: a.halvings }
-    }
-}
-
-impl<'a> Sub for Sum<'a> {
-    type Output = Sum<'a>;
-    fn sub(self, other: Sum<'a>) -> Sum<'a> {
-        let [a, b] = self.alike(other);
-        Sum { value: a.value - b.value, halvings: a.halvings }
     }
 }
 
@@ -284,41 +283,6 @@ impl<'a> Word<'a> {
 impl From<u32> for Word<'_> {
     fn from(value: u32) -> Self {
         Word(Constant(value.into()))
-    }
-}
-
-impl<'a> BitAnd for Word<'a> {
-    type Output = Word<'a>;
-    fn bitand(self, other: Word<'a>) -> Word<'a> {
-        self.with(other, Operation::And)
-    }
-}
-
-impl<'a> BitOr for Word<'a> {
-    type Output = Word<'a>;
-    fn bitor(self, other: Word<'a>) -> Word<'a> {
-        self.with(other, Operation::Or)
-    }
-}
-
-impl<'a> Mul for Word<'a> {
-    type Output = Word<'a>;
-    fn mul(self, other: Word<'a>) -> Word<'a> {
-        self.with(other, Operation::Times)
-    }
-}
-
-impl<'a> Shl<u32> for Word<'a> {
-    type Output = Word<'a>;
-    fn shl(self, bits: u32) -> Word<'a> {
-        self.with(self, |a, _| Operation::Up(a, bits))
-    }
-}
-
-impl<'a> Shr<u32> for Word<'a> {
-    type Output = Word<'a>;
-    fn shr(self, bits: u32) -> Word<'a> {
-        self.with(self, |a, _| Operation::Down(a, bits))
     }
 }
 

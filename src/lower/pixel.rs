@@ -237,14 +237,8 @@ impl Function {
 
     /// The inputs that it reads, in their order.
     pub fn inputs(&self) -> Vec<Input> {
-        let mut inputs: Vec<Input> = self
-            .lines
-            .iter()
-            .filter_map(|line| match line.operation {
-                Operation::Input(input) => Some(input),
-                _ => None,
-            })
-            .collect();
+        let input = |line: &Line| if let Operation::Input(input) = line.operation { Some(input) } else { None };
+        let mut inputs: Vec<Input> = self.lines.iter().filter_map(input).collect();
         // Where the test fails, the surface keeps its word.
         if matches!(self.result, Result::Stored { test: Some(_), .. }) {
             inputs.push(Input::Destination);
@@ -258,21 +252,21 @@ impl Function {
 impl Result {
     /// Every value in it.
     pub fn operands(&self) -> Vec<Operand> {
-        match self {
-            Result::Fragment(channels) => channels.to_vec(),
-            Result::Stored { word, test } => {
-                test.iter().flat_map(|Test(_, operands)| *operands).chain([*word]).collect()
-            }
-        }
+        let mut operands = Vec::new();
+        self.renamed(|operand| {
+            operands.push(operand);
+            operand
+        });
+        operands
     }
 
-    fn renamed(self, name: impl Fn(Operand) -> Operand) -> Result {
+    fn renamed(self, mut name: impl FnMut(Operand) -> Operand) -> Result {
         match self {
             Result::Fragment(channels) => Result::Fragment(channels.map(name)),
-            Result::Stored { word, test } => Result::Stored {
-                word: name(word),
-                test: test.map(|Test(function, operands)| Test(function, operands.map(&name))),
-            },
+            Result::Stored { word, test } => {
+                let test = test.map(|Test(function, operands)| Test(function, operands.map(&mut name)));
+                Result::Stored { word: name(word), test }
+            }
         }
     }
 }

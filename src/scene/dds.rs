@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::image::{ImageError, ImageLimits};
+use super::image::{ImageError, ImageFault, ImageLimits};
 use ninebit::state::{CUBE_FACES, LARGEST_VOLUME, Level, TextureFormat};
 use ninebit_files::texels;
 
@@ -84,16 +84,19 @@ struct Header {
 /// The file is cut off or longer than its header says, its sides exceed the limits, a face is missing, or it holds what no texture unit
 /// of the model reads. No input makes this panic.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, ImageError> {
-    let named = || path.to_path_buf();
-    let damaged = |reason: String| ImageError::Damaged { path: named(), reason };
-    let header = header(bytes, path)?;
+    texture(bytes, limits).map_err(|fault| fault.of(path))
+}
+
+fn texture(bytes: &[u8], limits: &ImageLimits) -> Result<Dds, ImageFault> {
+    let damaged = ImageFault::Damaged;
+    let header = header(bytes)?;
     let Header { cube, layers, format, width, height, levels, before, .. } = header;
     if width == 0 || height == 0 {
         return Err(damaged(format!("it is {width} x {height}")));
     }
     let limit = limits.maximum_side.min(LARGEST_SIDE);
     if width > limit || height > limit {
-        return Err(ImageError::Side { path: named(), width, height, limit });
+        return Err(ImageFault::Side { width, height, limit });
     }
     if let Some(layers) = layers
         && !(1..=LARGEST_VOLUME).contains(&layers)
@@ -111,7 +114,7 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
     let decoded: u64 =
         u64::from(faces) * sides(&header).map(|(w, h, layers)| 4 * layers * words(format, w, h)).sum::<u64>();
     if decoded > limits.maximum_decoded_bytes {
-        return Err(ImageError::DecodedBytes { path: named(), bytes: decoded, limit: limits.maximum_decoded_bytes });
+        return Err(ImageFault::DecodedBytes { bytes: decoded, limit: limits.maximum_decoded_bytes });
     }
     let palette = match (format, bytes.get(HEADER..HEADER + PALETTE)) {
         (TextureFormat::P8, None) => return Err(damaged("its palette is cut off".to_owned())),
@@ -128,17 +131,17 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
         Rows::Tight => texels::from_bytes(texels, format),
         Rows::Padded => texels::from_bytes(&without_padding(&header, texels), format),
     };
+    let levels = if layers.is_some() { 1 } else { levels };
     if let Some(layers) = layers {
         words.truncate(layers as usize * format.words(width, height));
-        return Ok(Dds { cube, layers: Some(layers), format, width, height, levels: 1, words, palette });
     }
     Ok(Dds { cube, layers, format, width, height, levels, words, palette })
 }
 
 /// Reads the header, and refuses what the model lacks.
-fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
-    let damaged = |reason: &str| ImageError::Damaged { path: path.to_path_buf(), reason: reason.to_owned() };
-    let unsupported = |what: String| ImageError::Unsupported { path: path.to_path_buf(), what };
+fn header(bytes: &[u8]) -> Result<Header, ImageFault> {
+    let damaged = |reason: &str| ImageFault::Damaged(reason.to_owned());
+    let unsupported = ImageFault::Unsupported;
     let Some(fixed) = bytes.first_chunk::<HEADER>() else { return Err(damaged("the header is cut off")) };
     let field = |at: usize| u32::from_le_bytes([fixed[at], fixed[at + 1], fixed[at + 2], fixed[at + 3]]);
     if field(4) != 124 || field(76) != 32 {
@@ -174,7 +177,7 @@ fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
     } else {
         if cube && caps & ALL_FACES != ALL_FACES {
             let missing = (0..6).filter(|face| caps >> (10 + face) & 1 == 0).map(|face| FACES[face]).collect();
-            return Err(ImageError::MissingFaces { path: path.to_path_buf(), missing });
+            return Err(ImageFault::MissingFaces(missing));
         }
         pixels.format().map_err(unsupported)?
     };

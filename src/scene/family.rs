@@ -34,12 +34,12 @@ pub(super) fn find(
     if !text.contains("family") {
         return Ok(None);
     }
-    let mut reader = Reader::new(text, limits, assets);
+    let mut reader = Reader::new(text, folder, limits, assets);
     let scene = reader.check::<source::Scene<'_>>(text).and_then(|raw| reader.read(&raw));
     let named = scene.and_then(|scene| scene.family).filter(Raw::is_text);
     let Some(named) = named else { return Ok(None) };
-    let Some(file) = shared_text(&mut reader, folder, &named) else { return Err(reader.diagnostics) };
-    let mut inside = Reader::new(&file.source.text, limits, assets);
+    let Some(file) = shared_text(&mut reader, &named) else { return Err(reader.diagnostics) };
+    let mut inside = Reader::new(&file.source.text, folder, limits, assets);
     if inside.check::<source::Family<'_>>(&file.source.text).and_then(|raw| inside.read(&raw)).is_none() {
         return Err(inside.diagnostics.into_iter().map(|finding| finding.inside(&file)).collect());
     }
@@ -65,8 +65,7 @@ impl Family {
         }
         let inside = finding.span.as_ref().is_some_and(|span| span.start >= start);
         let shift = |span: Range<usize>| span.start - start..span.end - start;
-        let related = std::mem::take(&mut finding.related);
-        for (span, label) in related {
+        for (span, label) in std::mem::take(&mut finding.related) {
             match (span.start >= start, inside) {
                 (true, true) => finding.related.push((shift(span), label)),
                 (false, false) => finding.related.push((span, label)),

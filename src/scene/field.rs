@@ -4,10 +4,9 @@ use std::ops::RangeInclusive;
 
 use super::outline::{Described, Form, Kind};
 use super::raw::Raw;
-use super::reader::{Name, Reader};
-use super::source::Color;
+use super::reader::{Name, Reader, quoted};
 use ninebit::limits::Limits;
-use ninebit::state::{Named, VertexColor};
+use ninebit::state::Named;
 
 /// A structure has no field of this name.
 pub(super) const UNKNOWN: &str = "NB0201";
@@ -36,8 +35,11 @@ pub(super) trait Valued<'a>: Sized {
 
     /// Reads it; `None` once the reason has been recorded.
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Value>;
+}
 
-    /// A value as it is written.
+/// A value that may be a default.
+pub(super) trait Shown<'a>: Valued<'a> {
+    /// As it is written.
     fn shown(value: &Self::Value) -> String;
 }
 
@@ -47,6 +49,8 @@ macro_rules! valued {
         fn value(reader: &mut Reader<'a>, raw: &Raw<'a, $type>) -> Option<$type> {
             reader.$read(raw)
         }
+    }
+    impl<'a> Shown<'a> for $type {
         fn shown(value: &$type) -> String {
             value.to_string()
         }
@@ -60,16 +64,12 @@ impl<'a, T: Named> Valued<'a> for Name<T> {
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<T> {
         reader.name(raw)
     }
+}
 
+impl<'a, T: Named> Shown<'a> for Name<T> {
     fn shown(value: &T) -> String {
         value.name().to_owned()
     }
-}
-
-/// Who knows the colours that have names.
-pub(super) trait Colors<'a> {
-    /// A colour that stays as it was given, or that has this name; `None` once the reason that it is none has been recorded.
-    fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, Color>) -> Option<VertexColor>;
 }
 
 /// Numbers as they are written in parentheses.
@@ -90,9 +90,7 @@ pub(super) struct Field {
 impl Field {
     pub(super) fn new<T: Described>(name: &'static str, meaning: &'static str) -> Self {
         let values = match T::form() {
-            Form::Value(Kind::Choice(words)) if words.len() <= MAX_WORDS && words != ["false", "true"] => {
-                words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
-            }
+            Form::Value(Kind::Choice(words)) if words.len() <= MAX_WORDS && words != ["false", "true"] => quoted(words),
             Form::Value(Kind::Whole { most: 255 }) => "0 to 255".to_owned(),
             _ => String::new(),
         };
@@ -188,9 +186,8 @@ macro_rules! read_field {
         }
     };
     ($field:ident $type:ty, [color] $default:expr) => {
-        pub(crate) fn $field(&self, reader: &mut Reader<'a>, names: &impl Colors<'a>) -> VertexColor {
-            let written = self.$field.as_ref().and_then(|raw| names.color(reader, raw));
-            written.unwrap_or(VertexColor::Bytes($default))
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> VertexColor {
+            self.$field.as_ref().and_then(|raw| reader.value(raw)).unwrap_or(VertexColor::Bytes($default))
         }
     };
 }
@@ -200,7 +197,7 @@ pub(super) use read_field;
 macro_rules! described_field {
     ($field:expr, $type:ty, []) => { $field };
     ($field:expr, $type:ty, [or $words:literal]) => { $field.or($words) };
-    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Valued<'_>>::shown(&$default)) };
+    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Shown<'_>>::shown(&$default)) };
     ($field:expr, $type:ty, [any] $default:expr) => { described_field!($field, $type, [] $default) };
     ($field:expr, $type:ty, [required $($more:tt)*]) => { $field.or("required") };
     ($field:expr, $type:ty, [$(or $words:literal)? in $range:expr, $what:literal $(, $more:ident($said:expr))*]) => {

@@ -63,48 +63,35 @@ pub enum Contents {
 
 /// Why an image was not read.
 #[derive(Debug, Error)]
-pub enum ImageError {
+#[error("image `{}` {fault}", ninebit::shown::path(path))]
+pub struct ImageError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub fault: ImageFault,
+}
+
+/// What is wrong with an image.
+#[derive(Debug, Error)]
+pub enum ImageFault {
     /// There is no such file.
-    #[error("image `{}` does not exist", ninebit::shown::path(path))]
-    Missing {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("does not exist")]
+    Missing,
     /// A folder, a device, a pipe.
-    #[error("image `{}` is not a regular file", ninebit::shown::path(path))]
-    NotAFile {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("is not a regular file")]
+    NotAFile,
     /// The file system refused.
-    #[error("image `{}` cannot be read: {source}", ninebit::shown::path(path))]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    #[error("cannot be read: {0}")]
+    Unreadable(io::Error),
     /// None of the kinds that are read.
-    #[error("image `{}` is {known}", ninebit::shown::path(path))]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What it is not.
-        known: &'static str,
-    },
-    /// More bytes than allowed.
-    #[error("image `{}` is larger than {limit}", ninebit::shown::path(path))]
-    FileBytes {
-        /// The file.
-        path: PathBuf,
-        /// [`ImageLimits::maximum_file_bytes`].
-        limit: FileLimit,
-    },
+    #[error("is {0}")]
+    Format(&'static str),
+    /// More bytes than [`ImageLimits::maximum_file_bytes`].
+    #[error("is larger than {0}")]
+    FileBytes(FileLimit),
     /// More columns or rows than allowed.
-    #[error("image `{}` is {width} x {height}; a side may have {limit} pixels at most", ninebit::shown::path(path))]
+    #[error("is {width} x {height}; a side may have {limit} pixels at most")]
     Side {
-        /// The file.
-        path: PathBuf,
         /// Columns.
         width: u32,
         /// Rows.
@@ -113,99 +100,79 @@ pub enum ImageError {
         limit: u32,
     },
     /// More pixels than allowed.
-    #[error("image `{}` decodes to {bytes} bytes; {limit} are allowed", ninebit::shown::path(path))]
+    #[error("decodes to {bytes} bytes; {limit} are allowed")]
     DecodedBytes {
-        /// The file.
-        path: PathBuf,
         /// Needed.
         bytes: u64,
         /// [`ImageLimits::maximum_decoded_bytes`].
         limit: u64,
     },
-    /// The contents make no sense.
-    #[error("image `{}` is damaged: {reason}", ninebit::shown::path(path))]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What the reader said.
-        reason: String,
-    },
+    /// The contents make no sense: what the reader said.
+    #[error("is damaged: {0}")]
+    Damaged(String),
     /// A DDS file of what no texture unit of the model reads.
-    #[error("image `{}` holds {what}, which this program does not read", ninebit::shown::path(path))]
-    Unsupported {
-        /// The file.
-        path: PathBuf,
-        /// What it holds.
-        what: String,
-    },
-    /// A cube map of less than six faces.
-    #[error("image `{}` is a cube map without {}", ninebit::shown::path(path), missing.join(", "))]
-    MissingFaces {
-        /// The file.
-        path: PathBuf,
-        /// The faces that it lacks.
-        missing: Vec<&'static str>,
-    },
-    /// Sixteen bits a channel.
-    #[error("image `{}` has {bits} bits a channel; 8 are the most", ninebit::shown::path(path))]
-    Depth {
-        /// The file.
-        path: PathBuf,
-        /// Bits a channel.
-        bits: u8,
-    },
+    #[error("holds {0}, which this program does not read")]
+    Unsupported(String),
+    /// A cube map without these of its six faces.
+    #[error("is a cube map without {}", .0.join(", "))]
+    MissingFaces(Vec<&'static str>),
+    /// So many bits a channel.
+    #[error("has {0} bits a channel; 8 are the most")]
+    Depth(u8),
+}
+
+impl ImageFault {
+    /// That it is wrong with this file.
+    pub(super) fn of(self, path: &Path) -> ImageError {
+        ImageError { path: path.to_path_buf(), fault: self }
+    }
+
+    /// Stable code, and what to do about it.
+    fn told(&self) -> (&'static str, &'static str) {
+        let smaller = "scale the image down; `ninebit limits` prints what is allowed";
+        match self {
+            ImageFault::Missing => (
+                "NB0510",
+                "check the spelling: upper and lower case count, and names in a scene are relative to its folder",
+            ),
+            ImageFault::NotAFile => ("NB0511", "name a PNG or TGA file, not a folder or a device"),
+            ImageFault::Unreadable(_) => ("NB0512", "check the file's permissions"),
+            ImageFault::Format(_) => ("NB0513", "convert it to PNG, or to TGA with the extension `.tga`"),
+            ImageFault::FileBytes(_) => ("NB0514", "store the image compressed, or smaller"),
+            ImageFault::Side { .. } => ("NB0515", smaller),
+            ImageFault::DecodedBytes { .. } => ("NB0516", smaller),
+            ImageFault::Damaged(_) => ("NB0517", "open the file in an image editor and save it again"),
+            ImageFault::Depth(_) => {
+                ("NB0518", "save it with 8 bits a channel: which of the 16 bits are to be kept is yours to decide")
+            }
+            ImageFault::Unsupported(_) => (
+                "NB0519",
+                "save it as DXT1, DXT3, DXT5, A8R8G8B8, X8R8G8B8, R5G6B5, A1R5G5B5, A4R4G4B4 or L8, with 2D levels or six faces",
+            ),
+            ImageFault::MissingFaces(_) => ("NB0520", "save it with all six faces"),
+        }
+    }
 }
 
 impl ImageError {
     /// Stable code.
     pub fn code(&self) -> &'static str {
-        match self {
-            ImageError::Missing { .. } => "NB0510",
-            ImageError::NotAFile { .. } => "NB0511",
-            ImageError::Unreadable { .. } => "NB0512",
-            ImageError::Format { .. } => "NB0513",
-            ImageError::FileBytes { .. } => "NB0514",
-            ImageError::Side { .. } => "NB0515",
-            ImageError::DecodedBytes { .. } => "NB0516",
-            ImageError::Damaged { .. } => "NB0517",
-            ImageError::Depth { .. } => "NB0518",
-            ImageError::Unsupported { .. } => "NB0519",
-            ImageError::MissingFaces { .. } => "NB0520",
-        }
+        self.fault.told().0
     }
 
     /// What to do about it.
     pub fn help(&self) -> &'static str {
-        match self {
-            ImageError::Missing { .. } => {
-                "check the spelling: upper and lower case count, and names in a scene are relative to its folder"
-            }
-            ImageError::NotAFile { .. } => "name a PNG or TGA file, not a folder or a device",
-            ImageError::Unreadable { .. } => "check the file's permissions",
-            ImageError::Format { .. } => "convert it to PNG, or to TGA with the extension `.tga`",
-            ImageError::FileBytes { .. } => "store the image compressed, or smaller",
-            ImageError::Side { .. } | ImageError::DecodedBytes { .. } => {
-                "scale the image down; `ninebit limits` prints what is allowed"
-            }
-            ImageError::Unsupported { .. } => {
-                "save it as DXT1, DXT3, DXT5, A8R8G8B8, X8R8G8B8, R5G6B5, A1R5G5B5, A4R4G4B4 or L8, with 2D levels or six faces"
-            }
-            ImageError::MissingFaces { .. } => "save it with all six faces",
-            ImageError::Damaged { .. } => "open the file in an image editor and save it again",
-            ImageError::Depth { .. } => {
-                "save it with 8 bits a channel: which of the 16 bits are to be kept is yours to decide"
-            }
-        }
+        self.fault.told().1
     }
 
     /// The file is sound as far as looked at, but asks for more than is allowed.
     pub fn is_limit(&self) -> bool {
-        matches!(self, ImageError::FileBytes { .. } | ImageError::Side { .. } | ImageError::DecodedBytes { .. })
+        matches!(self.fault, ImageFault::FileBytes(_) | ImageFault::Side { .. } | ImageFault::DecodedBytes { .. })
     }
 
     /// There is no such file.
     pub fn is_missing(&self) -> bool {
-        matches!(self, ImageError::Missing { .. })
+        matches!(self.fault, ImageFault::Missing)
     }
 }
 
@@ -236,9 +203,9 @@ pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Conte
     if bytes.starts_with(&dds::SIGNATURE) {
         return dds::decode(bytes, path, limits).map(Contents::Texture);
     }
-    decode(bytes, path, limits).map(Contents::Picture).map_err(|error| match error {
-        ImageError::Format { path, .. } => ImageError::Format { path, known: "neither a PNG, a TGA nor a DDS file" },
-        error => error,
+    picture(bytes, path, limits).map(Contents::Picture).map_err(|fault| match fault {
+        ImageFault::Format(_) => ImageFault::Format("neither a PNG, a TGA nor a DDS file").of(path),
+        fault => fault.of(path),
     })
 }
 
@@ -247,18 +214,21 @@ pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Conte
 /// # Errors
 /// As [`load`], less those of reading.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
-    let named = || path.to_path_buf();
-    let damaged = |reason: String| ImageError::Damaged { path: named(), reason };
+    picture(bytes, path, limits).map_err(|fault| fault.of(path))
+}
+
+fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageFault> {
+    let damaged = |reason: &str| ImageFault::Damaged(reason.to_owned());
     let (format, header, bytes) = if bytes.starts_with(&png::SIGNATURE) {
-        let reduced = png::essential(bytes).map_err(|reason| damaged(reason.to_owned()))?;
+        let reduced = png::essential(bytes).map_err(damaged)?;
         (ImageFormat::Png, reduced.header, std::borrow::Cow::Owned(reduced.bytes))
     } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tga")) {
-        let header = tga_header(bytes).ok_or_else(|| damaged("the header is cut off".to_owned()))?;
+        let header = tga_header(bytes).ok_or_else(|| damaged("the header is cut off"))?;
         (ImageFormat::Tga, header, std::borrow::Cow::Borrowed(bytes))
     } else {
-        return Err(ImageError::Format { path: named(), known: "neither a PNG nor a TGA file" });
+        return Err(ImageFault::Format("neither a PNG nor a TGA file"));
     };
-    check_header(header, path, limits)?;
+    check_header(header, limits)?;
 
     let mut allowed = image::Limits::default();
     allowed.max_image_width = Some(limits.maximum_side);
@@ -270,9 +240,9 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, I
         reader.limits(allowed);
         reader.decode()
     })
-    .map_err(|panic| damaged(format!("the decoder gave up ({panic})")))?
-    .map_err(|error| damaged(error.to_string()))?;
-    to_rgba(decoded, path)
+    .map_err(|panic| damaged(&format!("the decoder gave up ({panic})")))?
+    .map_err(|error| damaged(&error.to_string()))?;
+    to_rgba(decoded)
 }
 
 /// What a header says, before anything is decoded.
@@ -292,27 +262,22 @@ fn tga_header(bytes: &[u8]) -> Option<Header> {
 }
 
 /// Holds a header against the limits.
-fn check_header(header: Header, path: &Path, limits: &ImageLimits) -> Result<(), ImageError> {
-    let Header { width, height, bits } = header;
-    let path = || path.to_path_buf();
+fn check_header(Header { width, height, bits }: Header, limits: &ImageLimits) -> Result<(), ImageFault> {
     if width == 0 || height == 0 {
-        return Err(ImageError::Damaged { path: path(), reason: format!("it is {width} x {height}") });
+        return Err(ImageFault::Damaged(format!("it is {width} x {height}")));
     }
     if width > limits.maximum_side || height > limits.maximum_side {
-        return Err(ImageError::Side { path: path(), width, height, limit: limits.maximum_side });
+        return Err(ImageFault::Side { width, height, limit: limits.maximum_side });
     }
     let bytes = u64::from(width) * u64::from(height) * 4;
     if bytes > limits.maximum_decoded_bytes {
-        return Err(ImageError::DecodedBytes { path: path(), bytes, limit: limits.maximum_decoded_bytes });
+        return Err(ImageFault::DecodedBytes { bytes, limit: limits.maximum_decoded_bytes });
     }
-    if bits > 8 {
-        return Err(ImageError::Depth { path: path(), bits });
-    }
-    Ok(())
+    if bits > 8 { Err(ImageFault::Depth(bits)) } else { Ok(()) }
 }
 
 /// Spreads what the decoder gave to R, G, B, A. Grey counts for all three colours.
-fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
+fn to_rgba(decoded: DynamicImage) -> Result<Rgba, ImageFault> {
     let (width, height) = (decoded.width(), decoded.height());
     let pixels = match decoded {
         DynamicImage::ImageLuma8(grey) => grey.pixels().map(|p| [p[0], p[0], p[0], 255]).collect(),
@@ -320,18 +285,18 @@ fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
         DynamicImage::ImageRgb8(color) => color.pixels().map(|p| [p[0], p[1], p[2], 255]).collect(),
         DynamicImage::ImageRgba8(color) => color.pixels().map(|p| p.0).collect(),
         // The header was refused already; a decoder that widens must not slip through.
-        _ => return Err(ImageError::Depth { path: path.to_path_buf(), bits: 16 }),
+        _ => return Err(ImageFault::Depth(16)),
     };
     Ok(Rgba { width, height, pixels })
 }
 
 /// Reads a file within a limit.
 pub(super) fn read(assets: &dyn Assets, path: &Path, limit: FileLimit) -> Result<Vec<u8>, ImageError> {
-    let path = path.to_path_buf();
-    assets.bytes(&path, limit).map_err(|error| match error {
-        ReadError::Missing => ImageError::Missing { path },
-        ReadError::NotRegular => ImageError::NotAFile { path },
-        ReadError::TooLarge(limit) => ImageError::FileBytes { path, limit },
-        ReadError::Refused(source) => ImageError::Unreadable { path, source },
-    })
+    let fault = |error| match error {
+        ReadError::Missing => ImageFault::Missing,
+        ReadError::NotRegular => ImageFault::NotAFile,
+        ReadError::TooLarge(limit) => ImageFault::FileBytes(limit),
+        ReadError::Refused(error) => ImageFault::Unreadable(error),
+    };
+    assets.bytes(path, limit).map_err(|error| fault(error).of(path))
 }

@@ -92,19 +92,14 @@ pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Lo
     } else {
         read::bytes(path, Kind::Stream, limits.scene_file())
     };
-    let bytes = match bytes {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            let finding = match error {
-                ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file")
-                    .help("check the spelling and the folder; upper and lower case count"),
-                ReadError::TooLarge(limit) => too_large(limit),
-                error => Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
-                    .help("name a regular file that may be read"),
-            };
-            return Err(fail(finding, String::new()));
-        }
+    let finding = |error| match error {
+        ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file")
+            .help("check the spelling and the folder; upper and lower case count"),
+        ReadError::TooLarge(limit) => too_large(limit),
+        error => Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
+            .help("name a regular file that may be read"),
     };
+    let bytes = bytes.map_err(|error| fail(finding(error), String::new()))?;
     match String::from_utf8(bytes) {
         Ok(text) => parse_with(&text, path, limits, assets),
         Err(error) => {
@@ -151,9 +146,9 @@ pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Asset
     // Both texts in one, so that a place in either is a number of bytes.
     let whole = family.as_ref().map(|family| format!("{text}\n{}", family.text()));
     let whole = whole.as_deref().unwrap_or(text);
-    let mut reader = reader::Reader::new(whole, limits, assets);
+    let mut reader = reader::Reader::new(whole, folder, limits, assets);
     let shared = family.as_ref().map(|_| &whole[text.len() + 1..]);
-    let found = lower::scene(&mut reader, &whole[..text.len()], shared, folder);
+    let found = lower::scene(&mut reader, &whole[..text.len()], shared);
     let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);
     if let Some(family) = &family {
         diagnostics = diagnostics.into_iter().map(|finding| family.place(finding, text)).collect();

@@ -41,6 +41,27 @@ pub struct Mesh {
     pub indices: Arc<[u32]>,
 }
 
+impl Mesh {
+    /// Adds a vertex: its place, its tangent, binormal and normal, and s and t.
+    fn push(&mut self, position: [f32; 3], [tangent, binormal, normal]: [[f32; 3]; 3], coordinates: [f32; 2]) {
+        self.positions.push(position);
+        self.normals.push(normal);
+        self.tangents.push(tangent);
+        self.binormals.push(binormal);
+        self.texture_coordinates.push(coordinates);
+    }
+}
+
+/// A vector as vertices have it.
+fn narrow(v: [f64; 3]) -> [f32; 3] {
+    v.map(|c| c as f32)
+}
+
+/// s and t at a corner of a lattice of so many cells.
+fn across(at: [u32; 2], cells: [u32; 2], repeat: [f32; 2]) -> [f32; 2] {
+    [0, 1].map(|n| at[n] as f32 / cells[n] as f32 * repeat[n])
+}
+
 /// Why there is no such mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MeshError {
@@ -81,13 +102,8 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
             // (2i - n) / 2n: exactly symmetric about the centre.
             let x = (2.0 * column as f32 - columns as f32) / (2.0 * columns as f32) * size[0];
             let y = (rows as f32 - 2.0 * row as f32) / (2.0 * rows as f32) * size[1];
-            mesh.positions.push([x, y, 0.0]);
-            mesh.normals.push([0.0, 0.0, 1.0]);
-            mesh.tangents.push([1.0, 0.0, 0.0]);
-            mesh.binormals.push([0.0, 1.0, 0.0]);
-            let s = column as f32 / columns as f32 * repeat[0];
-            let t = row as f32 / rows as f32 * repeat[1];
-            mesh.texture_coordinates.push([s, t]);
+            let basis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            mesh.push([x, y, 0.0], basis, across([column, row], [columns, rows], repeat));
         }
     }
     mesh.indices = cells(columns, rows).collect();
@@ -111,14 +127,10 @@ pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result
         for slice in 0..=slices {
             let [sin_azimuth, cos_azimuth] = circle(slice, slices);
             let normal = [sin_polar * sin_azimuth, cos_polar, sin_polar * cos_azimuth];
-            mesh.positions.push(normal.map(|n| n as f32 * radius));
-            mesh.normals.push(normal.map(|n| n as f32));
-            mesh.tangents.push([cos_azimuth as f32, 0.0, -sin_azimuth as f32]);
+            let tangent = [cos_azimuth, 0.0, -sin_azimuth];
             let binormal = [-cos_polar * sin_azimuth, sin_polar, -cos_polar * cos_azimuth];
-            mesh.binormals.push(binormal.map(|n| n as f32));
-            let s = slice as f32 / slices as f32 * repeat[0];
-            let t = stack as f32 / stacks as f32 * repeat[1];
-            mesh.texture_coordinates.push([s, t]);
+            let basis = [tangent, binormal, normal].map(narrow);
+            mesh.push(narrow(normal).map(|n| n * radius), basis, across([slice, stack], [slices, stacks], repeat));
         }
     }
     let mut indices = Vec::with_capacity(mesh.positions.len() * 6);
@@ -173,25 +185,18 @@ pub fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
 
 /// Sine for 0 <= x <= pi / 4.
 fn sin_eighth(x: f64) -> f64 {
-    let y = x * x;
-    let mut sum = 1.0;
-    // 1 - y/(2 3) (1 - y/(4 5) (1 - ...)), innermost first.
-    for k in (1..=7).rev() {
-        let k = f64::from(k);
-        sum = 1.0 - y / ((2.0 * k) * (2.0 * k + 1.0)) * sum;
-    }
-    x * sum
+    x * series(x * x, 7, 1.0)
 }
 
 /// Cosine for 0 <= x <= pi / 4.
 fn cos_eighth(x: f64) -> f64 {
-    let y = x * x;
-    let mut sum = 1.0;
-    for k in (1..=8).rev() {
-        let k = f64::from(k);
-        sum = 1.0 - y / ((2.0 * k - 1.0) * (2.0 * k)) * sum;
-    }
-    sum
+    series(x * x, 8, 0.0)
+}
+
+/// 1 - y/((1 + odd) (2 + odd)) (1 - y/((3 + odd) (4 + odd)) (1 - ...)) of so many terms, innermost first.
+fn series(y: f64, terms: u32, odd: f64) -> f64 {
+    let double = |k| 2.0 * f64::from(k) + odd;
+    (1..=terms).rev().map(double).fold(1.0, |sum, double| 1.0 - y / ((double - 1.0) * double) * sum)
 }
 
 /// Corners of a cell in a lattice of rows of `columns + 1` vertices: upper left, upper right, lower left, lower right.
@@ -244,12 +249,11 @@ mod tests {
 
     /// Frames are orthonormal and right-handed, triangles face outward, indices are in range.
     pub(super) fn check(mesh: &Mesh) {
-        let vertices = mesh.positions.len();
         assert_eq!(
             [mesh.normals.len(), mesh.tangents.len(), mesh.binormals.len(), mesh.texture_coordinates.len()],
-            [vertices; 4]
+            [mesh.positions.len(); 4]
         );
-        for i in 0..vertices {
+        for i in 0..mesh.positions.len() {
             let (t, b, n) = (mesh.tangents[i], mesh.binormals[i], mesh.normals[i]);
             for (v, expected) in
                 [(dot(t, t), 1.0), (dot(b, b), 1.0), (dot(n, n), 1.0), (dot(t, b), 0.0), (dot(t, n), 0.0)]

@@ -197,48 +197,28 @@ fn values(fields: impl Iterator<Item = Entry>) -> Vec<(&'static str, Kind)> {
 }
 
 macro_rules! described {
-    ($($type:ty: $form:expr),+ $(,)?) => { $(impl Described for $type { fn form() -> Form { $form } })+ };
+    ($($($type:ty),+ => $form:expr;)+) => { $($(impl Described for $type { fn form() -> Form { $form } })+)+ };
 }
-const OTHER: Form = Form::Value(Kind::Other);
 described! {
-    String: Form::Value(Kind::Text),
-    u8: Form::Value(Kind::Whole { most: 255 }),
-    u32: Form::Value(Kind::Whole { most: u32::MAX }),
-    f32: Form::Value(Kind::Number),
-    bool: Form::Value(Kind::Choice(&["false", "true"])),
-    Vec<u32>: OTHER,
-    source::Color: Form::Value(Kind::Color),
-    source::Matrix: OTHER,
-    source::MeshSource: OTHER,
-    source::VertexSource: Form::Variant(&[
+    String => Form::Value(Kind::Text);
+    u8 => Form::Value(Kind::Whole { most: 255 });
+    u32 => Form::Value(Kind::Whole { most: u32::MAX });
+    f32 => Form::Value(Kind::Number);
+    bool => Form::Value(Kind::Choice(&["false", "true"]));
+    Few<f32> => Form::Value(Kind::Numbers);
+    source::Color => Form::Value(Kind::Color);
+    source::VertexSource => Form::Variant(&[
         ("Window", source::VertexList::form),
         ("Matrix", source::MatrixVertices::form),
         ("Program", source::ProgramVertices::form),
-    ]),
-    source::VertexList: Form::List(source::Vertex::form),
-    source::Program: Form::Variant(&[("Combiners", source::Combiners::form)]),
-    source::BlendSource: Form::OrName(source::Blend::form, "equation"),
-    source::ImageSource: OTHER,
-    source::Unit: Form::OrName(source::UnitState::form, "texture"),
-    source::ShaderStage: OTHER,
-    source::ShaderOperation: OTHER,
-    source::Attribute: OTHER,
-    source::ShaderConstant: OTHER,
-    source::CoordinateSource: OTHER,
-    source::Generator: OTHER,
-    source::Input: OTHER,
-    source::FinalInput: OTHER,
-    source::Output: OTHER,
-    source::NormalSource: OTHER,
-    source::StageArgument: OTHER,
-    source::TransformFlags: OTHER,
-    source::Word: OTHER,
-    Reserved: OTHER,
-}
-impl Described for Few<f32> {
-    fn form() -> Form {
-        Form::Value(Kind::Numbers)
-    }
+    ]);
+    source::VertexList => Form::List(source::Vertex::form);
+    source::Program => Form::Variant(&[("Combiners", source::Combiners::form)]);
+    source::BlendSource => Form::OrName(source::Blend::form, "equation");
+    source::Unit => Form::OrName(source::UnitState::form, "texture");
+    Vec<u32>, Reserved, source::Matrix, source::MeshSource, source::ImageSource, source::ShaderStage, source::ShaderOperation,
+    source::Attribute, source::ShaderConstant, source::CoordinateSource, source::Generator, source::Input, source::FinalInput,
+    source::Output, source::NormalSource, source::StageArgument, source::TransformFlags, source::Word => Form::Value(Kind::Other);
 }
 impl<T: Named> Described for Name<T> {
     fn form() -> Form {

@@ -10,74 +10,72 @@ use thiserror::Error;
 
 /// Why a name was not accepted.
 #[derive(Debug, Error)]
-pub enum PathError {
-    /// The name is not a plain relative one.
-    #[error("`{name}` is not a plain relative path: {reason}")]
-    Form {
-        /// As given, shortened for messages.
-        name: String,
-        /// What is wrong with it.
-        reason: &'static str,
-    },
-    /// There is no such file.
-    #[error("`{name}` does not exist in `{}`", ninebit::shown::path(folder))]
-    Missing {
-        /// As given.
-        name: String,
-        /// Where it was looked for.
-        folder: PathBuf,
-    },
-    /// A link leads out of the folder.
-    #[error("`{name}` leads out of `{}`", ninebit::shown::path(folder))]
-    Escape {
-        /// As given.
-        name: String,
-        /// The folder that must not be left.
-        folder: PathBuf,
-    },
+#[error("`{name}` {fault}")]
+pub struct PathError {
+    /// As given, shortened for messages.
+    pub name: String,
+    /// What is wrong with it.
+    pub fault: PathFault,
+}
+
+/// What is wrong with a name.
+#[derive(Debug, Error)]
+pub enum PathFault {
+    /// It is not a plain relative one, for this reason.
+    #[error("is not a plain relative path: {0}")]
+    Form(&'static str),
+    /// There is no such file in this folder.
+    #[error("does not exist in `{}`", ninebit::shown::path(.0))]
+    Missing(PathBuf),
+    /// A link leads out of the folder, which must not be left.
+    #[error("leads out of `{}`", ninebit::shown::path(.0))]
+    Escape(PathBuf),
     /// The file system refused.
-    #[error("`{name}` cannot be reached: {source}")]
-    Unreachable {
-        /// As given.
-        name: String,
-        /// Why.
-        source: io::Error,
-    },
+    #[error("cannot be reached: {0}")]
+    Unreachable(io::Error),
+}
+
+impl PathFault {
+    /// That it is wrong with this name.
+    fn of(self, name: &str) -> PathError {
+        PathError { name: shorten(name), fault: self }
+    }
+
+    /// Stable code, and what to do about it.
+    fn told(&self) -> (&'static str, &'static str) {
+        match self {
+            PathFault::Form(_) => (
+                "NB0501",
+                "write it relative to the scene's folder with `/` between the parts, such as `maps/rocks.png`",
+            ),
+            PathFault::Missing(_) => {
+                ("NB0502", "names are relative to the folder of the scene file; upper and lower case count")
+            }
+            PathFault::Escape(_) => ("NB0503", "copy the file into the scene's folder: links may not lead out of it"),
+            PathFault::Unreachable(_) => ("NB0504", "check that the folders on the way can be read"),
+        }
+    }
 }
 
 impl PathError {
     /// There is no file of that name.
     pub(crate) fn missing(folder: &Path, name: &str) -> PathError {
-        PathError::Missing { name: shorten(name), folder: folder.to_path_buf() }
+        PathFault::Missing(folder.to_path_buf()).of(name)
     }
 
     /// Stable code.
     pub fn code(&self) -> &'static str {
-        match self {
-            PathError::Form { .. } => "NB0501",
-            PathError::Missing { .. } => "NB0502",
-            PathError::Escape { .. } => "NB0503",
-            PathError::Unreachable { .. } => "NB0504",
-        }
+        self.fault.told().0
     }
 
     /// What to do about it.
     pub fn help(&self) -> &'static str {
-        match self {
-            PathError::Form { .. } => {
-                "write it relative to the scene's folder with `/` between the parts, such as `maps/rocks.png`"
-            }
-            PathError::Missing { .. } => {
-                "names are relative to the folder of the scene file; upper and lower case count"
-            }
-            PathError::Escape { .. } => "copy the file into the scene's folder: links may not lead out of it",
-            PathError::Unreachable { .. } => "check that the folders on the way can be read",
-        }
+        self.fault.told().1
     }
 
     /// The file is not there (as opposed to: it may not be used).
     pub fn is_missing(&self) -> bool {
-        matches!(self, PathError::Missing { .. })
+        matches!(self.fault, PathFault::Missing(_))
     }
 }
 
@@ -95,12 +93,12 @@ pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let classify = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => PathError::missing(folder, name),
-        _ => PathError::Unreachable { name: shorten(name), source },
+        _ => PathFault::Unreachable(source).of(name),
     };
     let root = folder.canonicalize().map_err(classify)?;
     let file = root.join(name).canonicalize().map_err(classify)?;
     if !file.starts_with(&root) {
-        return Err(PathError::Escape { name: shorten(name), folder: folder.to_path_buf() });
+        return Err(PathFault::Escape(folder.to_path_buf()).of(name));
     }
     Ok(file)
 }
@@ -108,36 +106,27 @@ pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
 /// Whether `name` has the form of a plain relative path.
 ///
 /// # Errors
-/// [`PathError::Form`].
+/// [`PathFault::Form`].
 pub(crate) fn check(name: &str) -> Result<(), PathError> {
-    objection(name).map_or(Ok(()), |reason| Err(PathError::Form { name: shorten(name), reason }))
+    objection(name).map_or(Ok(()), |reason| Err(PathFault::Form(reason).of(name)))
 }
 
 /// What is wrong with the form of `name`, if anything. Decided on the text alone, alike on every system.
 fn objection(name: &str) -> Option<&'static str> {
-    if name.is_empty() {
-        return Some("it is empty");
-    }
-    if name.starts_with('/') {
-        return Some("it is absolute");
-    }
-    if name.contains('\\') {
-        return Some("it has a backslash");
-    }
-    if name.contains(':') {
-        return Some("it has a colon");
-    }
-    if name.chars().any(char::is_control) {
-        return Some("it has a control character");
-    }
-    for part in name.split('/') {
-        match part {
-            "" => return Some("it has an empty part"),
-            "." | ".." => return Some("it has a `.` or `..` part"),
-            _ => {}
-        }
-    }
-    None
+    let whole = [
+        (name.is_empty(), "it is empty"),
+        (name.starts_with('/'), "it is absolute"),
+        (name.contains('\\'), "it has a backslash"),
+        (name.contains(':'), "it has a colon"),
+        (name.chars().any(char::is_control), "it has a control character"),
+    ];
+    let part = |part| match part {
+        "" => Some("it has an empty part"),
+        "." | ".." => Some("it has a `.` or `..` part"),
+        _ => None,
+    };
+    let whole = whole.into_iter().find_map(|(objects, what)| objects.then_some(what));
+    whole.or_else(|| name.split('/').find_map(part))
 }
 
 /// A name as it appears in messages: no control characters, at most 120 characters.

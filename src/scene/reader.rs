@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
+use std::path::Path;
 
 use super::assets::Assets;
 use super::diagnostic::{Diagnostic, only_nv2a};
 use super::field::{COUNT, FINITE, KIND, MISSING, RANGE, TWICE, UNKNOWN, Valued, WORD};
+use super::lower::{Names, Targets, Textures};
 use super::notation::{Fault, FaultKind, Notation};
 use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
 use super::source::{Expected, Mismatch};
@@ -29,12 +31,17 @@ pub(super) struct Reader<'a> {
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) errors: usize,
     pub(super) suppressed: usize,
-    /// Vectors that are used by name.
-    pub(super) vectors: Vectors,
+    /// Where the files lie that the scene names.
+    pub(super) folder: &'a Path,
+    /// Matrices inside each other, and names followed, so far.
+    pub(super) depth: usize,
+    pub(super) names: Names<'a>,
+    pub(super) targets: Targets<'a>,
+    pub(super) textures: Textures,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(text: &'a str, limits: &'a Limits, assets: &'a dyn Assets) -> Self {
+    pub(super) fn new(text: &'a str, folder: &'a Path, limits: &'a Limits, assets: &'a dyn Assets) -> Self {
         Reader {
             notation: Notation::new(text),
             limits,
@@ -43,7 +50,11 @@ impl<'a> Reader<'a> {
             diagnostics: Vec::new(),
             errors: 0,
             suppressed: 0,
-            vectors: Vectors::default(),
+            folder,
+            depth: 0,
+            names: Names::default(),
+            targets: Targets::default(),
+            textures: Textures::default(),
         }
     }
 
@@ -72,7 +83,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether a further error would only be counted: its words need not be chosen.
-    fn is_full(&self) -> bool {
+    pub(super) fn is_full(&self) -> bool {
         self.errors > 0 && self.diagnostics.len() >= MAX_DIAGNOSTICS
     }
 
@@ -101,6 +112,19 @@ impl<'a> Reader<'a> {
     /// Reads the value if it can be read; says nothing otherwise.
     pub(super) fn attempt<T: Expected<'a>>(&self, text: &'a str) -> Option<T> {
         T::read(&self.notation, text).ok()
+    }
+
+    /// What a value means that is needed on its own; `None` once the reason that it means nothing has been recorded.
+    pub(super) fn value<T: Valued<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T::Value> {
+        T::value(self, raw)
+    }
+
+    /// Reads something inside a value that may hold others of its kind.
+    pub(super) fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> T {
+        self.depth += 1;
+        let value = read(self);
+        self.depth -= 1;
+        value
     }
 
     /// The first character of a value, which stands for the whole.
@@ -148,10 +172,39 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// [`variant`](Self::variant) where the first `plain` variants take nothing in parentheses.
+    pub(super) fn variant_of<T>(
+        &mut self,
+        raw: &Raw<'a, T>,
+        what: &str,
+        variants: &[&'static str],
+        plain: usize,
+    ) -> Option<(usize, &'a str)> {
+        let (index, rest) = self.variant(raw, what, variants)?;
+        if index < plain && !rest.is_empty() {
+            return self.unknown_variant(raw, what, variants);
+        }
+        Some((index, rest))
+    }
+
+    /// Which of some words a field is; the first if it is not written.
+    pub(super) fn choice<T>(&mut self, raw: &Option<Raw<'a, T>>, what: &str, words: &[&'static str]) -> Option<usize> {
+        raw.as_ref().map_or(Some(0), |raw| self.variant(raw, what, words).map(|(index, _)| index))
+    }
+
+    /// What a field is that may be left out. `None` where it is written, and wrong.
+    pub(super) fn perhaps<T, U>(
+        &mut self,
+        field: &Option<Raw<'a, T>>,
+        read: impl FnOnce(&mut Self, &Raw<'a, T>) -> Option<U>,
+    ) -> Option<Option<U>> {
+        field.as_ref().map_or(Some(None), |raw| read(self, raw).map(Some))
+    }
+
     /// Records that the value is none of `known`.
     pub(super) fn unknown_variant<T, U>(&mut self, raw: &Raw<'a, T>, what: &str, known: &[&'static str]) -> Option<U> {
         let (head, rest) = raw.split();
-        let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let list = quoted(known);
         let diagnostic = if head.is_empty() {
             Diagnostic::error(KIND, self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
                 .label("wrong kind of value")
@@ -190,7 +243,13 @@ impl<'a> Reader<'a> {
         defaults: [f32; 4],
     ) -> Option<([f32; 4], usize)> {
         let (written, count) = if raw.is_text() {
-            self.named_vector(raw, what, &counts)?
+            let (written, count) = self.value(raw)?;
+            if !counts.contains(&count) {
+                let (wanted, name) = (wanted(&counts), shorten(&self.read(&raw.as_other::<String>())?));
+                let message = format!("{what} has {wanted} numbers, and the vector \"{name}\" has {count}");
+                return self.refuse(Diagnostic::error(COUNT, self.span(raw), message).label("does not fit here"));
+            }
+            (written, count)
         } else if let Some(Few { values, count }) = self.attempt::<Numbers>(raw.text)
             && counts.contains(&count)
             && values.iter().all(|value| value.is_finite())
@@ -212,32 +271,6 @@ impl<'a> Reader<'a> {
         let mut values = defaults;
         values[..count].copy_from_slice(&written[..count]);
         Some((values, count))
-    }
-
-    /// The numbers of a vector that is given by its name, and how many they are.
-    fn named_vector(
-        &mut self,
-        raw: &Raw<'a, Numbers>,
-        what: &str,
-        counts: &RangeInclusive<usize>,
-    ) -> Option<([f32; 4], usize)> {
-        let name = self.read(&raw.as_other::<String>())?;
-        let place = self.span(raw);
-        let Some(vector) = self.vectors.named(&name) else {
-            let vectors = std::mem::take(&mut self.vectors);
-            let known = vectors.list.iter().map(|vector| vector.name.as_str());
-            let none = unknown_name(self, place, "vector", &name, known, "define it in `names: (vectors: { ... })`");
-            self.vectors = vectors;
-            return none;
-        };
-        vector.used = true;
-        let (written, count) = vector.value?;
-        if !counts.contains(&count) {
-            let (wanted, name) = (wanted(counts), shorten(&name));
-            let message = format!("{what} has {wanted} numbers, and the vector \"{name}\" has {count}");
-            return self.refuse(Diagnostic::error(COUNT, place, message).label("does not fit here"));
-        }
-        Some((written, count))
     }
 
     /// A number that is neither infinite nor NaN.
@@ -264,8 +297,7 @@ impl<'a> Reader<'a> {
             return Some(value);
         }
         let finding = Diagnostic::error(RANGE, self.span(raw), format!("{what} cannot be {value}"));
-        let help = format!("write {} to {}", range.start(), range.end());
-        self.refuse(said(finding.label("out of range").help(help)))
+        self.refuse(said(finding.label("out of range").help(format!("write {} to {}", range.start(), range.end()))))
     }
 
     /// A whole number from 1 to a limit; `code` is that of greater ones.
@@ -349,8 +381,7 @@ impl<'a> Reader<'a> {
                 let place = self.span(&key);
                 let Some(name) = self.read(&key) else { continue };
                 if let Some(first) = seen.get(&name) {
-                    let first = first.clone();
-                    self.push(twice(what, &name, place, first));
+                    self.push(twice(what, &name, place, first.clone()));
                 } else {
                     seen.insert(name.clone(), place.clone());
                     table.push(Entry { name, place, value, shared });
@@ -367,7 +398,7 @@ impl<'a> Reader<'a> {
             Mismatch::Kind => Diagnostic::error(KIND, self.range(text), found()).label("wrong kind of value"),
             Mismatch::Range => Diagnostic::error(RANGE, self.range(text), found()).label("out of range"),
             Mismatch::Unknown(field, known) => {
-                let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                let list = quoted(known);
                 let help = match closest(field, known.iter().copied()) {
                     Some(name) => format!("did you mean `{name}`? Fields here: {list}"),
                     None => format!("fields here: {list}"),
@@ -440,6 +471,11 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Words in backquotes, with commas between them.
+pub(super) fn quoted(words: &[&str]) -> String {
+    words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
 /// "3", or "2 to 4".
 fn wanted(counts: &RangeInclusive<usize>) -> String {
     let (least, most) = (counts.start(), counts.end());
@@ -452,37 +488,6 @@ pub(super) struct Entry<'a, T> {
     /// Of the name.
     pub(super) place: Range<usize>,
     pub(super) value: Raw<'a, T>,
-    /// Other scenes may use it.
-    pub(super) shared: bool,
-}
-
-/// Vectors by name, in the order of the text.
-#[derive(Debug, Default)]
-pub(super) struct Vectors {
-    pub(super) list: Vec<NamedVector>,
-    by_name: HashMap<String, usize>,
-}
-
-impl Vectors {
-    pub(super) fn add(&mut self, vector: NamedVector) {
-        self.by_name.insert(vector.name.clone(), self.list.len());
-        self.list.push(vector);
-    }
-
-    fn named(&mut self, name: &str) -> Option<&mut NamedVector> {
-        self.list.get_mut(*self.by_name.get(name)?)
-    }
-}
-
-/// A vector that is used by name.
-#[derive(Debug)]
-pub(super) struct NamedVector {
-    pub(super) name: String,
-    /// Of the name.
-    pub(super) place: Range<usize>,
-    /// Its numbers and how many there are; `None`: wrong, which has been recorded.
-    pub(super) value: Option<([f32; 4], usize)>,
-    pub(super) used: bool,
     /// Other scenes may use it.
     pub(super) shared: bool,
 }
@@ -502,27 +507,4 @@ pub(super) fn too_many(
     let message =
         format!("{count} {what} are {} more than the limit `{limit}` of {most} allows", count.saturating_sub(most));
     Diagnostic::error(code, place, message).label("too many").help("`ninebit limits` prints what is allowed")
-}
-
-/// The finding that a name is not defined.
-pub(super) fn unknown_name<'n, T>(
-    reader: &mut Reader<'_>,
-    place: Range<usize>,
-    what: &str,
-    name: &str,
-    known: impl Iterator<Item = &'n str> + Clone,
-    define: &str,
-) -> Option<T> {
-    // What is meant is looked for only where somebody reads it: names and uses may be thousands.
-    if reader.is_full() {
-        return reader.refuse(Diagnostic::error("NB0208", place, ""));
-    }
-    let help = match closest(name, known.clone()) {
-        Some(known) => format!("did you mean \"{}\"?", shorten(known)),
-        None => {
-            let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
-            if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
-        }
-    };
-    reader.refuse(finding("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)), "not defined", help))
 }

@@ -90,7 +90,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let ideal = evaluate(plan, truth, TARGET);
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let technique = compare(plan, &options);
-    let shown = Shown::new(plan);
+    let shown = shown(plan);
     let measured: Vec<usize> = (0..ideal.pixels.len())
         .filter(|at| ideal.pixels[*at].is_some() && technique.errors[*at][0].is_finite())
         .collect();
@@ -106,7 +106,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
         let Some(pixel) = &ideal.pixels[*at] else { continue };
         for n in 0..3 {
             let wanted = 255.0 * pixel.color[n];
-            let byte = f64::from(shown.0[*at][n]);
+            let byte = f64::from(shown[*at][n]);
             errors[n].add(byte - wanted);
             let from_bytes = color(quantised.as_ref(), *at, n).unwrap_or(wanted);
             inputs.add(from_bytes - wanted);
@@ -120,7 +120,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     for at in &measured {
         wanted[*at] = ideal.pixels[*at].as_ref().map(|pixel| pixel.color);
     }
-    let banding = Banding::of(&ideal, &shown.0, &measured);
+    let banding = Banding::of(&ideal, &shown, &measured);
     Some(Accuracy {
         width: ideal.width,
         height: ideal.height,
@@ -132,7 +132,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
         banding,
         normals: read.map(|read| NormalError::of(&ideal, &read, &measured)),
         cost: HardwareCost::of(scene, plan, pixels),
-        pictures: Pictures { width: ideal.width, height: ideal.height, shown: shown.0, truth: wanted },
+        pictures: Pictures { width: ideal.width, height: ideal.height, shown, truth: wanted },
     })
 }
 
@@ -150,13 +150,8 @@ fn causes(inputs: Option<Statistics>, method: Statistics, technique: &Comparison
 }
 
 /// What a picture shows, R, G, B, A by pixel.
-struct Shown(Vec<[u8; 4]>);
-
-impl Shown {
-    fn new(plan: &Plan) -> Shown {
-        let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
-        let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);
-        let format = plan.targets[TARGET].format;
-        Shown(words.iter().map(|word| surface::kept(format, *word)).collect())
-    }
+fn shown(plan: &Plan) -> Vec<[u8; 4]> {
+    let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
+    let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);
+    words.iter().map(|word| surface::kept(plan.targets[TARGET].format, *word)).collect()
 }

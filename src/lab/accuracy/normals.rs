@@ -81,17 +81,17 @@ fn of_register(scene: &Scene, plan: &Plan, truth: &Truth, space: Space, register
     };
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let comparison = compare(&probe, &options);
-    let shown = super::Shown::new(&probe);
+    let shown = super::shown(&probe);
     let drawn = |at: usize| comparison.errors[at][0].is_finite();
     let zero = match plan.policies.expand_centre {
         ExpandCentre::Centred => 128.0,
         ExpandCentre::Literal => 127.5,
     };
     let pixels = 0..comparison.errors.len();
-    let stored = |at: usize| [0, 1, 2].map(|n| (f64::from(shown.0[at][n]) - zero) / 127.5);
+    let stored = |at: usize| [0, 1, 2].map(|n| (f64::from(shown[at][n]) - zero) / 127.5);
     let ideal = |at: usize| {
         let error = comparison.errors[at];
-        [0, 1, 2].map(|n| (f64::from(shown.0[at][n]) - f64::from(error[n])) / 127.5 - 1.0)
+        [0, 1, 2].map(|n| (f64::from(shown[at][n]) - f64::from(error[n])) / 127.5 - 1.0)
     };
     Normals {
         stored: pixels.clone().map(|at| drawn(at).then(|| stored(at))).collect(),

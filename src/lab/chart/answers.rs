@@ -25,19 +25,18 @@ fn row(cells: &[&str]) -> Row {
 /// A way with its error and what it asks of the chip.
 fn told(way: &Technique) -> String {
     let cost = &way.accuracy.cost.asked;
-    let count = |count: f64, what: &str| match number(count) {
+    let counts = [(cost.passes as f64, "pass"), (cost.stages, "stage"), (cost.fetches, "fetch")];
+    let [passes, stages, fetches] = counts.map(|(count, what)| match number(count) {
         one if one == "1" => format!("1 {what}"),
         n if what.ends_with("ss") || what.ends_with("ch") => format!("{n} {what}es"),
         n => format!("{n} {what}s"),
-    };
-    format!(
-        "*{}*: {} rms for {}, {}, {}",
-        way.entry.name(),
-        number(way.rms()),
-        count(cost.passes as f64, "pass"),
-        count(cost.stages, "stage"),
-        count(cost.fetches, "fetch")
-    )
+    });
+    format!("*{}*: {} rms for {passes}, {stages}, {fetches}", way.entry.name(), rms(way))
+}
+
+/// The error of a way as it is written.
+fn rms(way: &Technique) -> String {
+    number(way.rms())
 }
 
 impl Measured {
@@ -45,23 +44,13 @@ impl Measured {
     pub(super) fn answers(&self) -> Vec<Row> {
         let lights = self.lights();
         let light = |name: &str| lights.iter().find(|light| light.name == name);
+        let (one_pass, cube_map) = (light("diffuse").and_then(one_pass), light("normalisation").and_then(cube_map));
+        let (squaring, subtracting) = (self.table_or_squaring(), self.subtracting(&lights));
         let answers = [
-            (
-                "Which method for diffuse bumps in one pass?",
-                light("diffuse").and_then(one_pass),
-                "diffuse-light-on-bumps",
-            ),
-            (
-                "What does a normalisation cube map buy?",
-                light("normalisation").and_then(cube_map),
-                "five-claims-of-2002",
-            ),
-            ("When does a table beat squaring?", self.table_or_squaring(), "a-highlight-on-bumps-exponent-8"),
-            (
-                "What does subtracting cost without subtract?",
-                self.subtracting(&lights),
-                "a-dot-product-of-signed-vectors",
-            ),
+            ("Which method for diffuse bumps in one pass?", one_pass, "diffuse-light-on-bumps"),
+            ("What does a normalisation cube map buy?", cube_map, "five-claims-of-2002"),
+            ("When does a table beat squaring?", squaring, "a-highlight-on-bumps-exponent-8"),
+            ("What does subtracting cost without subtract?", subtracting, "a-dot-product-of-signed-vectors"),
             ("What does exact cost over fast?", self.exact(), "ways-of-evaluating-a-scene"),
         ];
         let rows = answers
@@ -80,8 +69,7 @@ impl Measured {
         let exponents = [8, 16, 32].into_iter().filter_map(|exponent| {
             let squared = self.find(family, &format!("specular {exponent}"))?;
             let table = self.find(family, &format!("specular table {exponent} 256"))?;
-            let renormalised = self.find(family, &format!("specular {exponent} renormalised"));
-            Some((exponent, squared, table, renormalised))
+            Some((exponent, squared, table, self.find(family, &format!("specular {exponent} renormalised"))))
         });
         let exponents: Vec<_> = exponents.collect();
         let (first, ..) = exponents.iter().find(|(_, squared, table, _)| table.rms() < squared.rms())?;
@@ -92,17 +80,11 @@ impl Measured {
             format!("; squares of renormalised vectors are nearer up to {exponent}, but keep the bands")
         });
         let told = exponents.iter().map(|(exponent, squared, table, renormalised)| {
-            let also = renormalised.map_or(String::new(), |way| {
-                format!(", renormalised {} and {}", number(way.rms()), way.accuracy.banding.levels)
-            });
             let levels = |way: &Technique| way.accuracy.banding.levels;
-            format!(
-                "exponent {exponent}: squared {} rms and {} levels{also}, table {} rms and {} levels",
-                number(squared.rms()),
-                levels(squared),
-                number(table.rms()),
-                levels(table)
-            )
+            let told = |what: &str, way: &Technique| format!("{what} {} rms and {} levels", rms(way), levels(way));
+            let also = renormalised.map(|way| format!(", renormalised {} and {}", rms(way), levels(way)));
+            let (squared, table) = (told("squared", squared), told("table", table));
+            format!("exponent {exponent}: {squared}{}, {table}", also.unwrap_or_default())
         });
         let told: Vec<String> = told.collect();
         Some(format!("At every exponent from {first} on{but}. {}", capital(&told.join("; "))))
@@ -115,13 +97,11 @@ impl Measured {
         let fields = lights.iter().find(|light| light.name == "signed-arithmetic");
         let fields = fields.and_then(|light| Some([light.way("height 12")?, light.way("height 12 approximate")?]));
         let also = fields.map_or(String::new(), |[with, without]| {
-            format!(" on a ball, {} in place of {} on a gentle height field", number(without.rms()), number(with.rms()))
+            format!(" on a ball, {} in place of {} on a gentle height field", rms(without), rms(with))
         });
+        let (of, makes, passes) = (rms(with), rms(without), with.accuracy.cost.asked.passes);
         Some(format!(
-            "No pass, but accuracy: a (1 - b) for a - b makes {} rms of {}{also}; both take {} passes",
-            number(without.rms()),
-            number(with.rms()),
-            with.accuracy.cost.asked.passes
+            "No pass, but accuracy: a (1 - b) for a - b makes {makes} rms of {of}{also}; both take {passes} passes"
         ))
     }
 
@@ -135,17 +115,11 @@ impl Measured {
         };
         let exact = fastest(true)?;
         let told = |e: &Evaluator| {
-            format!(
-                "*{}* {} ns a pixel, {} rms, at most {} off",
-                e.name,
-                number(e.time.median),
-                number(e.error),
-                number(e.largest)
-            )
+            let [time, error, largest] = [e.time.median, e.error, e.largest].map(number);
+            format!("*{}* {time} ns a pixel, {error} rms, at most {largest} off", e.name)
         };
         let named = |name: &str| own.iter().find(|e| e.name == name).map(|e| told(e));
-        let others = ["llvmpipe", "float32", "scalar"].into_iter().filter_map(named);
-        let others: Vec<String> = others.collect();
+        let others: Vec<String> = ["llvmpipe", "float32", "scalar"].into_iter().filter_map(named).collect();
         let verdict = match fastest(false) {
             Some(other) if other.time.median < exact.time.median => {
                 format!("{} times the time", number(exact.time.median / other.time.median))
@@ -160,14 +134,12 @@ impl Measured {
         let lights = self.lights();
         let light = |name: &str| lights.iter().find(|light| light.name == name);
         let (smooth, bumps) = (light("normalisation"), light("normalisation-bumps"));
+        let vanished = smooth.zip(bumps).and_then(|(smooth, bumps)| vanish(smooth, bumps));
         let claims = [
             ("Two combiner stages normalise better than a cube map of 8 bits", smooth.and_then(combiners_or_cube)),
             ("A cube map of 16 bits with the texture shader's dot product is best", smooth.and_then(sixteen_bits)),
             ("Squaring bands, and a table does not", smooth.and_then(bands)),
-            (
-                "With bump maps the differences vanish",
-                smooth.zip(bumps).and_then(|(smooth, bumps)| vanish(smooth, bumps)),
-            ),
+            ("With bump maps the differences vanish", vanished),
             ("Light of the vertices, two combiner stages, 16 bits: speeds 100 : 80 : 50", smooth.and_then(speeds)),
         ];
         let rows = claims.into_iter().filter_map(|(claim, decided)| {
@@ -201,13 +173,11 @@ fn one_pass(light: &Light<'_>) -> Option<String> {
 }
 
 fn cube_map(light: &Light<'_>) -> Option<String> {
-    let [plain, cube, stages] = ["smooth plain", "smooth cube 8", "smooth combiners"].map(|name| light.way(name));
+    let names = ["smooth plain", "smooth cube 8", "smooth combiners"];
+    let [plain, cube, stages] = names.map(|name| light.way(name).map(rms));
     let (plain, cube, stages) = (plain?, cube?, stages?);
     Some(format!(
-        "{} rms in place of {} for one fetch on a coarse mesh; two stages in its place leave {}",
-        number(cube.rms()),
-        number(plain.rms()),
-        number(stages.rms())
+        "{cube} rms in place of {plain} for one fetch on a coarse mesh; two stages in its place leave {stages}"
     ))
 }
 
@@ -250,18 +220,15 @@ fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Decided {
     };
     let before = ratio(smooth, ["smooth combiners", "smooth cube 8"])?;
     let after = ratio(bumps, ["bumps combiners", "bumps cube 8"])?;
-    let rms = |name: &str| bumps.way(name).map_or("-".to_owned(), |way| number(way.rms()));
+    let ways = ["bumps cube 8", "bumps combiners", "bumps plain", "bumps table"];
+    let [cube, stages, plain, table] = ways.map(|name| bumps.way(name).map_or("-".to_owned(), rms));
+    let verdict = verdict(after <= ALIKE && after < before);
+    let [before, after] = [before, after].map(number);
     let text = format!(
-        "Cube map against stages: errors {} times one another on the smooth ball, {} times on bumps ({} and {}; neither {}; the texture \
-         shader's dot product and a table {})",
-        number(before),
-        number(after),
-        rms("bumps cube 8"),
-        rms("bumps combiners"),
-        rms("bumps plain"),
-        rms("bumps table")
+        "Cube map against stages: errors {before} times one another on the smooth ball, {after} times on bumps ({cube} and {stages}; neither \
+         {plain}; the texture shader's dot product and a table {table})"
     );
-    Some((verdict(after <= ALIKE && after < before), text))
+    Some((verdict, text))
 }
 
 fn speeds(smooth: &Light<'_>) -> Decided {
@@ -270,11 +237,8 @@ fn speeds(smooth: &Light<'_>) -> Decided {
     let all = [vertex, stages, sixteen];
     let speed = all.map(|way| 100.0 * vertex.time.median / way.time.median);
     let near = speed.iter().zip([100.0, 80.0, 50.0]).all(|(speed, claimed)| (speed - claimed).abs() <= NEAR);
-    let text = format!(
-        "Of a chip's speed counts decide nothing: {}. This program's: {}",
-        all.map(told).join("; "),
-        speed.map(number).join(" : ")
-    );
+    let (counts, speeds) = (all.map(told).join("; "), speed.map(number).join(" : "));
+    let text = format!("Of a chip's speed counts decide nothing: {counts}. This program's: {speeds}");
     Some((if near { "confirmed here" } else { "refuted here" }, text))
 }
 
@@ -286,10 +250,10 @@ fn neutral() -> Row {
         ((x * x + y * y).sqrt() / z).atan().to_degrees()
     };
     let [centred, literal] = [ExpandCentre::Centred, ExpandCentre::Literal].map(angle);
+    let verdict = verdict(literal > 0.0 && centred == 0.0);
+    let [centred, literal] = [centred, literal].map(number);
     let text = format!(
-        "Bytes 128, 128, 255: {} degrees from upright if 128 is zero (`CMB-3=centred`, the rule), {} if 127.5 is (`CMB-3=literal`)",
-        number(centred),
-        number(literal)
+        "Bytes 128, 128, 255: {centred} degrees from upright if 128 is zero (`CMB-3=centred`, the rule), {literal} if 127.5 is (`CMB-3=literal`)"
     );
-    row(&["The neutral normal is off if 128 is not zero", verdict(literal > 0.0 && centred == 0.0), &text])
+    row(&["The neutral normal is off if 128 is not zero", verdict, &text])
 }

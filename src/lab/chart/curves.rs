@@ -1,15 +1,13 @@
 //! How the cost of a frame grows with what is drawn: in proportion, and not at all with what nothing sees.
 
-use std::path::Path;
-
 use serde::Serialize;
 
-use super::picture::{Axis, COLORS, Drawing, Join, Mark, Series, Shape};
+use super::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
+use super::surfaces::planned;
 use super::timing::{Effort, frames};
 use ninebit::engine::{RenderOptions, Renderer};
-use ninebit::limits::Limits;
 use ninebit::plan::Plan;
-use ninebit_scene::{SceneError, parse};
+use ninebit_scene::SceneError;
 
 /// The scene, with places for what varies.
 const TEMPLATE: &str = include_str!("curve.ron");
@@ -72,27 +70,18 @@ pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
         (Curve { chart, counted, label, points: Vec::new() }, scenes.into_iter().take(most).collect())
     };
     let sizes = |all: &[usize], of: fn(usize) -> Scene| all.iter().map(|n| of(*n)).collect::<Vec<_>>();
+    let pixels = sizes(&[32, 64, 128, 256, 512, 1024, 2048], |side| Scene { side, ..PLAIN });
+    let draws = sizes(&[1, 4, 16, 64, 256, 1024], |draws| Scene { draws, side: 64, ..PLAIN });
+    let triangles = sizes(&[4, 11, 32, 101, 320], |cells| Scene { cells, side: 1024, ..PLAIN });
+    let stages = [1, 2, 3, 4, 5, 6, 7, 8];
+    let seen = sizes(&stages, |stages| Scene { stages, ..PLAIN });
+    let unseen = sizes(&stages, |stages| Scene { unseen: stages - 1, ..PLAIN });
     vec![
-        curve("cost-pixels", "pixels", "", sizes(&[32, 64, 128, 256, 512, 1024, 2048], |side| Scene { side, ..PLAIN })),
-        curve("cost-draws", "draws", "", sizes(&[1, 4, 16, 64, 256, 1024], |draws| Scene { draws, side: 64, ..PLAIN })),
-        curve(
-            "cost-triangles",
-            "triangles",
-            "",
-            sizes(&[4, 11, 32, 101, 320], |cells| Scene { cells, side: 1024, ..PLAIN }),
-        ),
-        curve(
-            "cost-stages",
-            "stages",
-            "each is seen",
-            sizes(&[1, 2, 3, 4, 5, 6, 7, 8], |stages| Scene { stages, ..PLAIN }),
-        ),
-        curve(
-            "cost-stages",
-            "stages",
-            "only the first is",
-            sizes(&[1, 2, 3, 4, 5, 6, 7, 8], |stages| Scene { unseen: stages - 1, ..PLAIN }),
-        ),
+        curve("cost-pixels", "pixels", "", pixels),
+        curve("cost-draws", "draws", "", draws),
+        curve("cost-triangles", "triangles", "", triangles),
+        curve("cost-stages", "stages", "each is seen", seen),
+        curve("cost-stages", "stages", "only the first is", unseen),
     ]
 }
 
@@ -105,15 +94,8 @@ impl Scene {
         let seen = (1..self.stages).map(|n| if n % 4 == 3 { MUX } else { DOT });
         let stages: String =
             std::iter::once(FIRST).chain(seen).chain(std::iter::repeat_n(UNSEEN, self.unseen)).collect();
-        let parts = [
-            ("SIDE", self.side.to_string()),
-            ("CELLS", self.cells.to_string()),
-            ("STAGES", stages),
-            ("DRAWS", DRAW.repeat(self.draws)),
-        ];
-        let text =
-            parts.iter().fold(TEMPLATE.to_owned(), |text, (place, with)| text.replace(&format!("<{place}>"), with));
-        Ok(parse(&text, Path::new("curve.ron"), &Limits::default())?.plan)
+        let (side, cells, draws) = (self.side.to_string(), self.cells.to_string(), DRAW.repeat(self.draws));
+        planned(TEMPLATE, &[("SIDE", &side), ("CELLS", &cells), ("STAGES", &stages), ("DRAWS", &draws)])
     }
 
     /// A point of what is counted.
@@ -155,7 +137,7 @@ fn drawing(curves: Vec<&Curve>) -> Drawing {
     let series = curves.iter().enumerate().map(|(n, curve)| Series {
         label: curve.label.to_owned(),
         color: COLORS[n % COLORS.len()],
-        shape: Shape::ALL[n % Shape::ALL.len()],
+        shape: Some(SHAPES[n % SHAPES.len()]),
         join: Join::Solid,
         marks: curve
             .points

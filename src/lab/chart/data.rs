@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use super::questions::Light;
 use super::report::Measured;
 use super::tables::{cause, causes, degrees};
-use super::techniques::Technique;
-use crate::accuracy::{FrameCost, accuracy_value};
+use super::techniques::{Entry, Technique};
+use crate::accuracy::{FrameCost, HardwareCost, accuracy_value};
 use ninebit::engine::Isa;
 use ninebit::state::Named;
 
@@ -47,35 +47,24 @@ impl Measured {
         add("levels", "different bytes over the highlight", Box::new(|t| t.accuracy.banding.levels.to_string()));
         add("truth_levels", "those of the truth, rounded", Box::new(|t| t.accuracy.banding.truth_levels.to_string()));
         add("flat_run", "longest row of equal pixels there", Box::new(|t| t.accuracy.banding.flat_run.to_string()));
-        add(
-            "degrees",
-            "mean angle by which normals are turned; empty if not measured",
-            Box::new(|t| degrees(t).map_or_else(String::new, real)),
-        );
+        let turned = |t: &Technique| degrees(t).map_or_else(String::new, real);
+        add("degrees", "mean angle by which normals are turned; empty if not measured", Box::new(turned));
         for name in causes(self.techniques.iter()) {
             let meaning = format!("what {name} adds to the error, rms; empty if it has no part in it");
             let of = move |t: &Technique| cause(t, name).map_or_else(String::new, real);
             add(&format!("cause_{}", name.replace(' ', "_")), &meaning, Box::new(of));
         }
-        for (name, meaning, of) in COUNTS {
-            add(
-                &format!("asked_{name}"),
-                &format!("as the program asks: {meaning}"),
-                Box::new(move |t| real(of(&t.accuracy.cost.asked))),
-            );
+        type Of = fn(&HardwareCost) -> &FrameCost;
+        let costs: [(&str, &str, Of); 2] =
+            [("asked", "as the program asks", |cost| &cost.asked), ("pruned", "after pruning", |cost| &cost.pruned)];
+        for (when, about, cost) in costs {
+            for (name, meaning, of) in COUNTS {
+                let of = move |t: &Technique| real(of(cost(&t.accuracy.cost)));
+                add(&format!("{when}_{name}"), &format!("{about}: {meaning}"), Box::new(of));
+            }
         }
-        for (name, meaning, of) in COUNTS {
-            add(
-                &format!("pruned_{name}"),
-                &format!("after pruning: {meaning}"),
-                Box::new(move |t| real(of(&t.accuracy.cost.pruned))),
-            );
-        }
-        add(
-            "ns",
-            "nanoseconds per final pixel here, median; one thread, 512 columns",
-            Box::new(|t| real(t.time.median)),
-        );
+        let about = "nanoseconds per final pixel here, median; one thread, 512 columns";
+        add("ns", about, Box::new(|t| real(t.time.median)));
         add("ns_lower", "a quarter of the frames took less", Box::new(|t| real(t.time.lower)));
         add("ns_upper", "a quarter took more", Box::new(|t| real(t.time.upper)));
         all
@@ -88,8 +77,7 @@ impl Measured {
         let row = |technique: &Technique| {
             let entry = &technique.entry;
             let parameter = entry.parameter.map_or_else(String::new, |parameter| parameter.to_string());
-            let means = |light: &&Light<'_>| light.ways.iter().any(|way| way.entry == *entry);
-            let truth = lights.iter().find(means).map_or_else(String::new, |light| light.name.clone());
+            let truth = meant(lights, entry).unwrap_or_default().to_owned();
             let cells = columns.iter().map(|column| (column.of)(technique));
             [entry.family.clone(), entry.technique.clone(), parameter, truth].into_iter().chain(cells).collect()
         };
@@ -119,8 +107,7 @@ impl Measured {
             value["family"] = entry.family.as_str().into();
             value["technique"] = entry.technique.as_str().into();
             value["parameter"] = entry.parameter.into();
-            let means = |light: &&Light<'_>| light.ways.iter().any(|way| way.entry == *entry);
-            value["truth"] = lights.iter().find(means).map(|light| light.name.as_str()).into();
+            value["truth"] = meant(lights, entry).into();
             value["nanoseconds_per_pixel"] = json!(technique.time);
             value
         };
@@ -136,6 +123,12 @@ impl Measured {
             "failed": self.failed,
         })
     }
+}
+
+/// The name of the light that a scene means.
+fn meant<'l>(lights: &'l [Light<'_>], entry: &Entry) -> Option<&'l str> {
+    let light = lights.iter().find(|light| light.ways.iter().any(|way| way.entry == *entry));
+    light.map(|light| light.name.as_str())
 }
 
 /// A number as data: at most four decimals, none if it is whole; nothing if it is not finite.

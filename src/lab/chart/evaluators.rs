@@ -122,8 +122,7 @@ pub fn count() -> usize {
 
 /// R, G, B that an engine stores.
 fn rendered(plan: &Plan, options: &RenderOptions) -> Vec<[f64; 3]> {
-    let frames = render(plan, options);
-    let bytes = frames.surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default();
+    let bytes = render(plan, options).surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default();
     bytes.iter().map(|[r, g, b, _]| [*r, *g, *b].map(f64::from)).collect()
 }
 
@@ -153,10 +152,8 @@ fn real<L: Ideal + Send + Sync>(
 fn traced(plan: &Plan, definition: &[[f64; 3]], side: usize, effort: &Effort) -> (Spread, Statistics) {
     /// Pixels that are traced, along each side.
     const GRID: usize = 8;
-    let places: Vec<(u32, u32)> = (0..GRID * GRID)
-        .map(|n| [n % GRID, n / GRID].map(|k| ((k * side + side / 2) / GRID) as u32))
-        .map(|[x, y]| (x, y))
-        .collect();
+    let along = |k: usize| ((k * side + side / 2) / GRID) as u32;
+    let places: Vec<(u32, u32)> = (0..GRID * GRID).map(|n| (along(n % GRID), along(n / GRID))).collect();
     let trace = |place: &(u32, u32)| engine::trace(plan, 0, *place, None);
     let time = effort.measure(places.len() as u64, || places.iter().for_each(|place| drop(trace(place))));
     let mut errors = Statistics::default();

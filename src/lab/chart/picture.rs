@@ -107,38 +107,9 @@ fn ends(values: impl Iterator<Item = f64>, empty: f64) -> (f64, f64) {
     if ends.0 > ends.1 { (empty, empty) } else { ends }
 }
 
-/// What stands at each point of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// Nothing: a line alone.
-    None,
-    /// A disc.
-    Circle,
-    /// A square.
-    Square,
-    /// A triangle.
-    Triangle,
-    /// A diamond.
-    Diamond,
-    /// A cross.
-    Cross,
-}
-
-impl Shape {
-    /// Shapes that are easily told apart, for families in order.
-    pub const ALL: [Shape; 5] = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Cross];
-
-    fn marker(self) -> Option<MarkerShape> {
-        match self {
-            Shape::None => None,
-            Shape::Circle => Some(MarkerShape::Circle),
-            Shape::Square => Some(MarkerShape::Square),
-            Shape::Triangle => Some(MarkerShape::Triangle),
-            Shape::Diamond => Some(MarkerShape::Diamond),
-            Shape::Cross => Some(MarkerShape::Cross),
-        }
-    }
-}
+/// Marks that are easily told apart, for families in order.
+pub const SHAPES: [MarkerShape; 5] =
+    [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond, MarkerShape::Cross];
 
 /// How the points of a series are joined, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,8 +140,8 @@ pub struct Series {
     pub label: String,
     /// Colour, `#rrggbb`.
     pub color: &'static str,
-    /// At each point.
-    pub shape: Shape,
+    /// At each point; none where a line is alone.
+    pub shape: Option<MarkerShape>,
     /// Between points.
     pub join: Join,
     /// The points.
@@ -256,8 +227,7 @@ impl Drawing {
             layout = layout
                 .with_reference_line(ReferenceLine::horizontal(*level).with_color("#444444").with_label(name.as_str()));
         }
-        let plots = self.series.iter().flat_map(Series::plots).collect();
-        let mut scene = render_multiple(plots, layout);
+        let mut scene = render_multiple(self.series.iter().flat_map(Series::plots).collect(), layout);
         let plot = Rect { x: left, y: top, width: self.size[0] - left - right, height: self.size[1] - top - bottom };
         self.write_names(&mut scene, &plot);
         // What the vertical axis shows stands above it, as people read.
@@ -282,7 +252,7 @@ impl Drawing {
             .map(|series| LegendEntry {
                 label: series.label.clone(),
                 color: series.color.to_owned(),
-                shape: series.shape.marker().map_or(LegendShape::Line, LegendShape::Marker),
+                shape: series.shape.map_or(LegendShape::Line, LegendShape::Marker),
                 dasharray: (series.join == Join::Dashed).then(|| "6 4".to_owned()),
             })
             .collect()
@@ -300,7 +270,7 @@ impl Drawing {
         let marks: Vec<(&Series, &Mark)> =
             self.series.iter().flat_map(|series| series.marks.iter().map(move |mark| (series, mark))).collect();
         let marks: Vec<(&Series, &Mark)> =
-            marks.into_iter().filter(|(series, mark)| series.shape != Shape::None || !mark.name.is_empty()).collect();
+            marks.into_iter().filter(|(series, mark)| series.shape.is_some() || !mark.name.is_empty()).collect();
         let size = f64::from(NAME);
         let named: Vec<Named> = marks
             .iter()
@@ -350,7 +320,7 @@ impl Series {
             Join::Solid => plots.push(Plot::Line(line())),
             Join::Dashed => plots.push(Plot::Line(line().with_dashed())),
         }
-        if let Some(marker) = self.shape.marker() {
+        if let Some(marker) = self.shape {
             plots.push(Plot::Scatter(
                 ScatterPlot::new().with_data(points()).with_color(self.color).with_size(4.5).with_marker(marker),
             ));
@@ -386,7 +356,7 @@ mod tests {
         let series = Series {
             label: "a family".to_owned(),
             color: COLORS[0],
-            shape: Shape::Circle,
+            shape: Some(MarkerShape::Circle),
             join: Join::Dashed,
             marks: vec![mark(1.0, 2.0, "one < two"), mark(5.0, 8.0, "other")],
         };

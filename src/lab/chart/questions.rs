@@ -16,33 +16,19 @@ pub struct Question {
 
 /// The questions, in the order of the page.
 pub const QUESTIONS: [Question; 6] = [
-    Question {
-        name: "diffuse",
-        title: "Diffuse light on bumps",
-        like: ("per-pixel-lighting", "tangent space diffuse"),
-    },
-    Question {
-        name: "highlight",
-        title: "A highlight on bumps, exponent 8",
-        like: ("per-pixel-lighting", "specular 8"),
-    },
-    Question {
-        name: "hemisphere",
-        title: "Light of sky and ground on bumps",
-        like: ("per-pixel-lighting", "hemisphere exact"),
-    },
-    Question {
-        name: "signed-arithmetic",
-        title: "A dot product of signed vectors",
-        like: ("orthogonal-illumination-mapping", "height 12"),
-    },
-    Question {
-        name: "normalisation",
-        title: "A highlight on a coarse ball: vectors brought to unit length",
-        like: ("normalisation", "smooth plain"),
-    },
-    Question { name: "normalisation-bumps", title: "The same ball with bumps", like: ("normalisation", "bumps plain") },
+    question("diffuse", "Diffuse light on bumps", PER_PIXEL, "tangent space diffuse"),
+    question("highlight", "A highlight on bumps, exponent 8", PER_PIXEL, "specular 8"),
+    question("hemisphere", "Light of sky and ground on bumps", PER_PIXEL, "hemisphere exact"),
+    question("signed-arithmetic", "A dot product of signed vectors", "orthogonal-illumination-mapping", "height 12"),
+    question("normalisation", "A highlight on a coarse ball: vectors brought to unit length", BALL, "smooth plain"),
+    question("normalisation-bumps", "The same ball with bumps", BALL, "bumps plain"),
 ];
+const PER_PIXEL: &str = "per-pixel-lighting";
+const BALL: &str = "normalisation";
+
+const fn question(name: &'static str, title: &'static str, family: &'static str, technique: &'static str) -> Question {
+    Question { name, title, like: (family, technique) }
+}
 
 /// The most methods that a chart shows; the most exact ones of more.
 pub const MAX_SHOWN: usize = 12;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::curves::{self, Curve};
 use super::evaluators::Evaluator;
 use super::page::{File, comma_separated, fill, table, words};
-use super::picture::{Axis, COLORS, Drawing, Join, Mark, Picture, Series, Shape};
+use super::picture::{Axis, COLORS, Drawing, Join, Mark, Picture, SHAPES, Series};
 use super::questions::{Light, lights};
 use super::surfaces::SurfaceCost;
 use super::techniques::{LARGE, Technique};
@@ -109,7 +109,7 @@ impl Measured {
         let named = |e: &&Evaluator| Mark { x: e.time.median, y: e.error, name: e.name.clone() };
         let (exact, others): (Vec<&Evaluator>, Vec<&Evaluator>) = own.iter().copied().partition(|e| e.largest == 0.0);
         let series = |label: &str, n: usize, marks: &[&Evaluator]| {
-            let (color, shape) = (COLORS[n], Shape::ALL[n]);
+            let (color, shape) = (COLORS[n], Some(SHAPES[n]));
             Series { label: label.to_owned(), color, shape, join: Join::None, marks: marks.iter().map(named).collect() }
         };
         let errors = own.iter().map(|evaluator| evaluator.error);
@@ -142,9 +142,9 @@ fn time_drawing(light: &Light<'_>) -> Drawing {
         ),
         y: Axis::logarithmic(ERROR, ways.iter().map(|way| way.rms())),
         series: vec![
-            series("", "#b9cde6", Shape::None, Join::Solid, joined),
-            series("", "#767676", Shape::Circle, Join::None, marks(false)),
-            series("", COLORS[0], Shape::Circle, Join::None, marks(true)),
+            series("", "#b9cde6", None, Join::Solid, joined),
+            series("", "#767676", Some(SHAPES[0]), Join::None, marks(false)),
+            series("", COLORS[0], Some(SHAPES[0]), Join::None, marks(true)),
         ],
         levels: Vec::new(),
         size: [900.0, 430.0],

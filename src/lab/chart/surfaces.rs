@@ -72,6 +72,15 @@ pub fn surfaces() -> Vec<(&'static str, Surface)> {
     ]
 }
 
+/// The scene of a template, with what stands in its places.
+///
+/// # Errors
+/// The scene is not accepted: a fault of the template.
+pub(super) fn planned(template: &str, parts: &[(&str, &str)]) -> Result<Plan, Box<SceneError>> {
+    let text = parts.iter().fold(template.to_owned(), |text, (place, with)| text.replace(&format!("<{place}>"), with));
+    Ok(parse(&text, Path::new("template.ron"), &Limits::default())?.plan)
+}
+
 impl Surface {
     /// The scene of this surface, square, so many pixels wide.
     ///
@@ -118,9 +127,7 @@ impl Surface {
             ("FOG", if self.fog { "fog: (color: (90, 100, 110))," } else { "" }),
             ("BLEND", if self.blend { "blend: (source: One, destination: One)," } else { "" }),
         ];
-        let text =
-            parts.iter().fold(TEMPLATE.to_owned(), |text, (place, with)| text.replace(&format!("<{place}>"), with));
-        Ok(parse(&text, Path::new("surface.ron"), &Limits::default())?.plan)
+        planned(TEMPLATE, &parts)
     }
 
     /// What it costs.

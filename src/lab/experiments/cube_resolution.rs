@@ -1,7 +1,7 @@
 //! Highlights stored in a cube map: how many texels a face they need.
 
 use super::portable::pow;
-use super::strip::{WIDTH, byte, byte_texels, centre, draw, errors, largest, row, scene};
+use super::strip::{WIDTH, byte, byte_texels, centre, largest_error, row, scene};
 use super::{Experiment, Method, Scale};
 
 /// Toward the middle of the highlight.
@@ -12,20 +12,15 @@ const REACH: f64 = 0.8;
 pub(super) fn experiment() -> Experiment {
     let method = |exponent: i32| {
         Method::new(format!("exponent {exponent}"), [256.0, 4.0], move |side| {
-            let pixels = draw(&text(side as usize, exponent))?;
-            Ok(largest(&errors(&pixels, 0, |at| highlight([REACH * (2.0 * at - 1.0), 0.2, 1.0], exponent))))
+            largest_error(&text(side as usize, exponent), 0, |at| {
+                highlight([REACH * (2.0 * at - 1.0), 0.2, 1.0], exponent)
+            })
         })
     };
-    Experiment {
-        name: "cube-resolution",
-        title: "A highlight in a cube map",
-        parameter: "texels along a face's side",
-        error: "largest error, 8-bit steps",
-        limit: 4.0,
-        scale: Scale::Doubling,
-        shown: (2..=8).map(|n| f64::from(1 << n)).collect(),
-        methods: [8, 32, 128].map(method).into(),
-    }
+    Experiment::new("cube-resolution", "A highlight in a cube map")
+        .moving("texels along a face's side", Scale::Doubling, (2..=8).map(|n| f64::from(1 << n)).collect())
+        .measuring("largest error, 8-bit steps", 4.0)
+        .by([8, 32, 128].map(method))
 }
 
 /// The cosine with the axis, to a power.

@@ -1,31 +1,26 @@
 //! Numbers that are gathered in destination alpha, eight bits a pass.
 
 use super::portable::pow;
-use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, scene, whole_row};
+use super::strip::{WIDTH, byte, bytes, centre, largest_error, scene, whole_row};
 use super::{Experiment, Method, Scale};
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| {
-        Method::new(name, [1.0, 128.0], move |passes| {
-            let pixels = draw(&text(passes, blend, part))?;
-            Ok(largest(&errors(&pixels, 3, |at| at)))
-        })
+        Method::new(name, [1.0, 128.0], move |passes| largest_error(&text(passes, blend, part), 3, |at| at))
     };
-    Experiment {
-        name: "destination-alpha",
-        title: "A number gathered in destination alpha",
-        parameter: "passes",
-        error: "largest error, 8-bit steps",
-        limit: 4.0,
-        scale: Scale::Whole,
-        shown: [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128].map(f64::from).into(),
-        methods: vec![
+    Experiment::new("destination-alpha", "A number gathered in destination alpha")
+        .moving(
+            "passes",
+            Scale::Whole,
+            [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128].map(f64::from).into(),
+        )
+        .measuring("largest error, 8-bit steps", 4.0)
+        .by([
             method("sum of equal parts", "(source: One, destination: One)", |value, passes| value / passes),
             method("product of equal factors", "(source: Zero, destination: SourceAlpha)", |value, passes| {
                 pow(value, 1.0 / passes)
             }),
-        ],
-    }
+        ])
 }
 
 /// Each pass brings the same part of what is to come out, as a byte.

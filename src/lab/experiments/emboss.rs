@@ -20,16 +20,10 @@ pub(super) fn experiment() -> Experiment {
             Ok(100.0 * largest(&errors(&pixels, 0, ideal)) / steepest)
         })
     };
-    Experiment {
-        name: "emboss",
-        title: "Embossing with offsets of several texels",
-        parameter: "offset, texels",
-        error: "largest error, per cent of the steepest slope",
-        limit: 25.0,
-        scale: Scale::Real(0.02),
-        shown: (1..=56).map(|n| f64::from(n) / 8.0).collect(),
-        methods: vec![method("h(s) - h(s + d)", 0.0), method("h(s - d/2) - h(s + d/2)", 0.5)],
-    }
+    Experiment::new("emboss", "Embossing with offsets of several texels")
+        .moving("offset, texels", Scale::Real(0.02), (1..=56).map(|n| f64::from(n) / 8.0).collect())
+        .measuring("largest error, per cent of the steepest slope", 25.0)
+        .by([method("h(s) - h(s + d)", 0.0), method("h(s - d/2) - h(s + d/2)", 0.5)])
 }
 
 /// Rise a texel of the height field at a place in texels.

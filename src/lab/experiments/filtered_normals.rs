@@ -1,7 +1,7 @@
 //! Normals between two texels, shortened by the filter.
 
 use super::portable::{cos, pow, sin};
-use super::strip::{WIDTH, colors, draw, errors, largest, row, scene};
+use super::strip::{WIDTH, colors, largest_error, row, scene};
 use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::generate::normal_map::encode;
 
@@ -17,28 +17,21 @@ pub(super) fn experiment() -> Experiment {
     let method = |name: &str, dot: &'static str, squarings: usize| {
         Method::new(name, [5.0, 120.0], move |degrees: f64| {
             let half = 0.5 * degrees.to_radians();
-            let pixels = draw(&text(half, dot, squarings))?;
-            Ok(largest(&errors(&pixels, 0, |at| {
+            largest_error(&text(half, dot, squarings), 0, |at| {
                 // The mix of the exact normals, brought to unit length.
                 let (x, z) = (sin(half) * (2.0 * at - 1.0), cos(half));
                 pow(z / (x * x + z * z).sqrt(), f64::from(1 << squarings))
-            })))
+            })
         })
     };
-    Experiment {
-        name: "filtered-normals",
-        title: "A highlight between two texels of a normal map",
-        parameter: "angle between neighbouring normals, degrees",
-        error: "largest error, 8-bit steps",
-        limit: 32.0,
-        scale: Scale::Real(0.125),
-        shown: steps(0.0, 120.0, 61),
-        methods: vec![
+    Experiment::new("filtered-normals", "A highlight between two texels of a normal map")
+        .moving("angle between neighbouring normals, degrees", Scale::Real(0.125), steps(0.0, 120.0, 61))
+        .measuring("largest error, 8-bit steps", 32.0)
+        .by([
             method("N . H", DOT, 0),
             method("(N . H)^8", DOT, 3),
             method("(N . H)^8, N renormalised", RENORMALISED, 3),
-        ],
-    }
+        ])
 }
 
 /// Two normals that lean away from one another by `half` each, mixed along the strip.

@@ -1,7 +1,7 @@
 //! Half vectors that are computed at the vertices and interpolated.
 
 use super::portable::{exp2, pow};
-use super::strip::{WIDTH, draw, errors, largest, scene};
+use super::strip::{WIDTH, highlight, largest_error, scene};
 use super::{Experiment, Method, Scale};
 use std::fmt::Write;
 
@@ -14,20 +14,19 @@ const SQUARINGS: usize = 3;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, parts: usize| {
         Method::new(name, [0.1, 8.0], move |extent| {
-            let pixels = draw(&text(extent, parts))?;
-            Ok(largest(&errors(&pixels, 0, |at| pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS)))))
+            largest_error(&text(extent, parts), 0, |at| {
+                pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS))
+            })
         })
     };
-    Experiment {
-        name: "half-vectors",
-        title: "Half vectors of the vertices across triangles",
-        parameter: "length of the floor, heights of the lamp",
-        error: "largest error of (N . H)^8, 8-bit steps",
-        limit: 32.0,
-        scale: Scale::Real(0.01),
-        shown: (0..=36).map(|n| 0.1 * exp2(f64::from(n) / 5.7)).collect(),
-        methods: vec![method("one quad", 1), method("2 quads", 2), method("4 quads", 4), method("16 quads", 16)],
-    }
+    Experiment::new("half-vectors", "Half vectors of the vertices across triangles")
+        .moving(
+            "length of the floor, heights of the lamp",
+            Scale::Real(0.01),
+            (0..=36).map(|n| 0.1 * exp2(f64::from(n) / 5.7)).collect(),
+        )
+        .measuring("largest error of (N . H)^8, 8-bit steps", 32.0)
+        .by([method("one quad", 1), method("2 quads", 2), method("4 quads", 4), method("16 quads", 16)])
 }
 
 /// From share of the strip to x on the floor.
@@ -55,11 +54,7 @@ fn text(extent: f64, parts: usize) -> String {
             let _ = write!(vertices, "(position: ({}, {y}), diffuse: Float({x}, 0.5, {z}, 1)), ", at * WIDTH as f64);
         }
     }
-    let draw = format!(
-        "(vertices: Window([{vertices}]), topology: Quads, program: Combiners(constants: ((128, 128, 255)), stages: [(rgb: \
-         (a: ExpandNormal(PrimaryColor), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), {}], \
-         final_combiner: (d: Spare0)))",
-        "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(SQUARINGS)
-    );
+    let program = highlight("PrimaryColor", [128, 128, 255], SQUARINGS);
+    let draw = format!("(vertices: Window([{vertices}]), topology: Quads, program: {program})");
     scene("Nv2a", WIDTH, "", "", &draw)
 }

@@ -1,7 +1,7 @@
 //! A directional light that sinks to the horizon of a bumpy surface and below it.
 
 use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, centre, colors, draw, errors, largest, root_mean_square, scene, whole_row};
+use super::strip::{WIDTH, angle, centre, draw, errors, largest, leaning, root_mean_square, scene, whole_row};
 use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::SceneError;
 use ninebit_scene::generate::normal_map::encode;
@@ -22,19 +22,13 @@ pub(super) fn behind() -> Experiment {
         works,
         fails: -15.0,
     };
-    Experiment {
-        name: "light-behind",
-        title: "A light that sinks below the surface",
-        parameter: "height of the light, degrees",
-        error: "largest error, 8-bit steps",
-        limit: 16.0,
-        scale: Scale::Real(0.05),
-        shown: steps(-40.0, 40.0, 81),
-        methods: vec![
+    Experiment::new("light-behind", "A light that sinks below the surface")
+        .moving("height of the light, degrees", Scale::Real(0.05), steps(-40.0, 40.0, 81))
+        .measuring("largest error, 8-bit steps", 16.0)
+        .by([
             method("N . L", Shadow::None, 20.0),
             Method { fails: 1.0, ..method("N . L times 4 L.z", Shadow::Term, 30.0) },
-        ],
-    }
+        ])
 }
 
 pub(super) fn grazing() -> Experiment {
@@ -44,29 +38,17 @@ pub(super) fn grazing() -> Experiment {
             Ok(100.0 * root_mean_square(&errors) / root_mean_square(&ideal).max(1e-9))
         })
     };
-    Experiment {
-        name: "light-grazing",
-        title: "A light that grazes the surface",
-        parameter: "height of the light, degrees",
-        error: "rms error, per cent of the rms light",
-        limit: 5.0,
-        scale: Scale::Real(0.05),
-        shown: (1..=60).map(f64::from).collect(),
-        methods: vec![method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)],
-    }
+    Experiment::new("light-grazing", "A light that grazes the surface")
+        .moving("height of the light, degrees", Scale::Real(0.05), (1..=60).map(f64::from).collect())
+        .measuring("rms error, per cent of the rms light", 5.0)
+        .by([method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)])
 }
 
 /// The errors in steps, and what there ought to be.
 fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
     let elevation = elevation.to_radians();
     let tilt = |at: f64| angle(-bumps, bumps, at);
-    let normals = colors(
-        "normals",
-        (0..WIDTH).map(|x| {
-            let tilt = tilt(centre(x, WIDTH));
-            encode([sin(tilt), 0.0, cos(tilt)])
-        }),
-    );
+    let normals = leaning(WIDTH, |x| tilt(centre(x, WIDTH)));
     let [r, g, b] = encode([cos(elevation), 0.0, sin(elevation)]);
     let dot = "a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true";
     let stages = match shadow {

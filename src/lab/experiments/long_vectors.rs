@@ -2,7 +2,7 @@
 
 use super::order::pass;
 use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, byte, bytes, centre, colors, draw, errors, largest, scene, whole_row};
+use super::strip::{WIDTH, angle, byte, bytes, centre, colors, highlight, largest_error, scene, whole_row};
 use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::generate::normal_map::encode;
 
@@ -12,22 +12,16 @@ const THIRD: f64 = 0.577_350_269_189_625_8;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, text: fn(f64) -> String| {
         Method::new(name, [1.0, 1.9], move |length| {
-            Ok(largest(&errors(&draw(&text(length))?, 0, |at| {
+            largest_error(&text(length), 0, |at| {
                 let [x, y, z] = normal(at);
                 length * THIRD * (x + y + z)
-            })))
+            })
         })
     };
-    Experiment {
-        name: "long-vectors",
-        title: "Light vectors longer than one",
-        parameter: "length of the light vector",
-        error: "largest error, 8-bit steps",
-        limit: 8.0,
-        scale: Scale::Real(0.005),
-        shown: steps(1.0, 1.9, 46),
-        methods: vec![method("dot product of a general stage", combined), method("passes, additions first", passes)],
-    }
+    Experiment::new("long-vectors", "Light vectors longer than one")
+        .moving("length of the light vector", Scale::Real(0.005), steps(1.0, 1.9, 46))
+        .measuring("largest error, 8-bit steps", 8.0)
+        .by([method("dot product of a general stage", combined), method("passes, additions first", passes)])
 }
 
 /// From facing away in y to facing it, between x and z.
@@ -39,13 +33,9 @@ fn normal(at: f64) -> [f64; 3] {
 
 fn combined(length: f64) -> String {
     let normals = colors("normals", (0..WIDTH).map(|x| encode(normal(centre(x, WIDTH)))));
-    let [r, g, b] = encode([(length * THIRD).min(1.0); 3]);
-    let draw = format!(
-        "({}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: Combiners(constants: (({r}, {g}, {b})), \
-         stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true))], \
-         final_combiner: (d: Spare0)))",
-        whole_row(WIDTH)
-    );
+    let program = highlight("Texture0", encode([(length * THIRD).min(1.0); 3]), 0);
+    let row = whole_row(WIDTH);
+    let draw = format!("({row}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: {program})");
     scene("Nv2a", WIDTH, "", &normals, &draw)
 }
 

@@ -1,9 +1,8 @@
 //! Highlights of a bumpy surface that moves away.
 
 use super::portable::{cos, exp2, pow, sin};
-use super::strip::{angle, centre, colors, draw, errors, root_mean_square, row, scene};
+use super::strip::{angle, centre, draw, errors, highlight, leaning, root_mean_square, row, scene};
 use super::{Experiment, Method, Scale};
-use ninebit_scene::generate::normal_map::encode;
 
 const PIXELS: usize = 256;
 /// Texels of the map.
@@ -18,20 +17,14 @@ pub(super) fn experiment() -> Experiment {
             Ok(root_mean_square(&errors(&pixels, 0, |at| seen(at, texels, squarings))))
         })
     };
-    Experiment {
-        name: "minified-normals",
-        title: "A highlight on bumps that get smaller",
-        parameter: "texels a pixel",
-        error: "rms error, 8-bit steps",
-        limit: 20.0,
-        scale: Scale::Real(0.02),
-        shown: (0..=40).map(|n| exp2(f64::from(n) / 8.0)).collect(),
-        methods: vec![
+    Experiment::new("minified-normals", "A highlight on bumps that get smaller")
+        .moving("texels a pixel", Scale::Real(0.02), (0..=40).map(|n| exp2(f64::from(n) / 8.0)).collect())
+        .measuring("rms error, 8-bit steps", 20.0)
+        .by([
             method("N . H, levels", 0, "mip_filter: Linear"),
             method("(N . H)^8, levels", 3, "mip_filter: Linear"),
             method("(N . H)^8, level 0 alone", 3, "mip_filter: None"),
-        ],
-    }
+        ])
 }
 
 /// How a texel's normal leans: waves of two lengths, about a dozen texels and thirty.
@@ -61,15 +54,10 @@ fn seen(at: f64, texels: f64, squarings: u32) -> f64 {
 }
 
 fn text(texels: f64, squarings: u32, filter: &str) -> String {
-    let normals = colors("normals", (0..TEXELS).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])));
-    let normals = normals.replacen("(source:", "(levels: All, source:", 1);
+    let normals = leaning(TEXELS, tilt).replacen("(source:", "(levels: All, source:", 1);
     let right = format!("t0: ({}, 0)", texels * PIXELS as f64 / TEXELS as f64);
-    let draw = format!(
-        "({}, textures: [(texture: \"normals\", {filter})], program: Combiners(constants: ((128, 128, 255)), \
-         stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), {}], \
-         final_combiner: (d: Spare0)))",
-        row(PIXELS, "t0: (0, 0)", &right),
-        "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(squarings as usize)
-    );
+    let (row, program) =
+        (row(PIXELS, "t0: (0, 0)", &right), highlight("Texture0", [128, 128, 255], squarings as usize));
+    let draw = format!("({row}, textures: [(texture: \"normals\", {filter})], program: {program})");
     scene("Nv2a", PIXELS, "", &normals, &draw)
 }

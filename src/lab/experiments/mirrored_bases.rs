@@ -21,15 +21,10 @@ pub(super) fn experiment() -> Experiment {
             Ok(root_mean_square(&errors(&pixels, 0, |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2])))
         })
     };
-    Experiment {
-        name: "mirrored-bases",
-        title: "Tangent bases where a texture is mirrored",
-        parameter: "tilt of the mapped normal, degrees",
-        error: "rms error, 8-bit steps",
-        limit: 8.0,
-        scale: Scale::Real(0.05),
-        shown: steps(0.0, 45.0, 46),
-        methods: vec![
+    Experiment::new("mirrored-bases", "Tangent bases where a texture is mirrored")
+        .moving("tilt of the mapped normal, degrees", Scale::Real(0.05), steps(0.0, 45.0, 46))
+        .measuring("rms error, 8-bit steps", 8.0)
+        .by([
             method("bases of the mesh, split where it is mirrored", || {
                 let [x, y, z] = LIGHT;
                 format!(
@@ -42,8 +37,7 @@ pub(super) fn experiment() -> Experiment {
                 listed([-LIGHT[1], -LIGHT[1]], [LIGHT[1], LIGHT[1]])
             }),
             method("one basis for both sides of the seam", || listed([-LIGHT[1], 0.0], [0.0, LIGHT[1]])),
-        ],
-    }
+        ])
 }
 
 /// Quads with light vectors whose binormal components are given at the ends of each half.

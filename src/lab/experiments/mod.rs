@@ -88,6 +88,27 @@ pub struct Experiment {
     pub methods: Vec<Method>,
 }
 
+impl Experiment {
+    fn new(name: &'static str, title: &'static str) -> Experiment {
+        let (parameter, error, limit, scale) = ("", "", 0.0, Scale::Whole);
+        Experiment { name, title, parameter, error, limit, scale, shown: Vec::new(), methods: Vec::new() }
+    }
+
+    /// What is moved, which values it takes, and those that the picture shows.
+    fn moving(self, parameter: &'static str, scale: Scale, shown: Vec<f64>) -> Experiment {
+        Experiment { parameter, scale, shown, ..self }
+    }
+
+    /// What is measured, and up to how much is called working.
+    fn measuring(self, error: &'static str, limit: f64) -> Experiment {
+        Experiment { error, limit, ..self }
+    }
+
+    fn by(self, methods: impl Into<Vec<Method>>) -> Experiment {
+        Experiment { methods: methods.into(), ..self }
+    }
+}
+
 /// Where a method stops working.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Threshold {

@@ -1,26 +1,21 @@
 //! A signed dot product as passes that add and passes that subtract.
 
 use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, byte, bytes, centre, draw, errors, largest, scene, whole_row};
+use super::strip::{WIDTH, angle, byte, bytes, centre, largest_error, scene, whole_row};
 use super::{Experiment, Method, Scale, steps};
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, additions_first: bool| {
         Method::new(name, [0.0, 45.0], move |tilt: f64| {
-            let pixels = draw(&text(tilt.to_radians(), additions_first))?;
-            Ok(largest(&errors(&pixels, 0, |at| cos(angle(-90.0, 90.0, at) - tilt.to_radians()))))
+            largest_error(&text(tilt.to_radians(), additions_first), 0, |at| {
+                cos(angle(-90.0, 90.0, at) - tilt.to_radians())
+            })
         })
     };
-    Experiment {
-        name: "order",
-        title: "Passes of a signed dot product in two orders",
-        parameter: "tilt of the light, degrees",
-        error: "largest error, 8-bit steps",
-        limit: 4.0,
-        scale: Scale::Real(0.125),
-        shown: steps(0.0, 90.0, 46),
-        methods: vec![method("additions first", true), method("subtractions first", false)],
-    }
+    Experiment::new("order", "Passes of a signed dot product in two orders")
+        .moving("tilt of the light, degrees", Scale::Real(0.125), steps(0.0, 90.0, 46))
+        .measuring("largest error, 8-bit steps", 4.0)
+        .by([method("additions first", true), method("subtractions first", false)])
 }
 
 /// Normals over half a circle, lit from `tilt`: each product of half components is a pass.

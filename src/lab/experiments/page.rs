@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Experiment, Threshold, experiments, threshold};
 use crate::chart::page::{File, comma_separated, fill, number, plain, table};
-use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, Series, Shape};
+use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
 use ninebit_files::output::OutputError;
 use ninebit_scene::SceneError;
 
@@ -116,7 +116,7 @@ pub fn drawing(measured: &Measured) -> Drawing {
     let series = experiment.methods.iter().zip(curves).enumerate().map(|(n, (method, curve))| Series {
         label: method.name.clone(),
         color: COLORS[n % COLORS.len()],
-        shape: if experiment.shown.len() <= 24 { Shape::ALL[n % Shape::ALL.len()] } else { Shape::None },
+        shape: (experiment.shown.len() <= 24).then(|| SHAPES[n % SHAPES.len()]),
         join: Join::Solid,
         marks: experiment.shown.iter().zip(curve).map(|(x, y)| Mark { x: *x, y: *y, name: String::new() }).collect(),
     });

@@ -1,7 +1,7 @@
 //! Highlights by a table of powers in a texture.
 
 use super::portable::{exp2, pow};
-use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, row, scene};
+use super::strip::{WIDTH, byte, bytes, centre, largest_error, row, scene};
 use super::{Experiment, Method, Scale};
 
 /// Pixels: more than the largest table has texels.
@@ -12,20 +12,13 @@ const FROM: f64 = 0.75;
 pub(super) fn experiment() -> Experiment {
     let method = |texels: usize| {
         Method::new(format!("{texels} texels, filtered"), [1.0, 4096.0], move |exponent| {
-            let pixels = draw(&text(texels, exponent))?;
-            Ok(largest(&errors(&pixels, 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))))
+            largest_error(&text(texels, exponent), 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))
         })
     };
-    Experiment {
-        name: "power-table",
-        title: "Highlight by a table of powers",
-        parameter: "exponent",
-        error: "largest error, 8-bit steps",
-        limit: 32.0,
-        scale: Scale::Whole,
-        shown: (0..=24).map(|n| exp2(f64::from(n) / 2.0).round()).collect(),
-        methods: [32, 64, 128, 256, 512, 1024].map(method).into(),
-    }
+    Experiment::new("power-table", "Highlight by a table of powers")
+        .moving("exponent", Scale::Whole, (0..=24).map(|n| exp2(f64::from(n) / 2.0).round()).collect())
+        .measuring("largest error, 8-bit steps", 32.0)
+        .by([32, 64, 128, 256, 512, 1024].map(method))
 }
 
 /// The cosine along the strip looks its power up.

@@ -3,9 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::portable::{cos, sin};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 pub(super) use ninebit_scene::generate::byte;
+use ninebit_scene::generate::normal_map::encode;
 use ninebit_scene::{SceneError, parse};
 
 /// Pixels of a strip.
@@ -85,6 +87,25 @@ pub(super) fn errors(pixels: &[[u8; 4]], channel: usize, ideal: impl Fn(f64) -> 
 /// The largest of some errors, whatever their sign.
 pub(super) fn largest(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()))
+}
+
+/// The largest error of what a scene shows in a channel.
+pub(super) fn largest_error(text: &str, channel: usize, ideal: impl Fn(f64) -> f64) -> Result<f64, Box<SceneError>> {
+    Ok(largest(&errors(&draw(text)?, channel, ideal)))
+}
+
+/// A program: the dot product of the normals that a register holds with a constant direction, then so many squarings.
+pub(super) fn highlight(normals: &str, [r, g, b]: [u8; 3], squarings: usize) -> String {
+    let squares = "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(squarings);
+    format!(
+        "Combiners(constants: (({r}, {g}, {b})), stages: [(rgb: (a: ExpandNormal({normals}), b: ExpandNormal(ConstantColor0), \
+         ab: Spare0, ab_dot: true)), {squares}], final_combiner: (d: Spare0))"
+    )
+}
+
+/// A map of normals that lean so far along x.
+pub(super) fn leaning(count: usize, tilt: impl Fn(usize) -> f64) -> String {
+    colors("normals", (0..count).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])))
 }
 
 /// The square root of the mean square.

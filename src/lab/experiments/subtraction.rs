@@ -5,19 +5,13 @@ use super::{Experiment, Method, Scale, steps};
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str| Method::new(name, [255.0, 0.0], move |gap| error(gap as u8, blend));
-    Experiment {
-        name: "subtraction",
-        title: "Approximate subtraction of a pass",
-        parameter: "a - b, 8-bit steps",
-        error: "largest error over a, 8-bit steps",
-        limit: 16.0,
-        scale: Scale::Whole,
-        shown: steps(0.0, 255.0, 52),
-        methods: vec![
+    Experiment::new("subtraction", "Approximate subtraction of a pass")
+        .moving("a - b, 8-bit steps", Scale::Whole, steps(0.0, 255.0, 52))
+        .measuring("largest error over a, 8-bit steps", 16.0)
+        .by([
             method("(ZERO, ONE_MINUS_SRC_COLOR)", "(source: Zero, destination: OneMinusSourceColor)"),
             method("reverse subtraction", "(equation: ReverseSubtract, source: One, destination: One)"),
-        ],
-    }
+        ])
 }
 
 /// The largest error of a - b where b is `gap` below a, for all bytes a from `gap` on.

@@ -90,8 +90,7 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn given(&self, name: &'static str, range: Range) -> Number<'a> {
-        let local = Local { name, kind: Kind::Number, range };
-        Number::new(self.code, self.code.input(Input::Local(local), range))
+        Number::new(self.code, self.code.input(Input::Local(Local { name, kind: Kind::Number, range }), range))
     }
 
     fn all<const N: usize>(&self, names: [&'static str; N], range: Range) -> [Number<'a>; N] {
@@ -100,8 +99,7 @@ impl<'a> Reader<'a> {
 
     fn word(&self, name: &'static str) -> Word<'a> {
         let range = (0, 0xffff_ffff);
-        let local = Local { name, kind: Kind::Word, range };
-        Word(Number::new(self.code, self.code.input(Input::Local(local), range)))
+        Word(Number::new(self.code, self.code.input(Input::Local(Local { name, kind: Kind::Word, range }), range)))
     }
 
     fn factor(&self, value: Number<'a>) -> Factor<'a> {
@@ -117,8 +115,7 @@ impl<'a> Reader<'a> {
 
     /// A sum in the steps that all of them have.
     fn sum(&self, sum: Sum<'a>) -> Number<'a> {
-        let none = Sum { value: Number::Constant(0), halvings: self.halvings };
-        sum.alike(none)[0].value
+        sum.alike(Sum { value: Number::Constant(0), halvings: self.halvings })[0].value
     }
 
     /// 1 where the test holds.
@@ -148,6 +145,15 @@ impl Maker {
         let range = ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)));
         let (lines, renamed) = code.kept(&results);
         Case { value, name: name.to_string(), lines, results: results.into_iter().map(renamed).collect(), range }
+    }
+
+    /// A case for a flag that is not set, and one where it is.
+    fn flagged(
+        &self,
+        [no, yes]: [&str; 2],
+        of: impl for<'a> Fn(&mut Reader<'a>, bool) -> Vec<Number<'a>>,
+    ) -> Vec<Case> {
+        vec![self.case(0, no, |reader| of(reader, false)), self.case(1, yes, |reader| of(reader, true))]
     }
 
     /// A case for each value of a field.
@@ -189,22 +195,14 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
     });
     let mapped = |x: &'static str| {
         let number = |mapping: InputMapping| mapping as u32;
-        maker.cases(number, |reader, mapping| {
-            let x = reader.given(x, REGISTER);
-            vec![reader.mapped(mapping, x)]
-        })
+        maker.cases(number, |reader, mapping| vec![reader.mapped(mapping, reader.given(x, REGISTER))])
     };
     let factor = range(&mapped("x"));
-    let flags = |no: &'static str, yes: &'static str| [(0, no), (1, yes)];
-    let products: Vec<Case> = flags("a product of each channel", "a dot product, the same in each")
-        .map(|(value, name)| {
-            maker.case(value, name, |reader| {
-                let [x, y] = [A, B].map(|names| reader.all(names, factor).map(|value| reader.factor(value)));
-                let sums = general::product(Site::product(0, 0), value != 0, &x, &y, &mut reader.listing);
-                sums.map(|sum| reader.sum(sum)).to_vec()
-            })
-        })
-        .into();
+    let products = maker.flagged(["a product of each channel", "a dot product, the same in each"], |reader, is_dot| {
+        let [x, y] = [A, B].map(|names| reader.all(names, factor).map(|value| reader.factor(value)));
+        let sums = general::product(Site::product(0, 0), is_dot, &x, &y, &mut reader.listing);
+        sums.map(|sum| reader.sum(sum)).to_vec()
+    });
     let product = maker.case(0, "", |reader| {
         let [x, y] = ["a", "b"].map(|name| [reader.factor(reader.given(name, factor))]);
         let [sum] = general::product(Site::product(0, 3), false, &x, &y, &mut reader.listing);
@@ -219,16 +217,12 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
             vec![reader.holds(test)]
         },
     );
-    let third: Vec<Case> = flags("the sum", "the mux")
-        .map(|(value, name)| {
-            maker.case(value, name, |reader| {
-                let [ab, cd] = reader.all(["ab", "cd"], full).map(|value| Sum { value, halvings: reader.halvings });
-                let takes_cd = reader.given("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
-                let third = general::third(value != 0, takes_cd, ab, cd, &mut reader.listing);
-                vec![reader.sum(third)]
-            })
-        })
-        .into();
+    let third = maker.flagged(["the sum", "the mux"], |reader, mux| {
+        let [ab, cd] = reader.all(["ab", "cd"], full).map(|value| Sum { value, halvings: reader.halvings });
+        let takes_cd = reader.given("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
+        let third = general::third(mux, takes_cd, ab, cd, &mut reader.listing);
+        vec![reader.sum(third)]
+    });
     let most = range(&third);
     let sums = (most.0.min(full.0), most.1.max(full.1));
     let output = |sum: &'static str| -> Vec<Case> {
@@ -241,25 +235,17 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         };
         OPERATIONS.iter().map(case).collect()
     };
-    let invert = |x: &'static str| -> Vec<Case> {
-        let case = |(value, name)| {
-            maker.case(value, name, |reader| {
-                let x = reader.given(x, (REGISTER.0, FINAL.1));
-                vec![final_combiner::input(x, value != 0, &mut reader.listing)]
-            })
-        };
-        flags("as it is", "inverted").map(case).into()
-    };
-    let color_sum: Vec<Case> = flags("as it is", "limited to one")
-        .map(|(value, name)| {
-            maker.case(value, name, |reader| {
-                let [spare0, secondary] = reader.all(["spare0", "secondary"], BYTE);
-                let state = FinalCombiner { color_sum_clamp: value != 0, ..FinalCombiner::default() };
-                reader.code.by("FIN-3");
-                vec![final_combiner::color_sum(spare0, secondary, &state, &mut reader.listing)]
-            })
+    let invert = |x: &'static str| {
+        maker.flagged(["as it is", "inverted"], |reader, inverted| {
+            vec![final_combiner::input(reader.given(x, (REGISTER.0, FINAL.1)), inverted, &mut reader.listing)]
         })
-        .into();
+    };
+    let color_sum = maker.flagged(["as it is", "limited to one"], |reader, color_sum_clamp| {
+        let [spare0, secondary] = reader.all(["spare0", "secondary"], BYTE);
+        let state = FinalCombiner { color_sum_clamp, ..FinalCombiner::default() };
+        reader.code.by("FIN-3");
+        vec![final_combiner::color_sum(spare0, secondary, &state, &mut reader.listing)]
+    });
     let final_product = maker.case(0, "", |reader| {
         let [e, f] = reader.all(["e", "f"], FINAL);
         vec![final_combiner::product(e, f, &mut reader.listing)]
@@ -274,6 +260,8 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         }
         vec![final_combiner::evaluate(&state, &registers, &mut reader.listing).fragment[0]]
     });
+    let about_mux = "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.";
+    let about_rgb = "A channel of the fragment: A B + (1 - A) C + D.";
     vec![
         piece("nb_color", "A constant: R, G, B, A of A8R8G8B8.", "@uint word", vec![color]).filling("channels[4]"),
         piece("nb_mapped", "An input by its mapping.", "@int x", mapped("x")).by("mapping"),
@@ -282,13 +270,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
             .by("is_dot")
             .filling("sums[3]"),
         piece("nb_product", "AB or CD of an alpha portion, not yet rounded.", "@int a, @int b", vec![product]),
-        piece(
-            "nb_takes_cd",
-            "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.",
-            "@int spare0_alpha",
-            takes_cd,
-        )
-        .by("by_most"),
+        piece("nb_takes_cd", about_mux, "@int spare0_alpha", takes_cd).by("by_most"),
         piece("nb_third", "The third output of a portion, not yet rounded.", "@int takes_cd, @int ab, @int cd", third)
             .by("mux"),
         piece("nb_output", "An output as a register: rounded, biased, scaled, limited.", "@int sum", output("sum"))
@@ -298,12 +280,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         piece("nb_final_input_rgb", "The same of R, G and B.", "", invert("x[c]")).by("invert").changing("x[3]", 3),
         piece("nb_color_sum", "SPARE0 + SECONDARY.", "@int spare0, @int secondary", color_sum).by("clamp_sum"),
         piece("nb_final_product", "E times F.", "@int e, @int f", vec![final_product]),
-        piece(
-            "nb_final_rgb",
-            "A channel of the fragment: A B + (1 - A) C + D.",
-            "@int a, @int b, @int c, @int d",
-            vec![rgb],
-        ),
+        piece("nb_final_rgb", about_rgb, "@int a, @int b, @int c, @int d", vec![rgb]),
     ]
 }
 
@@ -328,8 +305,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         vec![blend::evaluate(&state, 0, &[s; 4], &[d; 4], &constant, &mut reader.listing).blended]
     });
     let truncated = maker.cases(format, |reader, format: SurfaceFormat| {
-        let fragment = reader.all(FRAGMENT, BYTE);
-        blend::truncated(format, fragment, &mut reader.listing).to_vec()
+        blend::truncated(format, reader.all(FRAGMENT, BYTE), &mut reader.listing).to_vec()
     });
     let channels = maker.cases(format, |reader, format: SurfaceFormat| {
         reader.code.by("ROP-5");
@@ -356,6 +332,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         vec![Number::Constant((surface::write_mask(format, [true; 4]) == u32::MAX).into())]
     });
     let word = |piece: Piece| Piece { kind: Kind::Word, ..piece.by("format") };
+    let three = "@in @int source[4], @in @int destination[4], @in @int constant[4]";
     vec![
         piece("nb_passes", "The alpha test.", "@int alpha, @int reference", passes).by("compare"),
         piece("nb_blends", "Whether a surface can be blended with.", "", blends).by("format"),
@@ -365,14 +342,9 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         piece("nb_channels", "What a surface holds: R, G, B, A.", "@uint word", channels)
             .by("format")
             .filling("destination[4]"),
-        piece(
-            "nb_blend_factors",
-            "A blend factor, of each channel.",
-            "@in @int source[4], @in @int destination[4], @in @int constant[4]",
-            factors,
-        )
-        .by("factor")
-        .filling("factors[4]"),
+        piece("nb_blend_factors", "A blend factor, of each channel.", three, factors)
+            .by("factor")
+            .filling("factors[4]"),
         piece("nb_blended", "A blended channel.", "@int s, @int d, @int fs, @int fd", blended).by("equation"),
         piece("nb_whole", "Whether the four channels are all bits of a surface's words.", "", whole).by("format"),
         word(piece("nb_packed", "A fragment as a stored word.", "@in @int fragment[4]", packed)),

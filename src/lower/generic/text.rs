@@ -13,42 +13,24 @@ use super::{Generic, Sources};
 use crate::code::Kind;
 use crate::language::{Body, Language, ROUNDING, Syntax};
 
-/// What of the text differs between the two languages. The text is written with these on the left.
-const C99: [(&str, &str); 16] = [
-    ("@flatten", "NB_FLATTEN "),
-    ("@fn ", "static inline "),
-    ("@uint(", "(uint32_t)("),
-    ("@int(", "(int32_t)("),
-    ("@uint", "uint32_t"),
-    ("@int", "int32_t"),
-    ("@in ", "const "),
-    ("@out ", ""),
-    ("@both ", ""),
-    ("@registers", "int32_t r[16][4]"),
-    ("@changed", "int32_t r[16][4]"),
-    ("@state", "const struct nb_state *state"),
-    ("@s.", "state->"),
-    ("@inputs", "const struct nb_inputs *inputs"),
-    ("@i.", "inputs->"),
-    ("@public ", ""),
-];
-const GLSL: [(&str, &str); 16] = [
-    ("@flatten", ""),
-    ("@fn ", ""),
-    ("@uint(", "uint("),
-    ("@int(", "int("),
-    ("@uint", "uint"),
-    ("@int", "int"),
-    ("@in ", ""),
-    ("@out ", "out "),
-    ("@both ", "inout "),
-    ("@registers", "ivec4 r[16]"),
-    ("@changed", "inout ivec4 r[16]"),
-    ("@state", "NinebitState state"),
-    ("@s.", "state."),
-    ("@inputs", "NinebitInputs inputs"),
-    ("@i.", "inputs."),
-    ("@public ", ""),
+/// What of the text differs between the two languages, C and GLSL. The text is written with the words on the left.
+const WORDS: [(&str, [&str; 2]); 16] = [
+    ("@flatten", ["NB_FLATTEN ", ""]),
+    ("@fn ", ["static inline ", ""]),
+    ("@uint(", ["(uint32_t)(", "uint("]),
+    ("@int(", ["(int32_t)(", "int("]),
+    ("@uint", ["uint32_t", "uint"]),
+    ("@int", ["int32_t", "int"]),
+    ("@in ", ["const ", ""]),
+    ("@out ", ["", "out "]),
+    ("@both ", ["", "inout "]),
+    ("@registers", ["int32_t r[16][4]", "ivec4 r[16]"]),
+    ("@changed", ["int32_t r[16][4]", "inout ivec4 r[16]"]),
+    ("@state", ["const struct nb_state *state", "NinebitState state"]),
+    ("@s.", ["state->", "state."]),
+    ("@inputs", ["const struct nb_inputs *inputs", "NinebitInputs inputs"]),
+    ("@i.", ["inputs->", "inputs."]),
+    ("@public ", ["", ""]),
 ];
 
 /// The words that a chip has: name, how many, first method.
@@ -104,7 +86,7 @@ pub(super) fn c99(generic: &Generic) -> Sources {
          #if defined(__GNUC__)\n#define NB_FLATTEN __attribute__((flatten))\n#else\n#define NB_FLATTEN\n#endif\n\n",
     );
     source.push_str(&printer.method());
-    source.push_str(&translated(&printer.body(Mapped::Looked), &C99));
+    source.push_str(&translated(&printer.body(Mapped::Looked), 0));
     Sources { header, source }
 }
 
@@ -124,7 +106,7 @@ pub(super) fn glsl(generic: &Generic) -> String {
         "/* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct NinebitState {{\n{members}}};\n\n\
          /* What one pixel brings. Colours are R, G, B, A. */\nstruct NinebitInputs {{\n{GLSL_INPUTS}}};\n\n"
     );
-    out + &translated(&printer.body(Mapped::Computed), &GLSL)
+    out + &translated(&printer.body(Mapped::Computed), 1)
 }
 
 const C99_INPUTS: &str = "    int32_t primary[4];    /* interpolated diffuse, 0 to 255 */
@@ -140,8 +122,9 @@ const GLSL_INPUTS: &str = "    ivec4 primary;    /* interpolated diffuse, 0 to 2
     uint destination; /* the word that the surface holds */
 ";
 
-fn translated(text: &str, words: &[(&str, &str)]) -> String {
-    words.iter().fold(unrolled(text), |text, (from, to)| text.replace(from, to))
+/// The text in C (0) or in GLSL (1).
+fn translated(text: &str, language: usize) -> String {
+    WORDS.iter().fold(unrolled(text), |text, (word, words)| text.replace(word, words[language]))
 }
 
 /// Statements for each of R, G and B, one below the other: compilers leave such loops as they are, and take a third more time.

@@ -87,8 +87,7 @@ pub(crate) trait Syntax {
                 self.fragment(channels.map(|channel| body.operand(self, channel, Kind::Number).open()))
             }
             Result::Stored { word, test } => {
-                let word = body.operand(self, word, Kind::Word).open();
-                self.stored(word, test.map(|test| body.test(self, test)))
+                self.stored(body.operand(self, word, Kind::Word).open(), test.map(|test| body.test(self, test)))
             }
         };
         self.opening(named) + &lines + &end

@@ -6,7 +6,6 @@
 
 #[path = "common/setting.rs"]
 mod setting;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -28,7 +27,7 @@ use ninebit_vectors::cases::Level;
 use ninebit_vectors::gpu::{self, Case, recipes};
 use ninebit_vectors::table::{Contents, Writer};
 use ninebit_vectors::units;
-use setting::{any_policies, compiler, python, setting, works};
+use setting::{GIVEN, any_policies, bytes, compiler, drawing, python, run, setting, works};
 
 /// Words of a pixel: state, inputs, what is expected.
 const COLUMNS: usize = 128;
@@ -62,8 +61,7 @@ fn words(chip: Profile, random: &mut Random) -> RegisterWords {
 /// State, inputs and stored word of pixels of random programs, `rows` of each.
 fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) -> Vec<u32> {
     let chip = generic.chip;
-    let members = generic.words();
-    let state: usize = members.iter().map(|(_, count, _)| count).sum();
+    let state: usize = generic.words().iter().map(|(_, count, _)| count).sum();
     assert!(state + INPUTS < COLUMNS);
     let mut out = Vec::with_capacity(programs * rows * COLUMNS);
     for _ in 0..programs {
@@ -98,15 +96,7 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
             let start = out.len();
             out.extend(&given);
             let mut registers = Registers::new();
-            for register in [
-                Register::PrimaryColor,
-                Register::SecondaryColor,
-                Register::Fog,
-                Register::Texture0,
-                Register::Texture1,
-                Register::Texture2,
-                Register::Texture3,
-            ] {
+            for register in GIVEN {
                 let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
                 let channel = |_: usize| match random.below(8) {
                     0 => 255,
@@ -146,15 +136,6 @@ fn generic(n: usize, random: &mut Random) -> Generic {
     let chip = if n % 3 == 2 { Profile::Nv10 } else { Profile::Nv2a };
     let policies = if n % 4 == 3 { any_policies(random) } else { Policies::DEFAULT };
     Generic { chip, policies }
-}
-
-fn run(command: &mut Command, folder: &Path) -> Result<(), Failed> {
-    let output = command.current_dir(folder).output().map_err(|error| format!("{command:?}: {error}"))?;
-    if output.status.success() {
-        return Ok(());
-    }
-    let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-    Err(format!("{command:?}:\n{}", text.chars().take(4000).collect::<String>()).into())
 }
 
 /// Reads pixels from a file and compares what they come to; given an argument, prints it.
@@ -200,7 +181,7 @@ fn compile(text: &Generic, change: impl Fn(String) -> String, folder: &Path) -> 
     let flags = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_default();
     let mut build = Command::new(compiler());
     build.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]).args(flags.split_whitespace());
-    run(build.args(["-o", "pixels", "main.c", "ninebit_combiners.c"]), folder)
+    Ok(run(build.args(["-o", "pixels", "main.c", "ninebit_combiners.c"]), folder)?)
 }
 
 /// The longest that the C is allowed to be.
@@ -219,8 +200,7 @@ fn c99() -> Result<(), Failed> {
         compile(&text, |source| source, folder.path())?;
         let pixels = pixels(&text, batch.min(programs - first), 4, &mut random);
         std::fs::write(folder.path().join("pixels.bin"), bytes(&pixels))?;
-        run(&mut Command::new("./pixels"), folder.path())
-            .map_err(|failed| format!("batch {n}, {text:?}: {}", failed.message().unwrap_or_default()))?;
+        run(&mut Command::new("./pixels"), folder.path()).map_err(|failed| format!("batch {n}, {text:?}: {failed}"))?;
     }
     println!("generic C: {programs} programs, 4 pixels each");
     Ok(())
@@ -329,10 +309,7 @@ fn glsl() -> Result<(), Failed> {
         std::fs::write(folder.path().join("00000.glsl"), shader)?;
         std::fs::write(folder.path().join("pool.bin"), bytes(&pixels))?;
         std::fs::write(folder.path().join("expected.bin"), bytes(&expected))?;
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/glsl.py");
-        let mut command = Command::new(python());
-        command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe");
-        run(command.arg(script).args(["1", &COLUMNS.to_string()]), folder.path())?;
+        run(drawing("glsl.py").args(["1", &COLUMNS.to_string()]), folder.path())?;
         println!("generic GLSL of {:?}: {programs} programs", text.chip);
     }
     Ok(())
@@ -343,9 +320,7 @@ type Shown = (Vec<Vec<u32>>, Box<dyn Fn(&[u32]) -> bool>);
 
 /// A pixel of a program whose other words are these, by name.
 fn pixel(generic: &Generic, named: &[(&str, u32)], program: &Combiners, inputs: [u32; INPUTS]) -> Vec<u32> {
-    let chip = generic.chip;
-    let words = encode(program, chip);
-    let mut out: Vec<u32> = words.all().map(|(_, _, value)| value).collect();
+    let mut out: Vec<u32> = encode(program, generic.chip).all().map(|(_, _, value)| value).collect();
     out.extend(Method::ALL.iter().map(|method| {
         let plain = match method {
             Method::SurfaceFormat => raster::surface_format(SurfaceFormat::A8R8G8B8),
@@ -492,10 +467,6 @@ fn rows() -> Result<(), Failed> {
         println!("{name}: {} of {all} rows, {} pixels", checks.len(), words.len());
     }
     Ok(())
-}
-
-fn bytes(words: &[u32]) -> Vec<u8> {
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 fn main() {

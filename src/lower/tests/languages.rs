@@ -9,7 +9,6 @@
 mod setting;
 #[path = "common/traced.rs"]
 mod traced;
-
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -24,7 +23,7 @@ use ninebit_lower::code::{Kind, Test, run_changed, value_of};
 use ninebit_lower::{Function, Input, Language, Named, Options, Result, Textures};
 use ninebit_test_support::{random_program, random_scene};
 use proptest::strategy::{Strategy, ValueTree};
-use setting::{any_policies, compiler, python, runner, setting, works};
+use setting::{any_policies, bytes, compiler, drawing, python, runner, setting, works};
 use traced::Traced;
 
 /// Columns of the pool of given numbers: bytes, registers, words.
@@ -94,8 +93,7 @@ fn columns(function: &Function) -> Vec<(Input, usize)> {
     inputs
         .map(|input| {
             // What is known to be a byte is no negative register.
-            let range = function.range(input);
-            let (class, first, count) = match (input.kind(), range.0 < 0) {
+            let (class, first, count) = match (input.kind(), function.range(input).0 < 0) {
                 (Kind::Word, _) => (2, BYTES + REGISTERS, COLUMNS - BYTES - REGISTERS),
                 (_, true) => (1, BYTES, REGISTERS),
                 _ => (0, 0, BYTES),
@@ -151,10 +149,6 @@ struct Batch<'f> {
     rows: usize,
 }
 
-fn bytes(words: &[u32]) -> Vec<u8> {
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
-}
-
 impl Batch<'_> {
     fn named(&self) -> Vec<Named<'_>> {
         let named = self.functions.iter().enumerate();
@@ -176,17 +170,12 @@ impl Batch<'_> {
 
     /// What a command says that has to succeed.
     fn run(&self, command: &mut Command) -> std::result::Result<(), Failed> {
-        let output = command.current_dir(self.folder).output().map_err(|error| format!("{command:?}: {error}"))?;
-        if output.status.success() {
-            return Ok(());
-        }
-        let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-        let text: String = text.chars().take(4000).collect();
+        let Err(failed) = setting::run(command, self.folder) else { return Ok(()) };
         // What failed stays, to be looked at.
         let kept = std::env::temp_dir().join("ninebit-lower-failed");
         let _ = std::fs::remove_dir_all(&kept);
         let copied = Command::new("cp").arg("-r").arg(self.folder).arg(&kept).status();
-        Err(format!("{command:?}:\n{text}\n(kept: {copied:?} {})", kept.to_string_lossy()).into())
+        Err(format!("{failed}\n(kept: {copied:?} {})", kept.to_string_lossy()).into())
     }
 
     /// The functions and a program that runs them.
@@ -321,11 +310,10 @@ impl Batch<'_> {
             let text = if glsl {
                 let uniform = if function.uniform { "    NinebitConstants constants;\n" } else { "" };
                 let call = match function.result {
-                    Result::Fragment(_) => "    result = uvec4(shade(pixel{}));\n".replace("{}", constants),
-                    Result::Stored { .. } => {
-                        "    uint word;\n    bool passed = shade(pixel{}, word);\n    result = uvec4(word, passed ? 1u : 0u, 0u, 0u);\n"
-                            .replace("{}", constants)
-                    }
+                    Result::Fragment(_) => format!("    result = uvec4(shade(pixel{constants}));\n"),
+                    Result::Stored { .. } => format!(
+                        "    uint word;\n    bool passed = shade(pixel{constants}, word);\n    result = uvec4(word, passed ? 1u : 0u, 0u, 0u);\n"
+                    ),
                 };
                 format!(
                     "#version 330\n{printed}\nuniform isampler2D pool;\nout uvec4 result;\nint given(int row, int column) {{ return texelFetch(pool, \
@@ -335,11 +323,10 @@ impl Batch<'_> {
             } else {
                 let uniform = if function.uniform { "    var constants: NinebitConstants;\n" } else { "" };
                 let call = match function.result {
-                    Result::Fragment(_) => "    result[row] = vec4<u32>(shade(pixel{}));\n".replace("{}", constants),
-                    Result::Stored { .. } => {
-                        "    let stored = shade(pixel{});\n    result[row] = vec4<u32>(stored.word, u32(stored.passed), 0u, 0u);\n"
-                            .replace("{}", constants)
-                    }
+                    Result::Fragment(_) => format!("    result[row] = vec4<u32>(shade(pixel{constants}));\n"),
+                    Result::Stored { .. } => format!(
+                        "    let stored = shade(pixel{constants});\n    result[row] = vec4<u32>(stored.word, u32(stored.passed), 0u, 0u);\n"
+                    ),
                 };
                 format!(
                     "{printed}\n@group(0) @binding(0) var<storage, read> pool: array<i32>;\n@group(0) @binding(1) var<storage, read_write> result: \
@@ -350,11 +337,8 @@ impl Batch<'_> {
             };
             self.write(&format!("{n:05}.{}", if glsl { "glsl" } else { "wgsl" }), text);
         }
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools");
-        let script = script.join(if language == Language::Glsl { "glsl.py" } else { "wgsl.py" });
-        let mut command = Command::new(python());
-        command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe").env("WGPU_BACKEND_TYPE", "Vulkan");
-        self.run(command.arg(script).arg(self.functions.len().to_string()))
+        let script = if language == Language::Glsl { "glsl.py" } else { "wgsl.py" };
+        self.run(drawing(script).arg(self.functions.len().to_string()))
     }
 }
 
@@ -547,8 +531,7 @@ fn main() {
         (Language::Wgsl, 60, 256, works(&python(), &["-c", "import wgpu, numpy"])),
     ];
     let trials = tests.map(|(language, count, rows, runs)| {
-        let name = format!("{language:?}").to_lowercase();
-        Trial::test(name, move || all(language, count, rows)).with_ignored_flag(!runs)
+        Trial::test(format!("{language:?}").to_lowercase(), move || all(language, count, rows)).with_ignored_flag(!runs)
     });
     let planted = Trial::test("planted errors are noticed", errors_are_noticed).with_ignored_flag(!compiles);
     let draws = setting("NINEBIT_LOWER_FRAMES").is_some_and(|frames| frames > 0);

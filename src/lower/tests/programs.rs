@@ -12,18 +12,7 @@ use ninebit_lower::code::{run, value_of};
 use ninebit_lower::{Function, Generic, Input, Options, Result};
 use ninebit_test_support::random_program;
 use proptest::strategy::{Strategy, ValueTree};
-use setting::{any_policies, runner};
-
-/// The registers that a pixel brings.
-const GIVEN: [Register; 7] = [
-    Register::PrimaryColor,
-    Register::SecondaryColor,
-    Register::Fog,
-    Register::Texture0,
-    Register::Texture1,
-    Register::Texture2,
-    Register::Texture3,
-];
+use setting::{GIVEN, any_policies, runner};
 
 /// Random programs; the same ones every time.
 fn programs() -> impl Iterator<Item = Combiners> {

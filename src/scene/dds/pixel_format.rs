@@ -33,11 +33,11 @@ const BY_MASKS: &[(TextureFormat, u32, [u32; 4])] = &[
     (TextureFormat::A4R4G4B4, 16, [0xf00, 0xf0, 0xf, 0xf000]),
 ];
 
-/// Formats by bits and the masks of luminance and alpha.
-const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 2])] = &[
-    (TextureFormat::L8, 8, [0xff, 0]),
-    (TextureFormat::A8L8, 16, [0xff, 0xff00]),
-    (TextureFormat::Y16, 16, [0xffff, 0]),
+/// Formats by bits and the masks of luminance, nothing, nothing and alpha.
+const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 4])] = &[
+    (TextureFormat::L8, 8, [0xff, 0, 0, 0]),
+    (TextureFormat::A8L8, 16, [0xff, 0, 0, 0xff00]),
+    (TextureFormat::Y16, 16, [0xffff, 0, 0, 0]),
 ];
 
 impl PixelFormat {
@@ -61,16 +61,13 @@ impl PixelFormat {
         if self.flags & ALPHA_BESIDE == 0 {
             alpha = 0;
         }
-        let found = if self.flags & LUMINANCE != 0 {
-            let known = |(_, bits, masks): &&(_, u32, [u32; 2])| (*bits, *masks) == (self.bits, [red, alpha]);
-            BY_LUMINANCE.iter().find(known).map(|(format, ..)| *format)
-        } else if self.flags & COLORS != 0 {
-            let known =
-                |(_, bits, masks): &&(_, u32, [u32; 4])| (*bits, *masks) == (self.bits, [red, green, blue, alpha]);
-            BY_MASKS.iter().find(known).map(|(format, ..)| *format)
-        } else {
-            None
+        let (formats, masks) = match self.flags & (COLORS | LUMINANCE) {
+            0 => (&[][..], self.masks),
+            COLORS => (BY_MASKS, [red, green, blue, alpha]),
+            _ => (BY_LUMINANCE, [red, 0, 0, alpha]),
         };
+        let found = formats.iter().find(|(_, bits, known)| (*bits, *known) == (self.bits, masks));
+        let found = found.map(|(format, ..)| *format);
         found.ok_or_else(|| {
             let of = if self.flags & LUMINANCE != 0 {
                 format!("luminance {red:#x}")

@@ -44,13 +44,8 @@ impl Histogram {
 
     /// The largest difference, without its sign.
     pub fn largest(&self) -> u8 {
-        (0..=255_u8)
-            .rev()
-            .find(|size| {
-                self.between(-i16::from(*size), -i16::from(*size)) + self.between(i16::from(*size), i16::from(*size))
-                    != 0
-            })
-            .unwrap_or(0)
+        let occurring = self.counts.iter().zip(-255_i16..).filter(|(count, _)| **count > 0);
+        occurring.map(|(_, step)| step.unsigned_abs() as u8).max().unwrap_or(0)
     }
 
     /// Pixels whose difference is `from` to `to`.

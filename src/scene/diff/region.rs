@@ -131,8 +131,7 @@ impl Regions {
         }
         for index in 0..parents.len() {
             if parents[index] == index && number[index] == usize::MAX {
-                let region = self.open[index];
-                self.complete(region);
+                self.complete(self.open[index]);
             }
         }
         self.open = open;

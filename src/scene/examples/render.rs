@@ -24,8 +24,7 @@ fn main() {
         Ok(loaded) => loaded,
         Err(error) => return eprintln!("{error}"),
     };
-    let frames = render(&loaded.plan, &RenderOptions::default());
-    for row in frames.surfaces[0].words.chunks(8) {
+    for row in render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.chunks(8) {
         println!("{}", row.iter().map(|word| format!("{word:08x} ")).collect::<String>());
     }
 }

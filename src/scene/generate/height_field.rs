@@ -117,21 +117,22 @@ fn facets(u: i64, v: i64, cells: i64, seed: u64) -> Facet {
 
 /// Ridges: the folds of value noise, sharpest at the top.
 fn ridged(u: i64, v: i64, cells: i64, octaves: u32, seed: u64) -> i64 {
-    let (mut sum, mut weight, mut total) = (0, ONE, 0);
-    for octave in 0..octaves {
-        let fold = ONE - (2 * noise(u, v, cells << octave, seed.wrapping_add(u64::from(octave))) - ONE).abs();
-        sum += fold * fold / ONE * weight / ONE;
-        total += weight;
-        weight /= 2;
-    }
-    sum * ONE / total
+    summed(octaves, seed, |octave, seed| {
+        let fold = ONE - (2 * noise(u, v, cells << octave, seed) - ONE).abs();
+        fold * fold / ONE
+    })
 }
 
 /// Value noise summed over octaves, each half as strong and twice as fine, 0..1.
 fn fractal(u: i64, v: i64, cells: i64, octaves: u32, seed: u64) -> i64 {
+    summed(octaves, seed, |octave, seed| noise(u, v, cells << octave, seed))
+}
+
+/// The mean of what octaves are, each with a seed of its own and half as strong.
+fn summed(octaves: u32, seed: u64, of: impl Fn(u32, u64) -> i64) -> i64 {
     let (mut sum, mut weight, mut total) = (0, ONE, 0);
     for octave in 0..octaves {
-        sum += noise(u, v, cells << octave, seed.wrapping_add(u64::from(octave))) * weight / ONE;
+        sum += of(octave, seed.wrapping_add(u64::from(octave))) * weight / ONE;
         total += weight;
         weight /= 2;
     }

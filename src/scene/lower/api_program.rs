@@ -1,8 +1,7 @@
 //! Programs in the language of an API, which become combiners for each draw.
 
 use super::pixel_shader::ShaderProgram;
-use super::program_text::ProgramText;
-use super::texture::Textures;
+use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
 use ninebit::state::{
@@ -46,13 +45,7 @@ pub(super) struct Lowered {
 
 impl ApiProgram {
     /// Lowers the program for a draw; the default program once the reason that it has no form has been recorded.
-    pub(super) fn lower(
-        &self,
-        reader: &mut Reader<'_>,
-        units: &Units,
-        textures: &Textures,
-        around: &mut Around,
-    ) -> Lowered {
+    pub(super) fn lower(&self, reader: &mut Reader<'_>, units: &Units, around: &mut Around) -> Lowered {
         let profile = reader.profile;
         let signed = units.bound.map(|unit| unit.is_some_and(|unit| unit.signed != [false; 4]));
         let mut shader = units.shader;
@@ -65,23 +58,23 @@ impl ApiProgram {
                     generate(&lowered.units, profile, &mut shader, around, &mut findings);
                     for (index, change) in lowered.units.iter().enumerate() {
                         let Some(bump) = &change.operation else { continue };
-                        findings.extend(objection(units, textures, index, bump, around.shader));
+                        findings.extend(objection(reader, units, index, bump, around.shader));
                         (shader[index].operation, shader[index].previous) = (bump.value, index.saturating_sub(1));
                     }
                     (lowered.combiners, lowered.origins)
                 });
                 let lowered = lowered.and_then(|lowered| if findings.is_empty() { Ok(lowered) } else { Err(findings) });
-                lowered.map_err(|findings| placed(text, findings))
+                lowered.map_err(|findings| placed(text.as_ref(), findings))
             }
-            ApiProgram::Shader(program) => program.lower(reader, units, textures, &mut shader, around, signed),
+            ApiProgram::Shader(program) => program.lower(reader, units, &mut shader, around, signed),
             ApiProgram::Environment(program, text) => {
-                let format = |unit: TextureUnit| textures.list.get(unit.texture).map(|texture| texture.format);
+                let format = |unit: TextureUnit| reader.textures.list.get(unit.texture).map(|texture| texture.format);
                 let formats = std::array::from_fn(|index| match units.shader[index].operation {
                     ShaderOperation::None => None,
                     _ => Some(units.bound[index].and_then(format).map_or(BaseFormat::Rgba, BaseFormat::of)),
                 });
                 let context = environment::Context { profile, textures: formats, signed, fog: around.fog };
-                let lowered = environment::lower(program, &context).map_err(|findings| placed(text, findings));
+                let lowered = environment::lower(program, &context).map_err(|findings| placed(text.as_ref(), findings));
                 lowered.map(|lowered| (lowered.combiners, lowered.origins))
             }
         };
@@ -97,14 +90,6 @@ impl ApiProgram {
                 Lowered { combiners: Combiners::default(), origins: Vec::new(), shader }
             }
         }
-    }
-}
-
-/// Findings about a text, which have their places in it, as findings about the scene or the file.
-fn placed(text: &Option<ProgramText>, findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    match text {
-        Some(text) => findings.into_iter().map(|finding| text.place(finding)).collect(),
-        None => findings,
     }
 }
 
@@ -157,8 +142,8 @@ fn generate(
 
 /// What keeps a unit from looking up where the texture before it moves the coordinates.
 fn objection(
+    reader: &Reader<'_>,
     units: &Units,
-    textures: &Textures,
     index: usize,
     bump: &At<ShaderOperation>,
     shader: bool,
@@ -169,7 +154,7 @@ fn objection(
         let help = "leave the draw's `texture_shader` out, or write a BumpEnvironment stage there and Disable here";
         return Some(finding("NB0352", bump.place.clone(), message, label, help).rule("TSH-10"));
     }
-    let texture = units.bound[index].and_then(|unit| textures.list.get(unit.texture))?;
+    let texture = units.bound[index].and_then(|unit| reader.textures.list.get(unit.texture))?;
     (texture.kind == TextureKind::Cube).then(|| {
         let message = format!("texture {index} is a cube map, whose coordinates are not moved");
         Diagnostic::error("NB0343", bump.place.clone(), message)

@@ -2,7 +2,6 @@
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::matrix::{dot, normalize, subtract};
-use super::names::Names;
 use super::*;
 use crate::mesh::Mesh;
 use crate::raw::Numbers;
@@ -43,24 +42,16 @@ const SOURCES: &[&str] =
     &["Position", "Normal", "Tangent", "Binormal", "TextureCoordinates", "LightVector", "HalfVector"];
 
 /// Reads the source of an output; `color` says whether the output is a colour.
-pub(super) fn source<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Attribute>,
-    color: bool,
-) -> Option<Source> {
+pub(super) fn source<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribute>, color: bool) -> Option<Source> {
     let (head, _) = raw.split();
     if color && (raw.is_text() || matches!(head, "" | "Float" | "Vector")) {
-        return names.color(reader, &raw.as_other()).map(Source::Color);
+        return reader.value(&raw.as_other::<source::Color>()).map(Source::Color);
     }
     if !color && (raw.text.starts_with('(') || raw.is_text()) {
         return vertex::coordinates(reader, &raw.as_other())
             .map(|(values, written)| Source::Coordinates(values, written));
     }
-    let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
-    if kind < 5 && !rest.is_empty() {
-        return reader.unknown_variant(raw, "mesh attribute", SOURCES);
-    }
+    let (kind, rest) = reader.variant_of(raw, "mesh attribute", SOURCES, 5)?;
     Some(match kind {
         0 => Source::Position,
         1 => Source::Normal,
@@ -70,14 +61,14 @@ pub(super) fn source<'a>(
         5 => {
             let fields = reader.read(&Raw::<source::LightVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
-            let tangent_space = space(reader, &fields.space);
+            let tangent_space = in_tangent_space(reader, &fields.space);
             Source::Light { light: light?, tangent_space: tangent_space? }
         }
         _ => {
             let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
             let viewer = fields.viewer(reader).map(|[x, y, z, _]| [x, y, z]);
-            let tangent_space = space(reader, &fields.space);
+            let tangent_space = in_tangent_space(reader, &fields.space);
             Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
         }
     })
@@ -103,17 +94,16 @@ pub(super) fn place<'a>(
                 Some(_) => format!("this {what} has a position and a direction; one of them is enough"),
                 None => format!("this {what} has neither `position` nor `direction`"),
             };
-            let place = reader.opening(text);
-            reader.refuse(Diagnostic::error("NB0202", place, message).label("in here").help(
+            reader.refuse(Diagnostic::error("NB0202", reader.opening(text), message).label("in here").help(
                 "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
             ))
         }
     }
 }
 
-fn space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
-    raw.as_ref()
-        .map_or(Some(true), |raw| reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0))
+/// Whether a vector stands along the tangents.
+fn in_tangent_space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
+    reader.choice(raw, "space", &["Tangent", "Object"]).map(|space| space == 0)
 }
 
 /// Where the attributes of a mesh go.

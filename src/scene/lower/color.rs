@@ -1,18 +1,13 @@
 //! Colours: bytes as they are, or floats.
 #![allow(clippy::float_arithmetic, reason = "NUM-0: constants given as floats become bytes here")]
 
-use super::names::Names;
 use super::*;
 use crate::raw::{Few, Numbers, Tuple};
 use ninebit::state::VertexColor;
 
 /// A constant colour: four bytes.
-pub(super) fn constant<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Color>,
-) -> Option<[u8; 4]> {
-    names.color(reader, raw).map(bytes)
+pub(super) fn constant<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<[u8; 4]> {
+    reader.value(raw).map(bytes)
 }
 
 /// A colour as a constant.
@@ -24,11 +19,7 @@ pub(super) fn bytes(color: VertexColor) -> [u8; 4] {
 }
 
 /// Constants 0 and 1; the ones not written are zero.
-pub(super) fn constants<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, Tuple<'a, source::Color>>,
-) -> [[u8; 4]; 2] {
+pub(super) fn constants<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Color>>) -> [[u8; 4]; 2] {
     let mut constants = [[0; 4]; 2];
     let Some(parts) = reader.read(raw) else { return constants };
     if parts.0.len() > 2 || parts.0.is_empty() {
@@ -39,7 +30,7 @@ pub(super) fn constants<'a>(
         return constants;
     }
     for (slot, part) in constants.iter_mut().zip(&parts.0) {
-        *slot = constant(reader, names, part).unwrap_or_default();
+        *slot = constant(reader, part).unwrap_or_default();
     }
     constants
 }

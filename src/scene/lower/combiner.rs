@@ -1,7 +1,6 @@
 //! `Combiners(...)`: register combiners field by field.
 
 use super::input::{final_input, general_input};
-use super::names::Names;
 use super::*;
 use crate::raw::Tuple;
 use ninebit::legality::{Help, Notation, stage_count};
@@ -33,13 +32,13 @@ impl Notation for Fields {
 }
 
 /// A program as it is written, and where its parts stand. `None` once the reason has been recorded.
-pub(super) fn combiners<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<(Combiners, Places)> {
+pub(super) fn combiners<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Combiners, Places)> {
     let fields = reader.read(&Raw::<source::Combiners<'a>>::new(text))?;
-    let shared = fields.constants.as_ref().map(|raw| color::constants(reader, names, raw)).unwrap_or_default();
+    let shared = fields.constants.as_ref().map(|raw| color::constants(reader, raw)).unwrap_or_default();
     let mut places = Places::default();
-    let stages = stages(reader, names, &fields, shared, &mut places)?;
+    let stages = stages(reader, &fields, shared, &mut places)?;
     let final_combiner = match &fields.final_combiner {
-        Some(raw) => final_combiner(reader, names, raw, shared, &mut places),
+        Some(raw) => final_combiner(reader, raw, shared, &mut places),
         None => Some(FinalCombiner::initial(shared)),
     };
     let final_combiner = final_combiner.unwrap_or(FinalCombiner::initial(shared));
@@ -49,7 +48,6 @@ pub(super) fn combiners<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'
 
 fn stages<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     fields: &source::Combiners<'a>,
     shared: [[u8; 4]; 2],
     places: &mut Places,
@@ -69,7 +67,7 @@ fn stages<'a>(
         let alpha = fields.alpha.as_ref().and_then(|raw| reader.read(raw));
         let rgb = rgb.map(|fields| portion(reader, &fields, stage, false, places));
         let alpha = alpha.map(|fields| portion(reader, &fields, stage, true, places));
-        let constants = own_constants(reader, names, &fields.constants, Place::StageConstants(stage), places);
+        let constants = own_constants(reader, &fields.constants, Place::StageConstants(stage), places);
         stages.push(GeneralStage {
             rgb: rgb.unwrap_or(Portion::idle(Component::Rgb)),
             alpha: alpha.unwrap_or(Portion::idle(Component::Alpha)),
@@ -82,14 +80,13 @@ fn stages<'a>(
 /// Constants of one stage or of the final combiner.
 fn own_constants<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     raw: &Option<Raw<'a, Tuple<'a, source::Color>>>,
     place: Place,
     places: &mut Places,
 ) -> Option<[[u8; 4]; 2]> {
     let raw = raw.as_ref()?;
     places.set(place, reader.span(raw));
-    Some(color::constants(reader, names, raw))
+    Some(color::constants(reader, raw))
 }
 
 fn portion<'a>(
@@ -119,21 +116,17 @@ fn portion<'a>(
             }
         }
     }
-    for (field, part) in [
-        (&fields.ab_dot, Part::Dot(0)),
-        (&fields.cd_dot, Part::Dot(1)),
-        (&fields.ab_blue_to_alpha, Part::BlueToAlpha(0)),
-        (&fields.cd_blue_to_alpha, Part::BlueToAlpha(1)),
-    ] {
-        if let Some(raw) = field {
-            places.set(at(part), reader.span(raw));
-        }
-    }
-    if let Some(raw) = &fields.bias {
-        places.set(at(Part::Bias), reader.span(raw));
-    }
-    if let Some(raw) = &fields.scale {
-        places.set(at(Part::Scale), reader.span(raw));
+    for (name, text) in fields.written() {
+        let part = match name {
+            "ab_dot" => Part::Dot(0),
+            "cd_dot" => Part::Dot(1),
+            "ab_blue_to_alpha" => Part::BlueToAlpha(0),
+            "cd_blue_to_alpha" => Part::BlueToAlpha(1),
+            "bias" => Part::Bias,
+            "scale" => Part::Scale,
+            _ => continue,
+        };
+        places.set(at(part), reader.range(text));
     }
     portion.ab_dot_product = fields.ab_dot(reader);
     portion.cd_dot_product = fields.cd_dot(reader);
@@ -159,7 +152,6 @@ fn output<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Output>) -> Registe
 
 fn final_combiner<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     raw: &Raw<'a, source::FinalCombiner<'a>>,
     shared: [[u8; 4]; 2],
     places: &mut Places,
@@ -180,7 +172,7 @@ fn final_combiner<'a>(
         }
     }
     let [a, b, c, d, e, f, g] = inputs;
-    let constants = own_constants(reader, names, &fields.constants, Place::FinalConstants, places);
+    let constants = own_constants(reader, &fields.constants, Place::FinalConstants, places);
     Some(FinalCombiner {
         inputs: [a, b, c, d, e, f],
         g,

@@ -3,15 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::api_program::Around;
+use super::api_program::{Around, Lowered};
 use super::geometry::{geometry, vertex_side};
-use super::names::Names;
 use super::program::{Form, Program};
-use super::target::Targets;
-use super::texture::Textures;
 use super::*;
 use crate::mesh::Mesh;
-use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Texture, Topology};
+use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Topology};
 
 /// A draw and what else is known of it.
 pub(super) struct Drawn {
@@ -20,15 +17,12 @@ pub(super) struct Drawn {
     /// The mesh that its vertices are of, where the scene has a truth to ask for it.
     pub(super) mesh: Option<Arc<Mesh>>,
     /// Whether it takes part in the scene's truth, if it says so, and where it does.
-    pub(super) truth: Option<(bool, Range<usize>)>,
+    pub(super) truth: Option<(bool, Span)>,
 }
 
 /// Reads the draws, with their places.
 pub(super) fn draws<'a>(
     reader: &mut Reader<'a>,
-    names: &mut Names<'a>,
-    targets: &Targets,
-    textures: &mut Textures,
     raw: &Option<Raw<'a, source::List<'a, source::Draw<'a>>>>,
     keeps_meshes: bool,
 ) -> Vec<Drawn> {
@@ -43,8 +37,8 @@ pub(super) fn draws<'a>(
         return Vec::new();
     }
     let mut draws: Vec<Drawn> = Vec::with_capacity(list.len());
-    let mut seen: HashMap<String, Range<usize>> = HashMap::new();
-    let mut written: Vec<bool> = targets.list.iter().map(|target| target.contents.is_some()).collect();
+    let mut seen: HashMap<String, Span> = HashMap::new();
+    let mut written: Vec<bool> = reader.targets.list.iter().map(|target| target.contents.is_some()).collect();
     let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
     for (index, raw) in list.iter().enumerate() {
         let Some(fields) = reader.read(raw) else { continue };
@@ -55,14 +49,12 @@ pub(super) fn draws<'a>(
         {
             place = reader.span(raw);
             if let Some(first) = seen.get(&given) {
-                let first = first.clone();
-                reader.push(crate::wording::twice("draw", &given, place.clone(), first));
+                reader.push(crate::wording::twice("draw", &given, place.clone(), first.clone()));
             }
             seen.insert(given.clone(), place.clone());
             name = given;
         }
-        let header = Header { name, place };
-        if let Some(mut draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
+        if let Some(mut draw) = draw(reader, &fields, (name, place), &mut budget, &written) {
             draw.mesh = draw.mesh.filter(|_| keeps_meshes);
             if let Some(flag) = written.get_mut(draw.draw.target) {
                 *flag = true;
@@ -83,61 +75,46 @@ struct Budget {
     spent: bool,
 }
 
-struct Header {
-    name: String,
-    place: Range<usize>,
-}
-
-#[expect(clippy::too_many_arguments, reason = "a draw can refer to everything")]
 fn draw<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    textures: &mut Textures,
     fields: &source::Draw<'a>,
-    header: Header,
+    (name, place): (String, Span),
     budget: &mut Budget,
     written: &[bool],
 ) -> Option<Drawn> {
-    let target = fields.target.as_ref().map_or(Some(0), |raw| targets.find(reader, raw));
+    let target = fields.target.as_ref().map_or(Some(0), |raw| target::find(reader, raw));
     if let Some(raw) = &fields.clear {
-        return clear(reader, names, targets, (fields, raw), header, target?);
+        return clear(reader, (fields, raw), (name, place), target?);
     }
     let truth = fields.truth.as_ref().and_then(|raw| Some((reader.read(raw)?, reader.span(raw))));
-    let source = fields.vertices(reader);
-    let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
-    let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
+    let mut geometry = fields.vertices(reader).and_then(|raw| geometry(reader, target.unwrap_or(0), &raw));
+    let sets = texgen::sets(reader, &fields.texgen, &fields.texture_matrices);
     let viewer =
         fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(ninebit::vertex::Viewer::Local);
-    let fog = fog::fog(reader, names, &fields.fog);
-    let mut units = unit::units(reader, names, textures, &fields.textures);
-    shader::shader(reader, textures, &mut units, &fields.texture_shader);
-    let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
+    let fog = fog::fog(reader, &fields.fog);
+    let mut units = unit::units(reader, &fields.textures);
+    shader::shader(reader, &mut units, &fields.texture_shader);
+    let program = fields.program.as_ref().map(|raw| reader.value(raw));
     let topology = fields.topology(reader);
     let mut around = Around {
-        fog: fog.state().enabled,
+        fog: fog.state.enabled,
         shader: fields.texture_shader.is_some(),
         generators: fields.texgen.is_some(),
         sets,
         without_q: [None; 4],
     };
-    let mut program_origin = Vec::new();
-    let mut texture_shader = units.shader;
     let program = program.flatten();
     if let Some(program) = program.as_deref() {
         asides(reader, fields, program);
     }
-    let (combiners, reads) = match program.as_deref().map(|program| &program.form) {
-        Some(Form::Combiners(program)) => (program.combiners.clone(), program.reads.clone()),
-        Some(Form::Api(program)) => {
-            let lowered = program.lower(reader, &units, textures, &mut around);
-            (program_origin, texture_shader) = (lowered.origins, lowered.shader);
-            (lowered.combiners, [None, None, None, None])
-        }
-        None => (Combiners::default(), [None, None, None, None]),
+    let as_written = |combiners| Lowered { combiners, origins: Vec::new(), shader: units.shader };
+    let (lowered, reads) = match program.as_deref().map(|program| &program.form) {
+        Some(Form::Combiners(program)) => (as_written(program.combiners.clone()), program.reads.clone()),
+        Some(Form::Api(program)) => (program.lower(reader, &units, &mut around), Default::default()),
+        None => (as_written(Combiners::default()), Default::default()),
     };
     if let Some(made) = &mut geometry
-        && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)
+        && !vertex_side(reader, made, &around.sets, &fog, viewer, &place)
     {
         geometry = None;
     }
@@ -145,7 +122,7 @@ fn draw<'a>(
         made.without_q(&around.without_q);
     }
     let mut draw = Draw {
-        name: header.name,
+        name,
         target: target.unwrap_or(0),
         positions: geometry.as_ref().map_or(Positions::Window, |geometry| geometry.positions),
         topology,
@@ -154,22 +131,21 @@ fn draw<'a>(
         perspective: fields.perspective(reader),
         cull: fields.cull(reader),
         front_face: fields.front_face(reader),
-        scissor: scissor(reader, targets, target, fields),
-        fog: fog.state(),
+        scissor: scissor(reader, target, fields),
+        fog: fog.state,
         textures: units.bound,
-        texture_shader,
-        combiners,
-        program_origin,
+        texture_shader: lowered.shader,
+        combiners: lowered.combiners,
+        program_origin: lowered.origins,
         ..Draw::default()
     };
-    raster::operations(reader, names, targets, fields, &mut draw);
+    raster::operations(reader, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {
-        let nothing = matches!(units.shader[unit].operation, ShaderOperation::None);
-        if let (Some(place), true) = (read, nothing) {
+        if let (Some(read), true) = (read, matches!(units.shader[unit].operation, ShaderOperation::None)) {
             reader.push(
-                Diagnostic::warning("NB0902", place.clone(), format!("texture unit {unit} is read but has no texture"))
+                Diagnostic::warning("NB0902", read.clone(), format!("texture unit {unit} is read but has no texture"))
                     .label("gives black, opaque")
-                    .related(header.place.clone(), "in this draw")
+                    .related(place.clone(), "in this draw")
                     .rule("TEX-16")
                     .help("give the draw `textures: [...]` with an entry for this unit"),
             );
@@ -177,69 +153,49 @@ fn draw<'a>(
     }
     let bound = units.bound.iter().zip(&units.places).filter_map(|(unit, place)| Some((unit.as_ref()?, place)));
     for (unit, place) in bound {
-        feedback(reader, targets, &textures.list[unit.texture], draw.target, place, written);
+        feedback(reader, reader.textures.list[unit.texture].image.target(), draw.target, place, written);
     }
     let geometry = geometry?;
     draw.vertices = geometry.vertices;
     draw.vertex_program = geometry.program;
-    draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;
+    draw.indices = indices(reader, fields, geometry.mesh.as_deref(), draw.vertices.len(), topology)?;
     target?;
-    budget.take(reader, &draw, &header.place)?;
-    let spans = DrawSpans { draw: header.place, vertices: geometry.spans, units: units.places };
+    budget.take(reader, &draw, &place)?;
+    let spans = DrawSpans { draw: place, vertices: geometry.spans, units: units.places };
     Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
 }
 
 /// Reads a clear among the draws.
 fn clear<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
     (fields, raw): (&source::Draw<'a>, &Raw<'a, source::ClearDraw<'a>>),
-    header: Header,
+    (name, place): (String, Span),
     target: usize,
 ) -> Option<Drawn> {
     if let Some((name, text)) = fields.written().find(|(name, _)| !["name", "target", "clear"].contains(name)) {
-        let place = reader.range(text);
         reader.push(
-            Diagnostic::error("NB0225", place, format!("a clear has no `{name}`"))
+            Diagnostic::error("NB0225", reader.range(text), format!("a clear has no `{name}`"))
                 .label("belongs to a draw")
                 .related(reader.span(raw), "the clear")
                 .help("write the clear and the draw as two entries of `draws`; only `name` and `target` stand beside `clear`"),
         );
     }
-    let mut draw = Draw { name: header.name, target, ..Draw::default() };
-    raster::clear(reader, names, targets, raw, &mut draw)?;
-    let spans =
-        DrawSpans { draw: header.place.clone(), vertices: VertexSpans::All(header.place), ..DrawSpans::default() };
+    let mut draw = Draw { name, target, ..Draw::default() };
+    raster::clear(reader, raw, &mut draw)?;
+    let spans = DrawSpans { draw: place.clone(), vertices: VertexSpans::All(place), ..DrawSpans::default() };
     Some(Drawn { draw, spans, mesh: None, truth: None })
 }
 
 /// The scissor of a draw.
-fn scissor<'a>(
-    reader: &mut Reader<'a>,
-    targets: &Targets,
-    target: Option<usize>,
-    fields: &source::Draw<'a>,
-) -> Option<Rectangle> {
-    raster::clip(reader, targets.list.get(target?)?, "scissor", fields.scissor.as_ref()?)
+fn scissor<'a>(reader: &mut Reader<'a>, target: Option<usize>, fields: &source::Draw<'a>) -> Option<Rectangle> {
+    let (raw, target) = (fields.scissor.as_ref()?, reader.targets.list.get(target?)?.clone());
+    raster::clip(reader, &target, "scissor", raw)
 }
 
 /// Warns of states in the text of a program that the draw does not say: each once, though several draws may share the program.
 fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program) {
     for (finding, field) in &program.asides {
-        let said = match *field {
-            "blend" => fields.blend.is_some(),
-            "alpha_test" => fields.alpha_test.is_some(),
-            "depth_test" => fields.depth_test.is_some(),
-            "stencil_test" => fields.stencil_test.is_some(),
-            "fog" => fields.fog.is_some(),
-            "cull" => fields.cull.is_some(),
-            "shade_model" => fields.shade_model.is_some(),
-            "color_mask" => fields.color_mask.is_some(),
-            "scissor" => fields.scissor.is_some(),
-            "texture_shader" => fields.texture_shader.is_some(),
-            _ => false,
-        };
+        let said = fields.written().any(|(name, _)| name == *field);
         if !said && !reader.diagnostics.contains(finding) {
             reader.push(finding.clone());
         }
@@ -247,15 +203,14 @@ fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program)
 }
 
 impl Budget {
-    fn take(&mut self, reader: &mut Reader<'_>, draw: &Draw, place: &Range<usize>) -> Option<()> {
+    fn take(&mut self, reader: &mut Reader<'_>, draw: &Draw, place: &Span) -> Option<()> {
         let vertices = self.vertices.checked_sub(draw.vertices.len());
         let indices = self.indices.checked_sub(draw.indices.len());
         let (Some(vertices), Some(indices)) = (vertices, indices) else {
             self.spent = true;
             if vertices.is_none() {
                 let (most, count) = (reader.limits.vertices, draw.vertices.len());
-                let total = most - self.vertices + count;
-                reader.push(vertex::too_many(place.clone(), total, most));
+                reader.push(vertex::too_many(place.clone(), most - self.vertices + count, most));
             } else {
                 let message = format!("more than {} indices in a scene", reader.limits.indices);
                 let help = "`ninebit limits` prints what is allowed";
@@ -269,16 +224,9 @@ impl Budget {
 }
 
 /// A draw may not sample what it draws into, and had better sample something drawn before.
-fn feedback(
-    reader: &mut Reader<'_>,
-    targets: &Targets,
-    texture: &Texture,
-    target: usize,
-    place: &Range<usize>,
-    written: &[bool],
-) {
-    let Some(sampled) = texture.image.target() else { return };
-    let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
+fn feedback(reader: &mut Reader<'_>, sampled: Option<usize>, target: usize, place: &Span, written: &[bool]) {
+    let Some(sampled) = sampled else { return };
+    let name = reader.targets.list.get(sampled).map_or("", |target| target.name.as_str());
     if sampled == target {
         let message = format!("this draw samples its own target \"{}\"", shorten(name));
         let help = "draw into another target and sample that one";
@@ -294,11 +242,11 @@ fn feedback(
 fn indices<'a>(
     reader: &mut Reader<'a>,
     fields: &source::Draw<'a>,
-    triangles: Option<Arc<[u32]>>,
+    mesh: Option<&Mesh>,
     vertices: usize,
     topology: Topology,
 ) -> Option<Arc<[u32]>> {
-    if let Some(triangles) = triangles {
+    if let Some(mesh) = mesh {
         let unwanted = fields.indices.as_ref().map(|raw| reader.span(raw));
         let topology_raw = fields.topology.as_ref().filter(|_| topology != Topology::Triangles);
         let unwanted = unwanted.or_else(|| topology_raw.map(|raw| reader.span(raw)));
@@ -306,7 +254,7 @@ fn indices<'a>(
             let help = "leave `indices` and `topology` out";
             reader.push(finding("NB0222", place, "a mesh brings its own triangles", "not with a mesh", help));
         }
-        return Some(triangles);
+        return Some(Arc::clone(&mesh.indices));
     }
     let Some(raw) = &fields.indices else {
         let count = u32::try_from(vertices).ok()?;

@@ -1,47 +1,29 @@
 //! The fog of a draw: its colour, its function, and where the function's coordinate comes from.
 
-use super::names::Names;
 use super::*;
 use ninebit::state::{Fog, FogFunction, FogMode, Named};
 use ninebit::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
 
 /// Fog as it was written.
 pub(super) struct FogFields {
-    enabled: bool,
-    color: [u8; 3],
-    /// None: the vertices give factors.
-    pub(super) function: Option<FogFunction>,
+    /// The state of the pixel pipe. Without a function the vertices give factors.
+    pub(super) state: Fog,
     /// Of the function's coordinate.
     pub(super) source: FogSource,
-    /// Where its coefficients are applied.
-    evaluation: FogEvaluation,
     /// Where the function stands in the text.
-    pub(super) place: Range<usize>,
-}
-
-impl FogFields {
-    /// The state of the pixel pipe.
-    pub(super) fn state(&self) -> Fog {
-        Fog { enabled: self.enabled, color: self.color, function: self.function }
-    }
+    pub(super) place: Span,
 }
 
 /// Reads the fog of a draw.
-pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> FogFields {
+pub(super) fn fog<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> FogFields {
     let chip = match reader.profile {
         Profile::Nv10 => FogEvaluation::PerVertex,
         Profile::Nv2a => FogEvaluation::PerPixel,
     };
     let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
-    let [r, g, b, _] = color::bytes(fields.color(reader, names));
-    let mut fog = FogFields {
-        enabled: raw.is_some() && fields.enabled(reader),
-        color: [r, g, b],
-        function: None,
-        source: fields.coordinate_source(reader),
-        evaluation: chip,
-        place: 0..0,
-    };
+    let [r, g, b, _] = color::bytes(fields.color(reader));
+    let state = Fog { enabled: raw.is_some() && fields.enabled(reader), color: [r, g, b], function: None };
+    let mut fog = FogFields { state, source: fields.coordinate_source(reader), place: 0..0 };
     let Some(raw) = &fields.mode else {
         if let Some((name, text)) = fields.written().find(|(name, _)| !["enabled", "color"].contains(name)) {
             let message = format!("`{name}` says nothing without a `mode`");
@@ -51,13 +33,13 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         return fog;
     };
     fog.place = reader.span(raw);
-    fog.evaluation = fields.evaluation.and_then(|raw| reader.name(&raw)).unwrap_or(chip);
-    let each_pixel = fog.evaluation == FogEvaluation::PerPixel;
+    let evaluation = fields.evaluation.and_then(|raw| reader.name(&raw)).unwrap_or(chip);
+    let each_pixel = evaluation == FogEvaluation::PerPixel;
     reader.needs_nv2a(&fields.evaluation, each_pixel, "NB0324", ("linear fog of each pixel", "INT-5n"));
     if let Some(mode) = reader.name(raw) {
         let absolute = mode == FogMode::LinearAbs;
         reader.needs_nv2a(&fields.mode, absolute, "NB0324", ("fog mode LinearAbs", "INT-5n"));
-        fog.function = function(reader, &fields, mode, fog.evaluation, &fog.place);
+        fog.state.function = function(reader, &fields, mode, evaluation, &fog.place);
     }
     fog
 }
@@ -68,7 +50,7 @@ fn function<'a>(
     fields: &source::Fog<'a>,
     mode: FogMode,
     evaluation: FogEvaluation,
-    place: &Range<usize>,
+    place: &Span,
 ) -> Option<FogFunction> {
     let straight = mode.is_linear();
     let numbers = [(&fields.start, "start"), (&fields.end, "end"), (&fields.density, "density")];

@@ -4,8 +4,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::attribute::{Outputs, Source};
-use super::names::Names;
-use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
 use crate::mesh::Mesh;
@@ -19,15 +17,60 @@ pub(super) struct Geometry {
     pub(super) positions: Positions,
     pub(super) vertices: Vertices,
     pub(super) spans: VertexSpans,
-    /// Of a mesh.
-    pub(super) triangles: Option<Arc<[u32]>>,
-    /// The mesh that they are of.
+    /// The mesh that they are of, with its triangles.
     pub(super) mesh: Option<Arc<Mesh>>,
     /// What generated coordinates and fog start from.
     pub(super) objects: Objects,
     pub(super) model_view: Rows,
     /// The vertex program that made them.
     pub(super) program: Option<VertexProgram>,
+}
+
+/// The vertices that a draw starts from.
+pub(super) enum Given {
+    /// Of a mesh, and where that stands.
+    Mesh(Arc<Mesh>, Span),
+    /// Listed.
+    Listed(Rc<VertexData>),
+}
+
+impl Given {
+    /// Reads which of the two there is. `None` once the reason that it cannot be read has been recorded.
+    pub(super) fn read<'a>(
+        reader: &mut Reader<'a>,
+        vertices: &Option<Raw<'a, source::VertexList>>,
+        mesh: &Option<Raw<'a, source::MeshSource>>,
+        opening: Span,
+    ) -> Option<Given> {
+        let (code, message) = match (vertices, mesh) {
+            (Some(raw), None) => return reader.value(raw).map(Given::Listed),
+            (None, Some(raw)) => return reader.value(raw).map(|mesh| Given::Mesh(mesh, reader.span(raw))),
+            (Some(_), Some(_)) => ("NB0222", "either `vertices` or `mesh`, not both"),
+            (None, None) => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
+        };
+        let help = "write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`";
+        reader.refuse(finding(code, opening, message, "in here", help))
+    }
+
+    pub(super) fn mesh(&self) -> Option<&Arc<Mesh>> {
+        if let Given::Mesh(mesh, _) = self { Some(mesh) } else { None }
+    }
+
+    /// How many.
+    pub(super) fn count(&self) -> usize {
+        match self {
+            Given::Mesh(mesh, _) => mesh.positions.len(),
+            Given::Listed(data) => data.vertices.len(),
+        }
+    }
+
+    /// Where they stand.
+    pub(super) fn spans(&self) -> VertexSpans {
+        match self {
+            Given::Mesh(_, place) => VertexSpans::All(place.clone()),
+            Given::Listed(data) => data.spans.clone(),
+        }
+    }
 }
 
 /// The vertices of a draw before any transform.
@@ -89,10 +132,10 @@ pub(super) fn vertex_side(
     sets: &Option<[CoordinateSet; 4]>,
     fog: &fog::FogFields,
     viewer: Viewer,
-    draw: &Range<usize>,
+    draw: &Span,
 ) -> bool {
     let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone(), ..DrawSpans::default() };
-    if fog.function.is_none()
+    if fog.state.function.is_none()
         && geometry.program.as_ref().is_some_and(|program| program.writes_fog)
         && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
     {
@@ -103,7 +146,7 @@ pub(super) fn vertex_side(
         reader.push(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         return false;
     }
-    if sets.is_none() && fog.function.is_none() {
+    if sets.is_none() && fog.state.function.is_none() {
         return true;
     }
     if let Some(program) = &geometry.program
@@ -113,7 +156,7 @@ pub(super) fn vertex_side(
         return false;
     }
     if let (Some(_), FogSource::Vertex, Some(_), None) =
-        (&fog.function, fog.source, &geometry.triangles, &geometry.program)
+        (&fog.state.function, fog.source, &geometry.mesh, &geometry.program)
     {
         let message = "the vertices of a mesh give no fog coordinates";
         let help =
@@ -129,7 +172,7 @@ pub(super) fn vertex_side(
             let given = vertex.texture_coordinates;
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
-        if let Some(function) = &fog.function {
+        if let Some(function) = &fog.state.function {
             // It may be anything: FOG-4 and FOG-5 say what becomes of what is not finite.
             let coordinate = vertex_fog::coordinate(fog.source, &eye, vertex.position);
             vertex.fog = vertex_fog::passed(function, reader.profile, coordinate);
@@ -148,19 +191,14 @@ pub(super) fn vertex_side(
 }
 
 /// What the fixed vertex pipe does, and a vertex program in its place has to do itself.
-fn beside_program(
-    program: &VertexProgram,
-    sets: bool,
-    fog: &fog::FogFields,
-    draw: &Range<usize>,
-) -> Option<Diagnostic> {
+fn beside_program(program: &VertexProgram, sets: bool, fog: &fog::FogFields, draw: &Span) -> Option<Diagnostic> {
     if sets {
         let message = "coordinates are generated or multiplied beside a vertex program";
         return Some(Diagnostic::error("NB0389", draw.clone(), message).label("in this draw").rule("VTX-3").help(
             "the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3",
         ));
     }
-    fog.function.as_ref()?;
+    fog.state.function.as_ref()?;
     let finding = |message: &str, label: &str, help: &str| {
         Some(finding("NB0389", fog.place.clone(), message, label, help).rule("VTX-3"))
     };
@@ -169,11 +207,10 @@ fn beside_program(
         return finding("behind a vertex program there is no eye space", "needs it for this fog", help);
     }
     if fog.source == FogSource::Vertex && !program.writes_fog {
-        let help = "write it there: `mov oFog.x, r0.w`";
         return finding(
             "fog with a mode reads the coordinate in oFog, which nothing writes",
             "needs the coordinate",
-            help,
+            "write it there: `mov oFog.x, r0.w`",
         );
     }
     None
@@ -183,8 +220,6 @@ const SOURCES: &[&str] = &["Window", "Matrix", "Program"];
 
 pub(super) fn geometry<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
     target: usize,
     raw: &Raw<'a, source::VertexSource>,
 ) -> Option<Geometry> {
@@ -198,64 +233,52 @@ pub(super) fn geometry<'a>(
                 let help = "write `Window([(position: (10, 20)), ...])`";
                 return reader.refuse(finding("NB0211", reader.span(&list), message, "here", help));
             };
-            let data = names.vertices(reader, &list)?;
+            let data = reader.value(&list)?;
             Some(Geometry {
                 positions: Positions::Window,
                 vertices: data.vertices.clone(),
                 spans: data.spans.clone(),
-                triangles: None,
                 mesh: None,
                 objects: Objects::Listed(data),
                 model_view: matrix::IDENTITY,
                 program: None,
             })
         }
-        1 => matrix_geometry(reader, names, targets, target, rest),
-        _ => vertex_program::geometry(reader, names, targets, target, rest),
+        1 => matrix_geometry(reader, target, rest),
+        _ => vertex_program::geometry(reader, target, rest),
     }
 }
 
-fn matrix_geometry<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    target: usize,
-    text: &'a str,
-) -> Option<Geometry> {
+fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
     let matrix = fields.matrix(reader);
-    let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
-    let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| names.matrix(reader, raw));
-    let viewport = viewport(reader, &fields.viewport, targets, target);
-    let (mut vertices, spans, mesh, objects) = match (&fields.vertices, &fields.mesh) {
-        (Some(raw), None) => {
-            let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
-            if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
-                let message = "listed vertices have no mesh attributes";
-                let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
-                reader.push(finding("NB0222", reader.span(output), message, "needs a mesh", help));
-            }
-            let data = names.vertices(reader, raw)?;
-            (data.vertices.clone(), data.spans.clone(), None, Objects::Listed(data))
+    let matrix = matrix.and_then(|raw| reader.value(&raw));
+    let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| reader.value(raw));
+    let viewport = viewport(reader, &fields.viewport, target);
+    let listed = fields.vertices.as_ref().filter(|_| fields.mesh.is_none());
+    let attributes = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
+    if let (Some(_), Some(attribute)) = (listed, attributes.iter().find_map(|field| field.as_ref())) {
+        let message = "listed vertices have no mesh attributes";
+        let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
+        reader.push(finding("NB0222", reader.span(attribute), message, "needs a mesh", help));
+    }
+    let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
+    let of_mesh = fields.mesh.is_some() && fields.vertices.is_none();
+    let outputs = of_mesh.then(|| outputs(reader, &fields));
+    let given = given?;
+    let (mut vertices, objects) = match (&given, outputs) {
+        (Given::Mesh(mesh, _), Some(outputs)) => {
+            (attribute::vertices(mesh, &outputs), Objects::Mesh(Arc::clone(mesh), outputs.dimensions()))
         }
-        (None, Some(raw)) => {
-            let mesh = names.mesh(reader, raw);
-            let outputs = outputs(reader, names, &fields);
-            let mesh = mesh?;
-            let vertices = attribute::vertices(&mesh, &outputs);
-            let objects = Objects::Mesh(Arc::clone(&mesh), outputs.dimensions());
-            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh), objects)
-        }
-        (both, _) => {
-            return reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening));
-        }
+        (Given::Listed(data), _) => (data.vertices.clone(), Objects::Listed(Rc::clone(data))),
+        (Given::Mesh(..), None) => return None,
     };
     let (matrix, model_view) = (matrix?, model_view?);
     vertices.map_positions(|position| ninebit::vertex::transform(&matrix, position));
     let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
     if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
-        let spans = DrawSpans { draw: opening, vertices: spans, ..DrawSpans::default() };
+        let spans = DrawSpans { draw: opening, vertices: given.spans(), ..DrawSpans::default() };
         let message = format!("the matrix takes vertex {bad} beyond all numbers");
         let help = "use smaller numbers in the matrix or in the position";
         reader.push(finding("NB0207", spans.vertex(bad), message, "not finite after the matrix", help).rule("RAS-0"));
@@ -264,23 +287,22 @@ fn matrix_geometry<'a>(
     Some(Geometry {
         positions: Positions::Clip(viewport),
         vertices,
-        spans,
-        triangles: mesh.as_ref().map(|mesh| Arc::clone(&mesh.indices)),
-        mesh,
+        spans: given.spans(),
+        mesh: given.mesh().cloned(),
         objects,
         model_view,
         program: None,
     })
 }
 
-fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {
+fn outputs<'a>(reader: &mut Reader<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {
     let mut color = |field: &Option<Raw<'a, source::Attribute>>, default| {
-        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, true));
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, raw, true));
         written.unwrap_or(Source::Color(VertexColor::Bytes(default)))
     };
     let (diffuse, specular) = (color(&fields.diffuse, [255; 4]), color(&fields.specular, [0; 4]));
     let coordinates = [&fields.t0, &fields.t1, &fields.t2, &fields.t3].map(|field| {
-        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, false));
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, raw, false));
         written.unwrap_or(Source::TextureCoordinates)
     });
     Outputs { diffuse, specular, coordinates }
@@ -290,10 +312,9 @@ fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Matr
 pub(super) fn viewport<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::Viewport<'a>>>,
-    targets: &Targets,
     target: usize,
 ) -> Viewport {
-    let (width, height) = targets.list.get(target).map_or((1, 1), |target| (target.width, target.height));
+    let (width, height) = reader.targets.list.get(target).map_or((1, 1), |target| (target.width, target.height));
     let (width, height) = (width as f32, height as f32);
     let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     let (x, y) = (fields.x(reader), fields.y(reader));
@@ -308,15 +329,4 @@ pub(super) fn viewport<'a>(
     let (width, height) = (side(&fields.width, width), side(&fields.height, height));
     let (near, far, depth_clamp) = (fields.near(reader), fields.far(reader), fields.depth_clamp(reader));
     Viewport { x, y, width, height, near, far, clip_depth: ClipDepth::MinusOneToOne, depth_clamp }
-}
-
-/// A source of vertices that has both of these fields, or neither.
-pub(super) fn one_of_vertices_and_mesh(both: bool, opening: Range<usize>) -> Diagnostic {
-    let (code, message) = match both {
-        true => ("NB0222", "either `vertices` or `mesh`, not both"),
-        false => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
-    };
-    Diagnostic::error(code, opening, message)
-        .label("in here")
-        .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`")
 }

@@ -29,8 +29,7 @@ fn parts<'a, R: Named>(
             let help = format!("for a component write `({head}, Alpha)`");
             reader.refuse(finding("NB0205", reader.range(rest), message, "not expected here", help))
         } else if FinalRegister::from_name(head).is_some() {
-            let help = "use it as input A, B, C or D of `final_combiner`";
-            reader.refuse(only_final(reader.span(&raw), head, help))
+            reader.refuse(only_final(reader.span(&raw), head, "use it as input A, B, C or D of `final_combiner`"))
         } else {
             let known: Vec<&'static str> = R::NAMES.iter().chain(mappings).copied().collect();
             reader.unknown_variant(&raw, "input", &known)
@@ -64,7 +63,7 @@ pub(super) fn general_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::Input>,
     alpha: bool,
-) -> Option<(CombinerInput, Option<Range<usize>>)> {
+) -> Option<(CombinerInput, Option<Span>)> {
     let Parts { mapping, register, component } = parts::<Register>(reader, raw.as_other(), InputMapping::NAMES)?;
     let place = component.as_ref().map(|(_, raw)| reader.span(raw));
     let component = component.map_or(if alpha { Component::Alpha } else { Component::Rgb }, |(written, _)| written);
@@ -77,7 +76,7 @@ pub(super) fn final_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::FinalInput>,
     alpha: bool,
-) -> Option<(FinalInput, Option<Range<usize>>)> {
+) -> Option<(FinalInput, Option<Span>)> {
     let (head, _) = raw.split();
     let mapping = InputMapping::from_name(head);
     if mapping.is_some_and(|m| !matches!(m, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert)) {

@@ -1,7 +1,6 @@
 //! Matrices: four rows, or built from a few parameters. Column vectors: a position p becomes M p.
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
-use super::names::Table;
 use super::*;
 use crate::raw::{Numbers, Tuple};
 use ninebit::vertex::Rows;
@@ -15,17 +14,9 @@ const DEEPEST: usize = 16;
 const KINDS: &[&str] =
     &["Identity", "Rows", "Product", "Transpose", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
 
-/// A matrix of a scene, by name or by value. Not a number anywhere in it is an error.
-pub(super) fn evaluate<'a>(
-    reader: &mut Reader<'a>,
-    table: &Table<'a, source::Matrix, Rows>,
-    raw: &Raw<'a, source::Matrix>,
-    depth: usize,
-) -> Option<Rows> {
-    if raw.is_text() {
-        return table.get(reader, raw, &evaluate, depth);
-    }
-    if depth > DEEPEST {
+/// A matrix that is no name. Not a number anywhere in it is an error.
+pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
+    if reader.depth > DEEPEST {
         let place = reader.opening(raw.text);
         let message = format!("more than {DEEPEST} products inside each other");
         let help = "a product takes any number of matrices: write them side by side";
@@ -35,8 +26,8 @@ pub(super) fn evaluate<'a>(
     let matrix = match KINDS[kind] {
         "Identity" => IDENTITY,
         "Rows" => rows(reader, &Raw::new(rest))?,
-        "Product" => product(reader, table, &Raw::new(rest), depth)?,
-        "Transpose" => transpose(reader, table, &Raw::new(rest), depth)?,
+        "Product" => product(reader, &Raw::new(rest))?,
+        "Transpose" => transpose(reader, &Raw::new(rest))?,
         "Translate" => {
             let [x, y, z, _] = vector(reader, rest, "a translation", 3)?;
             [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]]
@@ -66,9 +57,8 @@ fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) 
 fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Option<Rows> {
     let parts = reader.read(raw)?.0;
     if parts.len() != 4 {
-        let place = reader.span(raw);
         return reader.refuse(
-            Diagnostic::error("NB0211", place, format!("a matrix has four rows, not {}", parts.len()))
+            Diagnostic::error("NB0211", reader.span(raw), format!("a matrix has four rows, not {}", parts.len()))
                 .label(format!("{} here", parts.len())),
         );
     }
@@ -80,32 +70,22 @@ fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Optio
 }
 
 /// Matrices multiplied from left to right: the last one acts on a position first.
-fn product<'a>(
-    reader: &mut Reader<'a>,
-    table: &Table<'a, source::Matrix, Rows>,
-    raw: &Raw<'a, Tuple<'a, source::Matrix>>,
-    depth: usize,
-) -> Option<Rows> {
+fn product<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>) -> Option<Rows> {
     let mut result = IDENTITY;
     for (index, part) in reader.read(raw)?.0.iter().enumerate() {
-        let factor = evaluate(reader, table, part, depth + 1)?;
+        let factor = reader.deeper(|reader| reader.value(part))?;
         result = if index == 0 { factor } else { multiply(&result, &factor) };
     }
     Some(result)
 }
 
 /// One matrix, its rows as columns.
-fn transpose<'a>(
-    reader: &mut Reader<'a>,
-    table: &Table<'a, source::Matrix, Rows>,
-    raw: &Raw<'a, Tuple<'a, source::Matrix>>,
-    depth: usize,
-) -> Option<Rows> {
+fn transpose<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
         let help = "write `Transpose(\"world\")`";
         return reader.refuse(finding("NB0211", reader.span(raw), "one matrix is transposed at a time", "here", help));
     };
-    let matrix = evaluate(reader, table, &part, depth + 1)?;
+    let matrix = reader.deeper(|reader| reader.value(&part))?;
     Some(std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row])))
 }
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
 use crate::mesh::{self, Mesh, MeshError, Surface};
@@ -10,84 +9,57 @@ use crate::mesh::{self, Mesh, MeshError, Surface};
 const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 
 /// A mesh from its description.
-pub(super) fn mesh<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::MeshSource>,
-) -> Option<Arc<Mesh>> {
+pub(super) fn mesh<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Arc<Mesh>> {
     let (kind, rest) = reader.variant(raw, "mesh", KINDS)?;
-    let made = match KINDS[kind] {
-        "Grid" => grid(reader, rest),
-        "Sphere" => sphere(reader, rest),
-        "Torus" => torus(reader, rest),
-        "Cylinder" => cylinder(reader, rest),
-        "Triangles" => Ok(triangles(reader, names, rest)),
-        _ => return wavefront(reader, names, rest),
-    };
-    match made {
-        Ok(mesh) => {
-            let mesh = mesh?;
-            if mesh.positions.len() <= reader.limits.vertices {
-                return Some(Arc::new(mesh));
-            }
-            let place = reader.span(raw);
-            reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
+    let mesh = match KINDS[kind] {
+        "Grid" => {
+            let fields = reader.read(&Raw::<source::Grid<'a>>::new(rest))?;
+            let (columns, rows) = (fields.columns(reader), fields.rows(reader));
+            let (size, repeat) = (pair(fields.size(reader)), pair(fields.repeat(reader)));
+            mesh::grid(columns?, rows?, size, repeat)
         }
+        "Sphere" => {
+            let fields = reader.read(&Raw::<source::Sphere<'a>>::new(rest))?;
+            let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
+            let (radius, repeat) = (fields.radius(reader), pair(fields.repeat(reader)));
+            mesh::sphere(slices?, stacks?, radius, repeat)
+        }
+        "Torus" => {
+            let fields = reader.read(&Raw::<source::Torus<'a>>::new(rest))?;
+            let (slices, sides) = (fields.slices(reader), fields.sides(reader));
+            let (radius, tube, repeat) = (fields.radius(reader), fields.tube(reader), pair(fields.repeat(reader)));
+            mesh::torus(slices?, sides?, radius, tube, repeat)
+        }
+        "Cylinder" => {
+            let fields = reader.read(&Raw::<source::Cylinder<'a>>::new(rest))?;
+            let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
+            let (radius, height, caps) = (fields.radius(reader), fields.height(reader), fields.caps(reader));
+            mesh::cylinder(slices?, stacks?, radius, height, caps, pair(fields.repeat(reader)))
+        }
+        "Triangles" => Ok(triangles(reader, rest)?),
+        _ => return wavefront(reader, rest),
+    };
+    let (place, most) = (reader.span(raw), reader.limits.vertices);
+    match mesh {
+        Ok(mesh) if mesh.positions.len() <= most => Some(Arc::new(mesh)),
+        Ok(mesh) => reader.refuse(vertex::too_many(place, mesh.positions.len(), most)),
         Err(error) => {
             let code = if matches!(error, MeshError::TooFine { .. }) { "NB0603" } else { "NB0206" };
-            let place = reader.span(raw);
-            reader.push(Diagnostic::error(code, place, error.to_string()).label("this mesh"));
+            reader.refuse(Diagnostic::error(code, place, error.to_string()).label("this mesh"))
         }
     }
-    None
 }
-
-/// A mesh, or `None` once the reason that it cannot be read has been recorded; or why there is no such shape.
-type Made = Result<Option<Mesh>, MeshError>;
 
 /// The two numbers of a pair.
 fn pair([a, b, ..]: [f32; 4]) -> [f32; 2] {
     [a, b]
 }
 
-fn grid<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
-    let Some(fields) = reader.read(&Raw::<source::Grid<'a>>::new(text)) else { return Ok(None) };
-    let (columns, rows) = (fields.columns(reader), fields.rows(reader));
-    let (size, repeat) = (pair(fields.size(reader)), pair(fields.repeat(reader)));
-    let (Some(columns), Some(rows)) = (columns, rows) else { return Ok(None) };
-    mesh::grid(columns, rows, size, repeat).map(Some)
-}
-
-fn sphere<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
-    let Some(fields) = reader.read(&Raw::<source::Sphere<'a>>::new(text)) else { return Ok(None) };
-    let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
-    let (radius, repeat) = (fields.radius(reader), pair(fields.repeat(reader)));
-    let (Some(slices), Some(stacks)) = (slices, stacks) else { return Ok(None) };
-    mesh::sphere(slices, stacks, radius, repeat).map(Some)
-}
-
-fn torus<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
-    let Some(fields) = reader.read(&Raw::<source::Torus<'a>>::new(text)) else { return Ok(None) };
-    let (slices, sides) = (fields.slices(reader), fields.sides(reader));
-    let (radius, tube, repeat) = (fields.radius(reader), fields.tube(reader), pair(fields.repeat(reader)));
-    let (Some(slices), Some(sides)) = (slices, sides) else { return Ok(None) };
-    mesh::torus(slices, sides, radius, tube, repeat).map(Some)
-}
-
-fn cylinder<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
-    let Some(fields) = reader.read(&Raw::<source::Cylinder<'a>>::new(text)) else { return Ok(None) };
-    let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
-    let (radius, height) = (fields.radius(reader), fields.height(reader));
-    let (caps, repeat) = (fields.caps(reader), pair(fields.repeat(reader)));
-    let (Some(slices), Some(stacks)) = (slices, stacks) else { return Ok(None) };
-    mesh::cylinder(slices, stacks, radius, height, caps, repeat).map(Some)
-}
-
 /// Listed vertices as a mesh: position, normal (if it is not zero) and the first coordinate set.
-fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Mesh> {
+fn triangles<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Mesh> {
     let fields = reader.read(&Raw::<source::Triangles<'a>>::new(text))?;
     let vertices = fields.vertices(reader);
-    let data = vertices.and_then(|raw| names.vertices(reader, &raw));
+    let data = vertices.and_then(|raw| reader.value(&raw));
     let indices = fields.indices.as_ref().map(|raw| (reader.span(raw), reader.read(raw)));
     let data = data?;
     let count = data.vertices.len();
@@ -124,18 +96,18 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
 }
 
 /// A file is read once, however many draws name it.
-fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Arc<Mesh>> {
+fn wavefront<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Arc<Mesh>> {
     let fields = source::ProgramFile { called: "mesh", ..reader.read(&Raw::new(text))? };
     let raw = fields.file(reader)?;
     let name = reader.read(&raw)?;
-    if let Some(known) = names.mesh_files.borrow().get(&name) {
+    if let Some(known) = reader.names.mesh_files.get(&name) {
         return known.clone();
     }
-    let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file());
+    let file = ProgramText::file_up_to(reader, &raw, reader.limits.mesh_file());
     let mesh = file.and_then(|file| {
         let surface = mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices);
         Some(Arc::new(mesh::mesh(&file.parsed(reader, surface)?)))
     });
-    names.mesh_files.borrow_mut().insert(name, mesh.clone());
+    reader.names.mesh_files.insert(name, mesh.clone());
     mesh
 }

@@ -32,42 +32,44 @@ mod unit_texture;
 mod vertex;
 mod vertex_program;
 
-use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
-use super::field::Colors;
 use super::fields as source;
 use super::notation::trim;
 use super::raw::Raw;
-use super::reader::{Reader, too_many, unknown_name};
+use super::reader::{Reader, too_many};
 use super::wording::shorten;
 use crate::truth::Truth;
-use names::Names;
+pub(super) use names::Names;
 use ninebit::diagnostic::File;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Profile, Scene};
 use ninebit_program::{finding, warning};
+pub(super) use target::Targets;
+pub(super) use texture::Textures;
+
+/// Bytes of the text.
+type Span = std::ops::Range<usize>;
 
 /// Where the draws of a scene stand in its text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawSpans {
     /// The draw's name, or the start of the draw.
-    pub draw: Range<usize>,
+    pub draw: Span,
     /// Its vertices; of a generated mesh, the mesh for each.
     pub vertices: VertexSpans,
     /// Its texture units; empty for unbound ones.
-    pub units: [Range<usize>; ninebit::state::TEXTURE_UNITS],
+    pub units: [Span; ninebit::state::TEXTURE_UNITS],
 }
 
 /// Places of vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VertexSpans {
     /// One for each.
-    Each(Vec<Range<usize>>),
+    Each(Vec<Span>),
     /// All were made by what stands here.
-    All(Range<usize>),
+    All(Span),
 }
 
 impl Default for VertexSpans {
@@ -78,7 +80,7 @@ impl Default for VertexSpans {
 
 impl DrawSpans {
     /// The place of a vertex; of the draw if there is no such vertex.
-    pub fn vertex(&self, index: usize) -> Range<usize> {
+    pub fn vertex(&self, index: usize) -> Span {
         match &self.vertices {
             VertexSpans::Each(spans) => spans.get(index).cloned().unwrap_or_else(|| self.draw.clone()),
             VertexSpans::All(span) => span.clone(),
@@ -96,17 +98,12 @@ pub(super) struct Found {
 }
 
 /// The text of what a scene shares with others. `None` once the reason that it cannot be read has been recorded.
-pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, folder: &Path, named: &Raw<'a, String>) -> Option<Arc<File>> {
-    program_text::text_file(reader, folder, named, reader.limits.program_file())
+pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, named: &Raw<'a, String>) -> Option<Arc<File>> {
+    program_text::text_file(reader, named, reader.limits.program_file())
 }
 
 /// Reads and checks a whole scene; `family` is the text of the file that it names for what it shares with others. Findings are in the reader; `None` if there are errors.
-pub(super) fn scene<'a>(
-    reader: &mut Reader<'a>,
-    text: &'a str,
-    family: Option<&'a str>,
-    folder: &Path,
-) -> Option<Found> {
+pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&'a str>) -> Option<Found> {
     if trim(text).is_empty() {
         return reader.refuse(
             Diagnostic::error("NB0101", 0..0, "the scene is empty")
@@ -127,29 +124,25 @@ pub(super) fn scene<'a>(
         reader.read(raw);
     }
     let shared = family.and_then(|text| reader.check::<source::Family<'a>>(text)).and_then(|raw| reader.read(&raw));
-    let (shared_names, shared_targets, shared_truth) = match shared {
-        Some(source::Family { names, targets, truth, .. }) => (names, targets, truth),
-        None => (None, None, None),
-    };
-
-    let mut names = Names::read(reader, &file.names, &shared_names, folder);
-    let mut targets = target::targets(reader, &names, &file.targets.or(shared_targets));
-    let mut textures = texture::textures(reader, &names, &targets, &file, folder);
-    target::contents(reader, &mut targets, &mut textures);
-    let described = file.truth.is_some() || shared_truth.is_some();
-    let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws, described);
-    let truth = truth::truth(reader, &names, &file.truth, &shared_truth, &draws);
-    names.warn_unused(reader);
-    textures.warn_unused(reader);
+    let shared = shared.unwrap_or_default();
+    names::read(reader, &file.names, &shared.names);
+    target::targets(reader, &file.targets.or(shared.targets));
+    texture::textures(reader, &file);
+    target::contents(reader);
+    let described = file.truth.is_some() || shared.truth.is_some();
+    let draws = draw::draws(reader, &file.draws, described);
+    let truth = truth::truth(reader, &file.truth, &shared.truth, &draws);
     // Named meshes and lists of vertices are not needed beside the plan.
-    drop(names);
+    names::warn_unused(reader);
+    let textures = std::mem::take(&mut reader.textures);
+    textures.warn_unused(reader);
     if reader.errors > 0 {
         return None;
     }
     let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().map(|drawn| (drawn.draw, drawn.spans)).unzip();
     let scene = Scene {
         profile: reader.profile,
-        targets: targets.list,
+        targets: std::mem::take(&mut reader.targets.list),
         textures: textures.list,
         palettes: textures.palettes.list,
         draws,
@@ -158,7 +151,7 @@ pub(super) fn scene<'a>(
 }
 
 /// Whether this program reads that version of the format.
-fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range<usize>) -> bool {
+fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Span) -> bool {
     let Some(raw) = &file.version else {
         reader.push(
             Diagnostic::error("NB0202", opening, "this scene has no `version`")

@@ -5,31 +5,34 @@ use super::*;
 use crate::raw::Entries;
 use ninebit::state::{Named, Palette, TextureFormat};
 
-/// The palettes, and where they were named. A palette with errors keeps its name but has no index.
-pub(super) struct Palettes {
+/// The palettes, and where they were named.
+#[derive(Default)]
+pub(crate) struct Palettes {
     pub(super) list: Vec<Palette>,
     pub(super) index: Index,
 }
 
 impl Palettes {
-    /// Reads every palette.
-    pub(super) fn read<'a>(
-        reader: &mut Reader<'a>,
-        raw: &Option<Raw<'a, Entries<'a, source::List<'a, String>>>>,
-    ) -> Palettes {
-        let define = "define it in `palettes: { \"...\": [\"ff000000 ...\"] }`";
-        let mut palettes = Palettes { list: Vec::new(), index: Index::new("palette", define) };
-        for entry in reader.table("palette", raw) {
-            let index = words(reader, &entry.value).map(|words| palettes.add(&entry.name, words));
-            palettes.index.add(entry.name, entry.place, index);
-        }
-        palettes
-    }
-
     /// Adds one that is not found by name.
     pub(super) fn add(&mut self, name: &str, words: Vec<u32>) -> usize {
         self.list.push(Palette { name: name.to_owned(), entries: words.into() });
         self.list.len() - 1
+    }
+}
+
+/// The palette of that name; `None` once the reason has been recorded.
+pub(super) fn find<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
+    Index::find(reader, |reader| &mut reader.textures.palettes.index, raw)
+}
+
+/// Reads every palette.
+pub(super) fn palettes<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Entries<'a, source::List<'a, String>>>>) {
+    reader.textures.palettes.index = Index::new("palette", "define it in `palettes: { \"...\": [\"ff000000 ...\"] }`");
+    for entry in reader.table("palette", raw) {
+        let words = words(reader, &entry.value);
+        let palettes = &mut reader.textures.palettes;
+        let index = words.map(|words| palettes.add(&entry.name, words));
+        palettes.index.add(entry.name, entry.place, index);
     }
 }
 
@@ -62,7 +65,7 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
 }
 
 /// The finding that a format needs no palette.
-pub(super) fn not_read(place: Range<usize>, format: TextureFormat) -> Diagnostic {
+pub(super) fn not_read(place: Span, format: TextureFormat) -> Diagnostic {
     Diagnostic::error("NB0234", place, format!("a texture of format {} reads no palette", format.name()))
         .label("never read")
         .rule("TEX-1")

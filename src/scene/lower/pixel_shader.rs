@@ -1,9 +1,7 @@
 //! `PixelShader(...)`: Direct3D pixel shaders, version 1.1.
 
 use super::api_program::{ApiProgram, Around};
-use super::names::Names;
 use super::program_text::ProgramText;
-use super::texture::Textures;
 use super::unit::Units;
 use super::*;
 use ninebit::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
@@ -19,17 +17,17 @@ pub(super) struct ShaderProgram {
 }
 
 /// Reads the text, or the fields, in the parentheses.
-pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ApiProgram> {
     let (mut constants, mut bumps) = ([None; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
     let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
     let errors = reader.errors;
     let text = if Raw::<String>::new(inside).is_text() {
-        ProgramText::read(reader, names, text)?
+        ProgramText::read(reader, text)?
     } else {
         let fields = reader.read(&Raw::<source::PixelShader<'a>>::new(text))?;
         for entry in reader.table("constant", &fields.constants) {
             if let Some(index) = register(reader, &entry.name, entry.place, 'c', CONSTANTS, "constant") {
-                constants[index] = names.color(reader, &entry.value).map(color::floats);
+                constants[index] = reader.value(&entry.value).map(color::floats);
             }
         }
         for entry in reader.table("bump state", &fields.bump) {
@@ -46,7 +44,7 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
             }
             (None, _) => {
                 let raw = fields.file(reader)?;
-                ProgramText::file(reader, names, &raw)?
+                ProgramText::file(reader, &raw)?
             }
         }
     };
@@ -60,22 +58,14 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
             let index = read.value;
             let help =
                 format!("write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it");
-            let warning = warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help);
-            reader.push(text.place(warning));
+            reader.push(text.place(warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help)));
         }
     }
     (reader.errors == errors).then(|| ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
 }
 
 /// The number in the name of a register. `None` once the reason that it is none has been recorded.
-fn register(
-    reader: &mut Reader<'_>,
-    name: &str,
-    place: Range<usize>,
-    letter: char,
-    count: usize,
-    what: &str,
-) -> Option<usize> {
+fn register(reader: &mut Reader<'_>, name: &str, place: Span, letter: char, count: usize, what: &str) -> Option<usize> {
     let digits = name.strip_prefix(letter).filter(|digits| digits.len() == 1);
     let index = digits.and_then(|digits| digits.parse::<usize>().ok()).filter(|index| *index < count);
     if index.is_none() {
@@ -88,13 +78,8 @@ fn register(
 
 fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>) -> Option<Bump> {
     let fields = source::BumpEnvironment { called: "bump state", ..reader.read(raw)? };
-    let matrix = fields.matrix(reader)?;
-    let matrix = reader.numbers(&matrix, "a bump matrix", 4..=4, [0.0; 4])?;
-    let luminance = match &fields.luminance {
-        Some(raw) => Some(reader.numbers(raw, "a bump luminance", 2..=2, [0.0; 4])?),
-        None => None,
-    };
-    Some(Bump { matrix: Some(matrix), luminance: luminance.map(|[scale, offset, ..]| [scale, offset]) })
+    let (matrix, luminance) = shader::bump_numbers(reader, &fields, ["a bump matrix", "a bump luminance"])?;
+    Some(Bump { matrix: Some(matrix), luminance })
 }
 
 impl ShaderProgram {
@@ -103,7 +88,6 @@ impl ShaderProgram {
         &self,
         reader: &mut Reader<'_>,
         units: &Units,
-        textures: &Textures,
         shader: &mut [ShaderStage; TEXTURE_UNITS],
         around: &mut Around,
         signed: [bool; TEXTURE_UNITS],
@@ -126,9 +110,8 @@ impl ShaderProgram {
                 }
                 continue;
             };
-            findings.extend(
-                objection(units, textures, index, using, around.shader).map(|finding| self.text.place(finding)),
-            );
+            findings
+                .extend(objection(reader, units, index, using, around.shader).map(|finding| self.text.place(finding)));
             shader[index].operation = using.operation;
             (shader[index].previous, shader[index].mapping) = (using.previous, using.mapping);
         }
@@ -165,7 +148,7 @@ fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
 }
 
 /// What keeps a unit from doing what the shader asks of it.
-fn objection(units: &Units, textures: &Textures, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
+fn objection(reader: &Reader<'_>, units: &Units, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
     let place = using.place.clone();
     if shader {
         let error = Diagnostic::error("NB0352", place, "texture instructions beside a texture shader")
@@ -184,7 +167,7 @@ fn objection(units: &Units, textures: &Textures, index: usize, using: &UnitUse, 
         let error = Diagnostic::error("NB0343", place, message).label("nothing to sample").rule("TSH-10");
         return Some(error.help(format!("give the draw `textures: [...]` with an entry for unit {index}")));
     };
-    let texture = textures.list.get(unit.texture)?;
+    let texture = reader.textures.list.get(unit.texture)?;
     let fits = using.operation.kinds();
     (!fits.contains(&texture.kind)).then(|| {
         let names: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();

@@ -1,8 +1,7 @@
 //! Pixel programs: which language one is in, and what all of them have in common.
 
 use super::api_program::ApiProgram;
-use super::names::Names;
-use super::program_text::ProgramText;
+use super::program_text::{ProgramText, placed};
 use super::*;
 use ninebit::legality::{Notation, check};
 use ninebit::state::Combiners;
@@ -12,7 +11,7 @@ use ninebit_program::text::{self, words::Words};
 use ninebit_program::{Aside, Pasted, Places};
 
 /// A program as a draw takes it.
-pub(super) struct Program {
+pub(crate) struct Program {
     pub(super) form: Form,
     /// What its text says of the draw besides.
     pub(super) asides: Asides,
@@ -33,7 +32,7 @@ pub(super) enum Form {
 pub(super) struct ProgramData {
     pub(super) combiners: Combiners,
     /// The first place that reads each texture unit.
-    pub(super) reads: [Option<Range<usize>>; 4],
+    pub(super) reads: [Option<Span>; 4],
 }
 
 const KINDS: &[&str] = &[
@@ -47,43 +46,33 @@ const KINDS: &[&str] = &[
 ];
 
 /// Reads a pixel program.
-pub(super) fn program<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Program>,
-) -> Option<Program> {
+pub(super) fn program<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Program> {
     let (kind, rest) = reader.variant(raw, "pixel program", KINDS)?;
     let errors = reader.errors;
     let mut asides = Vec::new();
     let api = |form: Option<ApiProgram>, asides| form.map(|form| Program { form: Form::Api(form), asides });
     let data = match kind {
         0 => {
-            let (combiners, places) = combiner::combiners(reader, names, rest)?;
+            let (combiners, places) = combiner::combiners(reader, rest)?;
             judge(reader, combiners, &places, &combiner::Fields, None)
         }
-        1 => {
-            let form = texture_stages::texture_stages(reader, names, rest, &mut asides);
-            return api(form, asides);
-        }
-        2 => {
-            let form = texture_environment::texture_environment(reader, names, rest, &mut asides);
-            return api(form, asides);
-        }
+        1 => return api(texture_stages::read(reader, rest, &mut asides), asides),
+        2 => return api(texture_environment::read(reader, rest, &mut asides), asides),
         3 => {
-            let program = ProgramText::read(reader, names, rest)?.expanded(reader, Style::Combiners)?;
+            let program = ProgramText::read(reader, rest)?.expanded(reader, Style::Combiners)?;
             let read = program.parsed(reader, text::read(&program.text))?;
             program.push(reader, read.warnings);
             judge(reader, read.combiners, &read.places, &Words, Some(&program))
         }
-        4 => return api(pixel_shader::pixel_shader(reader, names, rest), asides),
+        4 => return api(pixel_shader::pixel_shader(reader, rest), asides),
         6 => {
-            let text = ProgramText::read(reader, names, rest)?.expanded(reader, Style::Calls)?;
+            let text = ProgramText::read(reader, rest)?.expanded(reader, Style::Calls)?;
             let combiner_calls::Program { combiners, places } =
                 pasted(reader, &text, combiner_calls::parse(&text.text), &mut asides)?;
             judge(reader, combiners, &places, &combiner_calls::Words, Some(&text))
         }
         _ => {
-            let (combiners, places, inside) = register_words::register_words(reader, names, rest)?;
+            let (combiners, places, inside) = register_words::program(reader, rest)?;
             judge(reader, combiners, &places, &Words, inside.as_ref())
         }
     };
@@ -116,12 +105,7 @@ fn judge(
     inside: Option<&ProgramText>,
 ) -> ProgramData {
     let checked = check(&combiners, reader.profile, places, notation);
-    for finding in checked.findings {
-        reader.push(match inside {
-            Some(text) => text.place(finding),
-            None => finding,
-        });
-    }
+    placed(inside, checked.findings).into_iter().for_each(|finding| reader.push(finding));
     let reads = checked.reads.map(|read| match (read, inside) {
         (Some(place), Some(text)) => Some(text.span(place)),
         (read, _) => read,
@@ -133,8 +117,7 @@ fn judge(
 /// `None` once the reason that they cannot be read has been recorded.
 pub(super) fn calls<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    fields: Option<Range<usize>>,
+    fields: Option<Span>,
     text: &Option<Raw<'a, String>>,
     file: &Option<Raw<'a, String>>,
     (what, name): (&str, &str),
@@ -144,7 +127,7 @@ pub(super) fn calls<'a>(
     let (Some(first), Some(second)) = (given.next(), given.next()) else {
         let text = match (text, file) {
             (Some(raw), _) => ProgramText::inline(reader, raw)?,
-            (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
+            (None, Some(raw)) => ProgramText::file(reader, raw)?,
             (None, None) => return Some(None),
         };
         return text.expanded(reader, Style::Calls).map(Some);

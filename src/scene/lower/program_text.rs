@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::names::Names;
 use super::*;
 use crate::literal::Literal;
 use crate::raw::Tuple;
@@ -27,10 +26,10 @@ enum Origin {
 
 impl ProgramText {
     /// Reads `("...")` or `(file: "...")`. `None` once the reason has been recorded.
-    pub(super) fn read<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Self> {
+    pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Self> {
         let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
         let program =
-            if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, names, text)? };
+            if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, text)? };
         program.within_limit(reader)
     }
 
@@ -40,34 +39,27 @@ impl ProgramText {
     }
 
     /// A text in a file. `None` once the reason that it cannot be read has been recorded.
-    pub(super) fn file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Self> {
-        Self::file_up_to(reader, names, raw, reader.limits.program_file())
+    pub(super) fn file<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Self> {
+        Self::file_up_to(reader, raw, reader.limits.program_file())
     }
 
     /// The same of a file within a limit of its own.
-    pub(super) fn file_up_to<'a>(
-        reader: &mut Reader<'a>,
-        names: &Names<'a>,
-        raw: &Raw<'a, String>,
-        most: FileLimit,
-    ) -> Option<Self> {
-        let file = text_file(reader, &names.folder, raw, most)?;
+    pub(super) fn file_up_to<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>, most: FileLimit) -> Option<Self> {
+        let file = text_file(reader, raw, most)?;
         Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
     }
 
     fn within_limit(self, reader: &mut Reader<'_>) -> Option<Self> {
         let most = reader.limits.program_file();
         if self.text.len() as u64 > most.bytes {
-            let place = self.span(0..0);
-            return reader.refuse(too_large(place, most));
+            return reader.refuse(too_large(self.span(0..0), most));
         }
         Some(self)
     }
 
     /// The text as the reader of a language takes it: out of C. `None` once the reason that it cannot be has been recorded.
     pub(super) fn expanded(self, reader: &mut Reader<'_>, style: Style) -> Option<Self> {
-        let most = usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX);
-        match expand(&self.text, style, most) {
+        match expand(&self.text, style, usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX)) {
             Ok(None) => Some(self),
             Ok(Some(Expanded { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
             Err(finding) => reader.refuse(self.place(finding)),
@@ -75,7 +67,7 @@ impl ProgramText {
     }
 
     /// Where a part stood before the text was expanded.
-    fn before(&self, part: Range<usize>) -> Range<usize> {
+    fn before(&self, part: Span) -> Span {
         let Some(places) = &self.before else { return part };
         let place = |at: usize| places.get(at).or(places.last()).copied().unwrap_or_default();
         let start = place(part.start);
@@ -84,7 +76,7 @@ impl ProgramText {
     }
 
     /// The place in the scene of a part of the text; of a file, where the scene names it.
-    pub(super) fn span(&self, part: Range<usize>) -> Range<usize> {
+    pub(super) fn span(&self, part: Span) -> Span {
         let part = self.before(part);
         match &self.origin {
             Origin::Scene(places) => {
@@ -122,7 +114,13 @@ impl ProgramText {
     }
 }
 
-fn too_large(place: Range<usize>, most: FileLimit) -> Diagnostic {
+/// Findings about a text, which have their places in it, or about the scene.
+pub(super) fn placed(text: Option<&ProgramText>, findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let place = |finding| if let Some(text) = text { text.place(finding) } else { finding };
+    findings.into_iter().map(place).collect()
+}
+
+fn too_large(place: Span, most: FileLimit) -> Diagnostic {
     Diagnostic::error("NB0610", place, format!("this text is larger than {most}"))
         .label("too large")
         .help("`ninebit limits` prints what is allowed")
@@ -154,23 +152,22 @@ fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Program
     Some(ProgramText { text, origin: Origin::Scene(places), before: None })
 }
 
-fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ProgramText> {
+fn from_file<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = fields.file(reader)?;
-    ProgramText::file(reader, names, &raw)
+    ProgramText::file(reader, &raw)
 }
 
 /// A text in a file of the scene's folder, within a limit. `None` once the reason that it cannot be read has been recorded.
 pub(super) fn text_file<'a>(
     reader: &mut Reader<'a>,
-    folder: &Path,
     raw: &Raw<'a, String>,
     most: FileLimit,
 ) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
     let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
-    let path = match reader.assets.resolve(folder, &name) {
+    let path = match reader.assets.resolve(reader.folder, &name) {
         Ok(path) => path,
         Err(error) => {
             return reader.refuse(refuse(error.code(), error.to_string(), error.help()));
@@ -191,6 +188,6 @@ pub(super) fn text_file<'a>(
         return reader.refuse(refuse("NB0541", message, "save the file as UTF-8"));
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    let source = Source { name: ninebit::shown::lossless(&folder.join(&name)), text };
+    let source = Source { name: ninebit::shown::lossless(&reader.folder.join(&name)), text };
     Some(Arc::new(diagnostic::File { source, named }))
 }

@@ -1,7 +1,5 @@
 //! Raster operations of a draw.
 
-use super::names::Names;
-use super::target::Targets;
 use super::*;
 use crate::raw::Numbers;
 use ninebit::number::convert::constant;
@@ -25,14 +23,8 @@ pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::
 }
 
 /// Reads everything behind the combiners into `draw`, whose target is set.
-pub(super) fn operations<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    fields: &source::Draw<'a>,
-    draw: &mut Draw,
-) {
-    let Some(target) = targets.list.get(draw.target) else { return };
+pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, draw: &mut Draw) {
+    let Some(target) = reader.targets.list.get(draw.target).cloned() else { return };
     draw.alpha_test = fields.alpha_test.as_ref().and_then(|raw| alpha_test(reader, raw));
     if let Some(raw) = &fields.depth_test {
         draw.depth_test = depth_test(reader, raw);
@@ -46,28 +38,29 @@ pub(super) fn operations<'a>(
         if target.depth.is_none() {
             let message = format!("target \"{}\" has no depth buffer", target.name);
             let finding = Diagnostic::error("NB0216", reader.span(raw), message).label("tests depth").rule("DEP-2");
-            reader.push(targets.beside(draw.target, finding.help("add `depth: Z24S8` (or `Z16`) to the target")));
+            reader
+                .push(reader.targets.beside(draw.target, finding.help("add `depth: Z24S8` (or `Z16`) to the target")));
         }
     }
     if let Some(raw) = &fields.stencil_test {
-        draw.stencil_test = stencil_test(reader, raw);
+        draw.stencil_test = reader.read(raw).map(|fields| stencil_test(reader, &fields));
         if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
             let message = format!("target \"{}\" has no stencil", target.name);
             let finding =
                 Diagnostic::error("NB0216", reader.span(raw), message).label("tests the stencil").rule("STN-1");
-            reader.push(targets.beside(draw.target, finding.help("give the target `depth: Z24S8`")));
+            reader.push(reader.targets.beside(draw.target, finding.help("give the target `depth: Z24S8`")));
         }
     }
     draw.window_clip = fields.window_clip.as_ref().and_then(|raw| window_clip(reader, raw));
     if let Some(raw) = &fields.blend {
-        draw.blend = names.blend(reader, raw);
+        draw.blend = reader.value(raw);
         if !surface::blends(target.format) {
             let message = format!("surface format {:?} cannot be blended", target.format);
             let help = "leave `blend` out, or draw into a target with a colour format";
             reader.push(finding("NB0316", reader.span(raw), message, "blending", help).rule("ROP-5"));
         }
     }
-    draw.blend_constant = color::bytes(fields.blend_constant(reader, names));
+    draw.blend_constant = color::bytes(fields.blend_constant(reader));
     draw.color_mask = fields.color_mask(reader);
     if let Some(raw) = &fields.dither
         && reader.read(raw) == Some(true)
@@ -143,9 +136,8 @@ fn polygon_offset<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::PolygonOffs
     Some(PolygonOffset { bias: fields.bias(reader), factor: fields.factor(reader) })
 }
 
-fn stencil_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StencilTest<'a>>) -> Option<StencilTest> {
-    let fields = reader.read(raw)?;
-    Some(StencilTest {
+fn stencil_test<'a>(reader: &mut Reader<'a>, fields: &source::StencilTest<'a>) -> StencilTest {
+    StencilTest {
         function: fields.function(reader),
         reference: fields.reference(reader),
         mask: fields.mask(reader),
@@ -153,7 +145,7 @@ fn stencil_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StencilTest<'
         fail: fields.fail(reader),
         depth_fail: fields.depth_fail(reader),
         pass: fields.pass(reader),
-    })
+    }
 }
 
 fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>>) -> Option<WindowClip> {
@@ -162,9 +154,8 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     let rectangles = reader.read(&list)?;
     if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
         let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
-        let finding = Diagnostic::error("NB0211", reader.span(&list), message);
         return reader.refuse(
-            finding
+            Diagnostic::error("NB0211", reader.span(&list), message)
                 .label(format!("{} here", rectangles.len()))
                 .rule("CLP-1")
                 .help("leave `window_clip` out to draw everywhere, or draw in several draws"),
@@ -208,19 +199,13 @@ fn rectangle<'a>(
 }
 
 /// A clear among the draws, as the draw that does it: a rectangle of one colour and depth, which every test lets through.
-pub(super) fn clear<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    raw: &Raw<'a, source::ClearDraw<'a>>,
-    draw: &mut Draw,
-) -> Option<()> {
+pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, draw: &mut Draw) -> Option<()> {
     let fields = reader.read(raw)?;
-    let target = targets.list.get(draw.target)?;
+    let target = &reader.targets.list.get(draw.target)?.clone();
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
-    let color = fields.color.as_ref().map(|raw| color::constant(reader, names, raw));
+    let color = fields.color.as_ref().map(|raw| color::constant(reader, raw));
     draw.color_mask = [false; 4];
     if color.is_some() {
         draw.color_mask = fields.color_mask(reader);
@@ -228,14 +213,11 @@ pub(super) fn clear<'a>(
     let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
     draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));
     let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));
+    let every = stencil_test(reader, &source::StencilTest::default());
     draw.stencil_test = stencil.map(|reference| StencilTest {
-        function: CompareFunction::Always,
         reference: reference.unwrap_or_default(),
-        mask: 255,
-        write_mask: 255,
-        fail: StencilOperation::Keep,
-        depth_fail: StencilOperation::Keep,
         pass: StencilOperation::Replace,
+        ..every
     });
     let (color, z) = (color.flatten().unwrap_or_default(), depth.flatten().unwrap_or(0.0));
     let columns = [area.x, area.x.saturating_add(area.width)];

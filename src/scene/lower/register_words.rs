@@ -1,18 +1,13 @@
 //! `RegisterWords(...)`: the combiners as the words of a chip's registers.
 
-use super::names::Names;
-use super::program_text::ProgramText;
+use super::program_text::{ProgramText, placed};
 use super::*;
 use ninebit::state::{Combiners, Named};
 use ninebit_program::Places;
 use ninebit_program::registers::{Word, Written, read};
 
 /// The program of the words, where its parts stand, and the text that these are places of if it is not the scene. `None` once the reason has been recorded.
-pub(super) fn register_words<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    text: &'a str,
-) -> Option<(Combiners, Places, Option<ProgramText>)> {
+pub(super) fn program<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Combiners, Places, Option<ProgramText>)> {
     let fields = reader.read(&Raw::<source::RegisterWords<'a>>::new(text))?;
     let opening = reader.opening(text);
     let mut inside = None;
@@ -26,12 +21,12 @@ pub(super) fn register_words<'a>(
             words(reader, Profile::Nv2a, fields.written(), opening)
         }
         (None, None, Some(raw), None) => {
-            let text = ProgramText::inline(reader, raw)?;
-            listed(reader, text, &mut inside)?
+            inside = Some(ProgramText::inline(reader, raw)?);
+            listed(reader, inside.as_ref()?)?
         }
         (None, None, None, Some(raw)) => {
-            let text = ProgramText::file(reader, names, raw)?;
-            listed(reader, text, &mut inside)?
+            inside = Some(ProgramText::file(reader, raw)?);
+            listed(reader, inside.as_ref()?)?
         }
         _ => {
             let label = "one of `nv10`, `nv20`, `text` and `file` is to be here";
@@ -46,23 +41,15 @@ pub(super) fn register_words<'a>(
     match given.written.program() {
         Ok((combiners, places)) => Some((combiners, places, inside)),
         Err(findings) => {
-            for finding in findings {
-                let finding = match &inside {
-                    Some(text) => text.place(finding),
-                    None => finding,
-                };
-                reader.push(finding);
-            }
+            placed(inside.as_ref(), findings).into_iter().for_each(|finding| reader.push(finding));
             None
         }
     }
 }
 
 /// Words in a text of their own, which are those of the scene's chip.
-fn listed(reader: &mut Reader<'_>, text: ProgramText, inside: &mut Option<ProgramText>) -> Option<Given> {
-    let read = read(&text.text, reader.profile);
-    let written = text.parsed(reader, read)?;
-    *inside = Some(text);
+fn listed(reader: &mut Reader<'_>, text: &ProgramText) -> Option<Given> {
+    let written = text.parsed(reader, read(&text.text, reader.profile))?;
     Some(Given { written, wrong: false })
 }
 
@@ -86,8 +73,7 @@ impl Given {
         let most = word.count(self.written.words.chip);
         if let Some(extra) = list.get(most) {
             let message = format!("there are {most} words of {}, not {}", word.name(), list.len());
-            let finding = Diagnostic::error("NB0211", reader.span(extra), message).label("too many from here");
-            reader.push(finding);
+            reader.push(Diagnostic::error("NB0211", reader.span(extra), message).label("too many from here"));
             self.wrong = true;
         }
         for (index, raw) in list.iter().enumerate().take(most) {
@@ -102,7 +88,7 @@ fn words<'a>(
     reader: &mut Reader<'a>,
     chip: Profile,
     fields: impl Iterator<Item = (&'static str, &'a str)>,
-    opening: Range<usize>,
+    opening: Span,
 ) -> Given {
     let mut given = Given { written: Written::new(chip, opening), wrong: false };
     for (name, text) in fields {

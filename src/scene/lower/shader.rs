@@ -1,6 +1,5 @@
 //! The texture shader of a draw: what each unit does, checked against what the chip lets follow what (TSH-10).
 
-use super::texture::Textures;
 use super::unit::Units;
 use super::*;
 use ninebit::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
@@ -27,15 +26,14 @@ const OPERATIONS: &[&str] = &[
 
 /// Where a stage and the parts of it stand that may be wrong.
 struct Places {
-    stage: Range<usize>,
-    previous: Option<Range<usize>>,
-    mapping: Option<Range<usize>>,
+    stage: Span,
+    previous: Option<Span>,
+    mapping: Option<Span>,
 }
 
 /// Reads the texture shader of a draw into its units. Without one they stay conventional.
 pub(super) fn shader<'a>(
     reader: &mut Reader<'a>,
-    textures: &Textures,
     units: &mut Units,
     raw: &Option<Raw<'a, source::List<'a, source::ShaderStage>>>,
 ) {
@@ -60,7 +58,7 @@ pub(super) fn shader<'a>(
         if let Some(places) = places {
             previous(reader, &mut units.shader, index, places);
             if order(reader, &units.shader, index, places) {
-                texture(reader, textures, units, index, places);
+                texture(reader, units, index, places);
             }
         }
         let written = &units.places[index];
@@ -141,33 +139,35 @@ fn cull<'a>(reader: &mut Reader<'a>, rest: &'a str) -> Option<ShaderOperation> {
     let fields = fields::<source::CullFragment<'a>>(reader, rest)?;
     let mut drops_not_negative = [false; 4];
     for (field, slot) in [&fields.s, &fields.t, &fields.r, &fields.q].into_iter().zip(&mut drops_not_negative) {
-        if let Some(raw) = field {
-            *slot = reader.variant(raw, "sign to be dropped", &["Negative", "NotNegative"])?.0 == 1;
-        }
+        *slot = reader.choice(field, "sign to be dropped", &["Negative", "NotNegative"])? == 1;
     }
     Some(ShaderOperation::CullFragment { drops_not_negative })
 }
 
 fn bump<'a>(reader: &mut Reader<'a>, rest: &'a str, opening: &'a str) -> Option<ShaderOperation> {
     let fields = source::BumpEnvironment { opening, called: "operation", ..fields(reader, rest)? };
-    let raw = fields.matrix(reader)?;
-    let matrix = reader.numbers(&raw, "a bump environment matrix", 4..=4, [0.0; 4])?;
-    let luminance = match &fields.luminance {
-        Some(raw) => {
-            let [scale, offset, ..] = reader.numbers(raw, "a luminance (scale and offset)", 2..=2, [0.0; 4])?;
-            Some([scale, offset])
-        }
-        None => None,
-    };
+    let names = ["a bump environment matrix", "a luminance (scale and offset)"];
+    let (matrix, luminance) = bump_numbers(reader, &fields, names)?;
     Some(ShaderOperation::BumpEnvironment { matrix, luminance })
+}
+
+/// The matrix of a bump environment, and its luminance as scale and offset, which are called so.
+pub(super) fn bump_numbers<'a>(
+    reader: &mut Reader<'a>,
+    fields: &source::BumpEnvironment<'a>,
+    [matrix, luminance]: [&str; 2],
+) -> Option<([f32; 4], Option<[f32; 2]>)> {
+    let raw = fields.matrix(reader)?;
+    let matrix = reader.numbers(&raw, matrix, 4..=4, [0.0; 4])?;
+    let luminance = reader.perhaps(&fields.luminance, |reader, raw| reader.numbers(raw, luminance, 2..=2, [0.0; 4]))?;
+    Some((matrix, luminance.map(|[scale, offset, ..]| [scale, offset])))
 }
 
 /// Which earlier unit a stage reads: stage 1 always unit 0, stage 2 unit 0 or 1, stage 3 any of the three.
 fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
     let ShaderStage { operation, previous, .. } = shader[index];
-    let mut refuse = |place: &Range<usize>, message: String, label: &str, help: String| {
-        let finding = Diagnostic::error("NB0342", place.clone(), message).label(label).rule("TSH-10").help(help);
-        reader.push(finding);
+    let mut refuse = |place: &Span, message: String, label: &str, help: String| {
+        reader.push(Diagnostic::error("NB0342", place.clone(), message).label(label).rule("TSH-10").help(help));
     };
     if let Some(place) = &places.previous {
         if !operation.reads_previous() {
@@ -188,8 +188,7 @@ fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], 
         && !operation.is_dot()
     {
         let message = format!("{} maps no colour to a vector", operation.name());
-        let help = "leave `mapping` out; the dot products have it".to_owned();
-        refuse(place, message, "has no meaning", help);
+        refuse(place, message, "has no meaning", "leave `mapping` out; the dot products have it".to_owned());
     }
 }
 
@@ -211,7 +210,7 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
 }
 
 /// Whether the texture that a stage samples is there, and of a kind that fits.
-fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: usize, places: &Places) {
+fn texture(reader: &mut Reader<'_>, units: &Units, index: usize, places: &Places) {
     let operation = units.shader[index].operation;
     if !operation.samples() {
         return;
@@ -226,7 +225,7 @@ fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: u
         }
         return;
     };
-    let Some(texture) = textures.list.get(unit.texture) else { return };
+    let Some(texture) = reader.textures.list.get(unit.texture) else { return };
     if !fits.contains(&texture.kind) {
         let kinds: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
         let message = format!("{name} does not sample a texture of kind {}", texture.kind.name());

@@ -1,6 +1,5 @@
 //! How the coordinate sets of a draw are made: generators and texture matrices.
 
-use super::names::Names;
 use super::*;
 use crate::raw::Numbers;
 use ninebit::state::TEXTURE_UNITS;
@@ -14,7 +13,6 @@ const WHOLE: [&str; 3] = ["CameraSpacePosition", "CameraSpaceNormal", "CameraSpa
 /// Reads both lists. None: all sets are as they were given.
 pub(super) fn sets<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     generators: &Option<Raw<'a, source::List<'a, source::CoordinateSource>>>,
     matrices: &Option<Raw<'a, source::List<'a, source::Matrix>>>,
 ) -> Option<[CoordinateSet; 4]> {
@@ -30,14 +28,14 @@ pub(super) fn sets<'a>(
     let list = matrices.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     for (index, raw) in list.iter().enumerate().filter(|(_, raw)| raw.split() != ("None", "")) {
         if exists(reader, index, reader.span(raw)) {
-            sets[index].matrix = names.matrix(reader, raw);
+            sets[index].matrix = reader.value(raw);
         }
     }
     (generators.is_some() || matrices.is_some()).then_some(sets)
 }
 
 /// Whether the chip has that coordinate set.
-fn exists(reader: &mut Reader<'_>, index: usize, place: Range<usize>) -> bool {
+fn exists(reader: &mut Reader<'_>, index: usize, place: Span) -> bool {
     if index >= TEXTURE_UNITS {
         let message = format!("there is no coordinate set {index}");
         let help = "sets 0 to 3 are the entries of this list";
@@ -85,10 +83,8 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
 /// `Local`, `Infinite`, or `Infinite(x, y, z)`.
 pub(super) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Viewer> {
     const VIEWERS: &[&str] = &["Local", "Infinite"];
-    let (word, rest) = reader.variant(raw, "viewer", VIEWERS)?;
-    match (word, rest) {
-        (0, "") => Some(Viewer::Local),
-        (0, _) => reader.unknown_variant(raw, "viewer", VIEWERS),
+    match reader.variant_of(raw, "viewer", VIEWERS, 1)? {
+        (0, _) => Some(Viewer::Local),
         (_, "") => Some(Viewer::FAR),
         (_, rest) => {
             let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3..=3, [0.0; 4])?;

@@ -1,11 +1,10 @@
 //! Textures: kind, format, and how faces and levels are put together.
 
-use super::names::{Index, Names};
+use super::names::Index;
 use super::palette::Palettes;
-use super::target::Targets;
 use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
-use super::texture_source::{Given, Request, Sources, Variant, only};
+use super::texture_source::{self, Given, Request, Variant, only};
 use super::*;
 use crate::reader::Entry;
 use ninebit::rop::surface;
@@ -13,41 +12,35 @@ use ninebit::state::{
     CUBE_FACES, DepthFormat, Named, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
 };
 
-/// The textures, and where they were named. A texture with errors keeps its name but has no index.
-pub(super) struct Textures {
+/// The textures, and where they were named.
+#[derive(Default)]
+pub(crate) struct Textures {
     pub(super) list: Vec<Texture>,
     /// Palette of each texture of the list, where it has one of its own.
     pub(super) palette_of: Vec<Option<usize>>,
     pub(super) palettes: Palettes,
     index: Index,
+    /// Bytes that textures may still take.
+    pub(super) left: u64,
 }
 
 impl Textures {
-    /// The texture of that name; `None` once the reason has been recorded.
-    pub(super) fn find<'a>(&mut self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
-        self.index.find(reader, raw)
-    }
-
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
         self.index.warn_unused(reader);
         self.palettes.index.warn_unused(reader);
     }
 }
 
+/// The texture of that name; `None` once the reason has been recorded.
+pub(super) fn find<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
+    Index::find(reader, |reader| &mut reader.textures.index, raw)
+}
+
 /// Reads every palette and texture, files included.
-pub(super) fn textures<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    file: &source::Scene<'a>,
-    folder: &Path,
-) -> Textures {
-    let mut textures = Textures {
-        list: Vec::new(),
-        palette_of: Vec::new(),
-        palettes: Palettes::read(reader, &file.palettes),
-        index: Index::new("texture", "define it in `textures: { \"...\": (source: ...) }`"),
-    };
+pub(super) fn textures<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>) {
+    palette::palettes(reader, &file.palettes);
+    reader.textures.index = Index::new("texture", "define it in `textures: { \"...\": (source: ...) }`");
+    reader.textures.left = reader.limits.texture_bytes;
     let entries = reader.table("texture", &file.textures);
     if let Some(raw) = &file.textures
         && entries.len() > reader.limits.textures
@@ -55,12 +48,11 @@ pub(super) fn textures<'a>(
         let (place, count, most) = (reader.span(raw), entries.len(), reader.limits.textures);
         reader.push(too_many("NB0605", place, count, "textures", "textures", most));
         // Their names are known all the same.
-        textures.index.unread(entries.into_iter().map(|entry| entry.name));
-        return textures;
+        return reader.textures.index.without(entries.into_iter().map(|entry| entry.name));
     }
-    let mut sources = Sources { names, folder, left: reader.limits.texture_bytes };
     for entry in entries {
-        let read = texture(reader, targets, &mut textures.palettes, &mut sources, &entry);
+        let read = texture(reader, &entry);
+        let textures = &mut reader.textures;
         let index = read.map(|(texture, palette)| {
             textures.list.push(texture);
             textures.palette_of.push(palette);
@@ -68,34 +60,20 @@ pub(super) fn textures<'a>(
         });
         textures.index.add(entry.name, entry.place, index);
     }
-    textures
 }
 
 /// One texture and its palette.
-fn texture<'a>(
-    reader: &mut Reader<'a>,
-    targets: &Targets,
-    palettes: &mut Palettes,
-    sources: &mut Sources<'_, 'a>,
-    entry: &Entry<'a, source::Texture<'a>>,
-) -> Option<(Texture, Option<usize>)> {
+fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) -> Option<(Texture, Option<usize>)> {
     let fields = reader.read(&entry.value)?;
-    let kind = match &fields.kind {
-        Some(raw) => Some(kind(reader, raw)?),
-        None => None,
-    };
-    let format = match &fields.format {
-        Some(raw) => Some((format(reader, raw)?, reader.span(raw))),
-        None => None,
-    };
-    let palette = fields.palette.as_ref().and_then(|raw| palettes.index.find(reader, raw));
+    let kind = reader.perhaps(&fields.kind, |reader, raw| reader.name(&raw.as_other()))?;
+    let format = reader.perhaps(&fields.format, |reader, raw| Some((format(reader, raw)?, reader.span(raw))))?;
+    let palette = fields.palette.as_ref().and_then(|raw| palette::find(reader, raw));
     let border = fields.border(reader);
     let levels = fields.levels.as_ref().map_or(Some(Wanted::Own), |raw| texture_levels::wanted(reader, raw))?;
     let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
-        let depths = Variant::ALL[variant] == Variant::Depth;
-        of_target(reader, targets, (rest, depths), kind, format, &fields, &entry.name)?
+        of_target(reader, (rest, Variant::ALL[variant] == Variant::Depth), kind, format, &fields, &entry.name)?
     } else {
         let request = Request {
             format: format.as_ref().map(|(format, _)| *format),
@@ -104,14 +82,14 @@ fn texture<'a>(
             levels,
             border,
         };
-        let mut given = sources.read(reader, Variant::ALL[variant], &source, rest, &request)?;
+        let mut given = texture_source::read(reader, Variant::ALL[variant], &source, rest, &request)?;
         if fields.mips.is_some() && levels != Wanted::Own {
             let place = fields.levels.as_ref().map(|raw| reader.span(raw));
             let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
             let message = "levels are counted and listed at once";
             return reader.refuse(finding("NB0230", place, message, "counted here", help));
         }
-        let made = given.palette.take().map(|entries| palettes.add(&entry.name, entries));
+        let made = given.palette.take().map(|entries| reader.textures.palettes.add(&entry.name, entries));
         let place = given.place.clone();
         let kind = settled_kind(reader, kind, &given)?;
         let format_place = format.map_or_else(|| place.clone(), |(_, place)| place);
@@ -125,15 +103,14 @@ fn texture<'a>(
         let layers = if kind == TextureKind::ThreeDimensional { given.faces.len() as u32 } else { 1 };
         legal::layers(reader, kind, layers, given.place.clone())?;
         match &fields.mips {
-            Some(raw) => texture_levels::listed(reader, sources, &mut given, raw, kind, &request)?,
-            None => texture_levels::counted(reader, sources, &mut given, levels, &request)?,
+            Some(raw) => texture_levels::listed(reader, &mut given, raw, kind, &request)?,
+            None => texture_levels::counted(reader, &mut given, levels, &request)?,
         }
-        let levels = given.faces.first().map_or(1, |levels| levels.len() as u32);
+        let levels = given.levels();
         legal::levels(reader, kind, levels, given.place.clone())?;
-        let first = match &fields.first_level {
-            Some(raw) => texture_levels::first(reader, &mut given, raw)?,
-            None => 0,
-        };
+        let first =
+            reader.perhaps(&fields.first_level, |reader, raw| texture_levels::first(reader, &mut given, raw))?;
+        let first = first.unwrap_or(0);
         let levels = levels - first;
         let [width, height] = [width, height].map(|side| (side >> first).max(1));
         let format = given.format;
@@ -155,17 +132,12 @@ fn with_palette<'a>(
     if let Some(raw) = &fields.palette
         && texture.format != TextureFormat::P8
     {
-        let place = reader.span(raw);
-        return reader.refuse(palette::not_read(place, texture.format));
+        return reader.refuse(palette::not_read(reader.span(raw), texture.format));
     }
     if fields.palette.is_some() && palette.is_none() {
         return None;
     }
     Some((texture, palette))
-}
-
-fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<TextureKind> {
-    reader.name(&raw.as_other())
 }
 
 fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {
@@ -175,9 +147,8 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
         return reader.refuse(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
     }
     if let (name, "") = raw.split()
-        && let Some((_, own)) = DEPTH_FORMATS
-            .iter()
-            .find(|(known, own)| known.eq_ignore_ascii_case(name) && !own.eq_ignore_ascii_case(name))
+        && let Some((own, _)) =
+            DEPTH_FORMATS.iter().find(|(_, names)| names.iter().any(|known| known.eq_ignore_ascii_case(name)))
     {
         let help = if own.is_empty() { "take Z16, Z24S8, Z16F or Z24S8F" } else { own };
         let message = format!("`{name}` is not a texture format here");
@@ -187,67 +158,40 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
     reader.name(raw)
 }
 
-/// Names of depth formats in the chip's registers and in both APIs, and those of the state.
-const DEPTH_FORMATS: [(&str, &str); 19] = [
-    ("Z24X8", "Z24S8"),
-    ("D15S1", ""),
-    ("D16", "Z16"),
-    ("D16_LOCKABLE", "Z16"),
-    ("D24S8", "Z24S8"),
-    ("D24X8", "Z24S8"),
-    ("D32", ""),
-    ("F16", "Z16F"),
-    ("F24S8", "Z24S8F"),
-    ("LIN_D16", "Z16"),
-    ("LIN_D24S8", "Z24S8"),
-    ("LIN_F16", "Z16F"),
-    ("LIN_F24S8", "Z24S8F"),
-    ("DEPTH_COMPONENT16", "Z16"),
-    ("DEPTH_COMPONENT24", "Z24S8"),
-    ("DEPTH_X8_Y24_FIXED", "Z24S8"),
-    ("DEPTH_X8_Y24_FLOAT", "Z24S8F"),
-    ("DEPTH_Y16_FIXED", "Z16"),
-    ("DEPTH_Y16_FLOAT", "Z16F"),
+/// Depth formats of the state, and their names in the chip's registers and in both APIs; those that the state lacks.
+const DEPTH_FORMATS: [(&str, &[&str]); 5] = [
+    ("Z16", &["D16", "D16_LOCKABLE", "LIN_D16", "DEPTH_COMPONENT16", "DEPTH_Y16_FIXED"]),
+    ("Z24S8", &["Z24X8", "D24S8", "D24X8", "LIN_D24S8", "DEPTH_COMPONENT24", "DEPTH_X8_Y24_FIXED"]),
+    ("Z16F", &["F16", "LIN_F16", "DEPTH_Y16_FLOAT"]),
+    ("Z24S8F", &["F24S8", "LIN_F24S8", "DEPTH_X8_Y24_FLOAT"]),
+    ("", &["D15S1", "D32"]),
 ];
 
 /// What the texture is sampled as: as written, or a cube map where there are six faces.
 fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {
-    let cube = !given.volume && given.faces.len() == CUBE_FACES as usize;
-    let own = match (cube, given.volume) {
-        (true, _) => TextureKind::Cube,
-        (_, true) => TextureKind::ThreeDimensional,
-        _ => TextureKind::TwoDimensional,
+    use TextureKind::{Cube, ThreeDimensional, TwoDimensional};
+    let own = match given.volume {
+        true => ThreeDimensional,
+        false if given.faces.len() == CUBE_FACES as usize => Cube,
+        false => TwoDimensional,
     };
     let kind = written.unwrap_or(own);
-    let solid = |kind: TextureKind| matches!(kind, TextureKind::Cube | TextureKind::ThreeDimensional);
-    if kind == own || !solid(kind) && !solid(own) {
-        return Some(kind);
-    }
-    if own == TextureKind::ThreeDimensional || kind == TextureKind::ThreeDimensional {
-        let (message, help) = if own == kind {
-            return Some(kind);
-        } else if own == TextureKind::ThreeDimensional {
-            (
-                format!("layers do not make a texture of kind {}", kind.name()),
-                "write `kind: ThreeDimensional`, or leave `kind` out",
-            )
-        } else {
-            (
-                "a volume has layers, and here are none".to_owned(),
-                "write `Layers([..., ...])`, or name a DDS file of a volume, or `Raw(...)` with `layers`",
-            )
-        };
-        return reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("VOL-1"));
-    }
-    let (message, help) = if cube {
-        (format!("six faces do not make a texture of kind {}", kind.name()), "write `kind: Cube`, or leave `kind` out")
-    } else {
-        (
-            "a cube map has six faces, and here is one picture".to_owned(),
-            "write `Faces(positive_x: ..., negative_x: ..., ...)`, or name a DDS file of a cube map",
-        )
+    let of_kind = |what: &str| format!("{what} do not make a texture of kind {}", kind.name());
+    let (message, help, rule) = match (own, kind) {
+        _ if kind == own => return Some(kind),
+        (ThreeDimensional, _) => (of_kind("layers"), "write `kind: ThreeDimensional`, or leave `kind` out", "VOL-1"),
+        (_, ThreeDimensional) => {
+            let help = "write `Layers([..., ...])`, or name a DDS file of a volume, or `Raw(...)` with `layers`";
+            ("a volume has layers, and here are none".to_owned(), help, "VOL-1")
+        }
+        (Cube, _) => (of_kind("six faces"), "write `kind: Cube`, or leave `kind` out", "TEX-12"),
+        (_, Cube) => {
+            let help = "write `Faces(positive_x: ..., negative_x: ..., ...)`, or name a DDS file of a cube map";
+            ("a cube map has six faces, and here is one picture".to_owned(), help, "TEX-12")
+        }
+        _ => return Some(kind),
     };
-    reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("TEX-12"))
+    reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule(rule))
 }
 
 /// Sides without border texels.
@@ -264,16 +208,15 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
 
 fn of_target<'a>(
     reader: &mut Reader<'a>,
-    targets: &Targets,
     (text, depths): (&'a str, bool),
     kind: Option<TextureKind>,
-    format: Option<(TextureFormat, Range<usize>)>,
+    format: Option<(TextureFormat, Span)>,
     fields: &source::Texture<'a>,
     name: &str,
 ) -> Option<Texture> {
     let raw = only::<String>(reader, text, "the name of one target")?;
-    let index = targets.find(reader, &raw)?;
-    let target = &targets.list[index];
+    let index = target::find(reader, &raw)?;
+    let target = &reader.targets.list[index].clone();
     let place = reader.span(&raw);
     let kind = kind.unwrap_or(TextureKind::TwoDimensional);
     let extra = [
@@ -322,8 +265,7 @@ fn of_target<'a>(
         }
         None => {
             let bytes = u64::from(target.width) * u64::from(pixel);
-            let message = format!("a row of {bytes} bytes is no whole number of texels of {texel}");
-            Some((message, String::new()))
+            Some((format!("a row of {bytes} bytes is no whole number of texels of {texel}"), String::new()))
         }
         Some(_) => None,
     };
@@ -342,8 +284,8 @@ fn of_depths(
     reader: &mut Reader<'_>,
     (target, index): (&Target, usize),
     kind: TextureKind,
-    format: Option<(TextureFormat, Range<usize>)>,
-    place: Range<usize>,
+    format: Option<(TextureFormat, Span)>,
+    place: Span,
     name: &str,
 ) -> Option<Texture> {
     let Some(depth) = target.depth else {

@@ -1,7 +1,6 @@
 //! `TextureEnvironment(...)`: the OpenGL texture environment.
 
 use super::api_program::{ApiProgram, name_at};
-use super::names::Names;
 use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::reader::Name;
@@ -11,16 +10,10 @@ use ninebit_program::At;
 use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 
 /// Reads the fields in the parentheses.
-pub(super) fn texture_environment<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    text: &'a str,
-    asides: &mut Asides,
-) -> Option<ApiProgram> {
+pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asides) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
     let units = fields.units.as_ref().map(|raw| reader.span(raw));
-    let what = ("a texture environment is", "units");
-    let written = calls(reader, names, units, &fields.text, &fields.file, what)?;
+    let written = calls(reader, units, &fields.text, &fields.file, ("a texture environment is", "units"))?;
     let mut program = match &written {
         None => TextureEnvironment::default(),
         Some(written) => pasted(reader, written, texture_environment::parse(&written.text), asides)?,
@@ -29,17 +22,12 @@ pub(super) fn texture_environment<'a>(
     for raw in fields.units.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default() {
         let place = reader.opening(raw.text);
         let Some(fields) = reader.read(&raw) else { continue };
-        program.units.push(unit(reader, names, &fields, place));
+        program.units.push(unit(reader, &fields, place));
     }
     Some(ApiProgram::Environment(program, written))
 }
 
-fn unit<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    fields: &source::EnvironmentUnit<'a>,
-    place: Range<usize>,
-) -> Unit {
+fn unit<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, place: Span) -> Unit {
     let mut unit = Unit { place, ..Unit::initial() };
     unit.mode = fields.mode(reader);
     name_at(reader, &fields.combine_rgb, &mut unit.rgb.function);
@@ -50,13 +38,13 @@ fn unit<'a>(
     list(reader, &fields.operands_alpha, &mut unit.alpha.operands, "operands");
     scale(reader, &fields.scale_rgb, &mut unit.rgb);
     scale(reader, &fields.scale_alpha, &mut unit.alpha);
-    unit.color = color::bytes(fields.color(reader, names));
+    unit.color = color::bytes(fields.color(reader));
     unit.base_format = fields.base_format.as_ref().and_then(|raw| reader.name(raw));
     combine_only(reader, fields, unit.mode);
     unit
 }
 
-/// At most four names, the first of a list in which the others keep their defaults.
+/// At most four the first of a list in which the others keep their defaults.
 fn list<'a, T: Named>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, List<'a, Name<T>>>>,

@@ -10,7 +10,7 @@ pub(super) fn largest_side(reader: &Reader<'_>) -> u32 {
 }
 
 /// The format exists on the chip.
-pub(super) fn format(reader: &mut Reader<'_>, format: TextureFormat, place: Range<usize>) -> Option<()> {
+pub(super) fn format(reader: &mut Reader<'_>, format: TextureFormat, place: Span) -> Option<()> {
     if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
         let what = format!("texture format {}", format.name());
         return reader.refuse(target::only_nv2a("NB0320", place, &what, "TEX-1"));
@@ -25,11 +25,11 @@ pub(super) fn sides(
     format: TextureFormat,
     width: u32,
     height: u32,
-    place: Range<usize>,
+    place: Span,
 ) -> Option<()> {
     let (most, what) = largest(reader, kind, format);
     if width.max(height) > most {
-        return reader.refuse(too_large(reader, what, width, height, most, place));
+        return reader.refuse(too_large(reader, what, [width, height], most, place));
     }
     if kind == TextureKind::Rectangle {
         return rectangle(reader, format, width, height, place);
@@ -63,10 +63,9 @@ fn largest(reader: &Reader<'_>, kind: TextureKind, format: TextureFormat) -> (u3
 pub(super) fn too_large(
     reader: &Reader<'_>,
     what: &str,
-    width: u32,
-    height: u32,
+    [width, height]: [u32; 2],
     most: u32,
-    place: Range<usize>,
+    place: Span,
 ) -> Diagnostic {
     let on = if reader.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
     Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
@@ -75,13 +74,7 @@ pub(super) fn too_large(
 }
 
 /// Linear layouts have neither blocks nor indices; nv10 has four of them, of even width.
-fn rectangle(
-    reader: &mut Reader<'_>,
-    format: TextureFormat,
-    width: u32,
-    height: u32,
-    place: Range<usize>,
-) -> Option<()> {
+fn rectangle(reader: &mut Reader<'_>, format: TextureFormat, width: u32, height: u32, place: Span) -> Option<()> {
     let nv10 = reader.profile == Profile::Nv10;
     let refuse = |message: String, help: &str| {
         Diagnostic::error("NB0330", place.clone(), message)
@@ -104,7 +97,7 @@ fn rectangle(
 }
 
 /// Layers of a volume, which nv2a has.
-pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, place: Range<usize>) -> Option<()> {
+pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, place: Span) -> Option<()> {
     if kind != TextureKind::ThreeDimensional {
         return Some(());
     }
@@ -120,7 +113,7 @@ pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, pl
 }
 
 /// A rectangle has one level, and a volume.
-pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, place: Range<usize>) -> Option<()> {
+pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, place: Span) -> Option<()> {
     let (what, rule, help) = match kind {
         TextureKind::ThreeDimensional => {
             ("volume", "VOL-1", "write `levels: 1`: which of them a volume reads is not known")
@@ -138,12 +131,7 @@ pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, pl
 }
 
 /// Border texels: of nv2a, two dimensions, no blocks.
-pub(super) fn border(
-    reader: &mut Reader<'_>,
-    kind: TextureKind,
-    format: TextureFormat,
-    place: Range<usize>,
-) -> Option<()> {
+pub(super) fn border(reader: &mut Reader<'_>, kind: TextureKind, format: TextureFormat, place: Span) -> Option<()> {
     if reader.profile == Profile::Nv10 {
         return reader.refuse(target::only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
     }

@@ -1,6 +1,6 @@
 //! Levels of a texture: those of its file, listed ones, or made from level 0.
 
-use super::texture_source::{Given, Request, Sources};
+use super::texture_source::{self, Given, Request, Variant};
 use super::*;
 use ninebit::state::{BORDER_TEXELS, Level, Named, TextureKind};
 use ninebit_files::texels;
@@ -36,12 +36,7 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
 }
 
 /// How many levels are wanted of a source that does not say so itself.
-pub(super) fn number(
-    reader: &mut Reader<'_>,
-    wanted: Wanted,
-    [width, height]: [u32; 2],
-    place: Range<usize>,
-) -> Option<u32> {
+pub(super) fn number(reader: &mut Reader<'_>, wanted: Wanted, [width, height]: [u32; 2], place: Span) -> Option<u32> {
     let most = Level::most(width, height);
     match wanted {
         Wanted::Own => Some(1),
@@ -51,7 +46,7 @@ pub(super) fn number(
     }
 }
 
-fn too_many(number: u32, width: u32, height: u32, place: Range<usize>) -> Diagnostic {
+fn too_many(number: u32, width: u32, height: u32, place: Span) -> Diagnostic {
     let most = Level::most(width, height);
     let has = if most == 1 { "1 level".to_owned() } else { format!("{most} levels") };
     Diagnostic::error("NB0230", place, format!("a texture of {width} x {height} cannot have {number} levels"))
@@ -61,14 +56,8 @@ fn too_many(number: u32, width: u32, height: u32, place: Range<usize>) -> Diagno
 }
 
 /// Brings the levels of a source to the number that is wanted: cuts, or makes smaller ones from level 0.
-pub(super) fn counted<'a>(
-    reader: &mut Reader<'a>,
-    sources: &mut Sources<'_, 'a>,
-    given: &mut Given,
-    wanted: Wanted,
-    request: &Request,
-) -> Option<()> {
-    let own = given.faces.first().map_or(1, |levels| levels.len() as u32);
+pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wanted, request: &Request) -> Option<()> {
+    let own = given.levels();
     let beyond = beyond(request.border);
     let inside = [given.width - beyond, given.height - beyond];
     if wanted == Wanted::Own {
@@ -98,7 +87,7 @@ pub(super) fn counted<'a>(
     let (mut width, mut height) = (given.width, given.height);
     for _ in 1..number {
         let next = [(width / 2).max(1), (height / 2).max(1)];
-        sources.afford(
+        texture_source::afford(
             reader,
             given.place.clone(),
             given.faces.len() as u64 * u64::from(next[0]) * u64::from(next[1]),
@@ -115,7 +104,6 @@ pub(super) fn counted<'a>(
 /// Adds the levels that `mips` lists.
 pub(super) fn listed<'a>(
     reader: &mut Reader<'a>,
-    sources: &mut Sources<'_, 'a>,
     given: &mut Given,
     raw: &Raw<'a, source::List<'a, source::ImageSource>>,
     kind: TextureKind,
@@ -131,14 +119,13 @@ pub(super) fn listed<'a>(
     }
     let number = list.len() as u32 + 1;
     if number > Level::most(inside[0], inside[1]) {
-        let place = reader.span(raw);
-        return reader.refuse(too_many(number, inside[0], inside[1], place));
+        return reader.refuse(too_many(number, inside[0], inside[1], reader.span(raw)));
     }
     // Listed sources are of the format of level 0, whoever has chosen it.
     let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };
     let mut complete = true;
     for (n, raw) in (1..).zip(&list) {
-        let Some(level) = sources.level(reader, raw, &request) else {
+        let Some(level) = texture_source::nested(reader, raw, "source of a level", &Variant::OF_LEVEL, &request) else {
             complete = false;
             continue;
         };
@@ -168,8 +155,8 @@ pub(super) fn listed<'a>(
 /// Leaves out the levels before `first_level`. Its number, below that of the levels there are.
 pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a, u32>) -> Option<u32> {
     let number = reader.read(raw)?;
-    let levels = given.faces.first().map_or(1, Vec::len);
-    if number as usize >= levels {
+    let levels = given.levels();
+    if number >= levels {
         let place = reader.span(raw);
         let message = format!("there is no level {number} to begin with");
         let label = if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) };

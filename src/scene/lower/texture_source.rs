@@ -1,6 +1,5 @@
 //! Where texels come from: files, raw memory, lists of words, made pictures.
 
-use super::names::Names;
 use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::*;
@@ -27,7 +26,14 @@ pub(super) struct Given {
     /// Entries, where a file brings them along.
     pub(super) palette: Option<Vec<u32>>,
     /// Where messages about the texture point.
-    pub(super) place: Range<usize>,
+    pub(super) place: Span,
+}
+
+impl Given {
+    /// Of each face.
+    pub(super) fn levels(&self) -> u32 {
+        self.faces.first().map_or(1, |levels| levels.len() as u32)
+    }
 }
 
 /// What the texture wants of a source.
@@ -77,213 +83,176 @@ impl Variant {
     const OF_FACE: [Variant; 6] =
         [Variant::File, Variant::Raw, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
     /// Sources of a level.
-    const OF_LEVEL: [Variant; 7] =
+    pub(super) const OF_LEVEL: [Variant; 7] =
         [Variant::File, Variant::Raw, Variant::Faces, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
 }
 
-/// Reads sources, and counts the memory that they take.
-pub(super) struct Sources<'c, 'a> {
-    pub(super) names: &'c Names<'a>,
-    pub(super) folder: &'c Path,
-    /// Bytes that textures may still take.
-    pub(super) left: u64,
+/// Reads a source; `text` is what follows the name of its variant. `None` once the reason has been recorded.
+pub(super) fn read<'a>(
+    reader: &mut Reader<'a>,
+    variant: Variant,
+    raw: &Raw<'a, source::ImageSource>,
+    text: &'a str,
+    request: &Request,
+) -> Option<Given> {
+    let place = reader.span(raw);
+    match variant {
+        Variant::File => stored::file(reader, text, request, place),
+        Variant::Raw => stored::memory(reader, text, request),
+        Variant::Faces => faces(reader, text, request, place),
+        Variant::Layers => layers(reader, text, request, place),
+        Variant::Texels => words(reader, text, request),
+        Variant::Solid | Variant::Checker | Variant::Ramp => {
+            let format = packable(reader, request, place)?;
+            let picture = made::picture(reader, variant, text, request)?;
+            Some(one(format, picture.width, picture.height, texels::pack(&picture.pixels, format), picture.place))
+        }
+        // Lowered with the targets at hand.
+        Variant::Target | Variant::Depth => None,
+    }
 }
 
-impl<'a> Sources<'_, 'a> {
-    /// Reads a source; `text` is what follows the name of its variant. `None` once the reason has been recorded.
-    pub(super) fn read(
-        &mut self,
-        reader: &mut Reader<'a>,
-        variant: Variant,
-        raw: &Raw<'a, source::ImageSource>,
-        text: &'a str,
-        request: &Request,
-    ) -> Option<Given> {
-        let place = reader.span(raw);
-        match variant {
-            Variant::File => self.file(reader, text, request, place),
-            Variant::Raw => self.memory(reader, text, request),
-            Variant::Faces => self.faces(reader, text, request, place),
-            Variant::Layers => self.layers(reader, text, request, place),
-            Variant::Texels => self.words(reader, text, request),
-            Variant::Solid | Variant::Checker | Variant::Ramp => {
-                let format = packable(reader, request, place)?;
-                let picture = made::picture(self, reader, variant, text, request)?;
-                let words = texels::pack(&picture.pixels, format);
-                Some(one(format, picture.width, picture.height, words, picture.place))
-            }
-            // Lowered with the targets at hand.
-            Variant::Target | Variant::Depth => None,
+/// Reads a source that is one of these.
+pub(super) fn nested<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Raw<'a, source::ImageSource>,
+    what: &str,
+    variants: &[Variant],
+    request: &Request,
+) -> Option<Given> {
+    let names: Vec<&'static str> = variants.iter().map(|variant| variant.name()).collect();
+    let (variant, rest) = reader.variant(raw, what, &names)?;
+    read(reader, variants[variant], raw, rest, request)
+}
+
+/// Takes the memory of so many texels or words off what is left.
+pub(super) fn afford<'a>(reader: &mut Reader<'a>, place: Span, words: u64) -> Option<()> {
+    let bytes = words.saturating_mul(4);
+    let Some(rest) = reader.textures.left.checked_sub(bytes) else {
+        let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
+        let help = "make the textures smaller, or fewer; `ninebit limits` prints what is allowed";
+        return reader.refuse(finding("NB0607", place, message, format!("{bytes} more bytes here"), help));
+    };
+    reader.textures.left = rest;
+    Some(())
+}
+
+/// Six sources, a face each.
+fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
+    let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
+    let request = Request { faces: 1, ..*request };
+    let mut six: Vec<Given> = Vec::new();
+    let face = [
+        source::Faces::positive_x,
+        source::Faces::negative_x,
+        source::Faces::positive_y,
+        source::Faces::negative_y,
+        source::Faces::positive_z,
+        source::Faces::negative_z,
+    ];
+    for face in face {
+        let Some(raw) = face(&fields, reader) else { continue };
+        if let Some(face) = nested(reader, &raw, "source of a face", &Variant::OF_FACE, &request)
+            && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw), "face"))
+        {
+            six.push(face);
         }
     }
-
-    /// Reads the source of a level.
-    pub(super) fn level(
-        &mut self,
-        reader: &mut Reader<'a>,
-        raw: &Raw<'a, source::ImageSource>,
-        request: &Request,
-    ) -> Option<Given> {
-        self.nested(reader, raw, "source of a level", &Variant::OF_LEVEL, request)
+    if six.len() < CUBE_FACES as usize {
+        return None;
     }
+    let mut six = six.into_iter();
+    let mut first = six.next()?;
+    first.faces.extend(six.flat_map(|face| face.faces));
+    first.place = place;
+    Some(first)
+}
 
-    fn nested(
-        &mut self,
-        reader: &mut Reader<'a>,
-        raw: &Raw<'a, source::ImageSource>,
-        what: &str,
-        variants: &[Variant],
-        request: &Request,
-    ) -> Option<Given> {
-        let names: Vec<&'static str> = variants.iter().map(|variant| variant.name()).collect();
-        let (variant, rest) = reader.variant(raw, what, &names)?;
-        self.read(reader, variants[variant], raw, rest, request)
-    }
-
-    /// Takes the memory of so many texels or words off what is left.
-    pub(super) fn afford(&mut self, reader: &mut Reader<'a>, place: Range<usize>, words: u64) -> Option<()> {
-        let bytes = words.saturating_mul(4);
-        let Some(rest) = self.left.checked_sub(bytes) else {
-            let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
-            let help = "make the textures smaller, or fewer; `ninebit limits` prints what is allowed";
-            return reader.refuse(finding("NB0607", place, message, format!("{bytes} more bytes here"), help));
-        };
-        self.left = rest;
-        Some(())
-    }
-
-    /// Six sources, a face each.
-    fn faces(
-        &mut self,
-        reader: &mut Reader<'a>,
-        text: &'a str,
-        request: &Request,
-        place: Range<usize>,
-    ) -> Option<Given> {
-        let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
-        let request = Request { faces: 1, ..*request };
-        let mut six: Vec<Given> = Vec::new();
-        let face = [
-            source::Faces::positive_x,
-            source::Faces::negative_x,
-            source::Faces::positive_y,
-            source::Faces::negative_y,
-            source::Faces::positive_z,
-            source::Faces::negative_z,
-        ];
-        for face in face {
-            let Some(raw) = face(&fields, reader) else { continue };
-            if let Some(face) = self.nested(reader, &raw, "source of a face", &Variant::OF_FACE, &request)
-                && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw), "face"))
-            {
-                six.push(face);
-            }
-        }
-        if six.len() < CUBE_FACES as usize {
+/// Sources in a list, a layer each.
+fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
+    let raw = only::<source::List<'a, source::ImageSource>>(reader, text, "a list of sources")?;
+    let list = reader.read(&raw)?;
+    let request = Request { volume: false, ..*request };
+    let mut all: Vec<Given> = Vec::new();
+    for raw in &list {
+        let layer = nested(reader, raw, "source of a layer", &Variant::OF_FACE, &request)?;
+        if !all.first().is_none_or(|first| alike(reader, first, &layer, reader.span(raw), "layer")) {
             return None;
         }
-        let mut six = six.into_iter();
-        let mut first = six.next()?;
-        first.faces.extend(six.flat_map(|face| face.faces));
-        first.place = place;
-        Some(first)
+        all.push(layer);
     }
+    let mut all = all.into_iter();
+    let Some(mut first) = all.next() else {
+        let finding = Diagnostic::error("NB0334", place, "a volume has no layer").label("empty");
+        return reader.refuse(finding.rule("VOL-1").help("list a source for each layer"));
+    };
+    first.faces.extend(all.flat_map(|layer| layer.faces));
+    (first.place, first.volume) = (place, true);
+    Some(first)
+}
 
-    /// Sources in a list, a layer each.
-    fn layers(
-        &mut self,
-        reader: &mut Reader<'a>,
-        text: &'a str,
-        request: &Request,
-        place: Range<usize>,
-    ) -> Option<Given> {
-        let raw = only::<source::List<'a, source::ImageSource>>(reader, text, "a list of sources")?;
-        let list = reader.read(&raw)?;
-        let request = Request { volume: false, ..*request };
-        let mut all: Vec<Given> = Vec::new();
-        for raw in &list {
-            let layer = self.nested(reader, raw, "source of a layer", &Variant::OF_FACE, &request)?;
-            if !all.first().is_none_or(|first| alike(reader, first, &layer, reader.span(raw), "layer")) {
-                return None;
-            }
-            all.push(layer);
-        }
-        let mut all = all.into_iter();
-        let Some(mut first) = all.next() else {
-            let finding = Diagnostic::error("NB0334", place, "a volume has no layer").label("empty");
-            return reader.refuse(finding.rule("VOL-1").help("list a source for each layer"));
-        };
-        first.faces.extend(all.flat_map(|layer| layer.faces));
-        (first.place, first.volume) = (place, true);
-        Some(first)
+/// Raw words in hexadecimal, a text for each row.
+fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+    let raw = Raw::<source::TexelRows<'a>>::new(text);
+    let fields = reader.read(&raw)?;
+    let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
+    if format.is_compressed() {
+        return reader.refuse(cannot_pack(format, reader.span(&raw)));
     }
-
-    /// Raw words in hexadecimal, a text for each row.
-    fn words(&mut self, reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
-        let raw = Raw::<source::TexelRows<'a>>::new(text);
-        let fields = reader.read(&raw)?;
-        let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
-        if format.is_compressed() {
-            return reader.refuse(cannot_pack(format, reader.span(&raw)));
-        }
-        let sides = (fields.width(reader), fields.height(reader));
-        let (width, height, place) = self.sides(reader, sides, request)?;
-        self.afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
-        let list = fields.rows(reader)?;
-        let rows = reader.read(&list)?;
-        let digits = 2 * format.bytes() as usize;
-        let help =
-            format!("write {width} words of {digits} hexadecimal digits in each of {height} rows, for {format:?}");
-        if rows.len() != height as usize {
-            let message = format!("{} rows of texels for a height of {height}", rows.len());
-            let place = reader.span(&list);
-            return reader.refuse(finding("NB0220", place, message, "another number of rows", help));
-        }
-        let mut words = Vec::with_capacity(width as usize * height as usize);
-        for raw in &rows {
-            let row = reader.read(raw)?;
-            let mut count = 0;
-            for word in row.split_ascii_whitespace() {
-                let Some(value) = hexadecimal(word, digits) else {
-                    let place = reader.span(raw);
-                    let message = format!("`{}` is not a texel", shorten(word));
-                    return reader.refuse(finding("NB0220", place, message, "in this row", help));
-                };
-                // Bits that the format ignores are zero in the state.
-                words.push(texels::stored(value & texels::used_bits(format), format));
-                count += 1;
-            }
-            if count != width as usize {
+    let sides = (fields.width(reader), fields.height(reader));
+    let (width, height, place) = self::sides(reader, sides, request)?;
+    afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
+    let list = fields.rows(reader)?;
+    let rows = reader.read(&list)?;
+    let digits = 2 * format.bytes() as usize;
+    let help = format!("write {width} words of {digits} hexadecimal digits in each of {height} rows, for {format:?}");
+    if rows.len() != height as usize {
+        let message = format!("{} rows of texels for a height of {height}", rows.len());
+        return reader.refuse(finding("NB0220", reader.span(&list), message, "another number of rows", help));
+    }
+    let mut words = Vec::with_capacity(width as usize * height as usize);
+    for raw in &rows {
+        let row = reader.read(raw)?;
+        let mut count = 0;
+        for word in row.split_ascii_whitespace() {
+            let Some(value) = hexadecimal(word, digits) else {
                 let place = reader.span(raw);
-                let message = format!("{count} texels in a row of {width}");
+                let message = format!("`{}` is not a texel", shorten(word));
                 return reader.refuse(finding("NB0220", place, message, "in this row", help));
-            }
+            };
+            // Bits that the format ignores are zero in the state.
+            words.push(texels::stored(value & texels::used_bits(format), format));
+            count += 1;
         }
-        Some(one(format, width, height, words, place))
+        if count != width as usize {
+            let place = reader.span(raw);
+            let message = format!("{count} texels in a row of {width}");
+            return reader.refuse(finding("NB0220", place, message, "in this row", help));
+        }
     }
+    Some(one(format, width, height, words, place))
+}
 
-    /// Width and height as written, and their place. They are held against the largest that any texture may have: what else must
-    /// be true of them depends on the kind.
-    pub(super) fn sides(
-        &mut self,
-        reader: &mut Reader<'a>,
-        (width, height): (Option<Raw<'a, u32>>, Option<Raw<'a, u32>>),
-        request: &Request,
-    ) -> Option<(u32, u32, Range<usize>)> {
-        let (width, height) = (width?, height?);
-        let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
-        let (width, height) = (reader.read(&width)?, reader.read(&height)?);
-        let most = legal::largest_side(reader);
-        if width.max(height) > most + texture_levels::beyond(request.border) {
-            return reader.refuse(legal::too_large(reader, "a texture", width, height, most, place));
-        }
-        if width == 0 || height == 0 {
-            let message = format!("a texture cannot be {width} x {height}");
-            reader.push(finding("NB0219", place, message, "no texels", "write at least 1 for both").rule("TEX-7"));
-            return None;
-        }
-        Some((width, height, place))
+/// Width and height as written, and their place. They are held against the largest that any texture may have: what else must
+/// be true of them depends on the kind.
+pub(super) fn sides<'a>(
+    reader: &mut Reader<'a>,
+    (width, height): (Option<Raw<'a, u32>>, Option<Raw<'a, u32>>),
+    request: &Request,
+) -> Option<(u32, u32, Span)> {
+    let (width, height) = (width?, height?);
+    let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
+    let (width, height) = (reader.read(&width)?, reader.read(&height)?);
+    let most = legal::largest_side(reader);
+    if width.max(height) > most + texture_levels::beyond(request.border) {
+        return reader.refuse(legal::too_large(reader, "a texture", [width, height], most, place));
     }
+    if width == 0 || height == 0 {
+        let message = format!("a texture cannot be {width} x {height}");
+        reader.push(finding("NB0219", place, message, "no texels", "write at least 1 for both").rule("TEX-7"));
+        return None;
+    }
+    Some((width, height, place))
 }
 
 /// The only value in the parentheses of `Variant(value)`.
@@ -304,15 +273,14 @@ pub(super) fn hexadecimal(word: &str, digits: usize) -> Option<u32> {
 }
 
 /// One face of one level.
-fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Range<usize>) -> Given {
+fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Span) -> Given {
     Given { format, width, height, faces: vec![vec![words]], volume: false, palette: None, place }
 }
 
 /// Whether a face or layer goes with the first one; says so if not.
-fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usize>, what: &str) -> bool {
+fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Span, what: &str) -> bool {
     let describe = |given: &Given| {
-        let levels = given.faces.first().map_or(1, Vec::len);
-        let levels = if levels == 1 { String::new() } else { format!(" in {levels} levels") };
+        let levels = if given.levels() == 1 { String::new() } else { format!(" in {} levels", given.levels()) };
         format!("{} x {} texels {}{levels}", given.width, given.height, given.format.name())
     };
     let (expected, found) = (describe(first), describe(face));
@@ -331,7 +299,7 @@ fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usiz
 }
 
 /// The format that pixels are packed into.
-fn packable(reader: &mut Reader<'_>, request: &Request, place: Range<usize>) -> Option<TextureFormat> {
+fn packable(reader: &mut Reader<'_>, request: &Request, place: Span) -> Option<TextureFormat> {
     let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
     if texels::can_pack(format) {
         return Some(format);
@@ -339,7 +307,7 @@ fn packable(reader: &mut Reader<'_>, request: &Request, place: Range<usize>) -> 
     reader.refuse(cannot_pack(format, place))
 }
 
-fn cannot_pack(format: TextureFormat, place: Range<usize>) -> Diagnostic {
+fn cannot_pack(format: TextureFormat, place: Span) -> Diagnostic {
     let help = if format.depth().is_some() {
         "depths come from `Texels`, `Raw(...)` or `Depth(...)` of a target"
     } else if format == TextureFormat::P8 {

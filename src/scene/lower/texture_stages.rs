@@ -1,7 +1,6 @@
 //! `TextureStages(...)`: Direct3D texture stage states.
 
 use super::api_program::{ApiProgram, name_at};
-use super::names::Names;
 use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::raw::Tuple;
@@ -13,15 +12,10 @@ use ninebit_program::texture_stages::{
 };
 
 /// Reads the fields in the parentheses.
-pub(super) fn texture_stages<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    text: &'a str,
-    asides: &mut Asides,
-) -> Option<ApiProgram> {
+pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asides) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
     let stages = fields.stages.as_ref().map(|raw| reader.span(raw));
-    let written = calls(reader, names, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
+    let written = calls(reader, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
     let mut program = match &written {
         None => TextureStages::default(),
         Some(written) => pasted(reader, written, texture_stages::parse(&written.text), asides)?,
@@ -37,11 +31,11 @@ pub(super) fn texture_stages<'a>(
             let Some(fields) = reader.read(raw) else { continue };
             if let Some(stage) = program.stage_mut(index) {
                 stage.place = reader.opening(raw.text);
-                self::stage(reader, names, &fields, stage);
+                self::stage(reader, &fields, stage);
             }
         }
     }
-    if let Some(color) = fields.texture_factor.and_then(|raw| color::constant(reader, names, &raw)) {
+    if let Some(color) = fields.texture_factor.and_then(|raw| color::constant(reader, &raw)) {
         program.texture_factor = color;
     }
     if let Some(enable) = fields.specular_enable.and_then(|raw| reader.read(&raw)) {
@@ -50,13 +44,13 @@ pub(super) fn texture_stages<'a>(
     Some(ApiProgram::Stages(program, written))
 }
 
-fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
+fn stage<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
     name_at(reader, &fields.color_op, &mut stage.color.operation);
     name_at(reader, &fields.alpha_op, &mut stage.alpha.operation);
     arguments(reader, [&fields.color_arg0, &fields.color_arg1, &fields.color_arg2], &mut stage.color);
     arguments(reader, [&fields.alpha_arg0, &fields.alpha_arg1, &fields.alpha_arg2], &mut stage.alpha);
     stage.result = fields.result_arg(reader);
-    stage.constant = color::bytes(fields.constant(reader, names));
+    stage.constant = color::bytes(fields.constant(reader));
     coordinates(reader, fields, stage);
     if let Some(matrix) = fields.bump_matrix(reader) {
         stage.bump_matrix = matrix;

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::attribute::{self, Light as Place};
 use super::draw::Drawn;
-use super::names::Names;
 use super::texture_source::only;
 use super::*;
 use crate::generate::normal_map::{self, HeightChannel};
@@ -23,7 +22,6 @@ use ninebit::state::{Named, Register};
 /// Reads the truth of a scene. `None`: it has none, or the reason that it cannot be read has been recorded.
 pub(super) fn truth<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     own: &Option<Raw<'a, source::Truth<'a>>>,
     shared: &Option<Raw<'a, source::Truth<'a>>>,
     draws: &[Drawn],
@@ -39,24 +37,21 @@ pub(super) fn truth<'a>(
     }
     let equation = fields.equation.as_ref().map_or(Some(Equation::Lighting), |raw| equation(reader, raw));
     if let (Some(equation), Some(raw)) = (equation, &fields.equation) {
-        let place = reader.span(raw);
-        only_lighting(reader, equation, &fields, place);
+        only_lighting(reader, equation, &fields, reader.span(raw));
     }
-    let normal = fields.normal.as_ref().map_or(Some(NormalSource::Mesh), |raw| normal(reader, names, raw));
-    let eye = fields.eye.as_ref().map(|raw| eye(reader, raw));
-    let material = material(reader, names, &fields.material);
+    let normal = fields.normal.as_ref().map_or(Some(NormalSource::Mesh), |raw| normal(reader, raw));
+    let eye = reader.perhaps(&fields.eye, eye);
+    let material = material(reader, &fields.material);
     let lights = fields.lights.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
-    let lights: Vec<Light> = lights.iter().filter_map(|raw| light(reader, names, raw)).collect();
-    let (hemisphere, occlusion) = match &fields.hemisphere {
-        Some(raw) => hemisphere_light(reader, names, raw),
-        None => (None, None),
-    };
+    let lights: Vec<Light> = lights.iter().filter_map(|raw| light(reader, raw)).collect();
+    let hemisphere = fields.hemisphere.as_ref().map(|raw| hemisphere_light(reader, raw));
+    let (hemisphere, occlusion) = hemisphere.unwrap_or_default();
     let color_map = fields.color_map.as_ref().and_then(|raw| {
-        let image = picture(reader, names, raw)?;
+        let image = picture(reader, raw)?;
         Some(Arc::new(field(&image, |[r, g, b, _]| [r, g, b].map(|byte| f64::from(byte) / 255.0))))
     });
     let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw, draws));
-    if eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
+    if fields.eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
         let label = "`specular` is not zero, and nothing says from where it is seen";
         let help = "add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away";
         reader.push(finding("NB0391", opening.clone(), "a truth with highlights has no eye", label, help));
@@ -70,10 +65,7 @@ pub(super) fn truth<'a>(
         equation: equation?,
         normal: normal?,
         lights,
-        eye: match eye {
-            Some(eye) => Some(eye?),
-            None => None,
-        },
+        eye: eye?,
         material,
         hemisphere,
         occlusion,
@@ -111,10 +103,7 @@ fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::mesh::Mesh>
 
 fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Equation> {
     const KINDS: &[&str] = &["Lighting", "SignedProduct", "Difference", "DotProduct"];
-    let (kind, rest) = reader.variant(raw, "equation", KINDS)?;
-    if kind < 3 && !rest.is_empty() {
-        return reader.unknown_variant(raw, "equation", KINDS);
-    }
+    let (kind, rest) = reader.variant_of(raw, "equation", KINDS, 3)?;
     Some(match kind {
         0 => Equation::Lighting,
         1 => Equation::SignedProduct,
@@ -133,7 +122,7 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
 }
 
 /// What only light has a use for.
-fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &source::Truth<'a>, place: Range<usize>) {
+fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &source::Truth<'a>, place: Span) {
     if equation == Equation::Lighting {
         return;
     }
@@ -176,10 +165,10 @@ fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -
     reader.refuse(finding("NB0392", reader.span(raw), "the zero vector points nowhere", "has no direction", help))
 }
 
-fn light<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
+fn light<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
     let fields = reader.read(raw)?;
     let place = place(reader, raw.text, "light", &fields.position, &fields.direction);
-    let color = real_color(&fields.color(reader, names));
+    let color = real_color(&fields.color(reader));
     Some(Light { place: place?, color })
 }
 
@@ -188,17 +177,13 @@ fn eye<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TruthPlace<'a>>) -> Op
     place(reader, raw.text, "eye", &fields.position, &fields.direction).map(Eye)
 }
 
-fn material<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Option<Raw<'a, source::TruthMaterial<'a>>>,
-) -> Material {
+fn material<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::TruthMaterial<'a>>>) -> Material {
     let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     Material {
         exponent: fields.exponent(reader),
-        ambient: real_color(&fields.ambient(reader, names)),
-        diffuse: real_color(&fields.diffuse(reader, names)),
-        specular: real_color(&fields.specular(reader, names)),
+        ambient: real_color(&fields.ambient(reader)),
+        diffuse: real_color(&fields.diffuse(reader)),
+        specular: real_color(&fields.specular(reader)),
         model: fields.model(reader),
         self_shadowing: fields.self_shadowing(reader),
     }
@@ -208,7 +193,6 @@ type Occlusion = Option<Arc<Field<1>>>;
 
 fn hemisphere_light<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     raw: &Raw<'a, source::TruthHemisphere<'a>>,
 ) -> (Option<HemisphereLight>, Occlusion) {
     let Some(fields) = reader.read(raw) else { return (None, None) };
@@ -219,24 +203,23 @@ fn hemisphere_light<'a>(
     }
     let light = HemisphereLight {
         axis: wide([x, y, z]),
-        sky: real_color(&fields.sky(reader, names)),
-        ground: real_color(&fields.ground(reader, names)),
+        sky: real_color(&fields.sky(reader)),
+        ground: real_color(&fields.ground(reader)),
         integral: fields.integral(reader),
     };
     let occlusion = fields.occlusion.as_ref().and_then(|raw| {
-        let (height, options) = height_file(reader, names, raw)?;
+        let (height, options) = heights(reader, raw)?;
         let texels = occlusion::open_sky(&height, &options).into_iter().map(|open| [open]).collect();
         Some(Arc::new(Field { width: height.width, height: height.height, texels, wrap: options.wrap }))
     });
     (Some(light), occlusion)
 }
 
-fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::NormalSource>) -> Option<NormalSource> {
+fn normal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::NormalSource>) -> Option<NormalSource> {
     const KINDS: &[&str] = &["Mesh", "Radial", "Hemisphere", "Height", "NormalMap"];
-    let (kind, rest) = reader.variant(raw, "source of normals", KINDS)?;
+    let (kind, rest) = reader.variant_of(raw, "source of normals", KINDS, 1)?;
     match KINDS[kind] {
-        "Mesh" if rest.is_empty() => Some(NormalSource::Mesh),
-        "Mesh" => reader.unknown_variant(raw, "source of normals", KINDS),
+        "Mesh" => Some(NormalSource::Mesh),
         "Radial" => {
             let rest = if rest.is_empty() { "()" } else { rest };
             let [x, y, z, _] = reader.read(&Raw::<source::RadialNormals<'a>>::new(rest))?.center(reader);
@@ -244,14 +227,14 @@ fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
         }
         "Hemisphere" => hemisphere_normals(reader, if rest.is_empty() { "()" } else { rest }),
         "Height" => {
-            let (height, options) = height_file(reader, names, &Raw::new(rest))?;
+            let (height, options) = heights(reader, &Raw::new(rest))?;
             let texels = normal_map::normals(&height, &options);
             let field = Field { width: height.width, height: height.height, texels, wrap: options.wrap };
             Some(NormalSource::Map(Arc::new(field)))
         }
         _ => {
             let file = only::<String>(reader, rest, "the name of one file")?;
-            let image = picture(reader, names, &file)?;
+            let image = picture(reader, &file)?;
             Some(NormalSource::Map(Arc::new(field(&image, |[r, g, b, _]| normal_map::decode([r, g, b])))))
         }
     }
@@ -270,36 +253,25 @@ fn hemisphere_normals<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Norm
 }
 
 /// A height field, and how it is read.
-fn height_file<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::HeightFile<'a>>,
-) -> Option<(Rgba, normal_map::Options)> {
+fn heights<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::HeightFile<'a>>) -> Option<(Rgba, normal_map::Options)> {
     let fields = reader.read(raw)?;
     let file = fields.file(reader)?;
-    let image = picture(reader, names, &file)?;
+    let image = picture(reader, &file)?;
     let default = normal_map::Options::default();
     let scale = f64::from(fields.scale(reader));
-    let channel = match &fields.channel {
-        Some(raw) => match reader.variant(raw, "channel of heights", &["Red", "Alpha"])?.0 {
-            0 => HeightChannel::Red,
-            _ => HeightChannel::Alpha,
-        },
-        None => default.channel,
-    };
+    let channel = reader.choice(&fields.channel, "channel of heights", &["Red", "Alpha"])?;
+    let channel = [HeightChannel::Red, HeightChannel::Alpha][channel];
     Some((image, normal_map::Options { scale, channel, ..default }))
 }
 
 /// A picture in the scene's folder.
-fn picture<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Rgba> {
+fn picture<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Rgba> {
     let limits = ImageLimits {
         maximum_side: reader.limits.texture_side,
         maximum_decoded_bytes: reader.limits.texture_bytes,
         maximum_file_bytes: reader.limits.image_file_bytes,
     };
-    texture_source::read_file(reader, &names.folder, raw, limits.file(), |bytes, path| {
-        image::decode(bytes, path, &limits)
-    })
+    texture_source::read_file(reader, raw, limits.file(), |bytes, path| image::decode(bytes, path, &limits))
 }
 
 fn field<const N: usize>(image: &Rgba, of: impl Fn([u8; 4]) -> [f64; N]) -> Field<N> {
@@ -334,7 +306,8 @@ fn shading_normal<'a>(
 
 fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>>) -> Option<NormalHolder> {
     let register = reader.name(written)?;
-    if is_input(register) {
+    use Register::{PrimaryColor, SecondaryColor, Texture0, Texture1, Texture2, Texture3};
+    if matches!(register, Texture0 | Texture1 | Texture2 | Texture3 | PrimaryColor | SecondaryColor) {
         return Some(NormalHolder::Register(register));
     }
     let message = format!("{} holds no normals when a pixel begins", register.name());
@@ -343,17 +316,11 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
 }
 
 /// A unit whose dot product reads the normals, in any draw.
-fn normal_unit(reader: &mut Reader<'_>, place: Range<usize>, unit: usize, draws: &[Drawn]) -> Option<NormalHolder> {
+fn normal_unit(reader: &mut Reader<'_>, place: Span, unit: usize, draws: &[Drawn]) -> Option<NormalHolder> {
     if draws.iter().any(|drawn| drawn.draw.texture_shader[unit].operation.is_dot()) {
         return Some(NormalHolder::DotProduct(unit));
     }
     let message = format!("unit {unit} of the texture shader takes no dot product in any draw");
     let help = "name a unit whose operation is a dot product or a reflection, or write `register` for one that is read in the combiners";
     reader.refuse(finding("NB0393", place, message, "reads no vector", help))
-}
-
-/// Whether a register holds something that the vertices or a texture gave.
-fn is_input(register: Register) -> bool {
-    use Register::{PrimaryColor, SecondaryColor, Texture0, Texture1, Texture2, Texture3};
-    matches!(register, Texture0 | Texture1 | Texture2 | Texture3 | PrimaryColor | SecondaryColor)
 }

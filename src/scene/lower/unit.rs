@@ -1,7 +1,5 @@
 //! Texture units of a draw.
 
-use super::names::Names;
-use super::texture::Textures;
 use super::*;
 use ninebit::state::{AddressMode, ColorKey, Filter, ShaderStage, ShadowComparison, TEXTURE_UNITS, TextureUnit};
 
@@ -10,16 +8,11 @@ pub(super) struct Units {
     pub(super) bound: [Option<TextureUnit>; TEXTURE_UNITS],
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
     /// Where the names of their textures stand; empty for unbound units.
-    pub(super) places: [Range<usize>; TEXTURE_UNITS],
+    pub(super) places: [Span; TEXTURE_UNITS],
 }
 
 /// Reads the units of a draw. The place of each texture's name comes with it.
-pub(super) fn units<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    textures: &mut Textures,
-    raw: &Option<Raw<'a, source::List<'a, source::Unit>>>,
-) -> Units {
+pub(super) fn units<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::List<'a, source::Unit>>>) -> Units {
     let mut units = Units {
         bound: [None; TEXTURE_UNITS],
         shader: [0, 1, 2, 3].map(|index| ShaderStage::conventional(index, false)),
@@ -42,7 +35,7 @@ pub(super) fn units<'a>(
             reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
         }
         units.places[index] = place;
-        if let Some((unit, coordinate_set, place)) = unit(reader, names, textures, raw, index) {
+        if let Some((unit, coordinate_set, place)) = unit(reader, raw, index) {
             units.bound[index] = Some(unit);
             units.shader[index] = ShaderStage { coordinate_set, ..ShaderStage::conventional(index, true) };
             units.places[index] = place;
@@ -51,37 +44,26 @@ pub(super) fn units<'a>(
     units
 }
 
-fn unit<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    textures: &mut Textures,
-    raw: &Raw<'a, source::Unit>,
-    index: usize,
-) -> Option<(TextureUnit, usize, Range<usize>)> {
+fn unit<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Unit>, index: usize) -> Option<(TextureUnit, usize, Span)> {
     let mut unit = TextureUnit::new(0);
     if raw.is_text() {
-        unit.texture = textures.find(reader, &raw.as_other())?;
-        unit_texture::check(reader, textures, None, &mut unit, reader.span(raw));
+        unit.texture = texture::find(reader, &raw.as_other())?;
+        unit_texture::check(reader, None, &mut unit, reader.span(raw));
         return Some((unit, index, reader.span(raw)));
     }
     let fields = reader.read(&raw.as_other::<source::UnitState<'a>>())?;
     let texture = fields.texture(reader);
-    let found = texture.as_ref().and_then(|raw| textures.find(reader, raw));
+    let found = texture.as_ref().and_then(|raw| texture::find(reader, raw));
     let coordinate_set = fields.coordinates(reader).map_or(index, |set| set as usize);
     let both = fields.address(reader);
     let mut along = |field: &Option<_>| field.and_then(|raw| reader.name(&raw)).unwrap_or(both);
-    unit.address_s = along(&fields.address_s);
-    unit.address_t = along(&fields.address_t);
-    unit.address_r = along(&fields.address_r);
-    for (field, mode) in [
-        (&fields.address, both),
-        (&fields.address_s, unit.address_s),
-        (&fields.address_t, unit.address_t),
-        (&fields.address_r, unit.address_r),
-    ] {
+    let [s, t, r] = [&fields.address_s, &fields.address_t, &fields.address_r].map(&mut along);
+    (unit.address_s, unit.address_t, unit.address_r) = (s, t, r);
+    let modes = [(&fields.address, both), (&fields.address_s, s), (&fields.address_t, t), (&fields.address_r, r)];
+    for (field, mode) in modes {
         reader.needs_nv2a(field, mode == AddressMode::ClampToBorder, "NB0317", ("a border colour", "TEX-7"));
     }
-    unit.border_color = color::bytes(fields.border_color(reader, names));
+    unit.border_color = color::bytes(fields.border_color(reader));
     reader.needs_nv2a(&fields.border_color, true, "NB0317", ("a border colour", "TEX-7"));
     filters(reader, &fields, &mut unit);
     unit.signed = fields.signed(reader);
@@ -89,10 +71,10 @@ fn unit<'a>(
     reader.needs_nv2a(&fields.signed, signed, "NB0318", ("a signed texture channel", "TEX-18"));
     lod(reader, &fields, &mut unit);
     sampling(reader, &fields, &mut unit);
-    unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, names, raw, &unit));
+    unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, raw, &unit));
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
-    unit_texture::check(reader, textures, Some(&fields), &mut unit, place.clone());
+    unit_texture::check(reader, Some(&fields), &mut unit, place.clone());
     Some((unit, coordinate_set, place))
 }
 
@@ -121,12 +103,7 @@ fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut T
 }
 
 /// KEY-1: the key of a unit whose filters are known.
-fn color_key<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::ColorKey<'a>>,
-    unit: &TextureUnit,
-) -> Option<ColorKey> {
+fn color_key<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ColorKey<'a>>, unit: &TextureUnit) -> Option<ColorKey> {
     let fields = reader.read(raw)?;
     let color = fields.color(reader);
     let mode = fields.mode(reader);
@@ -135,7 +112,7 @@ fn color_key<'a>(
         let help = "write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did";
         reader.push(finding("NB0402", reader.span(raw), message, "cannot be modelled", help).rule("KEY-1"));
     }
-    let color = color.and_then(|raw| color::constant(reader, names, &raw));
+    let color = color.and_then(|raw| color::constant(reader, &raw));
     Some(ColorKey { mode: reader.name(&mode?)?, color: color? })
 }
 

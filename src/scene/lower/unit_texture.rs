@@ -1,6 +1,5 @@
 //! What a unit may do depends on the texture that it samples.
 
-use super::texture::Textures;
 use super::*;
 use ninebit::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit};
 
@@ -8,21 +7,21 @@ use ninebit::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit
 /// stands at `place`.
 pub(super) fn check<'a>(
     reader: &mut Reader<'a>,
-    textures: &mut Textures,
     fields: Option<&source::UnitState<'a>>,
     unit: &mut TextureUnit,
-    place: Range<usize>,
+    place: Span,
 ) {
-    let texture = &textures.list[unit.texture];
+    let texture = &reader.textures.list[unit.texture];
     let (kind, format) = (texture.kind, texture.format);
     let raw = fields.and_then(|fields| fields.palette.as_ref());
     if format == TextureFormat::P8 {
         unit.palette = match raw {
-            Some(raw) => textures.palettes.index.find(reader, raw),
-            None => textures.palette_of[unit.texture],
+            Some(raw) => palette::find(reader, raw),
+            None => reader.textures.palette_of[unit.texture],
         };
         if unit.palette.is_none() && raw.is_none() {
-            let message = format!("the texture `{}` is of format P8 and has no palette", shorten(&texture.name));
+            let name = shorten(&reader.textures.list[unit.texture].name);
+            let message = format!("the texture `{name}` is of format P8 and has no palette");
             let help = "write `palette: \"...\"` in the texture or in this unit";
             reader.push(finding("NB0234", place.clone(), message, "which colours?", help).rule("TEX-1"));
         }

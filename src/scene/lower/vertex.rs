@@ -1,12 +1,11 @@
 //! Lists of vertices as written.
 
-use super::names::Names;
 use super::*;
 use crate::raw::Numbers;
 use ninebit::state::{Vertex, Vertices};
 
 /// Vertices and where each stands.
-pub(super) struct VertexData {
+pub(crate) struct VertexData {
     pub(super) vertices: Vertices,
     /// What they bring for generated coordinates and fog: normal and fog coordinate.
     pub(super) extras: Vec<Extra>,
@@ -29,11 +28,7 @@ impl Default for Extra {
 }
 
 /// Reads a list of vertices. Findings do not end it: the list keeps its length, so that indices can be checked.
-pub(super) fn list<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::VertexList>,
-) -> Option<VertexData> {
+pub(super) fn list<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::VertexList>) -> Option<VertexData> {
     let list = reader.read(&raw.as_other::<source::List<'a, source::Vertex<'a>>>())?;
     if list.len() > reader.limits.vertices {
         return reader.refuse(too_many(reader.span(raw), list.len(), reader.limits.vertices));
@@ -42,7 +37,7 @@ pub(super) fn list<'a>(
     let mut extras = Vec::with_capacity(list.len());
     let mut spans = Vec::with_capacity(list.len());
     for raw in &list {
-        let (vertex, extra) = vertex(reader, names, raw).unwrap_or_default();
+        let (vertex, extra) = vertex(reader, raw).unwrap_or_default();
         vertices.push(vertex);
         extras.push(extra);
         spans.push(reader.span(raw));
@@ -51,17 +46,13 @@ pub(super) fn list<'a>(
 }
 
 /// The finding that the scene has more vertices than it may.
-pub(super) fn too_many(place: Range<usize>, count: usize, limit: usize) -> Diagnostic {
+pub(super) fn too_many(place: Span, count: usize, limit: usize) -> Diagnostic {
     Diagnostic::error("NB0603", place, format!("{count} vertices are more than the {limit} that a scene may have"))
         .label("too many")
         .help("use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed")
 }
 
-fn vertex<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Vertex<'a>>,
-) -> Option<(Vertex, Extra)> {
+fn vertex<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Option<(Vertex, Extra)> {
     let fields = source::Vertex { opening: raw.text, ..reader.read(raw)? };
     let mut vertex = Vertex::default();
     if let Some(position) = fields.position(reader)
@@ -69,8 +60,8 @@ fn vertex<'a>(
     {
         vertex.position = values;
     }
-    vertex.diffuse = fields.diffuse(reader, names);
-    vertex.specular = fields.specular(reader, names);
+    vertex.diffuse = fields.diffuse(reader);
+    vertex.specular = fields.specular(reader);
     vertex.fog = fields.fog(reader);
     let fog_coordinate = fields.fog_coordinate(reader);
     let [x, y, z, _] = fields.normal(reader);

@@ -4,49 +4,39 @@
 mod constants;
 mod inputs;
 
-use super::geometry::{Geometry, Objects, one_of_vertices_and_mesh, viewport};
-use super::names::Names;
+use super::geometry::{Geometry, Given, Objects, viewport};
 use super::program_text::ProgramText;
-use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
-use inputs::{Given, Input};
+use inputs::Input;
 use ninebit::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use ninebit_program::c_source::Style;
 use ninebit_program::vertex_shader::{self, Written, print};
 
 /// Runs the program over the vertices. `None` once the reason that it cannot be run has been recorded.
-pub(super) fn geometry<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    target: usize,
-    text: &'a str,
-) -> Option<Geometry> {
+pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
-    let mut viewport = viewport(reader, &fields.viewport, targets, target);
-    if clip_depth(reader, &fields.clip_depth) {
+    let mut viewport = viewport(reader, &fields.viewport, target);
+    if reader.choice(&fields.clip_depth, "range of depths in clip space", &["MinusOneToOne", "ZeroToOne"]) == Some(1) {
         depth_from_zero(&mut viewport);
     }
-    let given = given(reader, names, &fields, opening.clone());
-    let program = program(reader, names, &fields, opening);
-    let constants = constants::constants(reader, names, &fields.constants, program.as_ref());
+    let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
+    let program = program(reader, &fields, opening);
+    let constants = constants::constants(reader, &fields.constants, program.as_ref());
     let (given, (written, text)) = (given?, program?);
-    let sources = inputs::sources(reader, names, &fields.inputs, &given, (&written, &text));
+    let sources = inputs::sources(reader, &fields.inputs, &given, (&written, &text));
     if reader.errors > 0 {
         // The scene is refused anyway: a program over a large mesh is not run for nothing, draw after draw.
         return None;
     }
-    let spans = given.spans.clone();
     let (vertices, fog_coordinates) = run(reader, &written.shader, &constants, &sources, &given)?;
     Some(Geometry {
         positions: Positions::Clip(viewport),
         vertices,
-        spans,
-        triangles: given.mesh.as_ref().map(|mesh| Arc::clone(&mesh.indices)),
-        mesh: given.mesh,
+        spans: given.spans(),
+        mesh: given.mesh().cloned(),
         objects: Objects::Program(fog_coordinates),
         model_view: matrix::IDENTITY,
         program: Some(origin(&written.shader)),
@@ -63,12 +53,6 @@ fn origin(shader: &VertexShader) -> VertexProgram {
     }
 }
 
-/// Whether clip space begins at depth 0.
-fn clip_depth<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> bool {
-    let Some(raw) = raw else { return false };
-    reader.variant(raw, "range of depths in clip space", &["MinusOneToOne", "ZeroToOne"]).is_some_and(|(n, _)| n == 1)
-}
-
 /// A viewport that maps depth 0 of normalised coordinates to `near`: it begins as far before that as it ends behind it.
 fn depth_from_zero(viewport: &mut Viewport) {
     viewport.near = 2.0 * viewport.near - viewport.far;
@@ -77,13 +61,12 @@ fn depth_from_zero(viewport: &mut Viewport) {
 
 fn program<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     fields: &source::ProgramVertices<'a>,
-    opening: Range<usize>,
+    opening: Span,
 ) -> Option<(Written, ProgramText)> {
     let text = match (&fields.text, &fields.file) {
         (Some(raw), None) => ProgramText::inline(reader, raw)?,
-        (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
+        (None, Some(raw)) => ProgramText::file(reader, raw)?,
         (Some(first), Some(second)) => {
             let (first, second) = (reader.span(first), reader.span(second));
             let message = "the vertex program is given twice";
@@ -102,26 +85,6 @@ fn program<'a>(
     Some((written, text))
 }
 
-/// The vertices that the program takes.
-fn given<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    fields: &source::ProgramVertices<'a>,
-    opening: Range<usize>,
-) -> Option<Given> {
-    match (&fields.vertices, &fields.mesh) {
-        (Some(raw), None) => {
-            let data = names.vertices(reader, raw)?;
-            Some(Given { spans: data.spans.clone(), listed: Some(data), mesh: None })
-        }
-        (None, Some(raw)) => {
-            let mesh = names.mesh(reader, raw)?;
-            Some(Given { spans: VertexSpans::All(reader.span(raw)), listed: None, mesh: Some(mesh) })
-        }
-        (both, _) => reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening)),
-    }
-}
-
 /// VTX-3: the vertices that come out, and the fog coordinate of each.
 fn run(
     reader: &mut Reader<'_>,
@@ -131,16 +94,15 @@ fn run(
     given: &Given,
 ) -> Option<(Vertices, Vec<f32>)> {
     let written = Registers::of(shader);
-    let count = given.count();
-    let mut fog_coordinates = Vec::with_capacity(count);
-    let vertices = (0..count).map(|index| {
+    let mut fog_coordinates = Vec::with_capacity(given.count());
+    let vertices = (0..given.count()).map(|index| {
         let mut registers: Inputs = [[0.0; 4]; ninebit::vertex::shader::INPUTS];
         for (register, source) in registers.iter_mut().zip(sources) {
             *register = inputs::value(source, given, index);
         }
         let outputs = evaluate(shader, constants, &registers);
         if let Some(what) = written.not_finite(&outputs) {
-            let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone(), ..DrawSpans::default() };
+            let spans = DrawSpans { draw: 0..0, vertices: given.spans(), ..DrawSpans::default() };
             let message = format!("{what} of vertex {index} is not finite");
             let label = "what the vertex program makes of it";
             let help = "look for rcp or rsq of 0, log of 0, and numbers too large";

@@ -1,7 +1,7 @@
 //! Tori and cylinders.
 #![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
-use super::{Mesh, MeshError, at_least, cells, circle, with_room};
+use super::{Mesh, MeshError, across, at_least, cells, circle, narrow, with_room};
 
 /// A torus about the y axis: `slices` around it, `sides` around its tube, whose middle is `radius` from the axis and which is `tube`
 /// thick, from its middle.
@@ -20,13 +20,11 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
         for slice in 0..=slices {
             let [sin_azimuth, cos_azimuth] = circle(slice, slices);
             let out = radius + tube * sin_side;
-            mesh.positions.push([out * sin_azimuth, tube * cos_side, out * cos_azimuth].map(|c| c as f32));
-            mesh.normals.push([sin_side * sin_azimuth, cos_side, sin_side * cos_azimuth].map(|n| n as f32));
-            mesh.tangents.push([cos_azimuth as f32, 0.0, -sin_azimuth as f32]);
-            mesh.binormals.push([-cos_side * sin_azimuth, sin_side, -cos_side * cos_azimuth].map(|b| b as f32));
-            let s = slice as f32 / slices as f32 * repeat[0];
-            let t = side as f32 / sides as f32 * repeat[1];
-            mesh.texture_coordinates.push([s, t]);
+            let normal = [sin_side * sin_azimuth, cos_side, sin_side * cos_azimuth];
+            let binormal = [-cos_side * sin_azimuth, sin_side, -cos_side * cos_azimuth];
+            let basis = [[cos_azimuth, 0.0, -sin_azimuth], binormal, normal].map(narrow);
+            let position = narrow([out * sin_azimuth, tube * cos_side, out * cos_azimuth]);
+            mesh.push(position, basis, across([slice, side], [slices, sides], repeat));
         }
     }
     mesh.indices = cells(slices, sides).collect();
@@ -56,13 +54,9 @@ pub fn cylinder(
         let y = (stacks as f32 - 2.0 * stack as f32) / (2.0 * stacks as f32) * height;
         for slice in 0..=slices {
             let [sin_azimuth, cos_azimuth] = circle(slice, slices).map(|c| c as f32);
-            mesh.positions.push([radius * sin_azimuth, y, radius * cos_azimuth]);
-            mesh.normals.push([sin_azimuth, 0.0, cos_azimuth]);
-            mesh.tangents.push([cos_azimuth, 0.0, -sin_azimuth]);
-            mesh.binormals.push([0.0, 1.0, 0.0]);
-            let s = slice as f32 / slices as f32 * repeat[0];
-            let t = stack as f32 / stacks as f32 * repeat[1];
-            mesh.texture_coordinates.push([s, t]);
+            let basis = [[cos_azimuth, 0.0, -sin_azimuth], [0.0, 1.0, 0.0], [sin_azimuth, 0.0, cos_azimuth]];
+            let position = [radius * sin_azimuth, y, radius * cos_azimuth];
+            mesh.push(position, basis, across([slice, stack], [slices, stacks], repeat));
         }
     }
     let mut indices: Vec<u32> = cells(slices, stacks).collect();
@@ -79,11 +73,8 @@ fn disc(mesh: &mut Mesh, slices: u32, radius: f32, y: f32, up: f32) -> impl Iter
     // Its middle, then its rim.
     for at in 0..=slices {
         let [x, z] = if at == 0 { [0.0; 2] } else { circle(at - 1, slices).map(|c| c as f32) };
-        mesh.positions.push([radius * x, y, radius * z]);
-        mesh.normals.push([0.0, up, 0.0]);
-        mesh.tangents.push([1.0, 0.0, 0.0]);
-        mesh.binormals.push([0.0, 0.0, -up]);
-        mesh.texture_coordinates.push([0.5 + 0.5 * x, 0.5 + 0.5 * up * z]);
+        let basis = [[1.0, 0.0, 0.0], [0.0, 0.0, -up], [0.0, up, 0.0]];
+        mesh.push([radius * x, y, radius * z], basis, [0.5 + 0.5 * x, 0.5 + 0.5 * up * z]);
     }
     (0..slices).flat_map(move |slice| {
         let (here, next) = (first + 1 + slice, first + 1 + (slice + 1) % slices);
@@ -130,13 +121,7 @@ mod tests {
         for mesh in
             [torus(24, 16, 2.0, 0.5, [1.0; 2]), cylinder(24, 2, 1.0, 2.0, true, [1.0; 2])].map(|m| m.expect("mesh"))
         {
-            let surface = super::super::Surface {
-                positions: mesh.positions.clone(),
-                normals: mesh.normals.clone(),
-                texture_coordinates: mesh.texture_coordinates.clone(),
-                indices: mesh.indices.to_vec(),
-            };
-            let found = super::super::tangent::mesh(&surface);
+            let found = super::super::tangent::tests::again(&mesh);
             for (a, b) in mesh.tangents.iter().chain(&mesh.binormals).zip(found.tangents.iter().chain(&found.binormals))
             {
                 let product: f32 = (0..3).map(|k| a[k] * b[k]).sum();

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::Mesh;
+use super::{Mesh, narrow};
 use crate::vector::{Vector, cross, dot, minus, scaled, unit, wide};
 
 /// Vertices and triangles without tangents.
@@ -101,11 +101,7 @@ pub fn mesh(surface: &Surface) -> Mesh {
         let normal = normals[vertex];
         let sum = sums.get(&key(vertex, mirrored)).copied().unwrap_or_default();
         let (tangent, binormal) = basis(wide(normal), sum, mirrored);
-        mesh.positions.push(surface.positions[vertex]);
-        mesh.normals.push(normal);
-        mesh.tangents.push(tangent);
-        mesh.binormals.push(binormal);
-        mesh.texture_coordinates.push(surface.texture_coordinates[vertex]);
+        mesh.push(surface.positions[vertex], [tangent, binormal, normal], surface.texture_coordinates[vertex]);
     }
     mesh
 }
@@ -169,20 +165,26 @@ fn basis(normal: Vector, sum: Vector, mirrored: bool) -> ([f32; 3], [f32; 3]) {
     let tangent = tangent.unwrap_or([1.0, 0.0, 0.0]);
     let binormal = cross(normal, tangent);
     let binormal = if mirrored { scaled(binormal, -1.0) } else { binormal };
-    (tangent.map(|c| c as f32), binormal.map(|c| c as f32))
+    (narrow(tangent), narrow(binormal))
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn near(a: [f32; 3], b: [f32; 3]) -> bool {
-        (0..3).all(|k| (a[k] - b[k]).abs() < 1e-5)
+    /// A mesh with the bases that are found for it.
+    pub(in crate::mesh) fn again(mesh: &Mesh) -> Mesh {
+        super::mesh(&Surface {
+            positions: mesh.positions.clone(),
+            normals: mesh.normals.clone(),
+            texture_coordinates: mesh.texture_coordinates.clone(),
+            indices: mesh.indices.to_vec(),
+        })
     }
 
-    fn narrow(v: Vector) -> [f32; 3] {
-        v.map(|c| c as f32)
+    fn near(a: [f32; 3], b: [f32; 3]) -> bool {
+        (0..3).all(|k| (a[k] - b[k]).abs() < 1e-5)
     }
 
     fn vector() -> impl Strategy<Value = [f32; 3]> {
@@ -341,13 +343,7 @@ mod tests {
     #[test]
     fn generated_spheres_agree() {
         let sphere = super::super::sphere(24, 12, 2.0, [2.0, 1.0]).expect("mesh");
-        let surface = Surface {
-            positions: sphere.positions.clone(),
-            normals: sphere.normals.clone(),
-            texture_coordinates: sphere.texture_coordinates.clone(),
-            indices: sphere.indices.to_vec(),
-        };
-        let mesh = mesh(&surface);
+        let mesh = again(&sphere);
         assert_eq!(mesh.positions.len(), sphere.positions.len());
         for vertex in 0..mesh.positions.len() {
             // Poles have a fan of their own.

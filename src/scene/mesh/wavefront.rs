@@ -81,8 +81,7 @@ impl<'t> File<'t> {
         for face in self.named("f") {
             indices += 3 * corners(face).saturating_sub(2).max(1);
             if indices > limit {
-                let message = format!("more than {limit} indices in a mesh");
-                return Err(Box::new(self.too_many("NB0609", face, message)));
+                return Err(Box::new(self.too_many("NB0609", face, format!("more than {limit} indices in a mesh"))));
             }
         }
         Ok(())

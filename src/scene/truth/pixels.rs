@@ -65,8 +65,7 @@ pub fn evaluate_with_normals(
 
 fn frame(plan: &Plan, truth: &Truth, target: usize, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
     let (width, height) = (plan.targets[target].width, plan.targets[target].height);
-    let seen = seen(plan, truth, target);
-    let pixels = seen.into_iter().enumerate().map(|(at, place)| {
+    let pixels = seen(plan, truth, target).into_iter().enumerate().map(|(at, place)| {
         let (draw, triangle) = place?;
         let planned = &plan.draws[draw];
         let mesh = truth.meshes.get(draw)?.as_ref()?;

@@ -1,13 +1,27 @@
 //! What tests of printed text are told, and the random things that they begin with.
 
+use std::path::Path;
+use std::process::Command;
+
 use ninebit::random::Random;
-use ninebit::state::{POLICIES, Policies};
+use ninebit::state::{POLICIES, Policies, Register};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 /// The number that a variable of the environment holds.
 pub fn setting(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is no number: {text}")))
 }
+
+/// The registers that a pixel brings.
+pub const GIVEN: [Register; 7] = [
+    Register::PrimaryColor,
+    Register::SecondaryColor,
+    Register::Fog,
+    Register::Texture0,
+    Register::Texture1,
+    Register::Texture2,
+    Register::Texture3,
+];
 
 /// Any policies: each of its alternatives as often as the others.
 pub fn any_policies(random: &mut Random) -> Policies {
@@ -21,13 +35,38 @@ pub fn any_policies(random: &mut Random) -> Policies {
 
 /// What random programs and scenes are drawn with; the same ones for the same seed.
 pub fn runner(seed: u64) -> TestRunner {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed as u8; 32]);
-    TestRunner::new_with_rng(Config::default(), rng)
+    TestRunner::new_with_rng(Config::default(), TestRng::from_seed(RngAlgorithm::ChaCha, &[seed as u8; 32]))
 }
 
 /// Whether a command succeeds.
 pub fn works(program: &str, arguments: &[&str]) -> bool {
-    std::process::Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
+    Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
+}
+
+/// Runs a command that has to succeed, in a folder.
+///
+/// # Errors
+/// What it says.
+pub fn run(command: &mut Command, folder: &Path) -> Result<(), String> {
+    let output = command.current_dir(folder).output().map_err(|error| format!("{command:?}: {error}"))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    Err(format!("{command:?}:\n{}", text.chars().take(4000).collect::<String>()))
+}
+
+/// The words as a file has them.
+pub fn bytes(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// A command of Python that runs a script of the tests, which draws in software.
+pub fn drawing(script: &str) -> Command {
+    let mut command = Command::new(python());
+    command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe").env("WGPU_BACKEND_TYPE", "Vulkan");
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools").join(script));
+    command
 }
 
 /// The Python that has `moderngl`, `wgpu` and `numpy`.

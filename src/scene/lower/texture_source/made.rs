@@ -11,47 +11,35 @@ pub(super) struct Picture {
     pub(super) height: u32,
     pub(super) pixels: Vec<[u8; 4]>,
     /// Where its sides are written.
-    pub(super) place: Range<usize>,
+    pub(super) place: Span,
 }
 
 /// `Solid(...)`, `Checker(...)` or `Ramp(...)`.
-pub(super) fn picture<'a>(
-    sources: &mut Sources<'_, 'a>,
-    reader: &mut Reader<'a>,
-    variant: Variant,
-    text: &'a str,
-    request: &Request,
-) -> Option<Picture> {
-    let names = sources.names;
-    let ((width, height, place), pixel): ((u32, u32, Range<usize>), PixelAt) = match variant {
+pub(super) fn picture<'a>(reader: &mut Reader<'a>, kind: Variant, text: &'a str, request: &Request) -> Option<Picture> {
+    let ((width, height, place), pixel): ((u32, u32, Span), PixelAt) = match kind {
         Variant::Solid => {
             let fields = reader.read(&Raw::<source::SolidImage<'a>>::new(text))?;
             let sides = (fields.width(reader), fields.height(reader));
-            let sides = sources.sides(reader, sides, request)?;
-            let color = fields.color(reader).and_then(|raw| color::constant(reader, names, &raw))?;
+            let sides = self::sides(reader, sides, request)?;
+            let color = fields.color(reader).and_then(|raw| color::constant(reader, &raw))?;
             (sides, Box::new(move |_, _| color))
         }
         Variant::Checker => {
             let fields = reader.read(&Raw::<source::CheckerImage<'a>>::new(text))?;
             let sides = (fields.width(reader), fields.height(reader));
-            let sides = sources.sides(reader, sides, request)?;
+            let sides = self::sides(reader, sides, request)?;
             let cell = fields.cell(reader);
-            let [first, second] = match &fields.colors {
-                Some(raw) => color::constants(reader, names, raw),
-                None => [[255; 4], [0, 0, 0, 255]],
-            };
+            let colors = fields.colors.as_ref().map(|raw| color::constants(reader, raw));
+            let [first, second] = colors.unwrap_or([[255; 4], [0, 0, 0, 255]]);
             (sides, Box::new(move |x, y| if (x / cell + y / cell) % 2 == 0 { first } else { second }))
         }
         _ => {
             let fields = reader.read(&Raw::<source::RampImage<'a>>::new(text))?;
             let sides = (fields.width(reader), fields.height(reader));
-            let sides = sources.sides(reader, sides, request)?;
-            let from = fields.from(reader).and_then(|raw| color::constant(reader, names, &raw));
-            let to = fields.to(reader).and_then(|raw| color::constant(reader, names, &raw));
-            let vertical = match &fields.axis {
-                Some(raw) => reader.variant(raw, "axis", &["Horizontal", "Vertical"])?.0 == 1,
-                None => false,
-            };
+            let sides = self::sides(reader, sides, request)?;
+            let from = fields.from(reader).and_then(|raw| color::constant(reader, &raw));
+            let to = fields.to(reader).and_then(|raw| color::constant(reader, &raw));
+            let vertical = reader.choice(&fields.axis, "axis", &["Horizontal", "Vertical"])? == 1;
             let (from, to, last) = (from?, to?, if vertical { sides.1 - 1 } else { sides.0 - 1 });
             let mix = move |a: u8, b: u8, at: u32| match last {
                 0 => a,
@@ -64,7 +52,7 @@ pub(super) fn picture<'a>(
             (sides, Box::new(pixel))
         }
     };
-    sources.afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
+    afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
     let mut pixels = Vec::with_capacity(width as usize * height as usize);
     for y in 0..height {
         pixels.extend((0..width).map(|x| pixel(x, y)));

@@ -4,91 +4,79 @@ use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
 use ninebit::limits::FileLimit;
 use ninebit::state::Level;
+use std::path::Path;
 
-impl<'a> Sources<'_, 'a> {
-    /// A picture, or a DDS file with its levels and faces.
-    pub(super) fn file(
-        &mut self,
-        reader: &mut Reader<'a>,
-        text: &'a str,
-        request: &Request,
-        source: Range<usize>,
-    ) -> Option<Given> {
-        let raw = only::<String>(reader, text, "the name of one file")?;
-        let limits = ImageLimits {
-            maximum_side: reader.limits.texture_side + texture_levels::beyond(request.border),
-            maximum_decoded_bytes: self.left,
-            maximum_file_bytes: reader.limits.image_file_bytes,
-        };
-        let contents =
-            read_file(reader, self.folder, &raw, limits.file(), |bytes, path| image::contents(bytes, path, &limits))?;
-        let place = reader.span(&raw);
-        let dds = match contents {
-            Contents::Picture(image) => {
-                self.afford(reader, place.clone(), image.pixels.len() as u64)?;
-                let format = packable(reader, request, place)?;
-                let words = texels::pack(&image.pixels, format);
-                return Some(one(format, image.width, image.height, words, source));
-            }
-            Contents::Texture(dds) => dds,
-        };
-        self.afford(reader, place.clone(), dds.words.len() as u64)?;
-        let format = request.format.unwrap_or(dds.format);
-        let Some(words) = dds.words_as(format) else {
-            let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
-            let help = format!("leave `format` out, which means {} here", dds.format.name());
-            return reader.refuse(finding("NB0232", place, message, "of another format", help));
-        };
-        let faces = if dds.cube { CUBE_FACES } else { dds.layers.unwrap_or(1) };
-        let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
-        let palette = dds.palette.filter(|_| format == TextureFormat::P8);
-        let volume = dds.layers.is_some();
-        Some(Given { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
-    }
-
-    /// Texels as they lie in memory.
-    pub(super) fn memory(&mut self, reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
-        let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
-        let file = fields.file(reader)?;
-        let sides = (fields.width(reader), fields.height(reader));
-        let (width, height, place) = self.sides(reader, sides, request)?;
-        let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
-        let beyond = texture_levels::beyond(request.border);
-        let inside = [width.saturating_sub(beyond).max(1), height.saturating_sub(beyond).max(1)];
-        let levels = texture_levels::number(reader, request.levels, inside, place.clone())?;
-        let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
-        let layers = fields.layers(reader).or(request.volume.then_some(1));
-        let pictures = layers.unwrap_or(request.faces);
-        let words = u64::from(pictures) * face as u64;
-        self.afford(reader, place.clone(), words)?;
-        let limit = reader.limits.image_file();
-        let bytes = read_file(reader, self.folder, &file, limit, |bytes, _| Ok(bytes.to_vec()))?;
-        let expected = words * u64::from(format.bytes().min(4));
-        if bytes.len() as u64 != expected {
-            let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
-            let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
-            return reader.refuse(
-                Diagnostic::error("NB0235", reader.span(&file), message)
-                    .label("another length")
-                    .note(format!(
-                        "{} of {} of {width} x {height} texels {}, one after another",
-                        counted(pictures, if layers.is_some() { "layer" } else { "face" }),
-                        counted(levels, "level"),
-                        format.name()
-                    ))
-                    .help("check `width`, `height`, `format`, `kind` and `levels`"),
-            );
+/// A picture, or a DDS file with its levels and faces.
+pub(super) fn file<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, source: Span) -> Option<Given> {
+    let raw = only::<String>(reader, text, "the name of one file")?;
+    let limits = ImageLimits {
+        maximum_side: reader.limits.texture_side + texture_levels::beyond(request.border),
+        maximum_decoded_bytes: reader.textures.left,
+        maximum_file_bytes: reader.limits.image_file_bytes,
+    };
+    let contents = read_file(reader, &raw, limits.file(), |bytes, path| image::contents(bytes, path, &limits))?;
+    let place = reader.span(&raw);
+    let dds = match contents {
+        Contents::Picture(image) => {
+            afford(reader, place.clone(), image.pixels.len() as u64)?;
+            let format = packable(reader, request, place)?;
+            return Some(one(format, image.width, image.height, texels::pack(&image.pixels, format), source));
         }
-        let words = texels::from_bytes(&bytes, format);
-        let faces = divide(words, format, inside, pictures, levels, request.border);
-        Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
+        Contents::Texture(dds) => dds,
+    };
+    afford(reader, place.clone(), dds.words.len() as u64)?;
+    let format = request.format.unwrap_or(dds.format);
+    let Some(words) = dds.words_as(format) else {
+        let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
+        let help = format!("leave `format` out, which means {} here", dds.format.name());
+        return reader.refuse(finding("NB0232", place, message, "of another format", help));
+    };
+    let faces = if dds.cube { CUBE_FACES } else { dds.layers.unwrap_or(1) };
+    let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
+    let palette = dds.palette.filter(|_| format == TextureFormat::P8);
+    let volume = dds.layers.is_some();
+    Some(Given { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
+}
+
+/// Texels as they lie in memory.
+pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+    let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
+    let file = fields.file(reader)?;
+    let sides = (fields.width(reader), fields.height(reader));
+    let (width, height, place) = self::sides(reader, sides, request)?;
+    let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
+    let beyond = texture_levels::beyond(request.border);
+    let inside = [width.saturating_sub(beyond).max(1), height.saturating_sub(beyond).max(1)];
+    let levels = texture_levels::number(reader, request.levels, inside, place.clone())?;
+    let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
+    let layers = fields.layers(reader).or(request.volume.then_some(1));
+    let pictures = layers.unwrap_or(request.faces);
+    let words = u64::from(pictures) * face as u64;
+    afford(reader, place.clone(), words)?;
+    let bytes = read_file(reader, &file, reader.limits.image_file(), |bytes, _| Ok(bytes.to_vec()))?;
+    let expected = words * u64::from(format.bytes().min(4));
+    if bytes.len() as u64 != expected {
+        let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
+        let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
+        return reader.refuse(
+            Diagnostic::error("NB0235", reader.span(&file), message)
+                .label("another length")
+                .note(format!(
+                    "{} of {} of {width} x {height} texels {}, one after another",
+                    counted(pictures, if layers.is_some() { "layer" } else { "face" }),
+                    counted(levels, "level"),
+                    format.name()
+                ))
+                .help("check `width`, `height`, `format`, `kind` and `levels`"),
+        );
     }
+    let faces = divide(texels::from_bytes(&bytes, format), format, inside, pictures, levels, request.border);
+    Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
 }
 
 /// Finds the file of that name and does something with it.
 pub(in crate::lower) fn read_file<'a, T>(
     reader: &mut Reader<'a>,
-    folder: &Path,
     raw: &Raw<'a, String>,
     limit: FileLimit,
     decode: impl FnOnce(&[u8], &Path) -> Result<T, ImageError>,
@@ -96,20 +84,17 @@ pub(in crate::lower) fn read_file<'a, T>(
     let name = reader.read(raw)?;
     let place = reader.span(raw);
     let assets = reader.assets;
-    let path = match assets.resolve(folder, &name) {
+    let refuse = |code, message: String, help| Diagnostic::error(code, place, message).label("this file").help(help);
+    let path = match assets.resolve(reader.folder, &name) {
         Ok(path) => path,
-        Err(error) => {
-            reader
-                .push(Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()));
-            return None;
-        }
+        Err(error) => return reader.refuse(refuse(error.code(), error.to_string(), error.help())),
     };
     match image::read(assets, &path, limit).and_then(|bytes| decode(&bytes, &path)) {
         Ok(contents) => Some(contents),
         Err(error) => {
             // The name as the scene has it: where the folder lies does not matter here.
             let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
-            reader.refuse(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()))
+            reader.refuse(refuse(error.code(), message, error.help()))
         }
     }
 }

@@ -4,6 +4,11 @@ use super::*;
 use crate::raw::{Entries, Numbers, Tuple};
 use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
+/// A program with its text.
+type Program = (Written, ProgramText);
+/// Constants of the scene: where they stand, the first register, how many.
+type Entry = (Span, usize, usize);
+
 /// A constant's value as the scene gives it: one register or the four rows of a matrix.
 enum Value {
     Vector([f32; 4]),
@@ -13,13 +18,12 @@ enum Value {
 /// Reads the constants, puts the program's own beside them, and compares with what it reads.
 pub(super) fn constants<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     raw: &Option<Raw<'a, Entries<'a, source::ShaderConstant>>>,
-    program: Option<&(Written, ProgramText)>,
+    program: Option<&Program>,
 ) -> Constants {
     let mut constants: Constants = [[0.0; 4]; CONSTANTS];
-    let mut given: Vec<Option<Range<usize>>> = vec![None; CONSTANTS];
-    let mut entries: Vec<(Range<usize>, usize, usize)> = Vec::new();
+    let mut given: Vec<Option<Span>> = vec![None; CONSTANTS];
+    let mut entries: Vec<Entry> = Vec::new();
     if let Some((written, text)) = program {
         for ((index, values), place) in written.shader.definitions.iter().zip(&written.definitions) {
             constants[*index] = *values;
@@ -34,7 +38,7 @@ pub(super) fn constants<'a>(
             reader.push(finding("NB0204", place, message, "not known", help));
             continue;
         };
-        let Some(value) = value(reader, names, &raw) else { continue };
+        let Some(value) = value(reader, &raw) else { continue };
         let rows = match &value {
             Value::Vector(vector) => std::slice::from_ref(vector),
             Value::Rows(rows) => &rows[..],
@@ -66,12 +70,7 @@ pub(super) fn constants<'a>(
 }
 
 /// Constants that are read have a value, and those that have one are read.
-fn compare(
-    reader: &mut Reader<'_>,
-    (written, text): &(Written, ProgramText),
-    given: &[Option<Range<usize>>],
-    entries: &[(Range<usize>, usize, usize)],
-) {
+fn compare(reader: &mut Reader<'_>, (written, text): &Program, given: &[Option<Span>], entries: &[Entry]) {
     let (read, any) = written.constants_read();
     let unread: Vec<_> =
         entries.iter().filter(|(_, first, count)| read[*first..first + count].iter().all(Option::is_none)).collect();
@@ -97,8 +96,7 @@ fn compare(
         } else {
             format!("nothing reads {}: is that the number that is meant?", given.join(", "))
         };
-        let message = format!("{name} {verb} no value");
-        reader.push(text.place(finding("NB0387", place, message, "read here", help)));
+        reader.push(text.place(finding("NB0387", place, format!("{name} {verb} no value"), "read here", help)));
     }
     for (place, first, _) in unread {
         let message = format!("the constant c{first} is not used");
@@ -108,11 +106,7 @@ fn compare(
 }
 
 /// Matrices of the scene that the program reads from another row than the first, or as vectors.
-fn meanings(
-    reader: &mut Reader<'_>,
-    (written, text): &(Written, ProgramText),
-    entries: &[(Range<usize>, usize, usize)],
-) {
+fn meanings(reader: &mut Reader<'_>, (written, text): &Program, entries: &[Entry]) {
     let matrices: Vec<_> = entries.iter().filter(|(_, _, count)| *count > 1).collect();
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
         for (n, source) in instruction.sources.iter().enumerate() {
@@ -120,8 +114,7 @@ fn meanings(
             let word = instruction.opcode.word();
             let rows = instruction.opcode.matrix().filter(|_| n == 1).map(|(rows, _)| rows);
             let read = index..index + rows.unwrap_or(1);
-            let overlaps =
-                |(_, first, count): &&&(Range<usize>, usize, usize)| read.start < first + count && *first < read.end;
+            let overlaps = |(_, first, count): &&&(Span, usize, usize)| read.start < first + count && *first < read.end;
             let Some((_, first, _)) = matrices.iter().find(overlaps) else { continue };
             let finding = match rows {
                 Some(_) if index == *first => continue,
@@ -152,7 +145,7 @@ fn index(key: &str) -> Option<usize> {
     digits.parse().ok().filter(|index| plain && *index < CONSTANTS)
 }
 
-fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::ShaderConstant>) -> Option<Value> {
+fn value<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderConstant>) -> Option<Value> {
     if raw.text.starts_with('(') || raw.is_text() {
         return reader.numbers(&raw.as_other::<Numbers>(), "a constant", 1..=4, [0.0; 4]).map(Value::Vector);
     }
@@ -165,8 +158,8 @@ fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::S
         return reader.refuse(finding("NB0211", reader.range(rest), message, "here", help));
     };
     if kind == 0 {
-        return names.matrix(reader, &part).map(Value::Rows);
+        return reader.value(&part).map(Value::Rows);
     }
-    let color = names.color(reader, &part.as_other())?;
+    let color = reader.value(&part.as_other::<source::Color>())?;
     Some(Value::Vector(color::floats(color)))
 }

@@ -1,29 +1,8 @@
 //! What the input registers of a vertex program hold.
 
-use std::rc::Rc;
-use std::sync::Arc;
-
 use super::super::attribute::{self, Source};
 use super::*;
-use crate::mesh::Mesh;
 use ninebit::vertex::shader::INPUTS;
-
-/// The vertices that a program takes: of a mesh, or listed.
-pub(super) struct Given {
-    pub(super) spans: VertexSpans,
-    pub(super) mesh: Option<Arc<Mesh>>,
-    pub(super) listed: Option<Rc<VertexData>>,
-}
-
-impl Given {
-    pub(super) fn count(&self) -> usize {
-        match (&self.mesh, &self.listed) {
-            (Some(mesh), _) => mesh.positions.len(),
-            (None, Some(data)) => data.vertices.len(),
-            (None, None) => 0,
-        }
-    }
-}
 
 /// What a register holds.
 pub(super) enum Input {
@@ -76,7 +55,6 @@ fn usual(register: usize, mesh: bool) -> Option<Input> {
 /// Reads what each register holds; every register that the program reads has something.
 pub(super) fn sources<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     raw: &Option<Raw<'a, source::ShaderInputs<'a>>>,
     given: &Given,
     (written, text): (&Written, &ProgramText),
@@ -87,10 +65,10 @@ pub(super) fn sources<'a>(
             *field = Some(Raw::new(text));
         }
     }
-    let mesh = given.mesh.is_some();
+    let mesh = given.mesh().is_some();
     let mut inputs = Vec::with_capacity(INPUTS);
     for (register, (field, read)) in fields.iter().zip(written.inputs_read()).enumerate() {
-        let chosen = field.as_ref().map(|raw| input(reader, names, raw, mesh));
+        let chosen = field.as_ref().map(|raw| input(reader, raw, mesh));
         let input = match (chosen, read) {
             (Some(_), None) => {
                 let place = field.as_ref().map_or(0..0, |raw| reader.span(raw));
@@ -122,15 +100,10 @@ pub(super) fn sources<'a>(
     inputs
 }
 
-fn input<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Attribute>,
-    mesh: bool,
-) -> Option<Input> {
+fn input<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribute>, mesh: bool) -> Option<Input> {
     let (head, rest) = raw.split();
     if mesh || head.is_empty() {
-        return attribute::source(reader, names, raw, false).map(Input::Attribute);
+        return attribute::source(reader, raw, false).map(Input::Attribute);
     }
     if ["Tangent", "Binormal", "LightVector", "HalfVector"].contains(&head) {
         let message = format!("listed vertices have no {head}");
@@ -148,16 +121,13 @@ fn input<'a>(
 
 /// What a register holds at a vertex.
 pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
-    let field = match (input, &given.mesh) {
-        (Input::Unread, _) => return [0.0; 4],
-        (Input::Attribute(source), Some(mesh)) => return attribute::evaluate(mesh, index, source),
+    let (field, VertexData { vertices, extras, .. }) = match (input, given) {
+        (Input::Attribute(source), Given::Mesh(mesh, _)) => return attribute::evaluate(mesh, index, source),
         // The same for all: other attributes need a mesh.
-        (Input::Attribute(source), None) => {
-            return if let Source::Coordinates(values, _) = source { *values } else { [0.0; 4] };
-        }
-        (Input::Field(field), _) => field,
+        (Input::Attribute(Source::Coordinates(values, _)), Given::Listed(_)) => return *values,
+        (Input::Field(field), Given::Listed(data)) => (field, &**data),
+        _ => return [0.0; 4],
     };
-    let Some(VertexData { vertices, extras, .. }) = given.listed.as_deref() else { return [0.0; 4] };
     match field {
         Field::Position => vertices.position(index),
         Field::Normal => {
