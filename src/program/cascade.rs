@@ -273,10 +273,7 @@ impl Cascade {
             Alpha::Equation(equation) => (self.portion(equation, true, register, &place), equation.is_signed()),
             Alpha::DotProduct => (Portion::idle(Component::Alpha), true),
         };
-        let mut constants = [[0; 4]; 2];
-        for (slot, constant) in constants.iter_mut().zip(&self.constants) {
-            *slot = *constant;
-        }
+        let constants = [0, 1].map(|n| self.constants.get(n).copied().unwrap_or_default());
         self.stages.push(GeneralStage { rgb: rgb_portion, alpha: alpha_portion, constants });
         self.origins.push(origin);
         self.places.push(place);
@@ -385,14 +382,12 @@ impl Cascade {
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
 
-    /// The program; or everything that keeps it from being one. `what` is what users call it: "cascade".
-    pub fn finish(mut self, what: &str, end: End) -> Result<Lowered, Vec<Diagnostic>> {
+    /// The program; or everything that keeps it from being one, behind what was found before. `what` is what users call it: "cascade".
+    pub fn finish(mut self, what: &str, end: End, mut findings: Vec<Diagnostic>) -> Result<Lowered, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // Nothing that was computed is seen.
-            self.stages.clear();
-            self.origins.clear();
-            self.places.clear();
-            self.constants.clear();
+            let nothing = Cascade::new(self.profile, self.signed_textures);
+            self = Cascade { current: self.current, findings: self.findings, ..nothing };
             let copy = Equation::copy(Argument::new(Source::Current));
             let origin = |part: &str| format!("no stage changes the {part} of the vertices");
             let origin = StageOrigin { rgb: origin("colour"), alpha: origin("alpha") };
@@ -402,8 +397,9 @@ impl Cascade {
         if let Some(place) = self.places.get(most) {
             self.findings.push(too_many_stages(self.profile, needed, place.clone(), what));
         }
-        if !self.findings.is_empty() {
-            return Err(self.findings);
+        findings.extend(self.findings);
+        if !findings.is_empty() {
+            return Err(findings);
         }
         let constants = self.stages.last().map_or([[0; 4]; 2], |stage| stage.constants);
         if self.profile == Profile::Nv10 {

@@ -190,8 +190,7 @@ impl<'t> Parser<'t> {
             constant => {
                 if !is_vector(function) {
                     let help = "write `glCombinerParameterfvNV(GL_CONSTANT_COLOR0_NV, color);`";
-                    wrong_kind(&value.place, "a pointer to four numbers", help, &mut self.reader.findings);
-                    return None;
+                    return wrong_kind(value, "a pointer to four numbers", help, &mut self.reader.findings);
                 }
                 self.last.constants[constant] = color(&mut self.reader, value, function)?;
             }
@@ -202,9 +201,7 @@ impl<'t> Parser<'t> {
     fn stage(&mut self, name: &Range<usize>, stage: &Value<'t>) -> Option<usize> {
         let most = self.stages.len();
         let index = numbered(stage, "COMBINER", most, "general stage", &mut self.reader.findings)?;
-        if self.touched[index].is_none() {
-            self.touched[index] = Some(name.clone());
-        }
+        self.touched[index].get_or_insert(name.clone());
         Some(index)
     }
 
@@ -228,9 +225,8 @@ impl<'t> Parser<'t> {
     fn register(&mut self, value: &Value<'t>) -> Option<Register> {
         let register = choose(value, "register", &table(REGISTERS), &mut self.reader.findings)?;
         if matches!(register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF) {
-            let finding =
-                only_final(value.place.clone(), Words.register(register), "use it in `glFinalCombinerInputNV`");
-            self.reader.findings.push(finding);
+            let (name, help) = (Words.register(register), "use it in `glFinalCombinerInputNV`");
+            self.reader.findings.push(only_final(value.place.clone(), name, help));
             return None;
         }
         Some(ninebit::combiner::final_combiner::general(register))
@@ -255,11 +251,7 @@ impl<'t> Parser<'t> {
         let [ab, cd, sum, scale, bias, ab_dot, cd_dot, mux] = outputs else { return None };
         let registers = [ab, cd, sum].map(|value| match bare(self.reader.word(&value.place), &[]) {
             "DISCARD" => Some(Register::Zero),
-            "ZERO" => {
-                let help = "write GL_DISCARD_NV";
-                wrong_kind(&value.place, "a register to write", help, &mut self.reader.findings);
-                None
-            }
+            "ZERO" => wrong_kind(value, "a register to write", "write GL_DISCARD_NV", &mut self.reader.findings),
             _ => self.register(value),
         });
         let findings = &mut self.reader.findings;
@@ -333,10 +325,8 @@ impl<'t> Parser<'t> {
                 places.set(place, span);
             }
         }
-        for (stage, place) in self.touched.iter().enumerate() {
-            if let Some(place) = place {
-                places.set(Place::Stage(stage), place.clone());
-            }
+        for (stage, place) in self.touched.into_iter().enumerate().filter_map(|(n, place)| Some((n, place?))) {
+            places.set(Place::Stage(stage), place);
         }
         let mut stages = self.stages;
         stages.truncate(self.count);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use similar::{Algorithm, DiffOp, capture_diff_slices};
+use similar::{Algorithm, DiffTag, capture_diff_slices};
 
 use super::text::{expression, integer};
 use ninebit::engine::{DrawTrace, PixelTrace};
@@ -59,29 +59,16 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
         });
         block = Some(step.block.clone());
         let side = |step: &Step| (expression(step), integer(step.value, step.per_one));
-        lines.push(SideBySideLine {
-            heading,
-            name: step.name.clone(),
-            rule: step.rule,
-            first: a.map(side),
-            second: b.map(side),
-        });
+        let (name, first, second) = (step.name.clone(), a.map(side), b.map(side));
+        lines.push(SideBySideLine { heading, name, rule: step.rule, first, second });
     };
     for op in capture_diff_slices(Algorithm::Myers, &names(first), &names(second)) {
-        match op {
-            DiffOp::Equal { old_index, new_index, len } => {
-                (0..len).for_each(|n| line(first.get(old_index + n), second.get(new_index + n)));
-            }
-            DiffOp::Delete { old_index, old_len, .. } => {
-                (0..old_len).for_each(|n| line(first.get(old_index + n), None));
-            }
-            DiffOp::Insert { new_index, new_len, .. } => {
-                (0..new_len).for_each(|n| line(None, second.get(new_index + n)));
-            }
-            DiffOp::Replace { old_index, old_len, new_index, new_len } => {
-                (0..old_len).for_each(|n| line(first.get(old_index + n), None));
-                (0..new_len).for_each(|n| line(None, second.get(new_index + n)));
-            }
+        let (tag, old, new) = op.as_tag_tuple();
+        if tag == DiffTag::Equal {
+            old.zip(new).for_each(|(a, b)| line(first.get(a), second.get(b)));
+        } else {
+            old.for_each(|n| line(first.get(n), None));
+            new.for_each(|n| line(None, second.get(n)));
         }
     }
 }

@@ -2,8 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::column::{Column, Domain};
-use super::unit::Unit;
+use super::{Column, Domain, Unit};
 use ninebit::random::{Random, mix};
 use ninebit::state::{Profile, named};
 

@@ -63,15 +63,24 @@ fn place(path: &Path, line: usize) -> String {
 }
 
 impl VectorError {
-    /// A file that does not say what it should; `line` is 0 for the file as a whole.
-    pub fn invalid(
-        code: &'static str,
-        path: &Path,
-        line: usize,
-        message: impl Into<String>,
-        help: &'static str,
-    ) -> VectorError {
-        VectorError::Invalid { code, path: path.to_path_buf(), line, message: message.into(), help }
+    /// A line, counted from 1, that does not say what it should.
+    pub fn line(code: &'static str, path: &Path, line: usize, message: String, help: &'static str) -> VectorError {
+        VectorError::Invalid { code, path: path.to_path_buf(), line, message, help }
+    }
+
+    /// A file that does not say what it should.
+    pub fn file(code: &'static str, path: &Path, message: impl Into<String>, help: &'static str) -> VectorError {
+        VectorError::line(code, path, 0, message.into(), help)
+    }
+
+    /// A file or folder that is not there.
+    pub fn missing(path: impl Into<PathBuf>, help: &'static str) -> VectorError {
+        VectorError::Missing { path: path.into(), help }
+    }
+
+    /// A file or folder that cannot be read.
+    pub fn unreadable(path: &Path, reason: impl ToString) -> VectorError {
+        VectorError::Unreadable { path: path.to_path_buf(), reason: reason.to_string() }
     }
 
     /// Stable code.
@@ -98,11 +107,10 @@ impl VectorError {
 
 /// Why a file could not be read, as an error about it; `missing` says what to do if it is not there.
 pub fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorError {
-    let path = path.to_path_buf();
     match error {
-        ReadError::Missing => VectorError::Missing { path, help: missing },
-        ReadError::TooLarge(limit) => VectorError::TooLarge { path, limit },
-        error => VectorError::Unreadable { path, reason: error.to_string() },
+        ReadError::Missing => VectorError::missing(path, missing),
+        ReadError::TooLarge(limit) => VectorError::TooLarge { path: path.to_path_buf(), limit },
+        error => VectorError::unreadable(path, error),
     }
 }
 
@@ -112,6 +120,5 @@ pub fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorErr
 /// It does not exist, is larger than the limit, cannot be read, or is not UTF-8.
 pub fn read_text(path: &Path, kind: Kind, limit: FileLimit, missing: &'static str) -> Result<String, VectorError> {
     let bytes = read::bytes(path, kind, limit).map_err(|error| unread(error, path, missing))?;
-    String::from_utf8(bytes)
-        .map_err(|_| VectorError::Unreadable { path: path.to_path_buf(), reason: "it is not UTF-8 text".to_owned() })
+    String::from_utf8(bytes).map_err(|_| VectorError::unreadable(path, "it is not UTF-8 text"))
 }

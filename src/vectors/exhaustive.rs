@@ -9,10 +9,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::cases;
-use super::column::Column;
-use super::part::Part;
-use super::unit::{Conditions, Unit};
+use super::{Column, Conditions, Part, Unit, cases};
 use ninebit::state::{Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 

@@ -1,8 +1,7 @@
 //! Rows of a table in block lanes, where the unit has them: what sweeps are made of is held to the same rows.
 
-use super::column::Column;
 use super::exhaustive::Output;
-use super::unit::{Conditions, Unit};
+use super::{Column, Conditions, Unit};
 
 /// Rows that are computed together, the wanted one among them: more than two groups of sixteen.
 const RUN: i64 = 40;

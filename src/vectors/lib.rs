@@ -23,5 +23,14 @@ pub mod view;
 
 pub use unit::Unit;
 
+use cases::{Level, Origin};
+use column::{Column, Domain, Kind};
+use error::{VectorError, read_text};
+use exhaustive::Exhaustive;
+use part::Part;
+use read::Table;
+use table::{Contents, Row, Writer};
+use unit::Conditions;
+
 /// What the model computes: goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
 pub const BEHAVIOUR: u32 = 1;

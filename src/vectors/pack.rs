@@ -16,13 +16,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::cases::Level;
-use super::error::{VectorError, read_text, unread};
+use super::error::unread;
 use super::gpu::write::Batches;
-use super::read::{Table, parse};
-use super::table::{Contents, Writer};
+use super::read::parse;
 use super::view::{Content, Layout, TABLE, View};
-use super::{BEHAVIOUR, Unit};
+use super::{BEHAVIOUR, Contents, Level, Table, Unit, VectorError, Writer, read_text};
 use ninebit::limits::{self, FileLimit};
 use ninebit::state::{Named, Profile};
 use ninebit_files::output::{OutputError, PendingFile, is_leftover, make_folder, remove_leftovers, write_file};
@@ -239,34 +237,28 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     let path = folder.join(MANIFEST);
     let missing = "name the folder of a pack; an export that was broken off leaves no manifest: export again";
     let text = read_text(&path, Kind::Regular, limits::MANIFEST, missing)?;
-    let invalid = |code, message: String, help| VectorError::invalid(code, &path, 0, message, help);
-    let value: serde_json::Value = serde_json::from_str(&text)
-        .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
-    let format = value.get("format").and_then(|format| format.as_str()).unwrap_or_default().to_owned();
+    let invalid = |message: &str, help| VectorError::file("NB1010", &path, message, help);
+    let no_manifest = |error| invalid(&format!("not a manifest: {error}"), "export the pack again");
+    let value: serde_json::Value = serde_json::from_str(&text).map_err(no_manifest)?;
+    let format = value.get("format").and_then(|format| format.as_str()).unwrap_or_default();
     if format != FORMAT {
-        let message = format!("the format is `{}`, not `{FORMAT}`", format.chars().take(60).collect::<String>());
-        return Err(invalid("NB1003", message, "use the program that wrote it, or export again"));
+        let message = format!("the format is `{format:.60}`, not `{FORMAT}`");
+        return Err(VectorError::file("NB1003", &path, message, "use the program that wrote it, or export again"));
     }
-    let manifest: Manifest = serde_json::from_value(value)
-        .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
+    let manifest: Manifest = serde_json::from_value(value).map_err(no_manifest)?;
     let inside = |file: &File| {
         let name = file.path.strip_prefix("units/").unwrap_or_default();
         let plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_'));
         (!name.is_empty() && plain && !name.contains("..")) || ALWAYS.iter().any(|(path, _)| *path == file.path)
     };
     if let Some(file) = manifest.files.iter().find(|file| !inside(file)) {
-        let message = format!("`{}` is no file of a pack", file.path.chars().take(60).collect::<String>());
-        return Err(invalid("NB1010", message, "export the pack again"));
+        return Err(invalid(&format!("`{:.60}` is no file of a pack", file.path), "export the pack again"));
     }
     if !manifest.files.is_sorted_by(|a, b| a.path < b.path) {
-        return Err(invalid("NB1010", "a file stands twice, or not in order".to_owned(), "export the pack again"));
+        return Err(invalid("a file stands twice, or not in order", "export the pack again"));
     }
     if hexadecimal(&Sha256::digest(sums(&manifest.files))) != manifest.root {
-        return Err(invalid(
-            "NB1010",
-            "its root is not that of its files".to_owned(),
-            "it was changed by hand: export again",
-        ));
+        return Err(invalid("its root is not that of its files", "it was changed by hand: export again"));
     }
     Ok(manifest)
 }
@@ -278,7 +270,6 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
 pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     let manifest = manifest(folder)?;
     let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
-    let invalid = |code, path: &Path, message: String, help| VectorError::invalid(code, path, 0, message, help);
     for (file, path) in manifest.files.iter().zip(&listed) {
         // No byte more than the manifest lists is looked at.
         let listed = FileLimit { name: "bytes", bytes: file.bytes, counted: "bytes that the manifest lists" };
@@ -290,23 +281,22 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
         };
         if length != file.bytes || hexadecimal(&digest.finalize()) != file.sha256 {
             let message = format!("not the file that the manifest lists ({length} bytes, {} there)", file.bytes);
-            return Err(invalid("NB1011", path, message, "it was changed or cut off since the export: export again"));
+            let help = "it was changed or cut off since the export: export again";
+            return Err(VectorError::file("NB1011", path, message, help));
         }
     }
     let mut others = Vec::new();
     for part in FOLDERS {
         let part = folder.join(part);
-        let entries = std::fs::read_dir(&part).map_err(|_| VectorError::Missing {
-            path: part.clone(),
-            help: "the manifest lists files in it: the pack is not whole",
-        })?;
+        let missing = |_| VectorError::missing(&part, "the manifest lists files in it: the pack is not whole");
+        let entries = std::fs::read_dir(&part).map_err(missing)?;
         let entries = entries.flatten().filter(|entry| !is_leftover(&entry.file_name()));
         others.extend(entries.map(|entry| entry.path()).filter(|path| !listed.contains(path)));
     }
     others.sort();
     if let Some(path) = others.first() {
-        let message = "the manifest does not list this file".to_owned();
-        return Err(invalid("NB1012", path, message, "take it out of the pack"));
+        let message = "the manifest does not list this file";
+        return Err(VectorError::file("NB1012", path, message, "take it out of the pack"));
     }
     let tables: Vec<Table> = listed
         .par_iter()
@@ -318,8 +308,8 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
             let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
             let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;
             if own != (profile.as_str(), level.as_str(), *seed, *behaviour_rev, file.rows) {
-                let message = "its chip, level, seed, behaviour or number of rows is not the manifest's".to_owned();
-                return Err(invalid("NB1011", path, message, "it belongs to another pack: export again"));
+                let message = "its chip, level, seed, behaviour or number of rows is not the manifest's";
+                return Err(VectorError::file("NB1011", path, message, "it belongs to another pack: export again"));
             }
             Ok(table)
         })

@@ -4,8 +4,7 @@
 //! `in.word0=00000000/f800f800`: those that differ from the first in no bits but those of the second. `in.texture.g=in.texture.r`: the number of the other
 //! column.
 
-use super::column::{Column, Domain};
-use super::unit::Unit;
+use super::{Column, Domain, Unit};
 
 /// Which rows of a unit.
 #[derive(Clone, Debug, PartialEq, Eq)]

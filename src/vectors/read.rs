@@ -3,12 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::cases::{Level, Origin};
-use super::column::Column;
-use super::error::VectorError;
-use super::table::{Contents, FORMAT, LAST, Row, Writer};
-use super::unit::Conditions;
-use super::{BEHAVIOUR, lanes, units};
+use super::table::{FORMAT, LAST};
+use super::{BEHAVIOUR, Column, Conditions, Contents, Level, Origin, Row, VectorError, Writer, lanes, units};
 use ninebit::state::{Named, Policies, Profile};
 
 const AGAIN: &str = "export the pack again";
@@ -71,22 +67,22 @@ struct Lines<'t> {
 impl<'t> Lines<'t> {
     fn next(&mut self, wanted: &str) -> Result<(usize, &'t str), VectorError> {
         let found = self.lines.next();
-        let error = || invalid(self.path, 0, "NB1004", format!("the file ends where {wanted} should be"), AGAIN);
-        found.map(|(n, line)| (n + 1, line)).ok_or_else(error)
+        let message = || format!("the file ends where {wanted} should be");
+        found.map(|(n, line)| (n + 1, line)).ok_or_else(|| VectorError::file("NB1004", self.path, message(), AGAIN))
     }
 
     /// The value of a header line.
     fn field(&mut self, name: &str) -> Result<(usize, &'t str), VectorError> {
         let (line, text) = self.next(&format!("`# {name}`"))?;
-        let value =
-            text.strip_prefix("# ").and_then(|rest| rest.strip_prefix(name)).and_then(|rest| rest.strip_prefix(' '));
-        let error = || invalid(self.path, line, "NB1004", format!("`# {name} ...` is expected here"), AGAIN);
-        value.map(|value| (line, value)).ok_or_else(error)
+        let expected = || format!("`# {name} ...` is expected here");
+        let error = || VectorError::line("NB1004", self.path, line, expected(), AGAIN);
+        Ok((line, header(text, name).ok_or_else(error)?))
     }
 }
 
-fn invalid(path: &Path, line: usize, code: &'static str, message: String, help: &'static str) -> VectorError {
-    VectorError::invalid(code, path, line, message, help)
+/// The value of the header line of that name.
+pub(super) fn header<'t>(line: &'t str, name: &str) -> Option<&'t str> {
+    line.strip_prefix("# ")?.strip_prefix(name)?.strip_prefix(' ')
 }
 
 /// Reads a table. `path` is for messages only.
@@ -95,44 +91,36 @@ fn invalid(path: &Path, line: usize, code: &'static str, message: String, help: 
 /// Not a table, another version, an unknown unit, a line that this program would not have written, a row that is there twice or whose id is
 /// not that of its inputs, an end in the middle of a line.
 pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
+    let invalid = |code, line, message: String, help| VectorError::line(code, path, line, message, help);
     if text.contains('\r') {
-        let message = "lines end in CR LF, or have a CR; those of a table end in LF".to_owned();
-        return Err(invalid(path, 0, "NB1004", message, "a program has converted the file: export the pack again"));
+        let message = "lines end in CR LF, or have a CR; those of a table end in LF";
+        let help = "a program has converted the file: export the pack again";
+        return Err(VectorError::file("NB1004", path, message, help));
     }
     let mut lines = Lines { path, lines: text.split('\n').enumerate() };
     let (_, first) = lines.next("the format")?;
     if first != FORMAT {
-        let (code, message, help) = if first.starts_with("# ninebit-vectors") {
-            (
-                "NB1003",
-                format!("`{first}` is another version; this is `{FORMAT}`"),
-                "use the program that wrote it, or export again",
-            )
-        } else {
-            (
-                "NB1004",
-                format!("not a table of vectors: the first line is not `{FORMAT}`"),
-                "name a `.tsv` file of a pack",
-            )
-        };
-        return Err(invalid(path, 1, code, message, help));
+        if first.starts_with("# ninebit-vectors") {
+            let message = format!("`{first}` is another version; this is `{FORMAT}`");
+            return Err(invalid("NB1003", 1, message, "use the program that wrote it, or export again"));
+        }
+        let message = format!("not a table of vectors: the first line is not `{FORMAT}`");
+        return Err(invalid("NB1004", 1, message, "name a `.tsv` file of a pack"));
     }
-    let (line, name) = lines.field("unit")?;
     let unknown =
-        |what: &str, name: &str| format!("there is no {what} `{}`", name.chars().take(60).collect::<String>());
-    let unit = units::by_name(name).ok_or_else(|| {
-        invalid(path, line, "NB1005", unknown("unit", name), "`ninebit vectors list` names the units")
-    })?;
+        |line, what: &str, name: &str, help| invalid("NB1005", line, format!("there is no {what} `{name:.60}`"), help);
+    let (line, name) = lines.field("unit")?;
+    let unit =
+        units::by_name(name).ok_or_else(|| unknown(line, "unit", name, "`ninebit vectors list` names the units"))?;
     lines.field("about")?;
     let (line, name) = lines.field("profile")?;
-    let profile = Profile::from_name(name)
-        .ok_or_else(|| invalid(path, line, "NB1005", unknown("profile", name), "profiles are Nv10 and Nv2a"))?;
+    let profile =
+        Profile::from_name(name).ok_or_else(|| unknown(line, "profile", name, "profiles are Nv10 and Nv2a"))?;
     let (line, name) = lines.field("level")?;
-    let level = Level::from_name(name)
-        .ok_or_else(|| invalid(path, line, "NB1005", unknown("level", name), "levels are L0, L1 and L2"))?;
+    let level = Level::from_name(name).ok_or_else(|| unknown(line, "level", name, "levels are L0, L1 and L2"))?;
     let mut number = |name: &str| -> Result<u64, VectorError> {
         let (line, text) = lines.field(name)?;
-        text.parse().map_err(|_| invalid(path, line, "NB1004", format!("`{name}` is not a number"), AGAIN))
+        text.parse().map_err(|_| invalid("NB1004", line, format!("`{name}` is not a number"), AGAIN))
     };
     let (seed, behaviour) = (number("seed")?, number("behaviour")?);
     lines.field("rules")?;
@@ -143,35 +131,23 @@ pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
         let (line, text) = lines.next("the names of the columns")?;
         if text != *wanted {
             let message = format!("the columns are not those of `{}`", unit.name());
-            return Err(invalid(
-                path,
-                line,
-                "NB1006",
-                message,
-                "export the pack again, or use the program that wrote it",
-            ));
+            let help = "export the pack again, or use the program that wrote it";
+            return Err(invalid("NB1006", line, message, help));
         }
     }
     let mut rows = Rows { path, writer: &writer, seen: HashMap::new(), rows: Vec::new() };
     let mut ended = false;
     for (number, line) in lines.lines {
         if ended {
-            return Err(invalid(path, number, "NB1007", "an empty line between rows".to_owned(), AGAIN));
+            return Err(invalid("NB1007", number, "an empty line between rows".to_owned(), AGAIN));
         }
-        if line.is_empty() {
-            ended = true;
-            continue;
+        ended = line.is_empty();
+        if !ended {
+            rows.take(number + 1, line)?;
         }
-        rows.take(number + 1, line)?;
     }
     if !ended {
-        return Err(invalid(
-            path,
-            0,
-            "NB1007",
-            "the file ends in the middle of a line: it is cut off".to_owned(),
-            AGAIN,
-        ));
+        return Err(VectorError::file("NB1007", path, "the file ends in the middle of a line: it is cut off", AGAIN));
     }
     let rows = rows.rows;
     Ok(Table { contents: writer.contents(), behaviour: u32::try_from(behaviour).unwrap_or(u32::MAX), writer, rows })
@@ -187,7 +163,7 @@ struct Rows<'t> {
 
 impl Rows<'_> {
     fn take(&mut self, line: usize, text: &str) -> Result<(), VectorError> {
-        let error = |code, message, help| Err(invalid(self.path, line, code, message, help));
+        let error = |code, message, help| Err(VectorError::line(code, self.path, line, message, help));
         let fields: Vec<&str> = text.split('\t').collect();
         let (inputs, results) = (self.writer.inputs(), self.writer.results());
         let wanted = 1 + inputs.len() + results.len() + LAST.len();
@@ -197,8 +173,7 @@ impl Rows<'_> {
         let mut numbers = Vec::with_capacity(inputs.len() + results.len());
         for (column, field) in inputs.iter().chain(results).zip(&fields[1..]) {
             let Some(value) = column.kind.read(field) else {
-                let field: String = field.chars().take(60).collect();
-                let message = format!("`{field}` is not a value of {} ({})", column.name, column.kind.code());
+                let message = format!("`{field:.60}` is not a value of {} ({})", column.name, column.kind.code());
                 return error("NB1007", message, AGAIN);
             };
             numbers.push(value);
@@ -206,10 +181,7 @@ impl Rows<'_> {
         let results = numbers.split_off(inputs.len());
         let id = self.writer.id(&numbers);
         if fields[0] != id {
-            let message = format!(
-                "the row's id is `{}`, that of its inputs is {id}",
-                fields[0].chars().take(60).collect::<String>()
-            );
+            let message = format!("the row's id is `{:.60}`, that of its inputs is {id}", fields[0]);
             return error("NB1008", message, "inputs were changed by hand: export the pack again");
         }
         if let Some(first) = self.seen.insert(id.clone(), line) {
@@ -218,7 +190,7 @@ impl Rows<'_> {
         let tag = fields[fields.len() - LAST.len()].split(',').next().unwrap_or_default();
         let origins = [Origin::Regression, Origin::Exhaustive, Origin::Boundary, Origin::Random];
         let Some(origin) = origins.into_iter().find(|origin| origin.word() == tag) else {
-            return error("NB1007", format!("`{}` is no tag", tag.chars().take(60).collect::<String>()), AGAIN);
+            return error("NB1007", format!("`{tag:.60}` is no tag"), AGAIN);
         };
         self.rows.push(TableRow { line, id, inputs: numbers, results, origin, text: text.to_owned() });
         Ok(())
@@ -269,7 +241,6 @@ mod tests {
     use crate::unit::Unit;
 
     /// Twice a number; in lanes 9 becomes 19.
-    #[derive(Debug)]
     struct Twice;
 
     impl Unit for Twice {

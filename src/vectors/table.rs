@@ -17,10 +17,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::cases::{self, Level, Origin};
-use super::column::Column;
-use super::unit::{self, Conditions, Unit};
-use super::{BEHAVIOUR, handbook};
+use super::{BEHAVIOUR, Column, Conditions, Level, Origin, Unit, cases, handbook, unit};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 

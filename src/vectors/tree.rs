@@ -9,10 +9,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::error::{VectorError, read_text};
-use super::exhaustive::{Exhaustive, Leaf};
-use super::part::Part;
-use super::{BEHAVIOUR, units};
+use super::exhaustive::Leaf;
+use super::{BEHAVIOUR, Exhaustive, Part, VectorError, read_text, units};
 use ninebit::limits;
 use ninebit::state::{Named, Profile};
 use ninebit_files::output::write_file;
@@ -94,25 +92,12 @@ fn place(folder: &Path, index: u64) -> PathBuf {
     folder.join(format!("leaf-{index:04}.json"))
 }
 
-fn invalid(path: &Path, code: &'static str, message: String, help: &'static str) -> VectorError {
-    VectorError::invalid(code, path, 0, message, help)
-}
-
 /// Reads a leaf file; `None` if it is none, or was changed.
 fn read_leaf(path: &Path) -> Result<Option<(Of, Leaf)>, VectorError> {
     let text = read_text(path, Kind::Regular, limits::LEAF, "the folder has changed meanwhile: try again")?;
     let file: Option<LeafFile> = serde_json::from_str(&text).ok();
     let whole = file.filter(|file| file.format == LEAF_FORMAT && file.seal == seal(&file.of, &file.leaf));
     Ok(whole.map(|file| (file.of, file.leaf)))
-}
-
-/// What a worker did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Done {
-    /// Leaves that were there.
-    pub kept: u64,
-    /// Leaves that were computed.
-    pub computed: u64,
 }
 
 /// Computes one leaf into a folder that exists, unless it is there. Returns whether it was computed.
@@ -126,7 +111,7 @@ pub fn work(folder: &Path, sweep: &Exhaustive, index: u64) -> Result<bool, Vecto
     {
         if found != of {
             let message = format!("a leaf of {}, not of {}", found.text(), of.text());
-            return Err(invalid(&path, "NB1021", message, "name an empty folder, or that of this sweep"));
+            return Err(VectorError::file("NB1021", &path, message, "name an empty folder, or that of this sweep"));
         }
         if leaf.index == index {
             return Ok(false);
@@ -169,37 +154,36 @@ pub fn merge(folders: &[PathBuf]) -> Result<Tree, VectorError> {
     for path in folders.iter().map(|folder| leaf_files(folder)).collect::<Result<Vec<_>, _>>()?.concat() {
         let Some((of, leaf)) = read_leaf(&path)? else {
             let help = "remove it and sweep again: only that leaf is computed";
-            return Err(invalid(&path, "NB1020", "not a leaf of a sweep, or changed since".to_owned(), help));
+            return Err(VectorError::file("NB1020", &path, "not a leaf of a sweep, or changed since", help));
         };
         match &first {
             Some((before, _)) if *before != of => {
                 let message = format!("a leaf of {}; the others are of {}", of.text(), before.text());
-                return Err(invalid(&path, "NB1021", message, "merge the leaves of one sweep by one version"));
+                let help = "merge the leaves of one sweep by one version";
+                return Err(VectorError::file("NB1021", &path, message, help));
             }
             Some(_) => {}
             None => first = Some((of, path.clone())),
         }
         if leaf.index >= first.as_ref().map_or(0, |(of, _)| of.leaves) {
-            return Err(invalid(&path, "NB1020", format!("there is no leaf {}", leaf.index), "remove it"));
+            return Err(VectorError::file("NB1020", &path, format!("there is no leaf {}", leaf.index), "remove it"));
         }
         if let Some((_, other)) = found.get(&leaf.index) {
             let message = format!("leaf {} is in `{}` already", leaf.index, ninebit::shown::path(other));
-            return Err(invalid(&path, "NB1022", message, "name each folder once, and give each shard to one worker"));
+            let help = "name each folder once, and give each shard to one worker";
+            return Err(VectorError::file("NB1022", &path, message, help));
         }
         found.insert(leaf.index, (leaf, path));
     }
-    let missing = |path: &Path, help| VectorError::Missing { path: path.to_path_buf(), help };
     let Some((of, path)) = first else {
         let folder = folders.first().map(PathBuf::as_path).unwrap_or(Path::new("."));
-        return Err(missing(&place(folder, 0), "no leaves lie there: `ninebit vectors sweep` writes them"));
+        let help = "no leaves lie there: `ninebit vectors sweep` writes them";
+        return Err(VectorError::missing(place(folder, 0), help));
     };
-    let gap = (0..of.leaves).find(|index| !found.contains_key(index));
-    if let Some(gap) = gap {
+    if let Some(gap) = (0..of.leaves).find(|index| !found.contains_key(index)) {
         let folder = path.parent().unwrap_or(Path::new("."));
-        return Err(missing(
-            &place(folder, gap),
-            "not all leaves are there: run the missing shards again, what is there is kept",
-        ));
+        let help = "not all leaves are there: run the missing shards again, what is there is kept";
+        return Err(VectorError::missing(place(folder, gap), help));
     }
     let leaf: Vec<Leaf> = found.into_values().map(|(leaf, _)| leaf).collect();
     let rows = leaf.iter().map(|leaf| leaf.rows).sum();
@@ -209,10 +193,8 @@ pub fn merge(folders: &[PathBuf]) -> Result<Tree, VectorError> {
 /// The leaf files of a folder, by name.
 fn leaf_files(folder: &Path) -> Result<Vec<PathBuf>, VectorError> {
     let entries = std::fs::read_dir(folder).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            VectorError::Missing { path: folder.to_path_buf(), help: "name folders that `ninebit vectors sweep` wrote" }
-        }
-        _ => VectorError::Unreadable { path: folder.to_path_buf(), reason: error.to_string() },
+        std::io::ErrorKind::NotFound => VectorError::missing(folder, "name folders that `ninebit vectors sweep` wrote"),
+        _ => VectorError::unreadable(folder, error),
     })?;
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -245,25 +227,23 @@ impl Tree {
     /// There is no such file, it is no tree or was changed, or it is of a unit, chip or number of rows that this program does not have.
     pub fn read(path: &Path) -> Result<(Tree, Exhaustive), VectorError> {
         let text = read_text(path, Kind::Stream, limits::TREE, "name a tree: `ninebit vectors merge` writes one")?;
-        let help = "merge the leaves again";
-        let wrong = |message: String| invalid(path, "NB1023", message, help);
-        let value: serde_json::Value =
-            serde_json::from_str(&text).map_err(|error| wrong(format!("not a tree of digests: {error}")))?;
+        let wrong = |message: &str| VectorError::file("NB1023", path, message, "merge the leaves again");
+        let no_tree = |error| wrong(&format!("not a tree of digests: {error}"));
+        let value: serde_json::Value = serde_json::from_str(&text).map_err(no_tree)?;
         let format = value.get("format").and_then(|format| format.as_str()).unwrap_or_default();
+        let help = "use the program that wrote it, or sweep again";
         if format != FORMAT {
-            let format: String = format.chars().take(60).collect();
-            let help = "use the program that wrote it, or sweep again";
-            return Err(invalid(path, "NB1003", format!("the format is `{format}`, not `{FORMAT}`"), help));
+            let message = format!("the format is `{format:.60}`, not `{FORMAT}`");
+            return Err(VectorError::file("NB1003", path, message, help));
         }
-        let tree: Tree =
-            serde_json::from_value(value).map_err(|error| wrong(format!("not a tree of digests: {error}")))?;
+        let tree: Tree = serde_json::from_value(value).map_err(no_tree)?;
         let in_order = tree.leaf.iter().zip(0..).all(|(leaf, index)| leaf.index == index);
         if !in_order || tree.leaf.len() as u64 != tree.of.leaves {
-            return Err(wrong("its leaves are not those of a whole sweep, in order".to_owned()));
+            return Err(wrong("its leaves are not those of a whole sweep, in order"));
         }
         let rows = tree.leaf.iter().try_fold(0_u64, |sum, leaf| sum.checked_add(leaf.rows));
         if tree.root != root(&tree.leaf) || rows != Some(tree.rows) {
-            return Err(wrong("its root is not that of its leaves: it was changed by hand".to_owned()));
+            return Err(wrong("its root is not that of its leaves: it was changed by hand"));
         }
         let sweep = units::by_name(&tree.of.unit).zip(Profile::from_name(&tree.of.profile));
         let sweep = sweep.filter(|(unit, profile)| unit.profiles().contains(profile));
@@ -275,8 +255,7 @@ impl Tree {
             Some(sweep) if (sweep.size, sweep.leaves) == (tree.of.size, tree.of.leaves) => Ok((tree, sweep)),
             _ => {
                 let message = format!("this program has no sweep of {}", tree.of.text());
-                let help = "use the program that wrote it, or sweep again";
-                Err(invalid(path, "NB1005", message, help))
+                Err(VectorError::file("NB1005", path, message, help))
             }
         }
     }

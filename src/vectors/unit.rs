@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::column::Column;
+use super::Column;
 use super::exhaustive::Digesting;
 use ninebit::state::{POLICIES, Policies, Policy, Profile};
 
@@ -16,7 +16,7 @@ pub struct Conditions {
 }
 
 /// A unit: columns that it reads, columns that it yields, and the function between them, which is the model's own.
-pub trait Unit: Sync + std::fmt::Debug {
+pub trait Unit: Sync {
     /// Its name: lower case, words joined by `-`; also that of its files.
     fn name(&self) -> &'static str;
 
@@ -89,6 +89,12 @@ pub trait Unit: Sync + std::fmt::Debug {
     /// How a frame buffer of eight bits shows the row.
     fn reach(&self, _inputs: &[i64], _results: &[i64]) -> Reach {
         Reach::Inside
+    }
+}
+
+impl std::fmt::Debug for dyn Unit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
     }
 }
 

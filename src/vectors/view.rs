@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::column::{Column, Kind};
-use super::table::{LAST, Row, Writer};
+use super::table::LAST;
+use super::{Column, Kind, Row, Writer};
 use ninebit::state::named;
 
 named! {

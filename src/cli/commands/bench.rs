@@ -13,10 +13,8 @@ use ninebit::threads;
 use ninebit_files::read::page;
 use serde::Serialize;
 
-use super::engine::EngineArguments;
-use super::exit::Failure;
 use super::scene::{Failed, PolicyArguments, each, load};
-use super::{Context, FormatArguments};
+use super::{Context, EngineArguments, Failure, FormatArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -13,9 +13,7 @@ use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::Format;
-use super::engine::EngineArguments;
-use super::exit::Failure;
+use super::{EngineArguments, Failure, Format};
 use ninebit_scene::diff::{self, Difference, Options};
 
 /// Frames of a real NV2A, drawn again.

@@ -17,10 +17,9 @@ use ninebit_lab::chart::{curves, evaluators, surfaces};
 use ninebit_lab::experiments;
 use ninebit_scene::SceneError;
 
-use super::Context;
-use super::exit::{Exit, Failure, Report};
 use super::scene::{apart, refused};
 use super::terminal::{self, Level, Progress};
+use super::{Context, Exit, Failure, Report};
 
 /// The page that sweeps share with what is not made here, and the markers of their section in it.
 const STABILITY: &str = "stability.md";
@@ -217,14 +216,11 @@ fn technique_failure(error: TechniqueError) -> Failure {
     match error {
         TechniqueError::Scene(error) => refused(*error),
         TechniqueError::Unseen(path) => Failure::unseen(&path),
-        TechniqueError::Folder(folder, error) => Failure {
-            exit: Exit::Missing,
-            report: Report::message(
-                None,
-                &format!("the folder `{}` cannot be read: {error}", shown::path(&folder)),
-                "name a folder of scenes, or run this in the folder of the repository",
-            ),
-        },
+        TechniqueError::Folder(folder, error) => {
+            let message = format!("the folder `{}` cannot be read: {error}", shown::path(&folder));
+            let help = "name a folder of scenes, or run this in the folder of the repository";
+            Failure { exit: Exit::Missing, ..Failure::usage(message, help) }
+        }
     }
 }
 

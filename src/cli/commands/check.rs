@@ -7,10 +7,7 @@ use ninebit::shown;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
-use super::cost::Cost;
-use super::exit::Failure;
-use super::scene::SceneArguments;
-use super::{Context, Format};
+use super::{Context, Cost, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -6,9 +6,9 @@ use ninebit_report::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
 
-use super::exit::{Exit, Failure, Report};
+use super::engine::MAXIMUM_THREADS;
 use super::scene::{SceneArguments, chosen_target};
-use super::{Context, FormatArguments, picture};
+use super::{Context, Exit, Failure, FormatArguments, Report, picture, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     format: FormatArguments,
     /// Threads; 0 takes all cores
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::engine::threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<MAXIMUM_THREADS>)]
     threads: usize,
 }
 
@@ -70,14 +70,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 
 fn no_picture(error: &HeatError) -> Failure {
     match error {
-        HeatError::NoDifference => Failure {
-            exit: Exit::Invalid,
-            report: Report::Message {
-                code: Some("NB0523"),
-                message: error.to_string(),
-                help: Some("leave out `--heatmap`; `ninebit compare` reports the frame as exact".to_owned()),
-            },
-        },
+        HeatError::NoDifference => {
+            let help = "leave out `--heatmap`; `ninebit compare` reports the frame as exact";
+            Failure::invalid("NB0523", error.to_string(), help)
+        }
         HeatError::NoPixels => {
             Failure::usage(error.to_string(), "`--heatmap` goes with `--mode free` and `--mode follow`")
         }

@@ -12,9 +12,8 @@ use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_scene::diff::{self, Difference, Options};
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 
-use super::exit::Failure;
 use super::scene::{PolicyArguments, chosen_target, load};
-use super::{Context, Format, picture};
+use super::{Context, Failure, Format, picture, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -28,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     ignore_alpha: bool,
     /// The most regions to list, the largest ones
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = regions)]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = up_to::<MAXIMUM_REGIONS>)]
     regions: usize,
     /// The scene that the pictures show: compare both with its frame, trace the first pixel of each listed region
     #[arg(long, value_name = "SCENE")]
@@ -146,11 +145,4 @@ fn different_sizes(arguments: &Arguments, a: &Rgba, b: &Rgba) -> Failure {
         b.height
     );
     Failure::invalid("NB0521", message, "compare pictures of one size: take the screenshot unscaled, or crop it")
-}
-
-fn regions(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|count| *count <= MAXIMUM_REGIONS)
-        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_REGIONS}"))
 }

@@ -5,13 +5,13 @@ use clap::builder::PossibleValuesParser;
 use ninebit::engine::{Engine, Isa, RenderOptions};
 use ninebit::state::Named;
 
-use super::exit::Failure;
+use super::{Failure, up_to};
 
 /// How to draw. The picture depends on none of it.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct EngineArguments {
     /// Threads; 0 takes all cores. The picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<MAXIMUM_THREADS>)]
     pub(crate) threads: usize,
     /// What draws: one pixel at a time by the definition, or blocks of pixels. The picture does not depend on it
     #[arg(long, value_name = "ENGINE", default_value = "fast", value_parser = PossibleValuesParser::new(Engine::NAMES))]
@@ -35,12 +35,4 @@ impl EngineArguments {
 }
 
 /// The most threads that can be asked for.
-const MAXIMUM_THREADS: usize = 1024;
-
-/// A number of threads.
-pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|count| *count <= MAXIMUM_THREADS)
-        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_THREADS}"))
-}
+pub(super) const MAXIMUM_THREADS: usize = 1024;

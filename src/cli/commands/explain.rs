@@ -4,9 +4,7 @@ use clap::Args;
 use ninebit::engine;
 use ninebit_report::explain::{explain, explanation_json, explanation_text};
 
-use super::exit::Failure;
-use super::scene::SceneArguments;
-use super::{Context, Format};
+use super::{Context, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -13,8 +13,7 @@ use ninebit_scene::generate::{SIDES, dds, half_components, height_field, hemisph
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 use ninebit_scene::vector::{Vector, cross, dot, unit_or_zero};
 
-use super::exit::Failure;
-use super::picture;
+use super::{Failure, picture};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -272,24 +271,21 @@ pub(crate) struct HemisphereNormals {
 /// Runs one of the generators.
 pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
-        Command::NormalMap(arguments) => {
-            let destination = &arguments.output;
-            let frame = frame(&arguments.tangent, &arguments.normal)?;
-            let (height, options) = arguments.field.load(destination)?;
-            write(&normal_map::from_height_along(&height, &options, &frame), destination)
+        Command::NormalMap(NormalMap { field, tangent, normal, output }) => {
+            let frame = frame(tangent, normal)?;
+            let (height, options) = field.load(output)?;
+            write(&normal_map::from_height_along(&height, &options, &frame), output)
         }
-        Command::HeightNoise(arguments) => {
-            let destination = &arguments.output;
-            let HeightNoise { size, cells, octaves, seed, .. } = arguments;
-            write(&height_field::noise_field(*size, *cells, *octaves, *seed), destination)
+        Command::HeightNoise(HeightNoise { output, size, cells, octaves, seed }) => {
+            write(&height_field::noise_field(*size, *cells, *octaves, *seed), output)
         }
         Command::Occlusion(arguments) => occlude(arguments),
-        Command::NormalisationCube(arguments) => {
-            write_cube(&arguments.cube, if arguments.halves { Content::Halves } else { Content::Direction })
+        Command::NormalisationCube(NormalisationCube { cube, halves }) => {
+            write_cube(cube, if *halves { Content::Halves } else { Content::Direction })
         }
-        Command::HalfVectorCube(arguments) => {
-            let light = direction(&arguments.light, "the light")?;
-            write_cube(&arguments.cube, Content::Half { light, from_viewer: arguments.from_viewer })
+        Command::HalfVectorCube(HalfVectorCube { cube, light, from_viewer }) => {
+            let light = direction(light, "the light")?;
+            write_cube(cube, Content::Half { light, from_viewer: *from_viewer })
         }
         Command::SkyCube(arguments) => {
             let [sky, ground] = [&arguments.sky, &arguments.ground].map(|bytes| sky::color(three(bytes)));
@@ -300,28 +296,18 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             let axis = direction(&arguments.axis, "the middle of the sky")?;
             write_cube(&arguments.cube, Content::Sky(HemisphereLight { axis, sky, ground, integral }))
         }
-        Command::HalfComponent(arguments) => {
-            let destination = &arguments.output;
-            let normals = image::load(&arguments.normals, &ImageLimits::default())?;
-            write(&half_components::of_normals(&normals, arguments.axis as usize, arguments.negative), destination)
+        Command::HalfComponent(HalfComponent { normals, output, axis, negative }) => {
+            let normals = image::load(normals, &ImageLimits::default())?;
+            write(&half_components::of_normals(&normals, *axis as usize, *negative), output)
         }
-        Command::PowerTable(arguments) => {
-            let destination = &arguments.output;
-            write(&power_table::table(arguments.width, arguments.height, arguments.exponent), destination)
+        Command::PowerTable(PowerTable { output, exponent, width, height }) => {
+            write(&power_table::table(*width, *height, *exponent), output)
         }
-        Command::HeightRocks(arguments) => {
-            let destination = &arguments.output;
-            write(&height_field::rocks(arguments.size, arguments.seed), destination)
-        }
+        Command::HeightRocks(HeightRocks { output, size, seed }) => write(&height_field::rocks(*size, *seed), output),
         Command::HemisphereNormals(arguments) => {
-            let destination = &arguments.output;
-            let options = hemisphere::Options {
-                size: arguments.size,
-                noise: arguments.noise,
-                seed: arguments.seed,
-                zero_outside: arguments.zero_outside,
-            };
-            write(&hemisphere::normals(&options), destination)
+            let HemisphereNormals { size, noise, seed, zero_outside, .. } = *arguments;
+            let normals = hemisphere::normals(&hemisphere::Options { size, noise, seed, zero_outside });
+            write(&normals, &arguments.output)
         }
     }
 }
@@ -341,28 +327,26 @@ impl HeightField {
 }
 
 fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
-    let destination = &arguments.output;
-    let (height, options) = arguments.field.load(destination)?;
+    let Occlusion { field, output, normal_map } = arguments;
+    let (height, options) = field.load(output)?;
     let mut picture = occlusion::picture(&height, &options);
-    if let Some(path) = &arguments.normal_map {
-        let normals = image::load(path, &ImageLimits::default())?;
-        if (normals.width, normals.height) != (picture.width, picture.height) {
-            let message = format!(
-                "the normal map is {} x {}, the height field {} x {}",
-                normals.width, normals.height, picture.width, picture.height
-            );
+    if let Some(path) = normal_map {
+        let Rgba { width, height, pixels } = image::load(path, &ImageLimits::default())?;
+        let of_field = (picture.width, picture.height);
+        if (width, height) != of_field {
+            let message =
+                format!("the normal map is {width} x {height}, the height field {} x {}", of_field.0, of_field.1);
             return Err(Failure::invalid("NB0521", message, "make the normal map from this height field"));
         }
-        for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&normals.pixels) {
+        for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&pixels) {
             *pixel = [*r, *g, *b, pixel[3]];
         }
     }
-    write(&picture, destination)
+    write(&picture, output)
 }
 
 fn write_cube(arguments: &Cube, content: Content) -> Result<(), Failure> {
-    let destination = &arguments.output;
-    Ok(destination.write(&dds::cube(&cube::faces(arguments.size, content)))?)
+    Ok(arguments.output.write(&dds::cube(&cube::faces(arguments.size, content)))?)
 }
 
 fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {

@@ -16,10 +16,9 @@ use ninebit_scene::assets::Gathered;
 use ninebit_scene::load_with;
 use serde_json::{Value, json};
 
-use super::exit::{Failure, Report};
 use super::scene::{PolicyArguments, refused};
 use super::terminal::{self, Level};
-use super::{Context, picture};
+use super::{Context, Failure, Report, picture};
 use crate::page;
 
 #[derive(Debug, Args)]

@@ -11,10 +11,8 @@ use ninebit_lower::{Function, Generic, Language, Named, Options, Sources, Textur
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
-use super::Context;
-use super::exit::Failure;
-use super::program_file::ProgramArguments;
 use super::scene::{PolicyArguments, chosen_draws, load};
+use super::{Context, Failure, ProgramArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -11,9 +11,8 @@ use ninebit_scene::generate::byte;
 use ninebit_scene::truth::{Truth, evaluate};
 use serde_json::json;
 
-use super::exit::Failure;
 use super::scene::{PolicyArguments, each, load_with_truth};
-use super::{Context, Format, picture};
+use super::{Context, Failure, Format, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

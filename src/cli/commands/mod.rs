@@ -37,11 +37,17 @@ use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::shown;
+use ninebit::state::Named;
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
 use ninebit_files::output::{OutputError, write_json, write_text};
 
-use exit::{Exit, Failure};
+use cost::Cost;
+use engine::EngineArguments;
+use exit::{Exit, Failure, Report};
+use program_file::ProgramArguments;
+use scene::{PolicyArguments, SceneArguments};
+use template::Template;
 use terminal::{ColorChoice, Level};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
@@ -154,6 +160,22 @@ impl FormatArguments {
     fn get(&self) -> Format {
         if self.json { Format::Json } else { self.format }
     }
+}
+
+/// The place of a text among names, upper and lower case alike.
+fn one_of(names: &[&str], text: &str) -> Result<usize, String> {
+    let found = names.iter().position(|name| name.eq_ignore_ascii_case(text));
+    found.ok_or_else(|| format!("not one of {}", names.join(", ")))
+}
+
+/// Reads one of an enumeration's names, upper and lower case alike.
+fn named<T: Named>(text: &str) -> Result<T, String> {
+    one_of(T::NAMES, text).map(|index| T::ALL[index])
+}
+
+/// Reads a whole number from 0 to `MOST`.
+fn up_to<const MOST: usize>(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|number| *number <= MOST).ok_or_else(|| format!("not a number from 0 to {MOST}"))
 }
 
 /// What every command may use.

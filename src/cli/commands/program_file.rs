@@ -10,9 +10,7 @@ use ninebit::state::{Named, Profile, Scene};
 use ninebit_files::read::{self, Kind};
 use ninebit_program::pixel_shader::{self, TextureOperation};
 
-use super::Context;
-use super::exit::Failure;
-use super::template::Template;
+use super::{Context, Failure, Template};
 
 /// What a program is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -10,10 +10,8 @@ use ninebit_files::output::{write_json, write_text};
 use ninebit_program::registers::{Description, describe, encode};
 use serde_json::{Value, json};
 
-use super::exit::Failure;
-use super::program_file::ProgramArguments;
 use super::scene::{PolicyArguments, chosen_draws, load};
-use super::{Context, Format};
+use super::{Context, Failure, Format, ProgramArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -10,12 +10,9 @@ use ninebit::state::{DepthFormat, Named};
 use ninebit_files::output::{Compression, Destination, OutputError, encode_grey_png, encode_png, write_json};
 use serde_json::json;
 
-use super::cost::Cost;
-use super::engine::EngineArguments;
-use super::exit::Failure;
 use super::scene::{SceneArguments, chosen_target};
 use super::terminal::Progress;
-use super::{Context, Format, picture};
+use super::{Context, Cost, EngineArguments, Failure, Format, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

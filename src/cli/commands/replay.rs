@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
 use crate::shard::Shard;
@@ -13,11 +13,8 @@ use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::files;
 use ninebit_files::output::{Destination, OutputError, make_folder, write_stdout, write_text};
 
-use super::Context;
-use super::engine::EngineArguments;
-use super::exit::{Exit, Failure, Report};
-use super::scene::PolicyArguments;
 use super::terminal::{self, Level, Progress};
+use super::{Context, EngineArguments, Exit, Failure, PolicyArguments, Report};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -59,33 +56,26 @@ pub(crate) struct Arguments {
 enum Wanted {
     /// Annotations and a step summary.
     Github,
-    /// A document.
-    File(Kind, Destination),
+    /// A document, and what makes it.
+    File(fn(&[Replayed]) -> String, Destination),
 }
 
 impl Wanted {
-    fn path(&self) -> Option<&Path> {
+    /// Where the document goes.
+    fn destination(&self) -> Option<&Destination> {
         match self {
             Wanted::Github => None,
-            Wanted::File(_, destination) => destination.path(),
+            Wanted::File(_, destination) => Some(destination),
         }
     }
-}
-
-/// What a document is.
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Json,
-    Junit,
-    Html,
 }
 
 /// Replays scenes, writes reports, and ends with what is wrong with the worst of them.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let options = options(arguments)?;
     let entries = entries(arguments)?;
-    let stdout =
-        arguments.reports.iter().filter(|wanted| matches!(wanted, Wanted::File(_, Destination::Stdout))).count();
+    let documents = || arguments.reports.iter().filter_map(Wanted::destination);
+    let stdout = documents().filter(|destination| **destination == Destination::Stdout).count();
     if stdout > 1 {
         return Err(Failure::usage("several reports cannot all go to stdout", "write all but one to files"));
     }
@@ -94,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         files::note(&entry.path);
         files::note(&entry.path.with_extension("expect.ron"));
     }
-    files::check(arguments.reports.iter().filter_map(Wanted::path))?;
+    files::check(documents().filter_map(Destination::path))?;
     // Reports may be meant to lie in them, also where nothing differs.
     let mut exit = Exit::Success;
     for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
@@ -109,8 +99,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     if stdout == 0 {
         let mut text = report::text(&replayed);
         let differs = replayed.iter().any(|one| one.exit_code() == 1);
-        if differs && arguments.artifacts.is_none() && !arguments.reports.iter().any(|w| matches!(w, Wanted::File(..)))
-        {
+        if differs && arguments.artifacts.is_none() && documents().next().is_none() {
             text += "`--artifacts DIR` writes pictures and traces of what differs\n";
         }
         write_text(&text)?;
@@ -159,20 +148,14 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
     entries.retain(|entry| filter.takes(entry));
     if entries.is_empty() {
         // A run that looks at nothing must not pass for one that found nothing wrong.
+        let filtered = format!("the filter leaves none of {all} scenes");
         let (message, help) = match all {
-            0 => ("there are no scenes here".to_owned(), "a scene is a file NAME.ron; look at the folder's name"),
-            all => (
-                format!("the filter leaves none of {all} scenes"),
-                "names are paths, such as `vectors/scenes/dot3/lit-stone`",
-            ),
+            0 => ("there are no scenes here", "a scene is a file NAME.ron; look at the folder's name"),
+            _ => (filtered.as_str(), "names are paths, such as `vectors/scenes/dot3/lit-stone`"),
         };
-        let report = Report::Message { code: Some("NB1201"), message, help: Some(help.to_owned()) };
-        return Err(Failure { exit: Exit::Missing, report });
+        return Err(Failure { exit: Exit::Missing, ..Failure::invalid("NB1201", message, help) });
     }
-    Ok(match arguments.shard {
-        Some(shard) => part(entries, shard),
-        None => entries,
-    })
+    Ok(part(entries, arguments.shard.unwrap_or(Shard::ALL)))
 }
 
 /// Writes the reports; what cannot be written is said, and the others are written all the same.
@@ -181,14 +164,7 @@ fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) ->
     for wanted in reports {
         let written = match wanted {
             Wanted::Github => github(replayed),
-            Wanted::File(kind, destination) => {
-                let text = match kind {
-                    Kind::Json => report::json(replayed),
-                    Kind::Junit => report::junit(replayed),
-                    Kind::Html => report::html(replayed),
-                };
-                destination.write(text.as_bytes())
-            }
+            Wanted::File(document, destination) => destination.write(document(replayed).as_bytes()),
         };
         if let Err(error) = written {
             exit = say(error, context);
@@ -223,18 +199,12 @@ fn set(name: &str) -> bool {
 }
 
 fn wanted(text: &str) -> Result<Wanted, String> {
-    let kind = |name: &str| match name {
-        "json" => Some(Kind::Json),
-        "junit" => Some(Kind::Junit),
-        "html" => Some(Kind::Html),
-        _ => None,
-    };
+    let file = |file: &str| Destination::from(OsStr::new(file));
     match text.split_once('=') {
-        None if text == "github" => Some(Wanted::Github),
-        Some((name, file)) if !file.is_empty() => {
-            kind(name).map(|kind| Wanted::File(kind, Destination::from(OsStr::new(file))))
-        }
-        _ => None,
+        None if text == "github" => Ok(Wanted::Github),
+        Some(("json", path)) if !path.is_empty() => Ok(Wanted::File(report::json, file(path))),
+        Some(("junit", path)) if !path.is_empty() => Ok(Wanted::File(report::junit, file(path))),
+        Some(("html", path)) if !path.is_empty() => Ok(Wanted::File(report::html, file(path))),
+        _ => Err("not one of json=FILE, junit=FILE, html=FILE, github".to_owned()),
     }
-    .ok_or_else(|| "not one of json=FILE, junit=FILE, html=FILE, github".to_owned())
 }

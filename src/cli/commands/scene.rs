@@ -12,9 +12,8 @@ use ninebit_scene::truth::Truth;
 use ninebit_scene::{self as scene, ErrorKind, Loaded, SceneError};
 use serde::Serialize;
 
-use super::Context;
-use super::exit::{Exit, Failure, Report};
 use super::terminal::{self, Level};
+use super::{Context, Exit, Failure, Report};
 
 /// The scene and how to read it.
 #[derive(Debug, Args)]

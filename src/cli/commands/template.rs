@@ -7,9 +7,8 @@ use ninebit::plan::Plan;
 use ninebit::state::{Combiners, Draw, Named, Profile, Scene};
 use ninebit_scene as scene;
 
-use super::Context;
-use super::exit::{Failure, Report};
 use super::scene::refused;
+use super::{Context, Failure, Report};
 
 /// One pixel covered by one triangle, and whatever the operation sets.
 #[derive(Debug, Default)]

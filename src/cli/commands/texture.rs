@@ -11,8 +11,7 @@ use ninebit::state::{BORDER_TEXELS, CUBE_FACES, Level, Named, Profile, TextureFo
 use ninebit_files::output::{Compression, Destination, encode_png, write_text};
 use ninebit_scene::dds::FACES;
 
-use super::exit::Failure;
-use super::{Context, picture};
+use super::{Context, Failure, named, one_of, picture};
 use source::Opened;
 
 #[derive(Debug, Args)]
@@ -120,14 +119,7 @@ fn describe(opened: &Opened) -> String {
     text
 }
 
-/// Reads the name of a variant in upper or lower case.
-fn named<T: Named + Send + Sync>(text: &str) -> Result<T, String> {
-    let found = T::NAMES.iter().position(|name| name.eq_ignore_ascii_case(text));
-    found.map(|index| T::ALL[index]).ok_or_else(|| format!("not one of {}", T::NAMES.join(", ")))
-}
-
 /// Reads the name of a face in upper or lower case.
 fn face(text: &str) -> Result<u32, String> {
-    let found = FACES.iter().position(|name| name.eq_ignore_ascii_case(text));
-    found.map(|index| index as u32).ok_or_else(|| format!("not one of {}", FACES.join(", ")))
+    one_of(&FACES, text).map(|index| index as u32)
 }

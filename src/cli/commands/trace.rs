@@ -6,9 +6,7 @@ use ninebit::state::Scene;
 use ninebit_files::output::write_stdout_with;
 use ninebit_report::{write_trace_json, write_trace_text, write_traces_json};
 
-use super::exit::Failure;
-use super::scene::SceneArguments;
-use super::{Context, Format};
+use super::{Context, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -10,11 +10,11 @@ mod sweep;
 
 use clap::Subcommand;
 use ninebit::state::{Named, Profile};
-use ninebit_vectors::cases::Level;
 use ninebit_vectors::error::VectorError;
 use ninebit_vectors::{Unit, units};
 
-use super::exit::{Exit, Failure, Report};
+use super::engine::MAXIMUM_THREADS;
+use super::{Exit, Failure, Format, Report, named, up_to};
 
 /// Conformance vectors: what the units of the chip yield, as tables.
 #[derive(Debug, Subcommand)]
@@ -93,18 +93,4 @@ pub(super) fn unit(name: &str) -> Result<&'static dyn Unit, String> {
         let known: Vec<&str> = units::all().into_iter().map(Unit::name).collect();
         format!("there is no such unit; the units are {}", known.join(", "))
     })
-}
-
-/// Reads one of an enumeration's names, upper and lower case alike.
-fn named<T: Named>(name: &str) -> Result<T, String> {
-    let found = T::NAMES.iter().position(|known| known.eq_ignore_ascii_case(name));
-    found.map(|index| T::ALL[index]).ok_or_else(|| format!("not one of {}", T::NAMES.join(", ")))
-}
-
-fn profile(name: &str) -> Result<Profile, String> {
-    named(name)
-}
-
-fn level(name: &str) -> Result<Level, String> {
-    named(name)
 }

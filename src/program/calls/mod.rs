@@ -13,7 +13,7 @@ use super::cursor::{Cursor, GivenUp};
 use super::finding::finding;
 use super::lexer::{Kind, Language};
 use ninebit::diagnostic::{Diagnostic, shorten};
-pub(super) use value::{Part, PartKind, Value, integer, known, one, out_of_range, without_prefix, wrong_kind};
+pub(super) use value::{Part, PartKind, Value, integer, known, meant, one, out_of_range, without_prefix, wrong_kind};
 
 /// Findings beyond this many are not gathered.
 const MAX_FINDINGS: usize = 32;

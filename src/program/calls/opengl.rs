@@ -28,16 +28,12 @@ pub(crate) fn choose<T: Copy>(
             let name = bare(part.text, keep);
             // An ending that matters for some names is decoration of the others.
             let find = |name: &str| table.iter().find(|(known, _)| *known == name);
-            let found = find(name).or_else(|| find(bare(name, &[])));
-            match found {
+            match find(name).or_else(|| find(bare(name, &[]))) {
                 Some((_, value)) => Some(*value),
                 None => known(part, what, bare(name, &[]), table, |name| format!("GL_{name}"), findings),
             }
         }
-        _ => {
-            wrong_kind(&value.place, &format!("a {what}"), "write the name that the API has for it", findings);
-            None
-        }
+        _ => wrong_kind(value, &format!("a {what}"), "write the name that the API has for it", findings),
     }
 }
 
@@ -65,19 +61,15 @@ pub(crate) fn numbered(
         .filter(|_| named && value.parts.len() <= 2)
         .map(|numbers| numbers.iter().fold(0usize, |sum, n| sum.saturating_add(*n)));
     match index {
-        Some(index) if index < count => return Some(index),
-        Some(index) => findings.push(finding(
-            "NB0206",
-            value.place.clone(),
-            format!("there is no {what} {index}"),
-            "out of range",
-            format!("write GL_{name}0 to GL_{name}{}", count - 1),
-        )),
-        None => {
-            wrong_kind(&value.place, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings)
+        Some(index) if index < count => Some(index),
+        Some(index) => {
+            let message = format!("there is no {what} {index}");
+            let help = format!("write GL_{name}0 to GL_{name}{}", count - 1);
+            findings.push(finding("NB0206", value.place.clone(), message, "out of range", help));
+            None
         }
+        None => wrong_kind(value, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings),
     }
-    None
 }
 
 /// TRUE, FALSE or a number.
@@ -96,10 +88,8 @@ pub(crate) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
         [Part { kind: PartKind::Float(number), .. }] => (0..=64u8).find(|n| f32::from(*n) == *number).map(u32::from),
         _ => None,
     };
-    if found.is_none() {
-        wrong_kind(&value.place, "a whole number", "variables have no value here: write the number", findings);
-    }
-    found
+    let help = "variables have no value here: write the number";
+    found.or_else(|| wrong_kind(value, "a whole number", help, findings))
 }
 
 /// Whether a call takes a pointer to its values: its name ends with `v`, perhaps before that of its vendor.
@@ -137,8 +127,7 @@ pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) 
         }
         None => {
             let wanted = if integral { "four whole numbers" } else { "four numbers" };
-            wrong_kind(&value.place, wanted, HELP, &mut reader.findings);
-            None
+            wrong_kind(value, wanted, HELP, &mut reader.findings)
         }
     }
 }

@@ -228,13 +228,18 @@ pub(crate) fn known<T: Copy>(
     {
         return Some(*value);
     }
-    let help = match closest(bare, known.iter().map(|(name, _)| *name)) {
-        Some(name) => format!("did you mean `{}`?", spelled(name)),
-        None => format!("known: {}", known.iter().map(|(name, _)| spelled(name)).collect::<Vec<_>>().join(", ")),
-    };
-    let message = format!("there is no {what} `{}`", part.text.chars().take(40).collect::<String>());
+    let message = format!("there is no {what} `{:.40}`", part.text);
+    let help = meant(bare, known, spelled);
     findings.push(finding("NB0204", part.place.clone(), message, "not known", help));
     None
+}
+
+/// What was probably meant by a word that is none of these; else all of them.
+pub(crate) fn meant<T>(word: &str, known: &[(&str, T)], spelled: impl Fn(&str) -> String) -> String {
+    match closest(word, known.iter().map(|(name, _)| *name)) {
+        Some(name) => format!("did you mean `{}`?", spelled(name)),
+        None => format!("known: {}", known.iter().map(|(name, _)| spelled(name)).collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// The only part of a value.
@@ -248,12 +253,20 @@ pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<D
 }
 
 /// Records that there is no such number.
-pub(crate) fn out_of_range(place: &Range<usize>, what: &str, value: u32, help: &str, findings: &mut Vec<Diagnostic>) {
+pub(crate) fn out_of_range<T>(
+    part: &Part<'_>,
+    what: &str,
+    value: u32,
+    help: &str,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<T> {
     let message = format!("there is no {what} {value}");
-    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
+    findings.push(finding("NB0206", part.place.clone(), message, "out of range", help));
+    None
 }
 
 /// Records that another kind of value stands here.
-pub(crate) fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
-    findings.push(finding("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
+pub(crate) fn wrong_kind<T>(value: &Value<'_>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<T> {
+    findings.push(finding("NB0205", value.place.clone(), format!("expected {what}"), "wrong kind of value", help));
+    None
 }

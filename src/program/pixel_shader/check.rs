@@ -103,16 +103,11 @@ impl Check<'_> {
             }
             let Some(slot) = seen.get_mut(usize::from(*index)) else { continue };
             match slot {
-                Some(first) => self.findings.push(
-                    finding(
-                        "NB0364",
-                        place.clone(),
-                        format!("c{index} is defined twice"),
-                        "again here",
-                        "keep one of them",
-                    )
-                    .related(first.clone(), "first here"),
-                ),
+                Some(first) => {
+                    let message = format!("c{index} is defined twice");
+                    let finding = finding("NB0364", place.clone(), message, "again here", "keep one of them");
+                    self.findings.push(finding.related(first.clone(), "first here"));
+                }
                 None => *slot = Some(place.clone()),
             }
         }

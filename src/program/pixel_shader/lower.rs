@@ -97,7 +97,8 @@ pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Di
     for (slot, live) in program.slots().zip(live(program)) {
         lowering.slot(slot, live);
     }
-    lowering.finish(program, context, units)
+    let (combiners, origins) = lowering.finish(program, context.fog)?;
+    Ok(Lowered { combiners, origins, units })
 }
 
 pub(super) const TEXTURES: [Register; 4] =
@@ -235,12 +236,7 @@ impl Lowering {
         }
     }
 
-    fn finish(
-        mut self,
-        program: &PixelShader,
-        context: &Context,
-        units: [Option<UnitUse>; TEXTURE_UNITS],
-    ) -> Result<Lowered, Vec<Diagnostic>> {
+    fn finish(mut self, program: &PixelShader, fog: bool) -> Result<(Combiners, Vec<StageOrigin>), Vec<Diagnostic>> {
         self.secondary_alpha(program);
         let (needed, most) = (self.stages.len(), self.profile.general_stages());
         if let Some(place) = self.places.get(most) {
@@ -270,10 +266,9 @@ impl Lowering {
         if self.profile == Profile::Nv10 {
             self.stages.iter_mut().for_each(|stage| stage.constants = constants);
         }
-        let end = End { specular: false, fog: context.fog };
-        let final_combiner = final_combiner(end, self.value(Register::Spare0).alpha_is_blue, constants);
-        let combiners = Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner };
-        Ok(Lowered { combiners, origins: self.origins, units })
+        let alpha_is_blue = self.value(Register::Spare0).alpha_is_blue;
+        let final_combiner = final_combiner(End { specular: false, fog }, alpha_is_blue, constants);
+        Ok((Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner }, self.origins))
     }
 
     /// CMB-13: nv10 does not define the alpha of v1.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::parser::{Parser, Pieces};
+use super::parser::Parser;
 use super::words;
 use super::*;
 use crate::lexer::Kind;
@@ -30,7 +30,7 @@ impl Parser<'_> {
 
     /// A register without anything around it.
     pub(super) fn plain_register(&mut self, bank: Bank, what: &str, why: &str) -> Option<At<u8>> {
-        let Pieces { pieces } = self.word(&format!("a register {}n", bank.name()))?;
+        let pieces = self.word(&format!("a register {}n", bank.name()))?;
         let (name, place) = pieces.first()?.clone();
         let register = self.register(&name, place.clone())?;
         if register.bank != bank {
@@ -46,8 +46,8 @@ impl Parser<'_> {
             let place = self.cursor.place();
             self.cursor.advance();
             let word = self.word("channels")?;
-            let end = word.pieces.last().map_or(place.end, |(_, span)| span.end);
-            if word.pieces.first().is_none_or(|(word, _)| words::mask(word) != Some(Mask::All)) {
+            let end = word.last().map_or(place.end, |(_, span)| span.end);
+            if word.first().is_none_or(|(word, _)| words::mask(word) != Some(Mask::All)) {
                 let message = format!("{what} takes all channels of {register}");
                 self.push("NB0371", place.start..end, message, "not here", "leave it out");
             }
@@ -103,7 +103,7 @@ impl Parser<'_> {
     }
 
     pub(super) fn target(&mut self) -> Option<At<Target>> {
-        let Pieces { pieces } = self.word("a register to write")?;
+        let pieces = self.word("a register to write")?;
         let (name, mut place) = pieces.first()?.clone();
         let register = self.register(&name, place.clone())?;
         if let Some((modifier, span)) = pieces.get(1) {
@@ -116,8 +116,8 @@ impl Parser<'_> {
             let span = self.cursor.place();
             let word = self.word("the channels to write")?;
             place.end = span.end;
-            match word.pieces.first().and_then(|(word, _)| words::mask(word)) {
-                Some(found) if word.pieces.len() == 1 => mask = found,
+            match word.first().and_then(|(word, _)| words::mask(word)) {
+                Some(found) if word.len() == 1 => mask = found,
                 _ => {
                     let message = format!("`.{}` cannot be written alone", shorten(self.cursor.text(&span)));
                     let help = "write `.rgb` or `.a`, or no channels for all four";
@@ -146,15 +146,13 @@ impl Parser<'_> {
             }
             modifier = Modifier::Invert;
         }
-        let Pieces { pieces } = self.word("a register to read")?;
-        let mut pieces = pieces.into_iter();
+        let mut pieces = self.word("a register to read")?.into_iter();
         let (name, place) = pieces.next()?;
         let register = self.register(&name, place.clone());
         let mut selector = None;
         let mut suffixes: Vec<_> = pieces.collect();
         while self.cursor.take('.') {
-            let Pieces { pieces } = self.word("the channels to read")?;
-            let mut pieces = pieces.into_iter();
+            let mut pieces = self.word("the channels to read")?.into_iter();
             let (word, span) = pieces.next()?;
             match (words::selector(&word), selector) {
                 (Some(found), None) => selector = Some(found),

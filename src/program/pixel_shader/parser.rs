@@ -36,11 +36,6 @@ pub(super) struct Parser<'t> {
     program: PixelShader,
 }
 
-/// A word in lower case, cut at its underscores, and where each piece stands.
-pub(super) struct Pieces {
-    pub(super) pieces: Vec<(String, Range<usize>)>,
-}
-
 impl Parser<'_> {
     pub(super) fn push(
         &mut self,
@@ -70,8 +65,8 @@ impl Parser<'_> {
         self.cursor.skip_to(|cursor| cursor.is('+') || cursor.is_new_line());
     }
 
-    /// The word at hand, taken.
-    pub(super) fn word(&mut self, what: &str) -> Option<Pieces> {
+    /// The word at hand, taken: in lower case, cut at its underscores, and where each piece stands.
+    pub(super) fn word(&mut self, what: &str) -> Option<Vec<(String, Range<usize>)>> {
         if self.cursor.kind() != Some(Kind::Word) {
             return self.expected(what);
         }
@@ -83,7 +78,7 @@ impl Parser<'_> {
             start = span.end + 1;
             (piece.to_ascii_lowercase(), span)
         });
-        Some(Pieces { pieces: pieces.collect() })
+        Some(pieces.collect())
     }
 
     /// The version, if the text starts with one; without one it is 1.1. `None`: a version that is not read.
@@ -118,8 +113,7 @@ impl Parser<'_> {
     fn instruction(&mut self) -> Option<()> {
         let paired = self.cursor.take('+');
         let start = self.cursor.at;
-        let Pieces { pieces } = self.word("an instruction")?;
-        let mut pieces = pieces.into_iter();
+        let mut pieces = self.word("an instruction")?.into_iter();
         let (name, place) = pieces.next()?;
         let Some(word) = words::find(&name) else {
             return self.unknown(start, &name);

@@ -5,8 +5,9 @@ use std::ops::Range;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Combiners, Named, Profile};
 
-use super::{RegisterWords, Word, decode, word_of};
+use super::{Refusal, RegisterWords, Word, decode, word_of};
 use crate::cursor::Cursor;
+use crate::finding::finding;
 use crate::lexer::{Kind, Language};
 use crate::{Part, Place, Places};
 
@@ -43,22 +44,13 @@ impl Written {
     /// # Errors
     /// Every word that the chip does not take.
     pub fn program(&self) -> Result<(Combiners, Places), Vec<Diagnostic>> {
-        match decode(&self.words) {
-            Ok(combiners) => {
-                let places = self.parts(&combiners);
-                Ok((combiners, places))
-            }
-            Err(refusals) => Err(refusals
-                .into_iter()
-                .map(|refusal| {
-                    let place = self.place(refusal.word, refusal.index);
-                    Diagnostic::error(refusal.code, place, refusal.message)
-                        .label("this word")
-                        .rule("CMB-12")
-                        .help(refusal.help)
-                })
-                .collect()),
-        }
+        let refused = |Refusal { code, word, index, message, help }: Refusal| {
+            finding(code, self.place(word, index), message, "this word", help).rule("CMB-12")
+        };
+        let combiners =
+            decode(&self.words).map_err(|refusals| refusals.into_iter().map(refused).collect::<Vec<_>>())?;
+        let places = self.parts(&combiners);
+        Ok((combiners, places))
     }
 
     /// Where the parts of the program stand: in their words.
@@ -212,18 +204,12 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
         }
     };
     let Some((word, index)) = first.filter(|(word, _)| word.count(chip) > 0) else {
-        let finding = match name.number() {
-            Some(method) => {
-                Diagnostic::error("NB0204", name.place.clone(), format!("{method:#06x} is no method of the combiners"))
-            }
-            None => Diagnostic::error(
-                "NB0204",
-                name.place.clone(),
-                format!("`{}` is no register of the combiners", name.text),
-            ),
+        let message = match name.number() {
+            Some(method) => format!("{method:#06x} is no method of the combiners"),
+            None => format!("`{}` is no register of the combiners", name.text),
         };
         let help = format!("docs/registers.md lists the words and methods of {}", chip.name());
-        findings.push(finding.label("not known").help(help));
+        findings.push(finding("NB0204", name.place.clone(), message, "not known", help));
         return;
     };
     if values.is_empty() {

@@ -56,14 +56,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
             }
         }
     }
-    match cascade.finish("environment", End { specular: program.color_sum, fog: context.fog }) {
-        Ok(lowered) if findings.is_empty() => Ok(lowered),
-        Ok(_) => Err(findings),
-        Err(more) => {
-            findings.extend(more);
-            Err(findings)
-        }
-    }
+    cascade.finish("environment", End { specular: program.color_sum, fog: context.fog }, findings)
 }
 
 /// A unit's texture and what it counts as.

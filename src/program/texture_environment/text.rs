@@ -30,7 +30,8 @@ pub fn parse(text: &str) -> Result<Pasted<TextureEnvironment>, Vec<Diagnostic>> 
     let mut parser = Parser { reader, program: TextureEnvironment::default(), unit: 0 };
     while let Some(statement) = parser.reader.next() {
         if let Statement::Call { name, arguments } = statement {
-            parser.call(&name, &arguments);
+            // What is wrong with a call has been recorded.
+            let _ = parser.call(&name, &arguments);
         }
     }
     parser.reader.finish(parser.program)
@@ -78,7 +79,7 @@ fn parameters() -> Vec<(String, Parameter)> {
 }
 
 impl<'t> Parser<'t> {
-    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) {
+    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.reader.word(name);
         let wanted = match function {
             _ if function.contains("TexEnv") => 3,
@@ -87,84 +88,75 @@ impl<'t> Parser<'t> {
         };
         if arguments.len() != wanted {
             let message = format!("{function} has {wanted} arguments, not {}", arguments.len());
-            let help = "write them all";
-            self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", help));
-            return;
+            self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", "write them all"));
+            return None;
         }
         match arguments {
-            [target, parameter, value] => self.environment(function, target, parameter, value),
+            [target, parameter, value] => self.environment(function, target, parameter, value)?,
             [parameter, value] if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" => {
                 let table = [("SEPARATE_SPECULAR_COLOR", true), ("SINGLE_COLOR", false)];
-                let control = choose(value, "colour control", &table, &mut self.reader.findings);
-                self.program.color_sum = control.unwrap_or(self.program.color_sum);
+                self.program.color_sum = choose(value, "colour control", &table, &mut self.reader.findings)?;
             }
             [_, _] => {}
             // Which set of coordinates of the vertices is meant.
             [_] if function.contains("ClientActive") => {}
             [unit] if function.contains("ActiveTexture") => {
-                let unit = numbered(unit, "TEXTURE", TEXTURE_UNITS, "texture unit", &mut self.reader.findings);
-                self.unit = unit.unwrap_or(self.unit);
+                self.unit = numbered(unit, "TEXTURE", TEXTURE_UNITS, "texture unit", &mut self.reader.findings)?;
             }
-            [value] => {
-                let enable = function.ends_with("glEnable");
-                if bare(self.reader.word(&value.place), &[]) == "COLOR_SUM" {
-                    self.program.color_sum = enable;
-                } else {
-                    capability(&mut self.reader, name, value, enable);
-                }
+            [value] if bare(self.reader.word(&value.place), &[]) == "COLOR_SUM" => {
+                self.program.color_sum = function.ends_with("glEnable");
             }
+            [value] => capability(&mut self.reader, name, value, function.ends_with("glEnable")),
             _ => {}
         }
+        Some(())
     }
 
     /// `glTexEnvi(target, parameter, value)`
-    fn environment(&mut self, function: &str, target: &Value<'t>, parameter: &Value<'t>, value: &Value<'t>) {
-        let written = self.reader.word(&target.place);
-        let (message, help, field) = match bare(written, &[]) {
-            "TEXTURE_ENV" => ("", "", None),
-            "TEXTURE_FILTER_CONTROL" => (
-                "a bias of levels is a state of the sampler",
-                "write it in the draw: `textures: [(texture: ..., lod_bias: ...)]`",
-                None,
-            ),
-            "TEXTURE_SHADER" => (
-                "texture shaders are states of the draw",
-                "write it in the draw: `texture_shader: [Sample, ...]`",
-                Some("texture_shader"),
-            ),
-            _ => {
-                let help = "write GL_TEXTURE_ENV";
-                let findings = &mut self.reader.findings;
-                wrong_kind(&target.place, "the target GL_TEXTURE_ENV", help, findings);
-                return;
+    fn environment(
+        &mut self,
+        function: &str,
+        target: &Value<'t>,
+        parameter: &Value<'t>,
+        value: &Value<'t>,
+    ) -> Option<()> {
+        let (place, written) = (target.place.clone(), self.reader.word(&target.place));
+        match bare(written, &[]) {
+            "TEXTURE_ENV" => {
+                let table = parameters();
+                let table: Vec<(&str, Parameter)> =
+                    table.iter().map(|(name, parameter)| (name.as_str(), *parameter)).collect();
+                let what = "parameter of the texture environment";
+                let chosen = choose(parameter, what, &table, &mut self.reader.findings)?;
+                return self.set(function, chosen, parameter, value);
             }
-        };
-        if !message.is_empty() {
-            self.reader.aside(target.place.clone(), written, message, help, field);
-            return;
+            "TEXTURE_FILTER_CONTROL" => {
+                let help = "write it in the draw: `textures: [(texture: ..., lod_bias: ...)]`";
+                self.reader.aside(place, written, "a bias of levels is a state of the sampler", help, None);
+            }
+            "TEXTURE_SHADER" => {
+                let help = "write it in the draw: `texture_shader: [Sample, ...]`";
+                let field = Some("texture_shader");
+                self.reader.aside(place, written, "texture shaders are states of the draw", help, field);
+            }
+            _ => {
+                let findings = &mut self.reader.findings;
+                return wrong_kind(target, "the target GL_TEXTURE_ENV", "write GL_TEXTURE_ENV", findings);
+            }
         }
-        let table = parameters();
-        let table: Vec<(&str, Parameter)> = table.iter().map(|(name, parameter)| (name.as_str(), *parameter)).collect();
-        let Some(chosen) = choose(parameter, "parameter of the texture environment", &table, &mut self.reader.findings)
-        else {
-            return;
-        };
-        self.set(function, chosen, parameter, value);
+        Some(())
     }
 
-    fn set(&mut self, function: &str, chosen: Parameter, parameter: &Value<'t>, value: &Value<'t>) {
+    fn set(&mut self, function: &str, chosen: Parameter, parameter: &Value<'t>, value: &Value<'t>) -> Option<()> {
         let vector = is_vector(function);
         let (place, index) = (value.place.clone(), self.unit);
         if let Parameter::Color = chosen {
             if !vector {
                 let help = "write `glTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);`";
-                wrong_kind(&place, "a pointer to four numbers", help, &mut self.reader.findings);
-                return;
+                return wrong_kind(value, "a pointer to four numbers", help, &mut self.reader.findings);
             }
-            if let Some(color) = color(&mut self.reader, value, function) {
-                self.unit(index, parameter).color = color;
-            }
-            return;
+            self.unit(index, parameter).color = color(&mut self.reader, value, function)?;
+            return Some(());
         }
         // A pointer to one value is the value.
         let one = self.reader.list(value).and_then(|values| values.first()).filter(|_| vector).cloned();
@@ -172,41 +164,37 @@ impl<'t> Parser<'t> {
         let findings = &mut self.reader.findings;
         match chosen {
             Parameter::Mode => {
-                if let Some(mode) = choose(value, "mode of the texture environment", &table(MODES), findings) {
-                    self.unit(index, parameter).mode = mode;
-                }
+                let mode = choose(value, "mode of the texture environment", &table(MODES), findings)?;
+                self.unit(index, parameter).mode = mode;
             }
             Parameter::Function(alpha) => {
-                if let Some(value) = choose(value, "combine function", &table(FUNCTIONS), findings) {
-                    self.half(index, parameter, alpha).function = At { value, place };
-                }
+                let value = choose(value, "combine function", &table(FUNCTIONS), findings)?;
+                self.half(index, parameter, alpha).function = At { value, place };
             }
             Parameter::Source(alpha, n) => {
-                if let Some(value) = choose(value, "source", &table(SOURCES), findings) {
-                    self.half(index, parameter, alpha).sources[n] = At { value, place };
-                }
+                let value = choose(value, "source", &table(SOURCES), findings)?;
+                self.half(index, parameter, alpha).sources[n] = At { value, place };
             }
             Parameter::Operand(alpha, n) => {
-                if let Some(value) = choose(value, "operand", &table(OPERANDS), findings) {
-                    self.half(index, parameter, alpha).operands[n] = At { value, place };
-                }
+                let value = choose(value, "operand", &table(OPERANDS), findings)?;
+                self.half(index, parameter, alpha).operands[n] = At { value, place };
             }
             Parameter::Scale(alpha) => {
-                let scale = match whole(value, findings) {
-                    Some(1) => Scale::One,
-                    Some(2) => Scale::Two,
-                    Some(4) => Scale::Four,
-                    Some(other) => {
+                let scale = match whole(value, findings)? {
+                    1 => Scale::One,
+                    2 => Scale::Two,
+                    4 => Scale::Four,
+                    other => {
                         let message = format!("a scale cannot be {other}");
                         findings.push(finding("NB0206", place, message, "out of range", "write 1.0, 2.0 or 4.0"));
-                        return;
+                        return None;
                     }
-                    None => return,
                 };
                 self.half(index, parameter, alpha).scale = scale;
             }
             Parameter::Color => {}
         }
+        Some(())
     }
 
     /// A unit, brought into being with all before it.

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::operation::Surroundings;
 use super::{
     ArgumentSource, Generation, Half, Operation, PROJECTED, ResultArgument, StageArgument, TextureStage, TextureStages,
 };
@@ -75,25 +74,12 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
             ResultArgument::Current => Destination::Current,
             ResultArgument::Temp => Destination::Temporary,
         };
-        cascade.stage(
-            written([&stage.color.operation.place, &stage.place]),
-            &rgb,
-            alpha,
-            destination,
-            origin(index, stage),
-        );
+        let place = written([&stage.color.operation.place, &stage.place]);
+        cascade.stage(place, &rgb, alpha, destination, origin(index, stage));
     }
-    let mut findings = walk.findings;
-    match cascade.finish("cascade", End { specular: program.specular_enable, fog: context.fog }) {
-        Ok(lowered) if findings.is_empty() => {
-            Ok(Lowered { combiners: lowered.combiners, origins: lowered.origins, units: walk.units })
-        }
-        Ok(_) => Err(findings),
-        Err(more) => {
-            findings.extend(more);
-            Err(findings)
-        }
-    }
+    let end = End { specular: program.specular_enable, fog: context.fog };
+    let crate::cascade::Lowered { combiners, origins } = cascade.finish("cascade", end, walk.findings)?;
+    Ok(Lowered { combiners, origins, units: walk.units })
 }
 
 /// The first place that is written.
@@ -129,21 +115,11 @@ impl Walk<'_> {
             if reads[n] { self.argument(index, &half.arguments[n], alpha, &place) } else { Argument::ZERO }
         });
         let texture = match operation {
-            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => self.texture(index, place.clone()),
+            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => self.texture(index, place),
+            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, place),
             _ => Argument::ONE,
         };
-        let next_texture = match operation {
-            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, place.clone()),
-            _ => Argument::ONE,
-        };
-        let around = Surroundings {
-            diffuse: Argument::new(Source::Primary),
-            texture,
-            factor: Argument::new(Source::Constant(self.program.texture_factor)),
-            current: Argument::new(Source::Current),
-            next_texture,
-        };
-        operation.equation(arguments, &around)
+        operation.equation(arguments, texture, Argument::new(Source::Constant(self.program.texture_factor)))
     }
 
     fn argument(&mut self, index: usize, at: &At<StageArgument>, alpha: bool, operation: &Range<usize>) -> Argument {
@@ -194,13 +170,11 @@ impl Walk<'_> {
                 match (made, self.units.get_mut(index)) {
                     (Some(made), Some(unit)) => unit.generation = Some(At { value: *made, place: at.place.clone() }),
                     (Some(_), None) => {}
-                    (None, _) => self.findings.push(finding(
-                        "NB0206",
-                        at.place.clone(),
-                        format!("there is no source of coordinates {:#x}", at.value.generation << 16),
-                        "out of range",
-                        "write 0x10000 (D3DTSS_TCI_CAMERASPACENORMAL) to 0x40000 (D3DTSS_TCI_SPHEREMAP)",
-                    )),
+                    (None, _) => {
+                        let message = format!("there is no source of coordinates {:#x}", at.value.generation << 16);
+                        let help = "write 0x10000 (D3DTSS_TCI_CAMERASPACENORMAL) to 0x40000 (D3DTSS_TCI_SPHEREMAP)";
+                        self.findings.push(finding("NB0206", at.place.clone(), message, "out of range", help));
+                    }
                 }
             } else if at.value.set >= 4 {
                 let message = format!("a set of texture coordinates cannot be {}", at.value.set);
@@ -265,27 +239,16 @@ fn origin(index: usize, stage: &TextureStage) -> StageOrigin {
 
 fn half_text(half: &Half) -> String {
     let operation = half.operation.value;
-    let arguments: Vec<String> = operation
-        .reads()
-        .iter()
-        .zip(&half.arguments)
-        .filter(|(reads, _)| **reads)
-        .map(|(_, argument)| argument_text(&argument.value))
-        .collect();
-    if arguments.is_empty() {
-        operation.name().to_owned()
-    } else {
-        format!("{}({})", operation.name(), arguments.join(", "))
+    let read = half.arguments.iter().zip(operation.reads()).filter(|(_, reads)| *reads);
+    let arguments: Vec<String> = read.map(|(argument, _)| argument_text(&argument.value)).collect();
+    match arguments.is_empty() {
+        true => operation.name().to_owned(),
+        false => format!("{}({})", operation.name(), arguments.join(", ")),
     }
 }
 
 fn argument_text(argument: &StageArgument) -> String {
-    let mut text = argument.source.name().to_owned();
-    if argument.complement {
-        text.push_str(" | Complement");
-    }
-    if argument.alpha_replicate {
-        text.push_str(" | AlphaReplicate");
-    }
-    text
+    let complement = if argument.complement { " | Complement" } else { "" };
+    let replicate = if argument.alpha_replicate { " | AlphaReplicate" } else { "" };
+    format!("{}{complement}{replicate}", argument.source.name())
 }

@@ -1,6 +1,6 @@
 //! D3DTEXTUREOP.
 
-use crate::cascade::{Argument, Equation};
+use crate::cascade::{Argument, Equation, Source};
 use ninebit::state::{Named, Scale, named};
 
 named! {
@@ -61,17 +61,6 @@ named! {
     }
 }
 
-/// What an equation can refer to beside the arguments of its stage.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Surroundings {
-    pub(super) diffuse: Argument,
-    pub(super) texture: Argument,
-    pub(super) factor: Argument,
-    pub(super) current: Argument,
-    /// What the next stage's texture is multiplied in as; 1 if there is none.
-    pub(super) next_texture: Argument,
-}
-
 impl Operation {
     /// The operation of a D3DTEXTUREOP value.
     pub fn from_value(value: u32) -> Option<Operation> {
@@ -83,18 +72,9 @@ impl Operation {
         matches!(self, Operation::BumpEnvMap | Operation::BumpEnvMapLuminance)
     }
 
-    /// Whether only COLOROP can be it.
+    /// Whether only COLOROP can be it: the values 18 to 24.
     pub fn is_color_only(self) -> bool {
-        matches!(
-            self,
-            Operation::ModulateAlphaAddColor
-                | Operation::ModulateColorAddAlpha
-                | Operation::ModulateInvAlphaAddColor
-                | Operation::ModulateInvColorAddAlpha
-                | Operation::BumpEnvMap
-                | Operation::BumpEnvMapLuminance
-                | Operation::DotProduct3
-        )
+        (Operation::ModulateAlphaAddColor as u8..=Operation::DotProduct3 as u8).contains(&(self as u8))
     }
 
     /// Which of arguments 0, 1, 2 it reads.
@@ -108,13 +88,13 @@ impl Operation {
         }
     }
 
-    /// Its equation; that of the current colour where nothing is computed.
-    pub(super) fn equation(self, [a0, a1, a2]: [Argument; 3], around: &Surroundings) -> Equation {
+    /// Its equation; that of the current colour where nothing is computed. `texture` is that of the stage, or of the next where that is multiplied in.
+    pub(super) fn equation(self, [a0, a1, a2]: [Argument; 3], texture: Argument, factor: Argument) -> Equation {
         const ONE: Argument = Argument::ONE;
+        const CURRENT: Argument = Argument::new(Source::Current);
+        const DIFFUSE: Argument = Argument::new(Source::Primary);
         match self {
-            Operation::Disable | Operation::BumpEnvMap | Operation::BumpEnvMapLuminance => {
-                Equation::copy(around.current)
-            }
+            Operation::Disable | Operation::BumpEnvMap | Operation::BumpEnvMapLuminance => Equation::copy(CURRENT),
             Operation::SelectArg1 => Equation::copy(a1),
             Operation::SelectArg2 => Equation::copy(a2),
             Operation::Modulate => Equation::product(a1, a2),
@@ -125,12 +105,12 @@ impl Operation {
             Operation::AddSigned2X => Equation::signed_sum(a1, a2, Scale::Two),
             Operation::Subtract => Equation::difference(a1, a2),
             Operation::AddSmooth => Equation::products([a1, ONE], [a1.inverted(), a2]),
-            Operation::BlendDiffuseAlpha => Equation::lerp(around.diffuse.alpha(), a1, a2),
-            Operation::BlendTextureAlpha => Equation::lerp(around.texture.alpha(), a1, a2),
-            Operation::BlendFactorAlpha => Equation::lerp(around.factor.alpha(), a1, a2),
-            Operation::BlendCurrentAlpha => Equation::lerp(around.current.alpha(), a1, a2),
-            Operation::BlendTextureAlphaPM => Equation::products([a1, ONE], [a2, around.texture.alpha().inverted()]),
-            Operation::PreModulate => Equation::product(a1, around.next_texture),
+            Operation::BlendDiffuseAlpha => Equation::lerp(DIFFUSE.alpha(), a1, a2),
+            Operation::BlendTextureAlpha => Equation::lerp(texture.alpha(), a1, a2),
+            Operation::BlendFactorAlpha => Equation::lerp(factor.alpha(), a1, a2),
+            Operation::BlendCurrentAlpha => Equation::lerp(CURRENT.alpha(), a1, a2),
+            Operation::BlendTextureAlphaPM => Equation::products([a1, ONE], [a2, texture.alpha().inverted()]),
+            Operation::PreModulate => Equation::product(a1, texture),
             Operation::ModulateAlphaAddColor => Equation::products([a1.alpha(), a2], [a1, ONE]),
             Operation::ModulateColorAddAlpha => Equation::products([a1, a2], [a1.alpha(), ONE]),
             Operation::ModulateInvAlphaAddColor => Equation::products([a1.alpha().inverted(), a2], [a1, ONE]),

@@ -9,7 +9,6 @@ use super::{CoordinateIndex, STAGES, TextureStages};
 use crate::At;
 use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary};
 use crate::finding::finding;
-use crate::spelling::closest;
 use draw_state::{DrawStates, OTHER_STATES};
 use ninebit::diagnostic::Diagnostic;
 
@@ -52,11 +51,12 @@ pub fn parse(text: &str) -> Result<Pasted<TextureStages>, Vec<Diagnostic>> {
     let reader = Reader::new(text, &DIRECT3D);
     let mut parser = Parser { reader, program: TextureStages::default(), draw: DrawStates::default() };
     while let Some(statement) = parser.reader.next() {
-        match statement {
+        // What is wrong with a statement has been recorded.
+        let _ = match statement {
             Statement::Call { name, arguments } => parser.call(&name, &arguments),
             Statement::State { name, index: Some(stage), value } => parser.stage_state(&stage, &name, &value, false),
             Statement::State { name, index: None, value } => parser.render_state(&name, &value, false),
-        }
+        };
     }
     let Parser { mut reader, program, draw } = parser;
     reader.asides.extend(draw.asides());
@@ -112,7 +112,7 @@ impl<'t> Parser<'t> {
         self.reader.word(place)
     }
 
-    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) {
+    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.word(name);
         let render = function.ends_with("SetRenderState");
         let count = if render { 2 } else { 3 };
@@ -124,28 +124,28 @@ impl<'t> Parser<'t> {
                 let help =
                     if render { "write the state and its value" } else { "write the stage, the state and its value" };
                 self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", help));
-                return;
+                return None;
             }
         };
         match arguments {
             [_, state, _] if function.ends_with("SetSamplerState") => self.sampler_state(name, state),
             [stage, state, value] => self.stage_state(stage, &state.place.clone(), value, true),
             [state, value] => self.render_state(&state.place.clone(), value, true),
-            _ => {}
+            _ => None,
         }
     }
 
     /// Direct3D 9 took these states out of the stages.
-    fn sampler_state(&mut self, name: &Range<usize>, state: &Value<'t>) {
+    fn sampler_state(&mut self, name: &Range<usize>, state: &Value<'t>) -> Option<()> {
         let function = self.word(name);
         let message = "`SetSamplerState` is Direct3D 9's: the interfaces of these chips set samplers by stage";
         let help =
             "the draw's `textures` have filters and address modes: `textures: [(texture: ..., min_filter: Linear)]`";
         self.reader.pass(name.clone(), function, message, "passed over", help);
         let bare = calls::without_prefix(self.word(&state.place), &["D3DSAMP_"]).1;
-        if let Some((name, _, field)) = SAMPLER_STATES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(bare)) {
-            self.sampler(name, field, state.place.clone());
-        }
+        let (name, _, field) = SAMPLER_STATES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(bare))?;
+        self.sampler(name, field, state.place.clone());
+        Some(())
     }
 
     fn sampler(&mut self, name: &'static str, field: &str, place: Range<usize>) {
@@ -175,124 +175,85 @@ impl<'t> Parser<'t> {
             (true, [prefix, ..]) => format!("{prefix}{}", name.to_uppercase()),
             _ => name.to_owned(),
         };
-        let help = match closest(bare, known.iter().map(|(name, _)| *name)) {
-            Some(name) => format!("did you mean `{}`?", spelled(name)),
-            None => {
-                let all: Vec<String> = known.iter().map(|(name, _)| spelled(name)).collect();
-                format!("known: {}", all.join(", "))
-            }
-        };
-        let message = format!("there is no state `{word}` of a pixel program");
+        let (message, help) =
+            (format!("there is no state `{word}` of a pixel program"), calls::meant(bare, known, spelled));
         self.reader.findings.push(finding("NB0204", place.clone(), message, "not known", help));
         None
     }
 
-    fn stage_state(&mut self, stage: &Value<'t>, state: &Range<usize>, value: &Value<'t>, call: bool) {
+    fn stage_state(&mut self, stage: &Value<'t>, state: &Range<usize>, value: &Value<'t>, call: bool) -> Option<()> {
         let prefixes: &[&str] = if call { &["D3DTSS_"] } else { &[] };
         let bare = calls::without_prefix(self.word(state), prefixes).1;
         let number = calls::integer(bare);
         let sampler = SAMPLER_STATES.iter().find(|(name, n, _)| name.eq_ignore_ascii_case(bare) || number == Some(*n));
         if let Some((name, _, field)) = sampler {
             self.sampler(name, field, state.clone());
-            return;
+            return None;
         }
         if !call && ["Texture", "Sampler"].iter().any(|name| name.eq_ignore_ascii_case(bare)) {
             // The draw's `textures` say what is bound, as for SetTexture.
-            return;
+            return None;
         }
-        let Some(name) = self.state(state, prefixes, STATES, call) else { return };
-        let Some(index) = value::number(stage, &mut self.reader.findings) else { return };
+        let name = self.state(state, prefixes, STATES, call)?;
+        let index = value::number(stage, &mut self.reader.findings)?;
         let Some(target) = self.program.stage_mut(index as usize) else {
             let message = format!("there is no texture stage {index}");
             let help = format!("write 0 to {}", STAGES - 1);
             self.reader.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
-            return;
+            return None;
         };
         if target.place.is_empty() {
             target.place = state.clone();
         }
         let findings = &mut self.reader.findings;
         let place = value.place.clone();
-        let at = |argument| At { value: argument, place: place.clone() };
+        let half = if name.starts_with("Color") { &mut target.color } else { &mut target.alpha };
         match name {
-            "ColorOp" | "AlphaOp" => {
-                let half = if name == "ColorOp" { &mut target.color } else { &mut target.alpha };
-                if let Some(operation) = value::operation(value, call, findings) {
-                    half.operation = At { value: operation, place };
-                }
-            }
-            "ResultArg" => {
-                if let Some(result) = value::result(value, call, findings) {
-                    target.result = result;
-                }
-            }
-            "Constant" => {
-                if let Some(color) = value::color(value, findings) {
-                    target.constant = color;
-                }
-            }
+            "ColorOp" | "AlphaOp" => half.operation = At { value: value::operation(value, call, findings)?, place },
+            "ResultArg" => target.result = value::result(value, call, findings)?,
+            "Constant" => target.constant = value::color(value, findings)?,
             "TexCoordIndex" => {
-                if let Some(bits) = value::coordinate_index(value, findings) {
-                    let index = CoordinateIndex { set: bits & 0xffff, generation: bits >> 16 };
-                    target.coordinate_index = Some(At { value: index, place });
-                }
+                let bits = value::coordinate_index(value, findings)?;
+                let value = CoordinateIndex { set: bits & 0xffff, generation: bits >> 16 };
+                target.coordinate_index = Some(At { value, place });
             }
             "TextureTransformFlags" => {
-                if let Some(flags) = value::transform_flags(value, findings) {
-                    target.transform_flags = At { value: flags, place };
-                }
+                target.transform_flags = At { value: value::transform_flags(value, findings)?, place };
             }
-            _ if name.ends_with("Arg0") || name.ends_with("Arg1") || name.ends_with("Arg2") => {
-                let half = if name.starts_with("Color") { &mut target.color } else { &mut target.alpha };
-                let slot = usize::from(name.as_bytes()[name.len() - 1] - b'0').min(2);
-                if let Some(argument) = value::argument(value, call, findings) {
-                    half.arguments[slot] = at(argument);
-                }
-            }
-            _ => {
-                let slot = match name {
-                    "BumpEnvMat00" => &mut target.bump_matrix[0],
-                    "BumpEnvMat01" => &mut target.bump_matrix[1],
-                    "BumpEnvMat10" => &mut target.bump_matrix[2],
-                    "BumpEnvMat11" => &mut target.bump_matrix[3],
-                    "BumpEnvLScale" => &mut target.bump_luminance[0],
-                    _ => &mut target.bump_luminance[1],
-                };
-                if let Some(float) = value::float(value, findings) {
-                    *slot = float;
-                }
+            "BumpEnvMat00" => target.bump_matrix[0] = value::float(value, findings)?,
+            "BumpEnvMat01" => target.bump_matrix[1] = value::float(value, findings)?,
+            "BumpEnvMat10" => target.bump_matrix[2] = value::float(value, findings)?,
+            "BumpEnvMat11" => target.bump_matrix[3] = value::float(value, findings)?,
+            "BumpEnvLScale" => target.bump_luminance[0] = value::float(value, findings)?,
+            "BumpEnvLOffset" => target.bump_luminance[1] = value::float(value, findings)?,
+            argument => {
+                let slot = usize::from(argument.as_bytes()[argument.len() - 1] - b'0').min(2);
+                half.arguments[slot] = At { value: value::argument(value, call, findings)?, place };
             }
         }
+        Some(())
     }
 
-    fn render_state(&mut self, state: &Range<usize>, value: &Value<'t>, call: bool) {
+    fn render_state(&mut self, state: &Range<usize>, value: &Value<'t>, call: bool) -> Option<()> {
         let prefixes: &[&str] = if call { &["D3DRS_", "D3DRENDERSTATE_"] } else { &[] };
         let word = self.word(state);
         let (prefix, bare) = calls::without_prefix(word, prefixes);
         let number = calls::integer(word);
         if call != prefix.is_empty() || number.is_some() {
             if self.draw.take(bare, number, state, value) {
-                return;
+                return Some(());
             }
             if let Some(other) = OTHER_STATES.split(' ').find(|name| name.eq_ignore_ascii_case(bare)) {
                 let message = format!("{} is passed over", other.to_uppercase());
                 let help = draw_state::instead(other);
                 self.reader.pass(state.clone(), other, &message, "no part of a pixel program", help);
-                return;
+                return Some(());
             }
         }
-        match self.state(state, prefixes, RENDER_STATES, call) {
-            Some("SpecularEnable") => {
-                if let Some(enable) = value::flag(value, &mut self.reader.findings) {
-                    self.program.specular_enable = enable;
-                }
-            }
-            Some(_) => {
-                if let Some(color) = value::color(value, &mut self.reader.findings) {
-                    self.program.texture_factor = color;
-                }
-            }
-            None => {}
+        match self.state(state, prefixes, RENDER_STATES, call)? {
+            "SpecularEnable" => self.program.specular_enable = value::flag(value, &mut self.reader.findings)?,
+            _ => self.program.texture_factor = value::color(value, &mut self.reader.findings)?,
         }
+        Some(())
     }
 }

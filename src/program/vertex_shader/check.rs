@@ -113,14 +113,9 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
         findings.push(finding("NB0206", places.sources[1].clone(), message, "the first of them", help));
     }
     if letter == 'v' && rows > 1 {
+        let (place, message) = (places.sources[1].clone(), "rows of a matrix in inputs");
         let help = "move the rows into temporaries first; each of its dot products reads one register v";
-        findings.push(finding(
-            "NB0382",
-            places.sources[1].clone(),
-            "rows of a matrix in inputs",
-            "several inputs",
-            help,
-        ));
+        findings.push(finding("NB0382", place, message, "several inputs", help));
     }
     let DestinationRegister::Temporary(to) = instruction.destination.register else { return };
     let overwritten = vector.register == SourceRegister::Temporary(to)
@@ -188,12 +183,9 @@ fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
         });
         if let Some((row, other, place)) = taken {
             let message = format!("`{word}` reads a matrix from c{base}, and c{row} belongs to the matrix at c{other}");
-            findings.push(
-                Diagnostic::warning("NB0911", places.sources[1].clone(), message)
-                    .label("overlaps")
-                    .related(place, format!("the matrix at c{other}"))
-                    .help("matrices of four rows begin four constants apart"),
-            );
+            let help = "matrices of four rows begin four constants apart";
+            let finding = warning("NB0911", places.sources[1].clone(), message, "overlaps", help);
+            findings.push(finding.related(place, format!("the matrix at c{other}")));
         }
         for row in row_of.iter_mut().skip(base).take(rows).filter(|row| row.is_none()) {
             *row = Some((base, places.sources[1].clone()));
@@ -205,16 +197,10 @@ fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
             let Some(index) = constant(instruction, n).filter(|_| !(rows && n == 1)) else { continue };
             let product = matches!(instruction.opcode, Opcode::Dp3 | Opcode::Dp4) && !source.negate;
             let Some((base, place)) = row_of[index].clone().filter(|_| !product) else { continue };
-            findings.push(
-                Diagnostic::warning(
-                    "NB0911",
-                    places.sources[n].clone(),
-                    format!("c{index} is a vector here and a row of the matrix at c{base}"),
-                )
-                .label("a second meaning")
-                .related(place, format!("reads c{index} as a row"))
-                .help("give the vector a constant of its own"),
-            );
+            let message = format!("c{index} is a vector here and a row of the matrix at c{base}");
+            let help = "give the vector a constant of its own";
+            let finding = warning("NB0911", places.sources[n].clone(), message, "a second meaning", help);
+            findings.push(finding.related(place, format!("reads c{index} as a row")));
         }
     }
 }

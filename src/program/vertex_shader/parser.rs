@@ -161,13 +161,8 @@ impl Parser<'_> {
         }
         if lower == "dcl" || lower.starts_with("dcl_") {
             let help = "leave the line out, and name the attribute in the scene: `inputs: (v0: Position, v3: Normal)`";
-            return Err(self.refuse(
-                "NB0108",
-                place,
-                "declarations are not part of vs.1.1 here",
-                "a declaration",
-                help,
-            ));
+            let message = "declarations are not part of vs.1.1 here";
+            return Err(self.refuse("NB0108", place, message, "a declaration", help));
         }
         let Some(opcode) = opcode(word) else { return Err(self.unknown(place, word)) };
         self.instruction(opcode, place)
@@ -201,13 +196,8 @@ impl Parser<'_> {
     fn definition(&mut self, word: Range<usize>) -> Read<()> {
         let (source, place) = operand::source(self)?;
         let SourceRegister::Constant { index, relative: false } = source.register else {
-            return Err(self.refuse(
-                "NB0380",
-                place,
-                "`def` defines a constant",
-                "not one",
-                "write `def c0, 0, 0, 0, 1`",
-            ));
+            let help = "write `def c0, 0, 0, 0, 1`";
+            return Err(self.refuse("NB0380", place, "`def` defines a constant", "not one", help));
         };
         let mut values = Vec::new();
         while self.sign(',').is_some() {

@@ -91,19 +91,20 @@ impl Seen<'_> {
     }
 }
 
+/// A draw, and the textures as it finds them.
+pub(super) struct Draw<'a, L> {
+    pub(super) plan: &'a Plan,
+    pub(super) planned: &'a PlannedDraw,
+    pub(super) images: &'a Images<'a, L>,
+}
+
 /// How the two sides are evaluated.
 pub(super) trait Method {
     /// The ideal's lane.
     type Lane: Lane + Send + Sync;
 
     /// Draws what of a draw falls into a band.
-    fn draw(
-        plan: &Plan,
-        planned: &PlannedDraw,
-        images: &Images<'_, Self::Lane>,
-        band: &mut Band<'_, Self::Lane>,
-        counts: &mut Counts,
-    );
+    fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts);
 
     /// A channel at the end: the ideal, and what each part adds.
     fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>);
@@ -227,7 +228,7 @@ fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
         let mut counts = Counts::default();
         for planned in plan.draws.iter().filter(|planned| planned.target == options.target) {
             for mut band in surface.bands() {
-                M::draw(plan, planned, &images, &mut band, &mut counts);
+                M::draw(&Draw { plan, planned, images: &images }, &mut band, &mut counts);
             }
         }
         let mut outcome = outcome::<M>(plan, options, &surface);
@@ -269,7 +270,7 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
         let images = images(plan, &words, &surfaces);
         let drawn = each(surface.bands(), |mut band| {
             let mut counts = Counts::default();
-            M::draw(plan, planned, &images, &mut band, &mut counts);
+            M::draw(&Draw { plan, planned, images: &images }, &mut band, &mut counts);
             counts
         });
         drawn.iter().for_each(|band| counts.merge(band));

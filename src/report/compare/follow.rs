@@ -1,11 +1,10 @@
 //! The ideal takes every decision of the definition.
 
-use super::draw::{Band, Images, Method};
+use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Meter};
 use ninebit::engine::pixel::{DepthStencil, Fragment};
 use ninebit::engine::walk;
 use ninebit::number::{IDEAL_TRACKS, Ideal, IdealTracks, Paired};
-use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
 use ninebit::state::Named;
 use ninebit::trace::{Observer, Part, Rule};
@@ -19,14 +18,8 @@ pub(super) struct PerOp;
 impl Method for Follow {
     type Lane = Paired<IdealTracks<IDEAL_TRACKS>>;
 
-    fn draw(
-        plan: &Plan,
-        planned: &PlannedDraw,
-        images: &Images<'_, Self::Lane>,
-        band: &mut Band<'_, Self::Lane>,
-        counts: &mut Counts,
-    ) {
-        draw(plan, planned, images, band, &mut Meter::<false>(counts));
+    fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts) {
+        follow(draw, band, &mut Meter::<false>(counts));
     }
 
     fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
@@ -38,14 +31,8 @@ impl Method for Follow {
 impl Method for PerOp {
     type Lane = Paired<IdealTracks<1>>;
 
-    fn draw(
-        plan: &Plan,
-        planned: &PlannedDraw,
-        images: &Images<'_, Self::Lane>,
-        band: &mut Band<'_, Self::Lane>,
-        counts: &mut Counts,
-    ) {
-        draw(plan, planned, images, band, &mut Meter::<true>(counts));
+    fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts) {
+        follow(draw, band, &mut Meter::<true>(counts));
     }
 
     fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
@@ -58,21 +45,16 @@ fn shown_as<I: Ideal>(shown: u8, held: Paired<I>, observer: &mut impl Observer) 
     observer.observe(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
 }
 
-fn draw<I: Ideal>(
-    plan: &Plan,
-    planned: &PlannedDraw,
-    images: &Images<'_, Paired<I>>,
-    band: &mut Band<'_, Paired<I>>,
-    observer: &mut impl Observer,
-) {
-    walk::covered(plan, planned, band.rows(), |context, i, j| {
+fn follow<I: Ideal>(draw: &Draw<'_, Paired<I>>, band: &mut Band<'_, Paired<I>>, observer: &mut impl Observer) {
+    let planned = draw.planned;
+    walk::covered(draw.plan, planned, band.rows(), |context, i, j| {
         let at = band.at(i, j);
         let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
         let fragment =
             Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
         let read = surface::read(planned.surface, band.words[at]);
         let destination = std::array::from_fn(|n| Paired { fixed: i32::from(read[n]), ..band.held[at][n] });
-        let stored = context.shade(&fragment, &mut depth, Some(destination), &images.lane, observer);
+        let stored = context.shade(&fragment, &mut depth, Some(destination), &draw.images.lane, observer);
         if let Some(slot) = band.depth.get_mut(at) {
             *slot = depth.word();
         }

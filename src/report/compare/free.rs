@@ -3,12 +3,12 @@
 
 use std::marker::PhantomData;
 
-use super::draw::{Band, Images, Method};
+use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Log};
 use ninebit::engine::pixel::{DepthStencil, Fragment, TriangleContext};
 use ninebit::engine::walk;
 use ninebit::number::{Ideal, Lane};
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::PlannedDraw;
 use ninebit::raster::ideal::Outline;
 use ninebit::state::{Cull, FrontFace, Named};
 use ninebit::trace::{Decision, Observer, Part, Silent};
@@ -19,16 +19,10 @@ pub(super) struct Free;
 impl Method for Free {
     type Lane = f64;
 
-    fn draw(
-        plan: &Plan,
-        planned: &PlannedDraw,
-        images: &Images<'_, f64>,
-        band: &mut Band<'_, f64>,
-        counts: &mut Counts,
-    ) {
-        for ((rows, columns), number) in walk::triangles(planned, band.rows()) {
-            let fixed = TriangleContext::new(plan, planned, number, rows);
-            let outline = outline(planned, number);
+    fn draw(draw: &Draw<'_, f64>, band: &mut Band<'_, f64>, counts: &mut Counts) {
+        for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
+            let fixed = TriangleContext::new(draw.plan, draw.planned, number, rows);
+            let outline = outline(draw.planned, number);
             let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
             let spans = outer(&fixed).into_iter().chain(outline.as_ref().map(|o| o.rows));
             let Some(reach) = spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
@@ -41,7 +35,8 @@ impl Method for Free {
                 for i in low..high {
                     let covered = (inside(definition, i), inside(ideal, i));
                     if covered != (false, false) {
-                        pixel(planned, fixed.as_ref(), outline.as_ref(), covered, (i, j), images, band, counts);
+                        let triangle = (fixed.as_ref(), outline.as_ref());
+                        pixel(draw, triangle, covered, (i, j), band, counts);
                     }
                 }
             }
@@ -65,27 +60,24 @@ fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
 }
 
 /// One pixel that either side covers.
-#[allow(clippy::too_many_arguments, reason = "two sides of one pixel")]
 fn pixel(
-    planned: &PlannedDraw,
-    fixed: Option<&TriangleContext<'_>>,
-    outline: Option<&Outline>,
+    draw: &Draw<'_, f64>,
+    (fixed, outline): (Option<&TriangleContext<'_>>, Option<&Outline>),
     covered: (bool, bool),
     (i, j): (i64, i64),
-    images: &Images<'_, f64>,
     band: &mut Band<'_, f64>,
     counts: &mut Counts,
 ) {
     let at = band.at(i, j);
     counts.decided(Decision::Coverage, covered.0 != covered.1);
     let mut diverged = covered.0 != covered.1;
-    let mut logs = [(); 2].map(|()| Log { diverged: &images.states, ..Log::default() });
+    let mut logs = [(); 2].map(|()| Log { diverged: &draw.images.states, ..Log::default() });
     let [definition, ideal] = &mut logs;
     if let (true, Some(context)) = (covered.0, fixed) {
         let fragment =
             Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
         let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
-        if let Some(stored) = context.shade::<i32, _>(&fragment, &mut depth, None, &images.words, definition) {
+        if let Some(stored) = context.shade::<i32, _>(&fragment, &mut depth, None, &draw.images.words, definition) {
             band.words[at] = stored.word;
             band.states[at].drawn = true;
         }
@@ -95,7 +87,7 @@ fn pixel(
     }
     // Where the definition has no such triangle the pixel is left out whatever the ideal holds.
     if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
-        real_side(planned, context, outline, (i, j), images, band, ideal);
+        real_side(draw, context, outline, (i, j), band, ideal);
     }
     if covered == (true, true) {
         for (definition, ideal) in definition.decisions.iter().zip(&ideal.decisions) {
@@ -111,11 +103,10 @@ fn pixel(
 
 /// The ideal's side of a pixel that it covers.
 fn real_side<L: Lane>(
-    planned: &PlannedDraw,
+    draw: &Draw<'_, L>,
     context: &TriangleContext<'_>,
     outline: &Outline,
     (i, j): (i64, i64),
-    images: &Images<'_, L>,
     band: &mut Band<'_, L>,
     observer: &mut impl Observer,
 ) {
@@ -128,9 +119,9 @@ fn real_side<L: Lane>(
         weights: Some(outline.weights(i, j)),
     };
     let (memory, held) = (&mut band.states[at].depth, band.held[at]);
-    if let Some(stored) = context.shade::<L, _>(&fragment, memory, Some(held), &images.lane, observer) {
+    if let Some(stored) = context.shade::<L, _>(&fragment, memory, Some(held), &draw.images.lane, observer) {
         band.states[at].drawn = true;
-        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+        for n in (0..4).filter(|n| draw.planned.written >> n & 1 != 0) {
             band.held[at][n] = stored.channels[n];
         }
     }
@@ -142,14 +133,14 @@ pub(super) struct Real<L>(PhantomData<L>);
 impl<L: Ideal + Send + Sync> Method for Real<L> {
     type Lane = L;
 
-    fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
-        for ((rows, columns), number) in walk::triangles(planned, band.rows()) {
-            let Some(outline) = outline(planned, number) else { continue };
-            let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
+    fn draw(draw: &Draw<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
+        for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
+            let Some(outline) = outline(draw.planned, number) else { continue };
+            let Some(context) = TriangleContext::new(draw.plan, draw.planned, number, rows) else { continue };
             for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {
                 let (low, high) = outline.span(j, columns);
                 for i in low..high {
-                    real_side(planned, &context, &outline, (i, j), images, band, &mut Silent);
+                    real_side(draw, &context, &outline, (i, j), band, &mut Silent);
                 }
             }
         }

@@ -85,12 +85,10 @@ fn all_blended(blend: Blend, corner: [f32; 2], side: f32) -> Vec<Draw> {
 }
 
 /// The frame buffer with a chequered field in it.
-fn over(background: &Texture) -> Canvas {
-    let mut canvas = Canvas::new(0xff31_2f31);
+fn over(canvas: &mut Canvas, background: &Texture) {
     let texture = canvas.texture(background);
     let draw = pasted([0.0, 0.0, 640.0, 480.0], 0, nearest(texture), WHOLE);
     canvas.draw(Draw { blend: None, ..without_alpha(draw, FinalRegister::Texture0) });
-    canvas
 }
 
 /// Draws into a texture that begins as an image, and pastes it.
@@ -115,19 +113,18 @@ pub(super) fn tests(frames: &mut Frames) {
                 }
                 let blend = Blend { equation, source, destination };
                 let [large, square, strip] = [&large, &square, &strip].map(Arc::clone);
-                frames.make(format!("{source_name}_{equation_name}_{name}"), move || {
-                    let mut canvas = over(&large);
+                frames.paint(format!("{source_name}_{equation_name}_{name}"), 0xff31_2f31, move |canvas| {
+                    over(canvas, &large);
                     let origin = [0.0, 0.0];
                     let tall = |left| sized([left, 112.0], [64.0, 256.0]);
-                    through(&mut canvas, &square, nested(blend, origin, 256.0, 24.0), [192.0, 112.0, 448.0, 368.0]);
-                    through(&mut canvas, &strip, colors_blended(blend, origin, 64.0), tall(16.0));
-                    through(&mut canvas, &strip, all_blended(blend, origin, 64.0), tall(560.0));
-                    canvas.colors()
+                    through(canvas, &square, nested(blend, origin, 256.0, 24.0), [192.0, 112.0, 448.0, 368.0]);
+                    through(canvas, &strip, colors_blended(blend, origin, 64.0), tall(16.0));
+                    through(canvas, &strip, all_blended(blend, origin, 64.0), tall(560.0));
                 });
             }
             let [small, sheet] = [&small, &sheet].map(Arc::clone);
-            frames.make(format!("#spot_{source_name}_{equation_name}"), move || {
-                let mut canvas = over(&small);
+            frames.paint(format!("#spot_{source_name}_{equation_name}"), 0xff31_2f31, move |canvas| {
+                over(canvas, &small);
                 let mut draws = Vec::new();
                 for ((_, destination), corner) in FACTORS.into_iter().zip(places([0.0; 2], [103.0, 136.0], 5)) {
                     let blend = Blend { equation, source, destination };
@@ -136,8 +133,7 @@ pub(super) fn tests(frames: &mut Frames) {
                     draws.extend(all_blended(blend, [left + 24.0, top], 24.0));
                     draws.extend(nested(blend, [left + 48.0, top], 51.0, 4.0));
                 }
-                through(&mut canvas, &sheet, draws, [64.0, 64.0, 576.0, 576.0]);
-                canvas.colors()
+                through(canvas, &sheet, draws, [64.0, 64.0, 576.0, 576.0]);
             });
         }
     }
@@ -170,19 +166,17 @@ fn tile(canvas: &mut Canvas, format: SurfaceFormat, draws: Vec<Draw>, read: Text
 }
 
 /// A colour over which the destination's alpha is a factor, in eight tiles: once more blended into the frame buffer and once not.
-fn destination_alpha(format: SurfaceFormat, read: TextureFormat, factor: BlendFactor) -> Drawn {
-    let mut canvas = Canvas::new(0xff55_5555);
+fn destination_alpha(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFormat, factor: BlendFactor) {
     let colors = [0, 0x4000_0000, 0x8000_0000, 0xff00_0000, 0x00ff_0000, 0x40ff_0000, 0x80ff_0000, 0xffff_0000];
     for (color, [x, y]) in colors.into_iter().zip(tiles(160.0)) {
         let whole = unprojected(WHOLE_TILE);
         let blend = Blend { equation: BlendEquation::Add, source: factor, destination: BlendFactor::Zero };
         let draws = vec![patch(whole, color, None, ALL), patch(whole, 0x22ff_ffff, Some(blend), ALL)];
-        let texture = tile(&mut canvas, format, draws, read);
+        let texture = tile(canvas, format, draws, read);
         let half = |y| pasted(unprojected(sized([x, y], [TILE, TILE / 2.0])), 0, nearest(texture), WHOLE_TILE);
         canvas.draw(half(y));
         canvas.draw(without_alpha(half(y + TILE / 2.0), FinalRegister::Texture0));
     }
-    canvas.colors()
 }
 
 /// Channels of four bits, in the high half: red grows downwards, blue falls to the right, green runs across, alpha is highest in the middle.
@@ -211,8 +205,7 @@ const BLENDED: [TextureFormat; 7] = [
 ];
 
 /// Each texture four times over itself, and small squares in the corners, once or four times.
-fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: BlendFactor) -> Drawn {
-    let mut canvas = Canvas::new(0xff55_5555);
+fn textures_blended(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFormat, destination: BlendFactor) {
     let blend = Some(Blend { equation: BlendEquation::Add, source: BlendFactor::SourceAlpha, destination });
     for (number, (blended, place)) in BLENDED.into_iter().zip(tiles(144.0)).enumerate() {
         let side = [64, 64];
@@ -239,11 +232,10 @@ fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: Ble
         put(grey, 2, [120.0, 0.0], 8.0, 4);
         put(hole, 3, [0.0, 120.0], 8.0, 1);
         put(hole, 3, [120.0, 120.0], 8.0, 4);
-        let texture = tile(&mut canvas, format, draws, read);
+        let texture = tile(canvas, format, draws, read);
         let draw = pasted(unprojected(sized(place, [TILE, TILE])), 0, nearest(texture), WHOLE_TILE);
         canvas.draw(Draw { blend: None, ..without_alpha(draw, FinalRegister::Texture0) });
     }
-    canvas.colors()
 }
 
 /// Blend_surface.
@@ -252,11 +244,15 @@ pub(super) fn surfaces(frames: &mut Frames) {
         for (prefix, factor) in
             [("DstAlpha", BlendFactor::DestinationAlpha), ("1-DstAlpha", BlendFactor::OneMinusDestinationAlpha)]
         {
-            frames.make(format!("{prefix}_{name}"), move || destination_alpha(format, read, factor));
+            frames.paint(format!("{prefix}_{name}"), 0xff55_5555, move |canvas| {
+                destination_alpha(canvas, format, read, factor)
+            });
         }
         for (suffix, factor) in [("1-SrcA", BlendFactor::OneMinusSourceAlpha), ("DstA", BlendFactor::DestinationAlpha)]
         {
-            frames.make(format!("{name}_Add_SrcA_{suffix}"), move || textures_blended(format, read, factor));
+            frames.paint(format!("{name}_Add_SrcA_{suffix}"), 0xff55_5555, move |canvas| {
+                textures_blended(canvas, format, read, factor)
+            });
         }
     }
 }

@@ -5,7 +5,7 @@ use super::draws::{
 };
 use super::images::{self, Color, Image, checker};
 use super::texel_formats::texture;
-use super::{Drawn, Frames, space};
+use super::{Frames, space};
 use ninebit::state::{
     AddressMode, BORDER_TEXELS, Draw, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
 };
@@ -70,8 +70,7 @@ fn in_world([left, top, right, bottom]: [f32; 4], unit: TextureUnit, coordinates
 }
 
 /// One texture through every address mode; in `with_border` one of border texels too.
-fn modes(border_color: Color, other_color: Option<Color>) -> Drawn {
-    let mut canvas = Canvas::new(0xfe20_2020);
+fn modes(canvas: &mut Canvas, border_color: Color, other_color: Option<Color>) {
     let image = blocks(colors([255, 0, 0, 255], [0x44, 0x44, 255, 255]), 2);
     let plain = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [32, 32], image));
     let border = canvas.texture(&bordered([32, 32]));
@@ -97,13 +96,11 @@ fn modes(border_color: Color, other_color: Option<Color>) -> Drawn {
             canvas.draw(draw);
         }
     }
-    canvas.colors()
 }
 
 /// Textures with border texels in nine sizes, without the border and with it.
-fn border_sizes() -> Drawn {
+fn border_sizes(canvas: &mut Canvas) {
     let sizes = [[1, 1], [2, 2], [4, 4], [8, 8], [16, 16], [32, 32], [16, 1], [8, 2], [4, 8]];
-    let mut canvas = Canvas::new(0xfe18_1818);
     let textures = sizes.map(|size| canvas.texture(&bordered(size)));
     for (top, shows_border) in [(80.0, false), (272.0, true)] {
         let corners = places([32.0, top], [96.0; 2], 6);
@@ -113,14 +110,15 @@ fn border_sizes() -> Drawn {
             canvas.draw(pasted(sized(corner, [64.0; 2]), 0, unit, [-s, -t, 1.0 + s, 1.0 + t]));
         }
     }
-    canvas.colors()
 }
 
 /// Texture_border, without its cube maps.
 pub(super) fn borders(frames: &mut Frames) {
-    frames.make("2D", || modes([255, 0, 255, 0xf0], None));
-    frames.make("xemu#1034", || modes([0x55, 0x9f, 0xff, 0xf0], Some([0xff, 0x55, 0x33, 0xf0])));
-    frames.make("2D_BorderTex_SZ", border_sizes);
+    frames.paint("2D", 0xfe20_2020, move |canvas| modes(canvas, [255, 0, 255, 0xf0], None));
+    frames.paint("xemu#1034", 0xfe20_2020, move |canvas| {
+        modes(canvas, [0x55, 0x9f, 0xff, 0xf0], Some([0xff, 0x55, 0x33, 0xf0]))
+    });
+    frames.paint("2D_BorderTex_SZ", 0xfe18_1818, border_sizes);
 }
 
 /// Texture_border_color: the border colour beside texels of every format.
@@ -128,8 +126,7 @@ pub(super) fn border_color(frames: &mut Frames) {
     use TextureFormat::*;
     let formats = [A8, R5G6B5, R8B8, G8B8, R6G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
     let in_texels = [A8, R5G6B5, G8B8, X1R5G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
-    frames.make("TextureBorderColor", move || {
-        let mut canvas = Canvas::new(0xff10_1010);
+    frames.paint("TextureBorderColor", 0xff10_1010, move |canvas| {
         let fields = checker([abgr(0xff00_0000), abgr(0xff44_4444)], 8);
         let background = canvas.texture(&images::texture(A8B8G8R8, [256, 256], fields));
         let behind = pasted(unprojected([0.0, 0.0, 640.0, 480.0]), 0, nearest(background), WHOLE);
@@ -143,6 +140,5 @@ pub(super) fn border_color(frames: &mut Frames) {
             let (low, high) = if in_texels { (-4.0, 12.0) } else { (-0.5, 1.5) };
             canvas.draw(pasted(unprojected(sized(corner, [64.0; 2])), 0, unit, [low, low, high, high]));
         }
-        canvas.colors()
     });
 }

@@ -1,128 +1,20 @@
-//! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of Combiner, which change one state from draw to draw.
+//! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of Combiner, in the combiner language. A part of a colour c is the byte that 255 c is cut to.
 
-use super::draws::{Canvas, WHOLE, abgr, corners, draw, nearest, pasted, sized, unprojected, vertex, without_alpha};
-use super::images::{self, checker};
-use super::{Drawn, Frames, space};
-use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, Draw, FinalCombiner, FinalInput, FinalRegister, GeneralStage,
-    InputMapping, MuxSelect, Portion, Register, Scale, TextureFormat, Topology, Vertex, VertexColor,
+use super::draws::{
+    Canvas, WHOLE, abgr, corners, draw, nearest, pasted, places, program, sized, unprojected, vertex, without_alpha,
 };
+use super::images::{self, checker};
+use super::{Frames, space};
+use ninebit::state::{Draw, FinalRegister, MuxSelect, TextureFormat, Topology, Vertex, VertexColor};
 
-fn input(register: Register, component: Component) -> CombinerInput {
-    CombinerInput { register, component, mapping: InputMapping::UnsignedIdentity }
+/// The draw with a program.
+fn with(draw: &Draw, text: &str) -> Draw {
+    Draw { combiners: program(text), ..draw.clone() }
 }
 
-const fn one(component: Component) -> CombinerInput {
-    CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
-}
-
-/// Red, green and blue of a register, and 1.
-fn rgb(register: Register) -> CombinerInput {
-    input(register, Component::Rgb)
-}
-const ONE: CombinerInput = one(Component::Rgb);
-
-fn final_rgb(register: FinalRegister) -> FinalInput {
-    FinalInput { register, component: Component::Rgb, invert: false }
-}
-
-const FINAL_ONE: FinalInput = FinalInput { register: FinalRegister::Zero, component: Component::Rgb, invert: true };
-
-/// A colour of floats as the programs make bytes of it.
-fn bytes(color: [f32; 4]) -> [u8; 4] {
-    color.map(|value| (value * 255.0) as u8)
-}
-
-/// The combiners' state, of which the first `used` stages take part.
-#[derive(Clone)]
-struct State {
-    stages: [GeneralStage; 8],
-    used: usize,
-    mux: MuxSelect,
-    last: FinalCombiner,
-}
-
-impl State {
-    /// The primary colour through one stage.
-    fn new() -> State {
-        let mut stages = [GeneralStage::default(); 8];
-        stages[0] = GeneralStage::initial([[0; 4]; 2]);
-        let last = FinalCombiner { color_sum_clamp: true, ..FinalCombiner::showing(FinalRegister::Spare0) };
-        State { stages, used: 1, mux: MuxSelect::Msb, last }
-    }
-
-    fn inputs(portion: &mut Portion, component: Component, inputs: &[CombinerInput]) {
-        portion.inputs = [CombinerInput::zero(component); 4];
-        portion.inputs[..inputs.len()].copy_from_slice(inputs);
-    }
-
-    fn rgb_inputs(&mut self, stage: usize, inputs: &[CombinerInput]) {
-        State::inputs(&mut self.stages[stage].rgb, Component::Rgb, inputs);
-    }
-
-    fn alpha_inputs(&mut self, stage: usize, inputs: &[CombinerInput]) {
-        State::inputs(&mut self.stages[stage].alpha, Component::Alpha, inputs);
-    }
-
-    fn rgb_outputs(&mut self, stage: usize, outputs: Portion) {
-        self.stages[stage].rgb = Portion { inputs: self.stages[stage].rgb.inputs, ..outputs };
-    }
-
-    fn alpha_outputs(&mut self, stage: usize, outputs: Portion) {
-        self.stages[stage].alpha = Portion { inputs: self.stages[stage].alpha.inputs, ..outputs };
-    }
-
-    fn constant(&mut self, stage: usize, number: usize, color: [f32; 4]) {
-        self.stages[stage].constants[number] = bytes(color);
-    }
-
-    /// Inputs A to D of the final combiner.
-    fn colors(&mut self, inputs: [Option<FinalInput>; 4]) {
-        for (n, input) in inputs.into_iter().enumerate() {
-            self.last.inputs[n] = input.unwrap_or(FinalInput::zero(Component::Rgb));
-        }
-    }
-
-    /// rgb = D = a register.
-    fn shows(&mut self, register: FinalRegister) {
-        self.colors([None, None, None, Some(final_rgb(register))]);
-    }
-
-    /// The rest of the final combiner: E, F and G, without a limit and without inversion.
-    fn rest(&mut self, alpha: FinalInput) {
-        let zero = FinalInput::zero(Component::Rgb);
-        (self.last.inputs[4], self.last.inputs[5], self.last.g) = (zero, zero, alpha);
-        (self.last.color_sum_clamp, self.last.invert_spare0, self.last.invert_secondary) = (false, false, false);
-    }
-
-    fn opaque(&mut self) {
-        self.rest(FinalInput { component: Component::Alpha, ..FINAL_ONE });
-    }
-
-    fn with_alpha_of(&mut self, register: FinalRegister) {
-        self.rest(FinalInput { register, component: Component::Alpha, invert: false });
-    }
-
-    fn on(&self, draw: &Draw) -> Draw {
-        let (stages, final_combiner) = (self.stages[..self.used].to_vec(), self.last);
-        Draw { combiners: Combiners { stages, mux_select: self.mux, final_combiner }, ..draw.clone() }
-    }
-}
-
-/// Where products and the sum go.
-fn to(component: Component, ab: Register, cd: Register, sum: Register) -> Portion {
-    Portion { ab_output: ab, cd_output: cd, sum_output: sum, ..Portion::idle(component) }
-}
-
-/// AB goes to a register.
-fn ab(component: Component, register: Register) -> Portion {
-    to(component, register, Register::Zero, Register::Zero)
-}
-
-/// AB and CD go to registers.
-fn ab_cd(first: Register, second: Register) -> Portion {
-    to(Component::Rgb, first, second, Register::Zero)
-}
+const OPAQUE: &str = "out.a = unsigned_invert(zero);";
+const INVERTED_SPARE0: &str = "color_sum = unsigned_invert(spare0) + col1;";
+const INVERTED_SECONDARY: &str = "color_sum = spare0 + unsigned_invert(col1);";
 
 /// Six rectangles in two rows, of two triangles each.
 fn six() -> Vec<Draw> {
@@ -149,13 +41,11 @@ fn six() -> Vec<Draw> {
 }
 
 /// The frame buffer over which a grey chequered field is drawn.
-fn chequered() -> Canvas {
-    let mut canvas = Canvas::new(0xff6a_6a6a);
+fn chequered(canvas: &mut Canvas) {
     let colors = [abgr(0xff33_3333), abgr(0xff44_4444)];
     let texture = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, [256, 256], checker(colors, 8)));
     let draw = pasted(unprojected([0.0, 0.0, 640.0, 480.0]), 0, nearest(texture), WHOLE);
     canvas.draw(without_alpha(draw, FinalRegister::Texture0));
-    canvas
 }
 
 /// A rectangle in four colours, one a corner.
@@ -165,222 +55,142 @@ fn gradient(edges: [f32; 4], colors: [[f32; 4]; 4]) -> Draw {
 }
 
 /// The mux, by bits of SPARE0's alpha.
-fn mux() -> Drawn {
-    let mut state = State::new();
-    state.used = 2;
-    state.rgb_inputs(0, &[ONE, ONE]);
-    state.rgb_outputs(0, ab(Component::Rgb, Register::Spare0));
-    state.alpha_inputs(0, &[input(Register::ConstantColor0, Component::Alpha), one(Component::Alpha)]);
-    state.alpha_outputs(0, ab(Component::Alpha, Register::Spare0));
-    state.constant(1, 0, [1.0, 0.0, 0.0, 1.0]);
-    state.constant(1, 1, [0.0, 0.0, 1.0, 1.0]);
-    state.rgb_inputs(1, &[rgb(Register::ConstantColor0), ONE, rgb(Register::ConstantColor1), ONE]);
-    let selected = to(Component::Rgb, Register::Zero, Register::Zero, Register::PrimaryColor);
-    state.rgb_outputs(1, Portion { mux: true, ..selected });
-    state.alpha_inputs(1, &[one(Component::Alpha); 2]);
-    state.alpha_outputs(1, ab(Component::Alpha, Register::PrimaryColor));
-    state.shows(FinalRegister::PrimaryColor);
-    state.with_alpha_of(FinalRegister::PrimaryColor);
-    let mut canvas = Canvas::new(0xff30_3030);
-    let values = [0x82, 0x82, 0x81, 0x81, 0, 0];
-    for (n, (value, place)) in values.into_iter().zip(six()).enumerate() {
-        state.stages[0].constants[0] = [0, 0, 0, value];
-        state.mux = if n % 2 == 1 { MuxSelect::Msb } else { MuxSelect::Lsb };
-        canvas.draw(state.on(&place));
+fn mux(canvas: &mut Canvas) {
+    let mut combiners = program(
+        "{ rgb { spare0 = unsigned_invert(zero); } alpha { spare0 = unsigned(const0.a); } }
+         { const0 = bytes(255, 0, 0, 255); const1 = bytes(0, 0, 255, 255);
+           rgb { discard = unsigned(const0); discard = unsigned(const1); col0 = mux(); } alpha { col0 = unsigned_invert(zero); } }
+         out.rgb = col0; out.a = col0.a;",
+    );
+    for (n, (value, place)) in [0x82, 0x82, 0x81, 0x81, 0, 0].into_iter().zip(six()).enumerate() {
+        combiners.stages[0].constants[0] = [0, 0, 0, value];
+        combiners.mux_select = if n % 2 == 1 { MuxSelect::Msb } else { MuxSelect::Lsb };
+        canvas.draw(Draw { combiners: combiners.clone(), ..place });
     }
-    canvas.colors()
 }
 
 /// Both products of a stage are computed before either is written.
-fn independence() -> Drawn {
-    let (spare0, spare1) = (Register::Spare0, Register::Spare1);
-    let (places, mut canvas, mut state) = (six(), Canvas::new(0xff30_3030), State::new());
-    state.used = 2;
-    state.constant(0, 0, [0.0, 1.0, 0.0, 1.0]);
-    state.rgb_inputs(0, &[rgb(Register::ConstantColor0), ONE]);
-    state.rgb_outputs(0, ab(Component::Rgb, spare0));
-    state.constant(1, 0, [1.0, 0.0, 0.0, 1.0]);
-    state.rgb_inputs(1, &[rgb(Register::ConstantColor0), ONE, rgb(spare0), ONE]);
-    state.rgb_outputs(1, ab_cd(spare0, spare1));
-    state.shows(FinalRegister::Spare1);
-    state.opaque();
-    canvas.draw(state.on(&places[0]));
+fn independence(canvas: &mut Canvas) {
+    let places = six();
+    let colors = "{ const0 = bytes(0, 255, 0, 255); rgb { spare0 = unsigned(const0); } }
+        { const0 = bytes(255, 0, 0, 255); rgb { spare0 = unsigned(const0); spare1 = unsigned(spare0); } }";
     // The same of blue that goes to alpha.
-    state.used = 3;
-    state.constant(0, 0, [0.0, 0.0, 0.25, 0.0]);
-    state.constant(1, 0, [0.0, 0.0, 0.75, 0.0]);
-    state.rgb_outputs(1, Portion { ab_blue_to_alpha: true, cd_blue_to_alpha: true, ..ab_cd(spare0, spare1) });
-    let alpha = |register| input(register, Component::Alpha);
-    state.rgb_inputs(2, &[alpha(spare0), ONE, alpha(spare1), ONE]);
-    state.rgb_outputs(2, ab_cd(spare0, spare1));
-    canvas.draw(state.on(&places[2]));
-    state.shows(FinalRegister::Spare0);
-    canvas.draw(state.on(&places[4]));
-    canvas.colors()
+    let blue = "{ const0 = bytes(0, 0, 63, 0); rgb { spare0 = unsigned(const0); } }
+        { const0 = bytes(0, 0, 191, 0);
+          rgb { spare0 = unsigned(const0), blue_to_alpha; spare1 = unsigned(spare0), blue_to_alpha; } }
+        { rgb { spare0 = unsigned(spare0.a); spare1 = unsigned(spare1.a); } }";
+    for (place, stages, shown) in [(0, colors, "spare1"), (2, blue, "spare1"), (4, blue, "spare0")] {
+        canvas.draw(with(&places[place], &format!("{stages} out.rgb = {shown}; {OPAQUE}")));
+    }
 }
 
 /// The alpha portion reads what was there before the RGB portion of its stage.
-fn color_and_alpha() -> Drawn {
-    let (mut canvas, mut state) = (Canvas::new(0xff30_3030), State::new());
+fn color_and_alpha(canvas: &mut Canvas) {
     let place = |[x, y]: [f32; 2]| {
         let diffuse = VertexColor::Floats([0.1, 1.0, 0.1, 1.0]);
         Vertex { position: space::flat([x, y, 0.0, 1.0]), diffuse, ..Vertex::default() }
     };
     let whole = draw(Topology::Quads, corners([-2.75, 1.75, 2.75, -1.75]).map(place).to_vec());
-    state.shows(FinalRegister::PrimaryColor);
-    state.opaque();
-    canvas.draw(state.on(&whole));
-    state.used = 2;
-    state.constant(0, 0, [0.0; 4]);
-    state.rgb_inputs(0, &[rgb(Register::ConstantColor0), ONE]);
-    state.rgb_outputs(0, ab(Component::Rgb, Register::Spare0));
-    state.constant(1, 0, [0.0, 0.0, 1.0, 1.0]);
-    state.rgb_inputs(1, &[rgb(Register::ConstantColor0), ONE]);
-    state.rgb_outputs(1, ab(Component::Rgb, Register::Spare0));
-    state.alpha_inputs(1, &[input(Register::Spare0, Component::Blue), one(Component::Alpha)]);
-    state.alpha_outputs(1, ab(Component::Alpha, Register::Spare1));
-    state.alpha_inputs(0, &[]);
-    state.alpha_outputs(0, Portion::idle(Component::Alpha));
-    state.shows(FinalRegister::Spare0);
-    state.with_alpha_of(FinalRegister::Spare1);
-    canvas.draw(state.on(&whole));
-    canvas.colors()
+    canvas.draw(with(&whole, &format!("out.rgb = col0; {OPAQUE}")));
+    let stages = "{ rgb { spare0 = unsigned(const0); } }
+        { const0 = bytes(0, 0, 255, 255); rgb { spare0 = unsigned(const0); } alpha { spare1 = unsigned(spare0.b); } }";
+    canvas.draw(with(&whole, &format!("{stages} out.rgb = spare0; out.a = spare1.a;")));
 }
 
 /// The final combiner's sum, limited or not, with either part inverted.
-fn flags() -> Drawn {
-    let (places, mut canvas, mut state) = (six(), Canvas::new(0xff30_3030), State::new());
-    let sum = Some(final_rgb(FinalRegister::Spare0PlusSecondary));
-    state.rgb_inputs(0, &[ONE; 4]);
-    state.rgb_outputs(0, ab_cd(Register::SecondaryColor, Register::Spare0));
-    state.last.constants[0] = bytes([0.5; 4]);
-    state.colors([Some(final_rgb(FinalRegister::ConstantColor0)), sum, None, None]);
-    state.opaque();
-    canvas.draw(state.on(&places[0]));
-    state.last.color_sum_clamp = true;
-    canvas.draw(state.on(&places[1]));
-    state.constant(0, 0, [0.75; 4]);
-    let zero = CombinerInput::zero(Component::Rgb);
-    state.rgb_inputs(0, &[zero, zero, rgb(Register::ConstantColor0), ONE]);
-    state.colors([Some(FINAL_ONE), sum, None, None]);
-    state.opaque();
-    canvas.draw(state.on(&places[2]));
-    state.last.invert_spare0 = true;
-    canvas.draw(state.on(&places[3]));
-    state.rgb_outputs(0, ab_cd(Register::Spare0, Register::SecondaryColor));
-    state.opaque();
-    canvas.draw(state.on(&places[4]));
-    state.last.invert_secondary = true;
-    canvas.draw(state.on(&places[5]));
-    canvas.colors()
+fn flags(canvas: &mut Canvas) {
+    let both = "const0 = bytes(127, 127, 127, 127);
+        { rgb { col1 = unsigned_invert(zero); spare0 = unsigned_invert(zero); } } out.rgb = const0 * color_sum;";
+    let spare0 = "{ const0 = bytes(191, 191, 191, 191); rgb { col1 = zero * zero; spare0 = unsigned(const0); } }
+        out.rgb = unsigned_invert(zero) * color_sum;";
+    let secondary = "{ const0 = bytes(191, 191, 191, 191); rgb { spare0 = zero * zero; col1 = unsigned(const0); } }
+        out.rgb = unsigned_invert(zero) * color_sum;";
+    let programs = [
+        (both, ""),
+        (both, "clamp_color_sum();"),
+        (spare0, ""),
+        (spare0, INVERTED_SPARE0),
+        (secondary, ""),
+        (secondary, INVERTED_SECONDARY),
+    ];
+    for (place, (text, flag)) in six().iter().zip(programs) {
+        canvas.draw(with(place, &format!("{text} {flag} {OPAQUE}")));
+    }
 }
 
 /// Colours and alphas of units that have no texture.
-fn unbound() -> Drawn {
-    let (mut canvas, mut state) = (Canvas::new(0xff6a_6a6a), State::new());
-    state.opaque();
+fn unbound(canvas: &mut Canvas) {
     let colors = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.5, 0.5, 0.5, 1.0]];
-    let mut top = 96.0;
-    for register in super::draws::FETCHED {
-        for (component, left) in [(Component::Rgb, 252.0), (Component::Alpha, 324.0)] {
-            state.colors([None, None, None, Some(FinalInput { register, component, invert: false })]);
-            canvas.draw(state.on(&gradient(sized([left, top], [64.0, 64.0]), colors)));
-        }
-        top += 72.0;
+    for (n, corner) in (0..8).zip(places([252.0, 96.0], [72.0; 2], 2)) {
+        let component = ["", ".a"][n % 2];
+        let draw = gradient(sized(corner, [64.0, 64.0]), colors);
+        canvas.draw(with(&draw, &format!("out.rgb = tex{}{component}; {OPAQUE}", n / 2)));
     }
-    canvas.colors()
 }
 
 /// A white square without alpha, its left half opaque and its right half with the alpha of SPARE0.
-fn halves(canvas: &mut Canvas, state: &mut State, [left, top]: [f32; 2]) {
-    let white = [[1.0, 1.0, 1.0, 0.0]; 4];
-    state.opaque();
-    canvas.draw(state.on(&gradient(sized([left, top], [32.0, 64.0]), white)));
-    state.with_alpha_of(FinalRegister::Spare0);
-    canvas.draw(state.on(&gradient(sized([left + 32.0, top], [32.0, 64.0]), white)));
+fn halves(canvas: &mut Canvas, stages: &str, [left, top]: [f32; 2]) {
+    for (left, alpha) in [(left, OPAQUE), (left + 32.0, "out.a = spare0.a;")] {
+        let half = gradient(sized([left, top], [32.0, 64.0]), [[1.0, 1.0, 1.0, 0.0]; 4]);
+        canvas.draw(with(&half, &format!("{stages} out.rgb = spare0; {alpha}")));
+    }
 }
 
 /// Blue of either product as alpha.
-fn alpha_from_blue() -> Drawn {
-    let (mut canvas, mut state) = (chequered(), State::new());
-    state.alpha_outputs(0, Portion::idle(Component::Alpha));
-    state.shows(FinalRegister::Spare0);
-    let product = [rgb(Register::ConstantColor0), rgb(Register::PrimaryColor)];
-    state.rgb_inputs(0, &[product[0], product[1], product[0], product[1]]);
-    let first = Portion { ab_blue_to_alpha: true, ..ab(Component::Rgb, Register::Spare0) };
-    let second = Portion { cd_blue_to_alpha: true, ..ab_cd(Register::Zero, Register::Spare0) };
-    for (top, outputs) in [(192.0, first), (264.0, second)] {
-        state.rgb_outputs(0, outputs);
-        let mut left = 128.0;
-        for blue in [1.0, 0.75, 0.5, 0.25, 0.0] {
-            state.constant(0, 0, [0.25, 0.5, blue, 0.0]);
-            halves(&mut canvas, &mut state, [left, top]);
-            left += 72.0;
+fn alpha_from_blue(canvas: &mut Canvas) {
+    chequered(canvas);
+    for (top, before) in [(192.0, ""), (264.0, "discard = zero * zero;")] {
+        let product = format!("{before} spare0 = unsigned(const0) * unsigned(col0), blue_to_alpha;");
+        for (blue, corner) in [255, 191, 127, 63, 0].into_iter().zip(places([128.0, top], [72.0; 2], 5)) {
+            let stage = format!("{{ const0 = bytes(63, 127, {blue}, 0); rgb {{ {product} }} }}");
+            halves(canvas, &stage, corner);
         }
     }
-    canvas.colors()
 }
 
 /// Scale and bias of the outputs.
-fn operations() -> Drawn {
-    let (mut canvas, mut state) = (chequered(), State::new());
-    state.rgb_inputs(0, &[rgb(Register::ConstantColor0), ONE]);
-    state.alpha_inputs(0, &[input(Register::ConstantColor0, Component::Blue), one(Component::Alpha)]);
-    state.shows(FinalRegister::Spare0);
-    state.constant(0, 0, [0.1, 0.25, 1.0, 0.5]);
-    for (scale, bias, corner) in [
-        (Scale::One, Bias::None, [200.0, 74.0]),
-        (Scale::One, Bias::NegativeHalf, [200.0, 146.0]),
-        (Scale::Two, Bias::None, [200.0, 218.0]),
-        (Scale::Two, Bias::NegativeHalf, [200.0, 290.0]),
-        (Scale::Four, Bias::None, [200.0, 362.0]),
-        (Scale::Half, Bias::None, [500.0, 74.0]),
+fn operations(canvas: &mut Canvas) {
+    chequered(canvas);
+    for (operation, corner) in [
+        ("", [200.0, 74.0]),
+        ("bias_by_negative_one_half();", [200.0, 146.0]),
+        ("scale_by_two();", [200.0, 218.0]),
+        ("bias_by_negative_one_half_scale_by_two();", [200.0, 290.0]),
+        ("scale_by_four();", [200.0, 362.0]),
+        ("scale_by_one_half();", [500.0, 74.0]),
     ] {
-        state.rgb_outputs(0, Portion { scale, bias, ..ab(Component::Rgb, Register::Spare0) });
-        state.alpha_outputs(0, Portion { scale, bias, ..ab(Component::Alpha, Register::Spare0) });
-        halves(&mut canvas, &mut state, corner);
+        let rgb = format!("rgb {{ spare0 = unsigned(const0); {operation} }}");
+        let alpha = format!("alpha {{ spare0 = unsigned(const0.b); {operation} }}");
+        halves(canvas, &format!("{{ const0 = bytes(25, 63, 255, 127); {rgb} {alpha} }}"), corner);
     }
-    canvas.colors()
 }
 
 /// E F, and the sum with either part inverted.
-fn special_inputs() -> Drawn {
-    let (mut canvas, mut state) = (chequered(), State::new());
-    state.last.constants = [bytes([1.0, 0.75, 0.5, 1.0]), bytes([0.5; 4])];
-    let square = |corner| gradient(sized(corner, [64.0, 64.0]), [[1.0; 4]; 4]);
-    let product = |state: &mut State| {
-        state.opaque();
-        state.last.inputs[4] = final_rgb(FinalRegister::ConstantColor0);
-        state.last.inputs[5] = final_rgb(FinalRegister::ConstantColor1);
-    };
-    state.shows(FinalRegister::ETimesF);
-    product(&mut state);
-    canvas.draw(state.on(&square([200.0, 74.0])));
-    state.constant(0, 0, [0.25, 0.5, 0.75, 0.0]);
-    state.constant(0, 1, [0.7, 0.5, 0.15, 0.5]);
-    state.rgb_inputs(0, &[rgb(Register::ConstantColor0), ONE, rgb(Register::ConstantColor1), ONE]);
-    let blue = |register| input(register, Component::Blue);
-    let unit = one(Component::Alpha);
-    state.alpha_inputs(0, &[blue(Register::ConstantColor0), unit, blue(Register::ConstantColor1), unit]);
-    state.rgb_outputs(0, ab_cd(Register::Spare0, Register::SecondaryColor));
-    state.shows(FinalRegister::Spare0PlusSecondary);
-    canvas.draw(state.on(&square([200.0, 170.0])));
-    state.last.invert_spare0 = true;
-    canvas.draw(state.on(&square([500.0, 170.0])));
-    product(&mut state);
-    state.last.invert_secondary = true;
-    canvas.draw(state.on(&square([200.0, 242.0])));
-    canvas.colors()
+fn special_inputs(canvas: &mut Canvas) {
+    chequered(canvas);
+    let product = "const0 = bytes(255, 191, 127, 255); const1 = bytes(127, 127, 127, 127);
+        final_product = const0 * const1; out.rgb = final_product;";
+    let sum = "{ const0 = bytes(63, 127, 191, 0); const1 = bytes(178, 127, 38, 127);
+          rgb { spare0 = unsigned(const0); col1 = unsigned(const1); } } out.rgb = color_sum;";
+    for (text, flag, corner) in [
+        (product, "", [200.0, 74.0]),
+        (sum, "", [200.0, 170.0]),
+        (sum, INVERTED_SPARE0, [500.0, 170.0]),
+        (sum, INVERTED_SECONDARY, [200.0, 242.0]),
+    ] {
+        let square = gradient(sized(corner, [64.0, 64.0]), [[1.0; 4]; 4]);
+        canvas.draw(with(&square, &format!("{text} {flag} {OPAQUE}")));
+    }
 }
 
 /// Combiner.
 pub(super) fn frames(frames: &mut Frames) {
-    frames.make("Mux", mux);
-    frames.make("Independence", independence);
-    frames.make("ColorAlphaIndependence", color_and_alpha);
-    frames.make("Flags", flags);
-    frames.make("UnboundTexSampler", unbound);
-    frames.make("AlphaFromBlue", alpha_from_blue);
-    frames.make("CombinerOps", operations);
-    frames.make("SpecialInputs", special_inputs);
+    frames.paint("Mux", 0xff30_3030, mux);
+    frames.paint("Independence", 0xff30_3030, independence);
+    frames.paint("ColorAlphaIndependence", 0xff30_3030, color_and_alpha);
+    frames.paint("Flags", 0xff30_3030, flags);
+    frames.paint("UnboundTexSampler", 0xff6a_6a6a, unbound);
+    frames.paint("AlphaFromBlue", 0xff6a_6a6a, alpha_from_blue);
+    frames.paint("CombinerOps", 0xff6a_6a6a, operations);
+    frames.paint("SpecialInputs", 0xff6a_6a6a, special_inputs);
 }

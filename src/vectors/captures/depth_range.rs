@@ -3,7 +3,7 @@
 use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, nearest, placed};
 use super::images::{self, checker};
 use super::primitives::FAR_DEPTHS;
-use super::{Drawn, Frames, space};
+use super::{Frames, space};
 use ninebit::state::{
     CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, TextureFormat, Topology, Vertex, VertexColor,
 };
@@ -27,8 +27,7 @@ fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
 }
 
 /// Two upright quads and a floor through both, whose depths have the range.
-fn floor(range: DepthRange, bias: f32) -> Drawn {
-    let mut canvas = Canvas::new(0xfe25_1135);
+fn floor(canvas: &mut Canvas, range: DepthRange, bias: f32) {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
     canvas.texture(&images::in_texels(images::texture(TextureFormat::A8R8G8B8, [256, 256], fields)));
@@ -41,7 +40,6 @@ fn floor(range: DepthRange, bias: f32) -> Drawn {
     let corners = [[-10.0, -2.5, 20.0], [10.0, -2.5, 20.0], [10.0, -2.5, 0.0], [-10.0, -2.5, 0.0]];
     let offset = PolygonOffset { bias, factor: 0.0 };
     canvas.draw(textured(corners, DepthTest { offset, ..test(range) }));
-    canvas.colors()
 }
 
 /// Depth_Clamp: the frames of z buffers whose vertices lie before the eye.
@@ -51,12 +49,12 @@ pub(super) fn clamped(frames: &mut Frames) {
             for whole in [false, true] {
                 let (lowest, highest) = if whole { (0.0, DEEPEST) } else { (14_988_020.0, 15_869_663.0) };
                 let range = DepthRange { lowest, highest, clamps, drops_triangles: false };
-                let drawn = floor(range, if biased { -500_000.0 } else { 0.0 });
+                let bias = if biased { -500_000.0 } else { 0.0 };
                 let [clamps, biased, whole] = [clamps, biased, whole].map(u8::from);
                 // A vertex program puts the vertices where the fixed function does.
                 for program in [0, 1] {
                     let name = format!("depth_clamp_W0_C{clamps}_ZB{biased}_FR{whole}_VSH{program}");
-                    frames.push(name, drawn.clone());
+                    frames.paint(name, 0xfe25_1135, move |canvas| floor(canvas, range, bias));
                 }
             }
         }

@@ -6,6 +6,7 @@ use ninebit::state::{
     FinalRegister, Palette, Profile, Scene, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture,
     TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
 };
+use ninebit_program::text;
 use std::sync::Arc;
 
 /// Source over destination, by the source's alpha.
@@ -23,6 +24,11 @@ pub(super) fn frame_buffer(clear: u32) -> Target {
 /// A scene of the chip that the captures are of.
 pub(super) fn scene(targets: Vec<Target>, textures: Vec<Texture>, draws: Vec<Draw>) -> Scene {
     Scene { profile: Profile::Nv2a, targets, textures, draws, ..Scene::default() }
+}
+
+/// A program in the combiner language; one that cannot be read shows nothing.
+pub(super) fn program(text: &str) -> Combiners {
+    text::read(text).map(|program| program.combiners).unwrap_or_default()
 }
 
 /// A program whose fragment is the colour of a register, with alpha 1.

@@ -1,11 +1,10 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::draws::{Canvas, corners, draw, in_steps, sized, unprojected};
+use super::draws::{Canvas, corners, draw, in_steps, program, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
 use super::{Drawn, Frames, space};
 use ninebit::state::{
-    Combiners, CompareFunction, Component, DepthRange, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
-    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor,
+    Combiners, CompareFunction, DepthRange, Draw, Fog, FogFunction, FogMode, Profile, Topology, Vertex, VertexColor,
 };
 use ninebit::vertex::fog::passed;
 
@@ -37,13 +36,8 @@ fn function(mode: FogMode, [p0, p1]: [f32; 2]) -> FogFunction {
 }
 
 /// A mixture of two registers by the fog's factor.
-fn mixed(full: FinalRegister, none: FinalRegister) -> Combiners {
-    let input = |register| FinalInput { register, component: Component::Rgb, invert: false };
-    let showing = Combiners::showing(FinalRegister::PrimaryColor);
-    let mut inputs = [FinalInput::zero(Component::Rgb); 6];
-    inputs[0] = FinalInput { component: Component::Alpha, ..input(FinalRegister::Fog) };
-    (inputs[1], inputs[2]) = (input(full), input(none));
-    Combiners { final_combiner: FinalCombiner { inputs, ..showing.final_combiner }, ..showing }
+fn mixed(full: &str, none: &str) -> Combiners {
+    program(&format!("out.rgb = lerp(fog.a, {full}, {none}); out.a = col0.a;"))
 }
 
 /// A draw in fog; each vertex with its fog coordinate.
@@ -56,7 +50,7 @@ fn foggy(
     let fog = |d| passed(&function, Profile::Nv2a, d);
     let vertex = |(vertex, d): (Vertex, f32)| Vertex { fog: fog(d), fog_coordinate: Some(d), ..vertex };
     let fog = Fog { enabled: true, color, function: Some(function) };
-    let combiners = mixed(FinalRegister::PrimaryColor, FinalRegister::Fog);
+    let combiners = mixed("col0", "fog");
     Draw { fog, combiners, ..draw(topology, vertices.map(vertex).collect()) }
 }
 
@@ -179,15 +173,15 @@ pub(super) fn of_components(frames: &mut Frames) {
     let function = function(FogMode::Linear, [1.0, 1.0]);
     for (written, values) in COMPONENTS {
         let draw = triangles(true, |_| taken(written, values), function, [0, 255, 0]);
-        let combiners = mixed(FinalRegister::Fog, FinalRegister::PrimaryColor);
+        let combiners = mixed("fog", "col0");
         let [x, y, z, w] = values;
         let name = format!("{written}-{x:.2}_{y:.2}_{z:.2}_{w:.2}");
         frames.push(name, one(0xff30_3030, Draw { combiners, ..draw }));
     }
     // Nothing is written: what the draws before have left.
     let draw = triangles(true, |_| 0.25, function, [0, 255, 0]);
-    let mut combiners = mixed(FinalRegister::ConstantColor0, FinalRegister::PrimaryColor);
-    combiners.final_combiner.constants[0] = [127, 0, 191, 255];
+    let text = "const0 = bytes(127, 0, 191, 255); out.rgb = lerp(fog.a, const0, col0); out.a = col0.a;";
+    let combiners = program(text);
     frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
 }
 
@@ -247,14 +241,12 @@ pub(super) fn parameters_varied(frames: &mut Frames) {
                 one(0xff23_1f23, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
             });
         }
-        frames.make(format!("FogZeroBias-{name}"), move || {
-            let mut canvas = Canvas::new(0xff23_1f23);
+        frames.paint(format!("FogZeroBias-{name}"), 0xff23_1f23, move |canvas| {
             for (edges, bias) in grid([48.0, 46.0], 24.0, [2.0, 1.0]).zip(steps(1.0, 0.005)) {
                 let panel = panel(edges, [8.0, 8.0], [[0.0, 0.5, 0.5, 1.0]; 4], false);
                 let panel = panel.into_iter().map(|vertex| (vertex, -1.0));
                 canvas.draw(foggy(Topology::Quads, panel, function(mode, [bias, 0.0]), RED));
             }
-            canvas.colors()
         });
     }
 }
@@ -364,16 +356,14 @@ pub(super) fn exceptional(frames: &mut Frames) {
                 });
             }
             for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {
-                frames.make(format!("{prefix}-FogExc-{name}-{source}"), move || {
+                frames.paint(format!("{prefix}-FogExc-{name}-{source}"), 0xff23_2623, move |canvas| {
                     let modes = [FogMode::Linear, FogMode::Exp, FogMode::Exp2];
                     let [linear, exp, exp2] = modes.map(|mode| parameters(mode, 1.0)[1]);
                     let biases = [-1.0, 1.0, 1.5, 1000.0].into_iter();
                     let pairs = biases.flat_map(|p0| [linear, exp, exp2, 1.0, 0.0, -1000.0].map(|p1| [p0, p1]));
-                    let mut canvas = Canvas::new(0xff23_2623);
                     for (edges, pair) in places().zip(pairs) {
                         canvas.draw(foggy(Topology::Quads, exceptional_panel(edges, d), function(mode, pair), RED));
                     }
-                    canvas.colors()
                 });
             }
         }

@@ -27,6 +27,7 @@ mod stencil;
 mod texel_formats;
 mod texgen;
 
+use draws::Canvas;
 use ninebit::engine::{RenderOptions, Renderer, render};
 use ninebit::frame::Surface;
 use ninebit::limits::Limits;
@@ -129,6 +130,15 @@ impl Frames {
     /// A frame that is made when it is wanted.
     fn make(&mut self, name: impl Into<String>, make: impl Fn() -> Drawn + Send + Sync + 'static) {
         self.0.push((name.into(), Arc::new(make)));
+    }
+
+    /// A frame that is painted, when it is wanted, on a frame buffer of this colour.
+    fn paint(&mut self, name: impl Into<String>, clear: u32, paint: impl Fn(&mut Canvas) + Send + Sync + 'static) {
+        self.make(name, move || {
+            let mut canvas = Canvas::new(clear);
+            paint(&mut canvas);
+            canvas.colors()
+        });
     }
 }
 

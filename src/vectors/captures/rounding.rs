@@ -1,10 +1,10 @@
 //! RAS-1 to RAS-3: vertices on and beside sixteenths of a pixel, on the frame buffer and on textures; edges that meet pixels' centres.
 
+use super::Frames;
 use super::draws::{
     Canvas, abgr, argb, draw, nearest, opaque, pasted, places, rectangle, sized, vertex, without_alpha,
 };
 use super::images;
-use super::{Drawn, Frames};
 use ninebit::state::{Draw, FinalRegister, SurfaceFormat, Target, TextureFormat, TextureKind, Topology, VertexColor};
 
 /// What is added to the positions, as the names of frames have it.
@@ -27,31 +27,26 @@ fn patch(edges: [f32; 4], color: u32) -> Draw {
 }
 
 /// A rectangle over a larger one that begins at the same place, without the bias.
-fn geometry(bias: f32) -> Drawn {
-    let mut canvas = Canvas::new(0xfe40_4040);
+fn geometry(canvas: &mut Canvas, bias: f32) {
     canvas.draw(patch([200.0, 120.0, 440.0, 360.0], 0xffff_00ff));
     canvas.draw(patch([200.0 + bias, 120.0 + bias, 440.0, 360.0], GREEN));
-    canvas.colors()
 }
 
 /// Eight squares that meet.
-fn adjacent(bias: f32) -> Drawn {
-    let mut canvas = Canvas::new(0xfe40_4040);
+fn adjacent(canvas: &mut Canvas, bias: f32) {
     canvas.draw(patch([120.0, 140.0, 520.0, 340.0], 0xffe0_e0e0));
     for top in [140.0, 240.0] {
         for left in [120.0, 220.0, 320.0, 420.0] {
             canvas.draw(patch([left, top, left + 100.0, top + 100.0].map(|edge: f32| edge + bias), GREEN));
         }
     }
-    canvas.colors()
 }
 
 /// The sizes of four rectangles that are drawn on textures.
 const SIZES: [[u32; 2]; 4] = [[128, 128], [128, 32], [32, 128], [16, 64]];
 
 /// The textures are as large as the rectangles, or larger than the screen: then only their first rows hold what the last frame left.
-fn on_textures(bias: f32, is_large: bool) -> Drawn {
-    let mut canvas = Canvas::new(0xfe41_4041);
+fn on_textures(canvas: &mut Canvas, bias: f32, is_large: bool) {
     let first = |_, y| if y < 16 { argb(0xffff_00ff) } else { abgr(GREEN) };
     let large = images::texture(TextureFormat::A8R8G8B8, [1024, 1024], first);
     let mut shown = Vec::new();
@@ -71,7 +66,6 @@ fn on_textures(bias: f32, is_large: bool) -> Drawn {
         shown.push(without_alpha(draw, FinalRegister::Texture0));
     }
     canvas.draw_into(0, shown);
-    canvas.colors()
 }
 
 /// The next number below.
@@ -140,30 +134,28 @@ fn combs(shapes: &mut Vec<Corners>, mut at: f32, across: [f32; 4], patches: [f32
 }
 
 /// TopLeftRaster.
-fn edges() -> Drawn {
+fn edges(canvas: &mut Canvas) {
     let mut shapes = Vec::new();
     combs(&mut shapes, 4.0, [45.0, 135.0, 315.0, 450.0], [50.0, 150.0, 250.0], 50.0, false);
     combs(&mut shapes, 45.0, [320.0, 420.0, 520.0, 620.0], [320.0, 440.0, 560.0], 60.0, true);
     for [top, bottom] in [[455.5, 456.6], [460.4, 461.5]] {
         shapes.push(vec![[10.0, top], [630.0, top], [630.0, bottom], [10.0, bottom]]);
     }
-    let mut canvas = Canvas::new(0xff20_2224);
     for shape in shapes {
         let vertices = shape.into_iter().map(|corner| vertex(corner, VertexColor::Bytes([51, 119, 136, 255])));
         let draw = draw(Topology::Polygon, vertices.collect());
         canvas.draw(Draw { combiners: opaque(FinalRegister::PrimaryColor), blend: None, ..draw });
     }
-    canvas.colors()
 }
 
 /// Vertex_shader_rounding_tests.
 pub(super) fn frames(frames: &mut Frames) {
     for (name, bias) in BIASES {
-        frames.push(format!("Geometry_{name}"), geometry(bias));
-        frames.push(format!("AdjacentGeometry_{name}"), adjacent(bias));
-        frames.make(format!("GeometrySubscreen_{name}"), move || on_textures(bias, false));
-        frames.make(format!("GeometrySuperscreen_{name}"), move || on_textures(bias, true));
+        frames.paint(format!("Geometry_{name}"), 0xfe40_4040, move |canvas| geometry(canvas, bias));
+        frames.paint(format!("AdjacentGeometry_{name}"), 0xfe40_4040, move |canvas| adjacent(canvas, bias));
+        frames.paint(format!("GeometrySubscreen_{name}"), 0xfe41_4041, move |canvas| on_textures(canvas, bias, false));
+        frames.paint(format!("GeometrySuperscreen_{name}"), 0xfe41_4041, move |canvas| on_textures(canvas, bias, true));
     }
-    frames.push("TopLeftRaster", edges());
-    frames.push("TopLeftRaster_Fixed", edges());
+    frames.paint("TopLeftRaster", 0xff20_2224, edges);
+    frames.paint("TopLeftRaster_Fixed", 0xff20_2224, edges);
 }

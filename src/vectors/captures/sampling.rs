@@ -61,7 +61,7 @@ const CONVERTED: [&str; 9] = ["A8", "A8Y8", "AY8", "G8B8", "R16B16", "R6G5B5", "
 pub(super) fn volumes(frames: &mut Frames) {
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
     for variant in texel_formats::variants().filter(|v| !v.in_texels && !CONVERTED.contains(&v.base)) {
-        frames.make(variant.base, move || {
+        frames.paint(variant.base, 0xfe20_2020, move |canvas| {
             let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
             let layer = |[red, green, blue]: [u8; 3]| {
                 let image = move |x: u32, y: u32| {
@@ -70,14 +70,11 @@ pub(super) fn volumes(frames: &mut Frames) {
                 };
                 texel_formats::packed(variant.format, [SIDE; 2], image)
             };
-            let mut canvas = Canvas::new(0xfe20_2020);
             canvas.texture(&volume(variant.format, masks.into_iter().map(layer)));
             canvas.draw(pairs(unit));
-            canvas.colors()
         });
     }
-    frames.make("SZ_Index8", move || {
-        let mut canvas = Canvas::new(0xfe20_2020);
+    frames.paint("SZ_Index8", 0xfe20_2020, move |canvas| {
         let block = |n: u32| {
             let value = 255 - 4 * (n % 64);
             let shown = [value, value << 8, value << 16, value | value << 8 | value << 16];
@@ -87,7 +84,6 @@ pub(super) fn volumes(frames: &mut Frames) {
         let layer = |layer: u32| (0..SIDE * SIDE).map(|n| (n / SIDE % 64 + layer * 64) & 255).collect();
         canvas.texture(&volume(TextureFormat::P8, (0..LAYERS).map(layer)));
         canvas.draw(pairs(TextureUnit { palette, ..unit }));
-        canvas.colors()
     });
 }
 

@@ -7,7 +7,7 @@ use super::images::{self, Color, checker, four_gradients, gradient, luminance, s
 use super::primitives::FAR_DEPTHS;
 use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
 use super::texel_formats::{Variant, packed, texture, variants};
-use super::{Drawn, Frames, assets};
+use super::{Frames, assets};
 use ninebit::state::{
     Combiners, CompareFunction, DepthTest, DotMapping, Draw, Filter, ShaderOperation, ShaderStage, TEXTURE_UNITS,
     Texture, TextureFormat, TextureKind, TextureUnit, Topology, Vertex, VertexColor,
@@ -166,10 +166,8 @@ fn stage(number: usize, operation: ShaderOperation, mapping: DotMapping) -> Shad
 }
 
 /// A frame of cubes by the texture shader's last operation.
-fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Texture, normals: &Texture) -> Drawn {
-    let mut canvas = Canvas::new(0xfe13_1313);
-    let normals = canvas.texture(normals);
-    let cube = nearest(canvas.texture(cube));
+fn dotted(canvas: &mut Canvas, operation: ShaderOperation, mapping: DotMapping, eye: Eye, textures: [&Texture; 2]) {
+    let [normals, cube] = textures.map(|texture| nearest(canvas.texture(texture)));
     let state = |mut draw: Draw| {
         let is_diffuse = operation == ShaderOperation::DotReflectDiffuse;
         // A diffuse lookup needs the reflection after it (TSH-10).
@@ -178,7 +176,7 @@ fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Text
         } else {
             (ShaderOperation::DotProduct, operation)
         };
-        draw.textures = [Some(nearest(normals)), None, is_diffuse.then_some(cube), Some(cube)];
+        draw.textures = [Some(normals), None, is_diffuse.then_some(cube), Some(cube)];
         draw.texture_shader = [
             ShaderStage::conventional(0, true),
             stage(1, ShaderOperation::DotProduct, mapping),
@@ -188,8 +186,7 @@ fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Text
         draw.combiners = Combiners::showing(FETCHED[if is_diffuse { 2 } else { 3 }]);
         draw
     };
-    cubes(&mut canvas, |model, corner| surface(model, eye, corner), state);
-    canvas.colors()
+    cubes(canvas, |model, corner| surface(model, eye, corner), state);
 }
 
 /// Texture_cubemap.
@@ -199,15 +196,13 @@ pub(super) fn cube_maps(frames: &mut Frames) {
     let normals = Arc::new(normals);
     for (name, q) in [("0.0", 0.0), ("-0.0", -0.0), ("1.0", 1.0), ("-1.0", -1.0)] {
         let checks = Arc::clone(&checks);
-        frames.make(format!("Cubemap_q{name}"), move || {
-            let mut canvas = Canvas::new(0xfe12_1212);
+        frames.paint(format!("Cubemap_q{name}"), 0xfe12_1212, move |canvas| {
             canvas.texture(&checks);
             let along = |_: &Matrix, [face, corner]: [usize; 2]| {
                 let [x, y, z] = CUBE[face][corner];
                 [[x, y, z, q]; TEXTURE_UNITS]
             };
-            cubes(&mut canvas, along, |draw| fetching(draw, 3, nearest(0)));
-            canvas.colors()
+            cubes(canvas, along, |draw| fetching(draw, 3, nearest(0)));
         });
     }
     for (name, mapping) in [
@@ -219,8 +214,10 @@ pub(super) fn cube_maps(frames: &mut Frames) {
         ("HiLoHemi", DotMapping::HiloHemisphere),
     ] {
         let mut make = |prefix: String, operation, eye, cube: &Arc<Texture>| {
-            let [cube, normals] = [cube, &normals].map(Arc::clone);
-            frames.make(format!("{prefix}_{name}"), move || dotted(operation, mapping, eye, &cube, &normals));
+            let [normals, cube] = [&normals, cube].map(Arc::clone);
+            frames.paint(format!("{prefix}_{name}"), 0xfe13_1313, move |canvas| {
+                dotted(canvas, operation, mapping, eye, [&normals, &cube]);
+            });
         };
         let constant = |eye| ShaderOperation::DotReflectConstantEye { eye };
         make("DotSTRCube".into(), ShaderOperation::DotProductCube, Eye::Vertex, &radial);
@@ -286,8 +283,7 @@ fn water() -> [Texture; 2] {
 }
 
 /// Two dot products: of the direction from the eye, and of that of a light.
-fn dot_2d() -> Drawn {
-    let mut canvas = Canvas::new(0xff22_2222);
+fn dot_2d(canvas: &mut Canvas) {
     let [waves, seen] = water();
     let waves = canvas.texture(&waves);
     let seen = canvas.texture(&Texture { kind: TextureKind::TwoDimensional, ..seen });
@@ -298,26 +294,21 @@ fn dot_2d() -> Drawn {
     let mapping = DotMapping::ZeroToOne;
     let dots = [ShaderOperation::DotProduct, ShaderOperation::DotProduct2D];
     canvas.draw(shaded(draw, nearest(waves), &dots, mapping, nearest(seen)));
-    canvas.colors()
 }
 
-fn dependent(operation: ShaderOperation) -> Drawn {
-    let mut canvas = Canvas::new(0xff28_2828);
+fn dependent(canvas: &mut Canvas, operation: ShaderOperation) {
     let size = [256, 256];
     let read = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, four_gradients(size)));
     let shown = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, gradient(size)));
     let draw = with_sets(unprojected(LARGE), [corners(WHOLE), NO_SET, NO_SET], 1);
     canvas.draw(shaded(draw, nearest(read), &[operation], DotMapping::ZeroToOne, nearest(shown)));
-    canvas.colors()
 }
 
-fn pass_through() -> Drawn {
-    let mut canvas = Canvas::new(0xff22_2222);
+fn pass_through(canvas: &mut Canvas) {
     let colors = [[0.0, 0.0, 1.0, 0.25], [0.0, 1.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.75], [1.0, 1.0, 0.4, 0.33]];
     let mut draw = with_sets(unprojected(LARGE), [colors, NO_SET, NO_SET], 0);
     draw.texture_shader[0] = stage(0, ShaderOperation::PassThrough, DotMapping::ZeroToOne);
     canvas.draw(draw);
-    canvas.colors()
 }
 
 /// A picture in a white frame.
@@ -335,11 +326,10 @@ fn moved(edges: [f32; 4], [first, second]: [usize; 2], matrix: [f32; 4], luminan
     shaded(draw, nearest(first), &[operation], DotMapping::ZeroToOne, nearest(second))
 }
 
-fn bump_environment() -> Drawn {
-    let mut canvas = Canvas::new(0xff22_2222);
+fn bump_environment(canvas: &mut Canvas) {
     let [waves, seen] = water().map(|texture| canvas.texture(&texture));
-    framed(&mut canvas, sized([8.0, 64.0], [128.0; 2]), seen);
-    framed(&mut canvas, sized([8.0, 208.0], [128.0; 2]), waves);
+    framed(canvas, sized([8.0, 64.0], [128.0; 2]), seen);
+    framed(canvas, sized([8.0, 208.0], [128.0; 2]), waves);
     let matrices = [
         [-1.0, 0.0, 1.0, 0.0],
         [1.0, 1.0, 1.0, 1.0],
@@ -353,14 +343,12 @@ fn bump_environment() -> Drawn {
     for (matrix, corner) in matrices.into_iter().zip(places([152.0, 64.0], [144.0; 2], 3)) {
         canvas.draw(moved(sized(corner, [128.0; 2]), [waves, seen], matrix, None));
     }
-    canvas.colors()
 }
 
-fn bump_luminance() -> Drawn {
-    let mut canvas = Canvas::new(0xff22_2222);
+fn bump_luminance(canvas: &mut Canvas) {
     let [waves, seen] = water().map(|texture| canvas.texture(&texture));
-    framed(&mut canvas, sized([8.0, 64.0], [64.0; 2]), seen);
-    framed(&mut canvas, sized([8.0, 144.0], [64.0; 2]), waves);
+    framed(canvas, sized([8.0, 64.0], [64.0; 2]), seen);
+    framed(canvas, sized([8.0, 144.0], [64.0; 2]), waves);
     let mut left = 88.0;
     for value in [0.0, 0.5] {
         for scale in [0.0, 1.0, 2.0] {
@@ -374,17 +362,20 @@ fn bump_luminance() -> Drawn {
         }
         left += 40.0;
     }
-    canvas.colors()
 }
 
 /// Pixel_shader.
 pub(super) fn programs(frames: &mut Frames) {
-    frames.make("DotST", dot_2d);
-    frames.make("StageDependentGreenBlue", || dependent(ShaderOperation::DependentGreenBlue));
-    frames.make("StageDependentAlphaRed", || dependent(ShaderOperation::DependentAlphaRed));
-    frames.make("Passthru", pass_through);
-    frames.make("BumpEnvMap", bump_environment);
-    frames.make("BumpEnvMapLuminance", bump_luminance);
+    frames.paint("DotST", 0xff22_2222, dot_2d);
+    for (name, operation) in
+        [("GreenBlue", ShaderOperation::DependentGreenBlue), ("AlphaRed", ShaderOperation::DependentAlphaRed)]
+    {
+        let name = format!("StageDependent{name}");
+        frames.paint(name, 0xff28_2828, move |canvas| dependent(canvas, operation));
+    }
+    frames.paint("Passthru", 0xff22_2222, pass_through);
+    frames.paint("BumpEnvMap", 0xff22_2222, bump_environment);
+    frames.paint("BumpEnvMapLuminance", 0xff22_2222, bump_luminance);
 }
 
 /// Squares in which the second column and the second row read more channels as signed.
@@ -404,12 +395,13 @@ const SIZE: [u32; 2] = [256, 256];
 
 /// A bump map of four colours that moves a chequered field. `words`: R, G, B, A.
 fn bumped(
+    canvas: &mut Canvas,
     &Variant { format, is_grey, in_texels, .. }: &Variant,
     words: [u32; 4],
     matrix: [f32; 4],
     with_luminance: Option<[f32; 2]>,
     fields: [Color; 2],
-) -> Drawn {
+) {
     let colors = words.map(u32::to_be_bytes).map(|color| {
         let l = luminance(color);
         if is_grey { [l, l, l, color[3]] } else { color }
@@ -419,7 +411,6 @@ fn bumped(
         TextureFormat::A8 => packed(format, SIZE, solid([0; 4])),
         _ => packed(format, SIZE, quarters(colors)),
     };
-    let mut canvas = Canvas::new(0xfe20_2020);
     let bumps = canvas.texture(&texture(format, in_texels, SIZE, words));
     let field = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, SIZE, checker(fields, 8)));
     for place in SQUARES {
@@ -432,7 +423,6 @@ fn bumped(
         let draw = with_sets(square_at(place), sets, 1);
         canvas.draw(shaded(draw, unit, &[operation], DotMapping::ZeroToOne, nearest(field)));
     }
-    canvas.colors()
 }
 
 fn bilinear(texture: usize) -> TextureUnit {
@@ -443,8 +433,7 @@ const STRAIGHT_MATRIX: [f32; 4] = [0.3, 0.0, 0.0, 0.5];
 const TURNED_MATRIX: [f32; 4] = [0.0, -0.1, 0.3, 0.0];
 
 /// Halves of 16 bits in two dot products.
-fn hilo(words: [u32; 4], fields: [Color; 2]) -> Drawn {
-    let mut canvas = Canvas::new(0xfe20_2020);
+fn hilo(canvas: &mut Canvas, words: [u32; 4], fields: [Color; 2]) {
     let colors = words.map(u32::to_be_bytes);
     let format = TextureFormat::R16B16;
     let bumps = canvas.texture(&texture(format, false, SIZE, packed(format, SIZE, quarters(colors))));
@@ -460,7 +449,6 @@ fn hilo(words: [u32; 4], fields: [Color; 2]) -> Drawn {
         let dots = [ShaderOperation::DotProduct, ShaderOperation::DotProduct2D];
         canvas.draw(shaded(with_sets(square_at(place), sets, 2), unit, &dots, DotMapping::Hilo1, nearest(field)));
     }
-    canvas.colors()
 }
 
 /// A variant's name behind the format's: which of two maps, and which of two matrices.
@@ -482,15 +470,16 @@ pub(super) fn bump_maps(frames: &mut Frames) {
         };
         for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
             let matrix = if is_turned { TURNED_MATRIX } else { STRAIGHT_MATRIX };
-            let drawn = move || bumped(&variant, maps[usize::from(is_other)], matrix, None, fields);
-            frames.make(format!("BumpMap_{name}{suffix}"), drawn);
+            frames.paint(format!("BumpMap_{name}{suffix}"), 0xfe20_2020, move |canvas| {
+                bumped(canvas, &variant, maps[usize::from(is_other)], matrix, None, fields);
+            });
         }
     }
     for (suffix, words) in [
         ("", [0x0200_0100, 0x0200_0300, 0xff00_0100, 0xff00_0300]),
         ("_B", [0x0200_0300, 0x0200_ff00, 0x0000_0300, 0x0000_ff00]),
     ] {
-        frames.make(format!("BumpMap_R16B16{suffix}"), move || hilo(words, fields));
+        frames.paint(format!("BumpMap_R16B16{suffix}"), 0xfe20_2020, move |canvas| hilo(canvas, words, fields));
     }
 }
 
@@ -504,8 +493,9 @@ pub(super) fn bump_maps_with_luminance(frames: &mut Frames) {
         let count = if matches!(name.as_str(), "R6G5B5" | "X8R8G8B8") { 4 } else { 1 };
         for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
             let matrix = if is_turned { TURNED_MATRIX } else { [0.3, 0.0, 0.0, 5.0] };
-            let drawn = move || bumped(&variant, maps[usize::from(is_other)], matrix, Some([0.7, 0.3]), fields);
-            frames.make(format!("BumpEnvLum_{name}{suffix}"), drawn);
+            frames.paint(format!("BumpEnvLum_{name}{suffix}"), 0xfe20_2020, move |canvas| {
+                bumped(canvas, &variant, maps[usize::from(is_other)], matrix, Some([0.7, 0.3]), fields);
+            });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two.
 
-use super::draws::{Canvas, corners, nearest, quads, rectangle, textured, with_primary_alpha};
+use super::draws::{corners, nearest, quads, rectangle, textured, with_primary_alpha};
 use super::{Frames, SIZE, images};
 use ninebit::state::{
     CompareFunction, Draw, FinalRegister, ShadowComparison, ShadowReference, TextureFormat, TextureKind, TextureUnit,
@@ -104,12 +104,10 @@ pub(super) fn given(frames: &mut Frames) {
                 draw.vertices.update(|_, vertex| vertex.texture_coordinates.iter_mut().for_each(|at| at[2] = r as f32));
                 draw.combiners = with_primary_alpha(FinalRegister::Texture0);
                 let (texture, name) = (texture.clone(), format!("{stage}R{bits}_{least:X}-{greatest:X}_{r:X}_{name}"));
-                frames.make(name, move || {
-                    let mut canvas = Canvas::new(0xfe11_2233);
+                frames.paint(name, 0xfe11_2233, move |canvas| {
                     canvas.texture(&texture);
                     canvas.draw(draw.clone());
                     markers().into_iter().for_each(|marker| canvas.draw(marker));
-                    canvas.colors()
                 });
             }
         }

@@ -1,14 +1,13 @@
 //! TEX-1 to TEX-4, TEX-9, TEX-18: formats of texels, palettes, signed channels, levels.
 
 use super::draws::{
-    Canvas, FETCHED, WHOLE, abgr, corners, draw, far, fetching, nearest, pasted, placed, places, sized, unprojected,
-    without_alpha,
+    Canvas, FETCHED, WHOLE, abgr, corners, draw, far, fetching, nearest, pasted, placed, places, program, sized,
+    unprojected, without_alpha,
 };
 use super::images::{self, Color, Image, bulge, checker, gradient, grey};
-use super::{Drawn, Frames, assets, space};
+use super::{Frames, assets, space};
 use ninebit::state::{
-    Combiners, Draw, Filter, FinalRegister, GeneralStage, MipFilter, Named, Register, SurfaceFormat, Target, Texture,
-    TextureFormat, TextureKind, TextureUnit, Topology,
+    Draw, Filter, MipFilter, Named, SurfaceFormat, Target, Texture, TextureFormat, TextureKind, TextureUnit, Topology,
 };
 
 /// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
@@ -21,32 +20,25 @@ fn square(side: f32, unit: TextureUnit) -> Draw {
 const SIDE: u32 = 256;
 const SIZE: [u32; 2] = [SIDE; 2];
 
-/// What the programs show in a format.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Content {
-    Colors,
-    Grey,
-}
-
 /// Formats of one picture by the names of frames, and whether there is one in coordinates of texels too.
-const FORMATS: [(&str, TextureFormat, Content, bool); 17] = [
-    ("A8R8G8B8", TextureFormat::A8R8G8B8, Content::Colors, true),
-    ("A8B8G8R8", TextureFormat::A8B8G8R8, Content::Colors, true),
-    ("B8G8R8A8", TextureFormat::B8G8R8A8, Content::Colors, true),
-    ("R8G8B8A8", TextureFormat::R8G8B8A8, Content::Colors, true),
-    ("X8R8G8B8", TextureFormat::X8R8G8B8, Content::Colors, true),
-    ("R5G6B5", TextureFormat::R5G6B5, Content::Colors, true),
-    ("A1R5G5B5", TextureFormat::A1R5G5B5, Content::Colors, true),
-    ("X1R5G5B5", TextureFormat::X1R5G5B5, Content::Colors, true),
-    ("A4R4G4B4", TextureFormat::A4R4G4B4, Content::Colors, true),
-    ("G8B8", TextureFormat::G8B8, Content::Colors, true),
-    ("R8B8", TextureFormat::R8B8, Content::Colors, false),
-    ("R16B16", TextureFormat::R16B16, Content::Colors, true),
-    ("Y8", TextureFormat::L8, Content::Grey, true),
-    ("AY8", TextureFormat::I8, Content::Grey, true),
-    ("A8Y8", TextureFormat::A8L8, Content::Grey, false),
-    ("Y16", TextureFormat::Y16, Content::Grey, true),
-    ("R6G5B5", TextureFormat::R6G5B5, Content::Colors, false),
+const FORMATS: [(&str, TextureFormat, bool); 17] = [
+    ("A8R8G8B8", TextureFormat::A8R8G8B8, true),
+    ("A8B8G8R8", TextureFormat::A8B8G8R8, true),
+    ("B8G8R8A8", TextureFormat::B8G8R8A8, true),
+    ("R8G8B8A8", TextureFormat::R8G8B8A8, true),
+    ("X8R8G8B8", TextureFormat::X8R8G8B8, true),
+    ("R5G6B5", TextureFormat::R5G6B5, true),
+    ("A1R5G5B5", TextureFormat::A1R5G5B5, true),
+    ("X1R5G5B5", TextureFormat::X1R5G5B5, true),
+    ("A4R4G4B4", TextureFormat::A4R4G4B4, true),
+    ("G8B8", TextureFormat::G8B8, true),
+    ("R8B8", TextureFormat::R8B8, false),
+    ("R16B16", TextureFormat::R16B16, true),
+    ("Y8", TextureFormat::L8, true),
+    ("AY8", TextureFormat::I8, true),
+    ("A8Y8", TextureFormat::A8L8, false),
+    ("Y16", TextureFormat::Y16, true),
+    ("R6G5B5", TextureFormat::R6G5B5, false),
 ];
 
 /// A format of the frames: its name there, whether its texture is grey, and whether its coordinates are texels.
@@ -66,9 +58,10 @@ impl Variant {
 
 /// All formats, in both kinds of coordinates where there are frames of both.
 pub(super) fn variants() -> impl Iterator<Item = Variant> {
-    let formats = FORMATS.into_iter().chain([("A8", TextureFormat::A8, Content::Colors, true)]);
-    formats.flat_map(|(base, format, content, both)| {
-        let variant = |in_texels| Variant { base, format, is_grey: content == Content::Grey, in_texels };
+    let formats = FORMATS.into_iter().chain([("A8", TextureFormat::A8, true)]);
+    formats.flat_map(|(base, format, both)| {
+        use TextureFormat::{A8L8, I8, L8, Y16};
+        let variant = |in_texels| Variant { base, format, is_grey: matches!(format, L8 | I8 | A8L8 | Y16), in_texels };
         [Some(variant(false)), both.then(|| variant(true))].into_iter().flatten()
     })
 }
@@ -175,11 +168,9 @@ fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + 
 /// Texture_format.
 pub(super) fn formats(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R5G6B5) {
-        frames.make(name, move || {
-            let mut canvas = Canvas::new(0xfe20_2020);
-            let (unit, side) = unit(&mut canvas, picture());
+        frames.paint(name, 0xfe20_2020, move |canvas| {
+            let (unit, side) = unit(canvas, picture());
             canvas.draw(square(side, unit));
-            canvas.colors()
         });
     }
 }
@@ -187,9 +178,8 @@ pub(super) fn formats(frames: &mut Frames) {
 /// Texture_render_target: the same on a texture first.
 pub(super) fn render_targets(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R6G5B5) {
-        frames.make(name, move || {
-            let mut canvas = Canvas::new(0xfe21_2021);
-            let (unit, side) = unit(&mut canvas, picture());
+        frames.paint(name, 0xfe21_2021, move |canvas| {
+            let (unit, side) = unit(canvas, picture());
             let target = canvas.target(Target::new(SIDE, SIDE, SurfaceFormat::A8R8G8B8));
             let whole = pasted([0.0, 0.0, SIDE as f32, SIDE as f32], 0, unit, [0.0, 0.0, side, side]);
             canvas.draw_into(target, [without_alpha(whole, FETCHED[0])]);
@@ -198,7 +188,6 @@ pub(super) fn render_targets(frames: &mut Frames) {
             let [right, bottom, ..] = space::fixed_function([1.75, -1.75, 0.1, 1.0]);
             let draw = pasted([left, top, right, bottom], 0, nearest(shown), WHOLE);
             canvas.draw(without_alpha(far(draw, w), FETCHED[0]));
-            canvas.colors()
         });
     }
 }
@@ -227,25 +216,22 @@ fn indices(factor: u32) -> Texture {
 }
 
 /// Four palettes, each but the first without one channel, also in the other order; below them the palettes themselves.
-fn swapped_palettes() -> Drawn {
-    let mut canvas = Canvas::new(0xff33_3333);
+fn swapped_palettes(canvas: &mut Canvas) {
     let number = canvas.texture(&indices(1));
     let mut palettes = [0xffff_ffff, 0xff00_ffff, 0xffff_00ff, 0xffff_ff00].map(rainbow);
     let image = texture(TextureFormat::A8R8G8B8, true, [1024, 1], palettes.concat());
-    row_of_palettes(&mut canvas, 80.0, number, &palettes);
+    row_of_palettes(canvas, 80.0, number, &palettes);
     palettes.reverse();
-    row_of_palettes(&mut canvas, 184.0, number, &palettes);
+    row_of_palettes(canvas, 184.0, number, &palettes);
     let shown = canvas.texture(&image);
     for (first, top) in [(0.0, 340.0), (256.0, 376.0), (512.0, 412.0), (768.0, 448.0)] {
         let edges = unprojected(sized([192.0, top], [256.0, 32.0]));
         canvas.draw(pasted(edges, 1, nearest(shown), [first, 0.0, first + 256.0, 1.0]));
     }
-    canvas.colors()
 }
 
 /// One palette, of which all but the first quarter is moved by 31 entries, and has its channels changed about, twice.
-fn moved_palettes() -> Drawn {
-    let mut canvas = Canvas::new(0xff33_3333);
+fn moved_palettes(canvas: &mut Canvas) {
     let number = canvas.texture(&indices(5));
     let first = rainbow(0xffff_ffff);
     let mut moved = first.clone();
@@ -256,14 +242,13 @@ fn moved_palettes() -> Drawn {
     };
     let once = turned(&moved);
     let twice = turned(&once);
-    row_of_palettes(&mut canvas, 192.0, number, &[first, moved, once, twice]);
-    canvas.colors()
+    row_of_palettes(canvas, 192.0, number, &[first, moved, once, twice]);
 }
 
 /// Texture_palette.
 pub(super) fn palettes(frames: &mut Frames) {
-    frames.make("PaletteSwapping", swapped_palettes);
-    frames.make("XemuHighPaletteBug", moved_palettes);
+    frames.paint("PaletteSwapping", 0xff33_3333, swapped_palettes);
+    frames.paint("XemuHighPaletteBug", 0xff33_3333, moved_palettes);
 }
 
 /// Texture_signed_component_tests: every set of signed channels. Fields of largest and smallest bytes stand in a larger one.
@@ -281,12 +266,9 @@ pub(super) fn signed(frames: &mut Frames) {
     };
     let texture = images::texture(TextureFormat::A8R8G8B8, SIZE, image);
     // The programs multiply by 1 in a general stage.
-    let mut stage = GeneralStage::initial([[0; 4]; 2]);
-    for portion in [&mut stage.rgb, &mut stage.alpha] {
-        (portion.inputs[0].register, portion.ab_output) = (Register::Texture0, Register::Spare0);
-        portion.sum_output = Register::Zero;
-    }
-    let combiners = Combiners { stages: vec![stage], ..Combiners::showing(FinalRegister::Spare0) };
+    let combiners = program(
+        "{ rgb { spare0 = unsigned(tex0); } alpha { spare0 = unsigned(tex0.a); } } out.rgb = spare0; out.a = spare0.a;",
+    );
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
         let mut canvas = Canvas::new(0xfe20_2020);
@@ -304,7 +286,7 @@ fn levels(texture: usize) -> TextureUnit {
 
 /// Texture_LOD_Bias: levels of other colours through fifteen biases.
 pub(super) fn lod_bias(frames: &mut Frames) {
-    frames.make("LODBias", || {
+    frames.paint("LODBias", 0xfe20_2020, move |canvas| {
         // A8B8G8R8.
         let colors = [0xff_0000, 0xff00, 0xff, 0xff_ffff, 0xff_ff00, 0xff_00ff, 0xffff, 0x80_8080];
         let level = |(n, color): (u32, u32)| {
@@ -312,7 +294,6 @@ pub(super) fn lod_bias(frames: &mut Frames) {
             images::words(TextureFormat::A8B8G8R8, [512 >> n; 2], fields)
         };
         let words: Vec<u32> = (0..).zip(colors).flat_map(level).collect();
-        let mut canvas = Canvas::new(0xfe20_2020);
         let of = images::of_words(TextureKind::TwoDimensional, TextureFormat::A8B8G8R8, [512; 2], 8, words);
         let texture = canvas.texture(&of);
         // All levels as they are, centred on the left.
@@ -326,7 +307,6 @@ pub(super) fn lod_bias(frames: &mut Frames) {
             let unit = TextureUnit { lod_bias, ..levels(texture) };
             canvas.draw(without_alpha(pasted(sized(corner, [64.0; 2]), 0, unit, WHOLE), FETCHED[0]));
         }
-        canvas.colors()
     });
 }
 

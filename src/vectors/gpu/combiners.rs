@@ -114,12 +114,9 @@ impl Program {
             };
             draws.push(self.draw(&[], &FinalCombiner::showing(FinalRegister::from(output.register)), reads(1)));
             if self.stages.len() < limit {
-                for after in [negated(output.register), below(output.register)] {
-                    draws.push(self.draw(
-                        &[after],
-                        &FinalCombiner::showing(FinalRegister::from(Register::Spare0)),
-                        reads(-1),
-                    ));
+                for less_one in [false, true] {
+                    let after = times_minus_one(output.register, less_one);
+                    draws.push(self.draw(&[after], &FinalCombiner::showing(FinalRegister::Spare0), reads(-1)));
                 }
             } else if output.columns.iter().any(|(column, _)| expected(column) <= 0) {
                 return None;
@@ -191,16 +188,7 @@ impl Program {
     }
 }
 
-/// A register times -1 in SPARE0; whether the negated mapping of -256 saturates or wraps does not count here.
-fn negated(register: Register) -> GeneralStage {
-    times_minus_one(register, false)
-}
-
-/// 1 in SPARE0 where a register is -256, less than 1 elsewhere: -1 times it, less 255.
-fn below(register: Register) -> GeneralStage {
-    times_minus_one(register, true)
-}
-
+/// A register times -1, or that less one, in SPARE0; whether the negated mapping of -256 saturates or wraps does not count here.
 fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
     let portion = |component| {
         let minus_one = input(Register::ConstantColor0, component, InputMapping::SignedNegate);

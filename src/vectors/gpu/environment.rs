@@ -2,8 +2,7 @@
 
 use super::fixed::{COMBINE, color, colors, drawn};
 use super::{Case, Path, Placement};
-use ninebit::state::Scale;
-use ninebit_program::texture_environment::{BaseFormat, Function, Mode, Operand};
+use ninebit_program::texture_environment::{BaseFormat, Function, Mode};
 
 /// The sources of both units: texture and primary colour, and the constant where it is read.
 fn sources(case: &Case, reads_constant: bool) -> Option<Vec<(&'static str, Vec<u8>)>> {
@@ -17,14 +16,7 @@ fn sources(case: &Case, reads_constant: bool) -> Option<Vec<(&'static str, Vec<u
 /// The modes of OpenGL 1.1.
 pub(super) fn texture_environment(case: &Case) -> Option<Placement> {
     let format: BaseFormat = case.choice("cfg.base_format");
-    let internal = match format {
-        BaseFormat::Alpha => "ALPHA8",
-        BaseFormat::Luminance => "LUMINANCE8",
-        BaseFormat::LuminanceAlpha => "LUMINANCE8_ALPHA8",
-        BaseFormat::Intensity => "INTENSITY8",
-        BaseFormat::Rgb => "RGB8",
-        BaseFormat::Rgba => "RGBA8",
-    };
+    let internal = case.word("cfg.base_format", "ALPHA8 LUMINANCE8 LUMINANCE8_ALPHA8 INTENSITY8 RGB8 RGBA8");
     let mode: Mode = case.choice("cfg.mode");
     let (name, needs) = match mode {
         Mode::Replace => ("REPLACE", vec![]),
@@ -36,8 +28,7 @@ pub(super) fn texture_environment(case: &Case) -> Option<Placement> {
         Mode::Decal | Mode::Combine | Mode::Combine4 => return None,
     };
     let state = vec![format!("texels 0 {internal} RGBA UNSIGNED_BYTE"), format!("env 0 TEXTURE_ENV_MODE {name}")];
-    let reads = colors(["out.r", "out.g", "out.b", "out.a"]);
-    Some(drawn(Path::Common, needs, state, sources(case, mode == Mode::Blend)?, reads))
+    Some(drawn(Path::Common, needs, state, sources(case, mode == Mode::Blend)?, colors()))
 }
 
 /// The names of a function for R, G, B and for alpha, and the extension that brought it.
@@ -67,12 +58,7 @@ pub(super) fn texture_combine(case: &Case) -> Option<Placement> {
     if extension != COMBINE {
         needs.push(extension);
     }
-    let scale = match case.choice("cfg.scale") {
-        Scale::One => 1,
-        Scale::Two => 2,
-        Scale::Four => 4,
-        Scale::Half => return None,
-    };
+    let scale = case.scale()?;
     let mut words = vec![
         format!("TEXTURE_ENV_MODE {mode_name}"),
         format!("COMBINE_RGB {rgb}"),
@@ -84,12 +70,9 @@ pub(super) fn texture_combine(case: &Case) -> Option<Placement> {
     let last = if mode == Mode::Combine4 { 4 } else { 3 };
     for (n, source) in arguments.iter().enumerate().take(last) {
         let vendor = if n == 3 { "_NV" } else { "" };
-        let (of_rgb, of_alpha) = match case.choice(&format!("cfg.operand{n}")) {
-            Operand::SourceColor => ("SRC_COLOR", "SRC_ALPHA"),
-            Operand::OneMinusSourceColor => ("ONE_MINUS_SRC_COLOR", "ONE_MINUS_SRC_ALPHA"),
-            Operand::SourceAlpha => ("SRC_ALPHA", "SRC_ALPHA"),
-            Operand::OneMinusSourceAlpha => ("ONE_MINUS_SRC_ALPHA", "ONE_MINUS_SRC_ALPHA"),
-        };
+        let operands = "SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINUS_SRC_ALPHA";
+        let of_rgb = case.word(&format!("cfg.operand{n}"), operands);
+        let of_alpha = of_rgb.replace("COLOR", "ALPHA");
         words.push(format!("SOURCE{n}_RGB{vendor} {source}"));
         words.push(format!("SOURCE{n}_ALPHA{vendor} {source}"));
         words.push(format!("OPERAND{n}_RGB{vendor} {of_rgb}"));
@@ -97,5 +80,5 @@ pub(super) fn texture_combine(case: &Case) -> Option<Placement> {
     }
     let state = words.iter().map(|words| format!("env 0 {words}")).collect();
     let sources = sources(case, function.reads(mode)[2])?;
-    Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+    Some(drawn(Path::Common, needs, state, sources, colors()))
 }

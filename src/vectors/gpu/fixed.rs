@@ -1,7 +1,7 @@
 //! Recipes that ask what OpenGL has without register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
 
 use super::{Case, Draw, Path, Placement, Read, byte};
-use ninebit::state::{AddressMode, Bias, BlendEquation, BlendFactor, CompareFunction, Scale, TextureFormat};
+use ninebit::state::{AddressMode, Bias, BlendEquation, TextureFormat};
 
 /// A placement with one draw.
 pub(super) fn drawn(
@@ -15,8 +15,8 @@ pub(super) fn drawn(
 }
 
 /// The four channels of the pixel in columns of these names.
-pub(super) fn colors(columns: [&str; 4]) -> Vec<Read> {
-    columns.into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
+pub(super) fn colors() -> Vec<Read> {
+    ["out.r", "out.g", "out.b", "out.a"].into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
 }
 
 /// The bytes of a colour of the row.
@@ -68,12 +68,7 @@ pub(super) fn product(case: &Case) -> Option<Placement> {
 
 /// The scales that an environment has.
 pub(super) fn scale_bias(case: &Case) -> Option<Placement> {
-    let scale = match case.choice("cfg.scale") {
-        Scale::One => 1,
-        Scale::Two => 2,
-        Scale::Four => 4,
-        Scale::Half => return None,
-    };
+    let scale = case.scale()?;
     if case.choice::<Bias>("cfg.bias") != Bias::None {
         return None;
     }
@@ -110,16 +105,16 @@ pub(super) fn vertex_color(case: &Case) -> Option<Placement> {
 pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     let color = float(case.number("in.color"))?;
     let one = 1.0_f32.to_le_bytes();
-    let words = [
-        "TEXTURE_ENV_MODE COMBINE",
-        "COMBINE_RGB REPLACE",
-        "SOURCE0_RGB CONSTANT",
-        "OPERAND0_RGB SRC_COLOR",
-        "RGB_SCALE 1",
-    ];
     // A unit with a texture, whose environment comes after it.
-    let mut state = vec!["ramp 0 1".to_owned()];
-    state.extend(words.iter().map(|words| format!("env 0 {words}")));
+    let state = [
+        "ramp 0 1",
+        "env 0 TEXTURE_ENV_MODE COMBINE",
+        "env 0 COMBINE_RGB REPLACE",
+        "env 0 SOURCE0_RGB CONSTANT",
+        "env 0 OPERAND0_RGB SRC_COLOR",
+        "env 0 RGB_SCALE 1",
+    ];
+    let state = state.map(str::to_owned).to_vec();
     let sources = vec![("environment_float", [color, color, color, one].concat())];
     Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
 }
@@ -207,7 +202,7 @@ pub(super) fn texel_expansion(case: &Case) -> Option<Placement> {
     let state = vec![format!("texels 0 {}", upload(format)?)];
     let word = u32::try_from(case.number("in.word")).ok()?.to_le_bytes();
     let sources = vec![("texture0", word[..format.bytes() as usize].to_vec())];
-    Some(drawn(Path::Common, vec![], state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+    Some(drawn(Path::Common, vec![], state, sources, colors()))
 }
 
 pub(super) fn compressed_block(case: &Case) -> Option<Placement> {
@@ -225,45 +220,20 @@ pub(super) fn compressed_block(case: &Case) -> Option<Placement> {
     let needs = vec!["GL_ARB_texture_compression", "GL_EXT_texture_compression_s3tc"];
     let state = vec![format!("compressed 0 {name}")];
     let sources = vec![("blocks0", block), ("corners0", corner)];
-    Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+    Some(drawn(Path::Common, needs, state, sources, colors()))
 }
 
 /// The fragment is the primary colour: 1 where it passes, 0 in the cleared buffer.
 pub(super) fn alpha_test(case: &Case) -> Option<Placement> {
-    let function = match case.choice("cfg.function") {
-        CompareFunction::Never => "NEVER",
-        CompareFunction::Less => "LESS",
-        CompareFunction::Equal => "EQUAL",
-        CompareFunction::LessOrEqual => "LEQUAL",
-        CompareFunction::Greater => "GREATER",
-        CompareFunction::NotEqual => "NOTEQUAL",
-        CompareFunction::GreaterOrEqual => "GEQUAL",
-        CompareFunction::Always => "ALWAYS",
-    };
+    let function = case.word("cfg.function", "NEVER LESS EQUAL LEQUAL GREATER NOTEQUAL GEQUAL ALWAYS");
     let state = vec![format!("alpha_test {function} {}", case.number("cfg.reference"))];
     let sources = vec![("primary", vec![1, 1, 1, byte(case.number("in.alpha"))?])];
     Some(drawn(Path::Common, vec![], state, sources, vec![Read::byte("out.passes", 0)]))
 }
 
-fn factor(factor: BlendFactor) -> &'static str {
-    match factor {
-        BlendFactor::Zero => "ZERO",
-        BlendFactor::One => "ONE",
-        BlendFactor::SourceColor => "SRC_COLOR",
-        BlendFactor::OneMinusSourceColor => "ONE_MINUS_SRC_COLOR",
-        BlendFactor::SourceAlpha => "SRC_ALPHA",
-        BlendFactor::OneMinusSourceAlpha => "ONE_MINUS_SRC_ALPHA",
-        BlendFactor::DestinationAlpha => "DST_ALPHA",
-        BlendFactor::OneMinusDestinationAlpha => "ONE_MINUS_DST_ALPHA",
-        BlendFactor::DestinationColor => "DST_COLOR",
-        BlendFactor::OneMinusDestinationColor => "ONE_MINUS_DST_COLOR",
-        BlendFactor::SourceAlphaSaturate => "SRC_ALPHA_SATURATE",
-        BlendFactor::ConstantColor => "CONSTANT_COLOR",
-        BlendFactor::OneMinusConstantColor => "ONE_MINUS_CONSTANT_COLOR",
-        BlendFactor::ConstantAlpha => "CONSTANT_ALPHA",
-        BlendFactor::OneMinusConstantAlpha => "ONE_MINUS_CONSTANT_ALPHA",
-    }
-}
+const FACTORS: &str = "ZERO ONE SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINUS_SRC_ALPHA DST_ALPHA \
+    ONE_MINUS_DST_ALPHA DST_COLOR ONE_MINUS_DST_COLOR SRC_ALPHA_SATURATE CONSTANT_COLOR ONE_MINUS_CONSTANT_COLOR \
+    CONSTANT_ALPHA ONE_MINUS_CONSTANT_ALPHA";
 
 /// The fragment is the primary colour, what the buffer holds is drawn before.
 pub(super) fn blend(case: &Case) -> Option<Placement> {
@@ -276,15 +246,15 @@ pub(super) fn blend(case: &Case) -> Option<Placement> {
         // OpenGL has no name for them.
         BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract => return None,
     };
-    let factors: [BlendFactor; 2] = [case.choice("cfg.source_factor"), case.choice("cfg.destination_factor")];
-    if factors[1] == BlendFactor::SourceAlphaSaturate {
+    let factors = ["cfg.source_factor", "cfg.destination_factor"].map(|name| case.word(name, FACTORS));
+    if factors[1] == "SRC_ALPHA_SATURATE" {
         return None;
     }
     let mut sources = vec![("primary", color(case, "source")?), ("destination", color(case, "destination")?)];
-    if factors.iter().any(|f| factor(*f).contains("CONSTANT")) {
+    if factors.iter().any(|factor| factor.contains("CONSTANT")) {
         needs.push("GL_EXT_blend_color");
         sources.push(("blend_color", color(case, "constant")?));
     }
-    let state = vec![format!("blend {equation} {} {}", factor(factors[0]), factor(factors[1]))];
-    Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+    let state = vec![format!("blend {equation} {}", factors.join(" "))];
+    Some(drawn(Path::Common, needs, state, sources, colors()))
 }

@@ -13,7 +13,7 @@ mod fixed;
 mod stages;
 pub mod write;
 
-use ninebit::state::{Combiners, Named, Profile};
+use ninebit::state::{Combiners, Named, Profile, Scale};
 
 use super::column::Column;
 use super::table::Row;
@@ -112,6 +112,21 @@ impl Case<'_> {
     /// The variant in a column of names.
     fn choice<T: Named>(&self, name: &str) -> T {
         super::units::named(self.number(name))
+    }
+
+    /// OpenGL's word for a choice; `words` are in the order of the names that it is among.
+    fn word(&self, name: &str, words: &'static str) -> &'static str {
+        words.split(' ').nth(self.number(name) as usize).unwrap_or_default()
+    }
+
+    /// What a scale multiplies by; OpenGL has no half.
+    fn scale(&self) -> Option<u8> {
+        match self.choice("cfg.scale") {
+            Scale::One => Some(1),
+            Scale::Two => Some(2),
+            Scale::Four => Some(4),
+            Scale::Half => None,
+        }
     }
 }
 

@@ -38,11 +38,13 @@ fn red(register: Register, column: &str) -> [Output; 1] {
 fn product_of(case: &Case) -> Option<(Program, Portion)> {
     let [a, b] = case.numbers(["in.a", "in.b"]);
     let program = program(case, vec![("texture0", magnitude(a)?), ("texture1", magnitude(b)?)]);
-    let mut portion = Portion::idle(Component::Rgb);
-    portion.inputs[0] = rgb(Register::Texture0, sign(a));
-    portion.inputs[1] = rgb(Register::Texture1, sign(b));
-    portion.ab_output = Register::Spare0;
-    Some((program, portion))
+    Some((program, multiplying([rgb(Register::Texture0, sign(a)), rgb(Register::Texture1, sign(b))])))
+}
+
+/// A product of colours into SPARE0.
+fn multiplying([a, b]: [CombinerInput; 2]) -> Portion {
+    let idle = Portion::idle(Component::Rgb);
+    Portion { inputs: [a, b, idle.inputs[2], idle.inputs[3]], ab_output: Register::Spare0, ..idle }
 }
 
 pub(super) fn product(case: &Case) -> Option<Placement> {
@@ -93,14 +95,9 @@ pub(super) fn dot_product(case: &Case) -> Option<Placement> {
         let pair = [(registers[n][0], IDENTITY), (registers[n][1], NEGATE)];
         loads.push(rgb_stage(super::combiners::adding(Component::Rgb, pair, destinations[n])));
     }
-    let mut portion = Portion::idle(Component::Rgb);
-    portion.inputs[0] = rgb(Register::Spare0, SIGNED);
-    portion.inputs[1] = rgb(Register::Spare1, SIGNED);
-    portion.ab_dot_product = true;
-    portion.ab_output = Register::Spare0;
-    let mut program = program(case, sources);
-    program.stages = loads;
-    program.stages.push(rgb_stage(portion));
+    let product = multiplying([rgb(Register::Spare0, SIGNED), rgb(Register::Spare1, SIGNED)]);
+    loads.push(rgb_stage(Portion { ab_dot_product: true, ..product }));
+    let program = Program { stages: loads, ..program(case, sources) };
     program.reading(&red(Register::Spare0, "out.dot"), |name| case.number(name))
 }
 
@@ -124,11 +121,7 @@ pub(super) fn input_mapping(case: &Case) -> Option<Placement> {
         let pair = [(Register::Texture0, signs[0]), (Register::Texture1, signs[1])];
         program.stages.push(rgb_stage(super::combiners::adding(Component::Rgb, pair, read)));
     }
-    let mut portion = Portion::idle(Component::Rgb);
-    portion.inputs[0] = rgb(read, case.choice("cfg.mapping"));
-    portion.inputs[1] = one(Component::Rgb);
-    portion.ab_output = Register::Spare0;
-    program.stages.push(rgb_stage(portion));
+    program.stages.push(rgb_stage(multiplying([rgb(read, case.choice("cfg.mapping")), one(Component::Rgb)])));
     program.reading(&red(Register::Spare0, "out.factor"), |name| case.number(name))
 }
 

@@ -2,9 +2,7 @@
 
 use super::*;
 use crate::cases::{self, Level};
-use crate::table::{Contents, Writer};
-use crate::unit::Conditions;
-use crate::units;
+use crate::{Conditions, Contents, Writer, units};
 use ninebit::combiner::registers::Registers;
 use ninebit::state::{Policies, Register};
 

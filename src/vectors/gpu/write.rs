@@ -27,8 +27,7 @@
 use std::collections::BTreeMap;
 
 use super::{Case, Placement, recipes};
-use crate::BEHAVIOUR;
-use crate::table::{Contents, Row, Writer};
+use crate::{BEHAVIOUR, Contents, Row, Writer};
 use ninebit::state::Named;
 
 /// Rows of a batch: a draw of 256 by 256 pixels.

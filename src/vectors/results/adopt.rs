@@ -83,12 +83,9 @@ pub fn adopt(
     results: &Results,
     comparison: &Comparison,
 ) -> Result<(PathBuf, Adopted), VectorError> {
-    let source = |results: &Results| {
-        let first = results.units.first().and_then(|unit| unit.path.parent());
-        first.map_or_else(PathBuf::new, Path::to_path_buf).join(DEVICE)
-    };
-    let device_path = source(results);
-    let refuse = |message: String, help| VectorError::invalid("NB1036", &device_path, 0, message, help);
+    let source = results.units.first().and_then(|unit| unit.path.parent());
+    let device_path = source.unwrap_or(Path::new("")).join(DEVICE);
+    let refuse = |message: String, help| VectorError::file("NB1036", &device_path, message, help);
     let device = &results.device;
     if device.is_software() {
         let message = format!("`{:.80}` is a program, not silicon", device.renderer);
@@ -107,7 +104,7 @@ pub fn adopt(
     }
     if place.exists() {
         let help = "take the record away first, or give the device another name";
-        return Err(VectorError::invalid("NB1036", &place, 0, "the device has a record already", help));
+        return Err(VectorError::file("NB1036", &place, "the device has a record already", help));
     }
     let part = PendingFolder::create(&place)?;
     let mut units = Vec::new();

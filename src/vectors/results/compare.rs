@@ -6,11 +6,10 @@ use serde::Serialize;
 
 use super::waiver::Waiver;
 use super::{Observed, ResultRow, Results, UnitResults};
-use crate::column::Kind;
-use crate::error::VectorError;
-use crate::read::{Table, TableRow};
+use crate::read::TableRow;
 use crate::table::LAST;
-use crate::unit::{Conditions, other_policies};
+use crate::unit::other_policies;
+use crate::{Conditions, Kind, Table, VectorError};
 use ninebit::state::{Policies, Profile};
 
 /// How results and a pack differ.
@@ -123,7 +122,7 @@ pub fn compare(
         let name = of_unit.unit.name();
         let Some(table) = tables.iter().find(|table| table.contents.unit.name() == name) else {
             let message = format!("the pack has no unit `{name}`");
-            return Err(VectorError::invalid("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
+            return Err(VectorError::line("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
         };
         let pairs = paired(table, of_unit)?;
         let mut compared = unit(table, of_unit, &pairs, shown);
@@ -156,7 +155,7 @@ fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r Tab
         Some(expected) => Ok((*expected, row)),
         None => {
             let message = format!("the pack has no row {}", row.id);
-            Err(VectorError::invalid("NB1035", &results.path, row.line, message, "name the pack that was drawn"))
+            Err(VectorError::line("NB1035", &results.path, row.line, message, "name the pack that was drawn"))
         }
     };
     results.rows.iter().map(pair).collect()

@@ -20,9 +20,8 @@ use serde::{Deserialize, Serialize};
 
 pub use read::parse;
 
-use super::error::{VectorError, read_text};
 use super::pack::Manifest;
-use super::unit::Unit;
+use super::{Unit, VectorError, read_text};
 use ninebit::limits;
 use ninebit_files::output::is_leftover;
 use ninebit_files::read::Kind;
@@ -32,6 +31,9 @@ pub const DEVICE_FORMAT: &str = "ninebit-device-1";
 
 /// Name of the device file.
 pub const DEVICE: &str = "device.json";
+
+/// What to do with results that are not whole.
+const AGAIN: &str = "draw the pack again";
 
 /// Who answered.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -130,56 +132,36 @@ pub struct Results {
 pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> {
     let device_path = folder.join(DEVICE);
     let missing = "name the folder of results that vectors/harness/gl wrote";
+    let of_another_pack = "name the pack that was drawn, or draw this one";
     let device = device(&read_text(&device_path, Kind::Regular, limits::DEVICE, missing)?, &device_path)?;
     if device.pack != manifest.root {
         let message = format!("these are results of the pack {:.12}, not of {:.12}", device.pack, manifest.root);
-        return Err(VectorError::invalid(
-            "NB1031",
-            &device_path,
-            0,
-            message,
-            "name the pack that was drawn, or draw this one",
-        ));
+        return Err(VectorError::file("NB1031", &device_path, message, of_another_pack));
     }
-    let entries = std::fs::read_dir(folder)
-        .map_err(|error| VectorError::Unreadable { path: folder.to_path_buf(), reason: error.to_string() })?;
+    let entries = std::fs::read_dir(folder).map_err(|error| VectorError::unreadable(folder, error))?;
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.retain(|path| !path.file_name().is_some_and(is_leftover));
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "tsv" || extension == "part"));
     paths.sort();
     if let Some(part) = paths.iter().find(|path| path.extension().is_some_and(|extension| extension == "part")) {
-        return Err(VectorError::invalid("NB1030", part, 0, "a run was broken off here", "draw the pack again"));
+        return Err(VectorError::file("NB1030", part, "a run was broken off here", AGAIN));
     }
     if paths.is_empty() {
-        return Err(VectorError::Missing {
-            path: folder.join("UNIT.tsv"),
-            help: "there are no results: draw the pack again",
-        });
+        return Err(VectorError::missing(folder.join("UNIT.tsv"), "there are no results: draw the pack again"));
     }
     let mut units = Vec::new();
     for path in paths {
-        let results = parse(&read_text(&path, Kind::Regular, limits::VECTOR_TABLE, "draw the pack again")?, &path)?;
+        let results = parse(&read_text(&path, Kind::Regular, limits::VECTOR_TABLE, AGAIN)?, &path)?;
         let name = results.unit.name();
         if path.file_stem().is_none_or(|stem| stem != name) {
-            return Err(VectorError::invalid(
-                "NB1032",
-                &path,
-                2,
-                format!("these are results of `{name}`"),
-                "do not rename results",
-            ));
+            let message = format!("these are results of `{name}`");
+            return Err(VectorError::line("NB1032", &path, 2, message, "do not rename results"));
         }
         let of_pack =
             [&manifest.profile, &manifest.level, &manifest.seed.to_string(), &manifest.behaviour_rev.to_string()];
         if results.asked.iter().zip(of_pack).any(|(asked, own)| asked != own) {
             let message = "its chip, level, seed or behaviour is not the pack's";
-            return Err(VectorError::invalid(
-                "NB1031",
-                &path,
-                0,
-                message,
-                "name the pack that was drawn, or draw this one",
-            ));
+            return Err(VectorError::file("NB1031", &path, message, of_another_pack));
         }
         units.push(results);
     }
@@ -188,19 +170,14 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
 
 /// Reads a device file.
 fn device(text: &str, path: &Path) -> Result<Device, VectorError> {
-    let help = "draw the pack again";
-    let device: Device = serde_json::from_str(text).map_err(|error| {
-        VectorError::invalid("NB1033", path, error.line(), format!("not a device file: {error}"), help)
-    })?;
+    let broken = |error: serde_json::Error| {
+        VectorError::line("NB1033", path, error.line(), format!("not a device file: {error}"), AGAIN)
+    };
+    let device: Device = serde_json::from_str(text).map_err(broken)?;
     if device.format != DEVICE_FORMAT {
         let message = format!("the format is `{:.60}`, not `{DEVICE_FORMAT}`", device.format);
-        return Err(VectorError::invalid(
-            "NB1003",
-            path,
-            0,
-            message,
-            "use the program that wrote it, or draw the pack again",
-        ));
+        let help = "use the program that wrote it, or draw the pack again";
+        return Err(VectorError::file("NB1003", path, message, help));
     }
     Ok(device)
 }

@@ -3,15 +3,12 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::{Observed, ResultRow, UnitResults};
-use crate::column::{Column, Kind};
-use crate::error::VectorError;
-use crate::units;
+use super::{AGAIN, Observed, ResultRow, UnitResults};
+use crate::read::header;
+use crate::{Column, Kind, VectorError, units};
 
 /// First line of a table of results.
 const FORMAT: &str = "# ninebit-results 1";
-
-const AGAIN: &str = "draw the pack again";
 
 /// Reads a table of results. `path` is for messages only.
 ///
@@ -19,12 +16,11 @@ const AGAIN: &str = "draw the pack again";
 /// Not results, another version, cut off or edited, an unknown unit or column, a number that its column does not take, a row that is there
 /// twice.
 pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
-    let invalid = |code, line, message: String| VectorError::invalid(code, path, line, message, AGAIN);
+    let invalid = |code, line, message: String| VectorError::line(code, path, line, message, AGAIN);
     let first = text.lines().next().unwrap_or_default();
     if first != FORMAT {
-        let shown: String = first.chars().take(60).collect();
         let (code, message) = match first.starts_with("# ninebit-results") {
-            true => ("NB1003", format!("`{shown}` is another version; this is `{FORMAT}`")),
+            true => ("NB1003", format!("`{first:.60}` is another version; this is `{FORMAT}`")),
             false => ("NB1030", format!("not results: the first line is not `{FORMAT}`")),
         };
         return Err(invalid(code, 1, message));
@@ -33,16 +29,11 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
     let mut lines = body.lines().enumerate().map(|(n, line)| (n + 1, line)).skip(1);
     let mut field = |name: &str| -> Result<(usize, &str), VectorError> {
         let (line, text) = lines.next().unwrap_or((0, ""));
-        let value =
-            text.strip_prefix("# ").and_then(|rest| rest.strip_prefix(name)).and_then(|rest| rest.strip_prefix(' '));
-        value
-            .map(|value| (line, value))
-            .ok_or_else(|| invalid("NB1032", line, format!("`# {name} ...` is expected here")))
+        let expected = || invalid("NB1032", line, format!("`# {name} ...` is expected here"));
+        Ok((line, header(text, name).ok_or_else(expected)?))
     };
     let (line, name) = field("unit")?;
-    let unit = units::by_name(name).ok_or_else(|| {
-        invalid("NB1005", line, format!("there is no unit `{}`", name.chars().take(60).collect::<String>()))
-    })?;
+    let unit = units::by_name(name).ok_or_else(|| invalid("NB1005", line, format!("there is no unit `{name:.60}`")))?;
     let asked = [field("profile")?.1, field("level")?.1, field("seed")?.1, field("behaviour")?.1].map(str::to_owned);
     let results = unit.results();
     let (line, names) = lines.next().unwrap_or((0, ""));
@@ -69,7 +60,7 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
 
 /// Everything before the last line, which says how much that is.
 fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
-    let invalid = |message: &str| VectorError::invalid("NB1030", path, 0, message, AGAIN);
+    let invalid = |message: &str| VectorError::file("NB1030", path, message, AGAIN);
     let last = text.strip_suffix('\n').and_then(|text| text.rfind('\n')).map(|at| at + 1);
     let end = last.map(|at| text.split_at(at)).filter(|(_, end)| end.starts_with("# end "));
     let Some((body, end)) = end else { return Err(invalid("its last line is not `# end ...`: it is cut off")) };
@@ -112,15 +103,14 @@ fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Res
     }
     let id = fields[0];
     if id.len() != 12 || !id.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f')) {
-        return Err(format!("`{}` is no id", id.chars().take(60).collect::<String>()));
+        return Err(format!("`{id:.60}` is no id"));
     }
     let observed = &fields[1..=columns.len()];
     let values = match fields[columns.len() + 1] {
         "ok" => {
             let read = |(field, column): (&&str, &Observed)| {
-                let kind = &results[column.column].kind;
-                let shown: String = field.chars().take(60).collect();
-                number(field, kind).ok_or_else(|| format!("`{shown}` is not a value of {}", column.name))
+                let value = number(field, &results[column.column].kind);
+                value.ok_or_else(|| format!("`{field:.60}` is not a value of {}", column.name))
             };
             Some(observed.iter().zip(columns).map(read).collect::<Result<Vec<i64>, String>>()?)
         }

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::error::{VectorError, read_text};
-use crate::units;
+use crate::{VectorError, read_text, units};
 use ninebit::limits;
 use ninebit_files::read::Kind;
 
@@ -29,20 +28,20 @@ pub struct Waiver {
 /// The file is missing or is not such a list; a unit does not exist or is there twice; a waiver waives nothing or has no reason.
 pub fn read(path: &Path) -> Result<Vec<Waiver>, VectorError> {
     let help = r#"a list such as [{"unit": "blend", "maximum": 1, "count": 7, "reason": "..."}]"#;
-    let invalid = |line, message: String| VectorError::invalid("NB1034", path, line, message, help);
+    let invalid = |line, message: String| VectorError::line("NB1034", path, line, message, help);
     let text = read_text(path, Kind::Stream, limits::WAIVERS, "check the spelling of the file of waivers")?;
     let waivers: Vec<Waiver> = serde_json::from_str(&text)
         .map_err(|error| invalid(error.line(), format!("not a list of waivers: {error}")))?;
     for (n, waiver) in waivers.iter().enumerate() {
-        let name: String = waiver.unit.chars().take(60).collect();
-        if units::by_name(&waiver.unit).is_none() {
-            return Err(invalid(0, format!("there is no unit `{name}`")));
+        let name = &waiver.unit;
+        if units::by_name(name).is_none() {
+            return Err(invalid(0, format!("there is no unit `{name:.60}`")));
         }
-        if waivers[..n].iter().any(|other| other.unit == waiver.unit) {
-            return Err(invalid(0, format!("`{name}` has two waivers")));
+        if waivers[..n].iter().any(|other| other.unit == *name) {
+            return Err(invalid(0, format!("`{name:.60}` has two waivers")));
         }
         if waiver.maximum == 0 || waiver.count == 0 || waiver.reason.trim().is_empty() {
-            return Err(invalid(0, format!("the waiver of `{name}` needs a maximum, a count and a reason")));
+            return Err(invalid(0, format!("the waiver of `{name:.60}` needs a maximum, a count and a reason")));
         }
     }
     Ok(waivers)

@@ -1,7 +1,6 @@
 //! Which pixels surface clip and window clip leave.
 
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit};
 use ninebit::plan::windows::windows;
 use ninebit::state::{Draw, Rectangle, SurfaceFormat, Target, WindowClip};
 
@@ -9,7 +8,6 @@ use ninebit::state::{Draw, Rectangle, SurfaceFormat, Target, WindowClip};
 const SIDE: u32 = 4096;
 
 /// Whether a pixel is drawn.
-#[derive(Debug)]
 pub(super) struct Clip;
 
 fn rectangle(inputs: &[i64]) -> Rectangle {

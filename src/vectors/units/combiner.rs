@@ -1,8 +1,6 @@
 //! The parts of a general combiner stage, one channel at a time.
 
-use super::{block, named, scale_takes_bias};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, block, named, scale_takes_bias};
 use ninebit::algebra::Algebra;
 use ninebit::combiner::direct::Direct;
 use ninebit::combiner::{general, mapping, output};
@@ -30,7 +28,6 @@ fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
 }
 
 /// A register through a mapping.
-#[derive(Debug)]
 pub(super) struct InputMapping;
 
 impl Unit for InputMapping {
@@ -52,7 +49,6 @@ impl Unit for InputMapping {
 }
 
 /// A B.
-#[derive(Debug)]
 pub(super) struct Product;
 
 impl Unit for Product {
@@ -80,7 +76,6 @@ impl Unit for Product {
 }
 
 /// A B + C D.
-#[derive(Debug)]
 pub(super) struct Sum;
 
 impl Unit for Sum {
@@ -109,7 +104,6 @@ impl Unit for Sum {
 }
 
 /// A . B.
-#[derive(Debug)]
 pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
@@ -129,7 +123,6 @@ impl Unit for DotProduct {
 }
 
 /// AB or CD by SPARE0.a.
-#[derive(Debug)]
 pub(super) struct Mux;
 
 impl Unit for Mux {
@@ -145,7 +138,6 @@ impl Unit for Mux {
 }
 
 /// Rounding, bias, scale, saturation.
-#[derive(Debug)]
 pub(super) struct ScaleBias;
 
 impl Unit for ScaleBias {

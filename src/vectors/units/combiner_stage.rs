@@ -1,9 +1,7 @@
 //! Whole general stages: everything is read before anything is written.
 
 use super::block::{self, Sixteen};
-use super::{channels, named, put, scale_takes_bias, step};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, channels, named, put, scale_takes_bias, step};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;
 use ninebit::number::Lane;
@@ -43,7 +41,6 @@ fn configuration() -> Vec<Column> {
 }
 
 /// An RGB portion with three outputs.
-#[derive(Debug)]
 pub(super) struct GeneralStage;
 
 /// The registers of a row.
@@ -117,7 +114,6 @@ impl Unit for GeneralStage {
 }
 
 /// An alpha portion with three outputs.
-#[derive(Debug)]
 pub(super) struct AlphaPortion;
 
 /// The registers of a row.
@@ -187,7 +183,6 @@ impl Unit for AlphaPortion {
 }
 
 /// A dot product's blue in the alpha of its destination.
-#[derive(Debug)]
 pub(super) struct BlueToAlpha;
 
 /// Blue of AB and CD, then alpha of SPARE0 and SPARE1.
@@ -235,7 +230,6 @@ impl Unit for BlueToAlpha {
 }
 
 /// A register value handed from one stage to the next.
-#[derive(Debug)]
 pub(super) struct TwoStages;
 
 /// Red of SPARE0 after both.

@@ -1,9 +1,7 @@
 //! What becomes of a depth: offset, range, the word that is stored; and w buffers.
 
 use super::raster::{LARGE, fit, geometry, is_covered, triangle};
-use super::{float, named};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, float, named};
 use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
@@ -43,7 +41,6 @@ fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
 }
 
 /// The word of a depth.
-#[derive(Debug)]
 pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
@@ -101,7 +98,6 @@ impl Unit for DepthWord {
 }
 
 /// The range of depths.
-#[derive(Debug)]
 pub(super) struct DepthRange;
 
 impl Unit for DepthRange {
@@ -163,7 +159,6 @@ impl Unit for DepthRange {
 }
 
 /// A pixel's depth, with bias and slope.
-#[derive(Debug)]
 pub(super) struct PixelDepth;
 
 impl Unit for PixelDepth {
@@ -213,7 +208,6 @@ impl Unit for PixelDepth {
 }
 
 /// A pixel of a w buffer.
-#[derive(Debug)]
 pub(super) struct WBuffer;
 
 impl Unit for WBuffer {

@@ -1,8 +1,6 @@
 //! The final combiner, one colour channel and alpha.
 
-use super::{block, named, put, step};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, block, named, put, step};
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::registers::Registers;
 use ninebit::number::{Lane, Lanes16};
@@ -22,7 +20,6 @@ enumeration! {
 }
 
 /// A B + (1 - A) C + D with everything that feeds it.
-#[derive(Debug)]
 pub(super) struct FinalCombiner;
 
 /// What A, B, C, D, E, F read where it is a register of their own.

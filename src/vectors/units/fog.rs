@@ -1,9 +1,7 @@
 //! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
 
 use super::raster::LARGE;
-use super::{named, put};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, named, put};
 use ninebit::number::light;
 use ninebit::raster::fog::{FogPlane, FogStep, exponential};
 use ninebit::raster::interpolate::Sample;
@@ -21,7 +19,6 @@ fn moderate(bits: i64) -> i64 {
 }
 
 /// The factor where all vertices have one fog coordinate: what they pass, and the byte.
-#[derive(Debug)]
 pub(super) struct FogFactor;
 
 impl Unit for FogFactor {
@@ -76,7 +73,6 @@ impl Unit for FogFactor {
 }
 
 /// The table of the exponential modes.
-#[derive(Debug)]
 pub(super) struct FogTable;
 
 impl Unit for FogTable {
@@ -93,7 +89,6 @@ impl Unit for FogTable {
 }
 
 /// The words of the light unit: conversion, product and sum.
-#[derive(Debug)]
 pub(super) struct LightUnit;
 
 impl Unit for LightUnit {

@@ -61,8 +61,10 @@ mod texture;
 mod texture_environment;
 mod texture_stage;
 
+pub use texture::planned;
+
 use super::column::{Column, Kind};
-use super::unit::Unit;
+use super::unit::{Conditions, Reach, Unit};
 use ninebit::state::{Bias, Named, Scale};
 use ninebit::trace::Step;
 

@@ -1,12 +1,9 @@
 //! Where floats enter: colours, positions and depths.
 
-use super::float;
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, float};
 use ninebit::number::convert;
 
 /// A float vertex colour to a byte.
-#[derive(Debug)]
 pub(super) struct VertexColor;
 
 impl Unit for VertexColor {
@@ -28,7 +25,6 @@ impl Unit for VertexColor {
 }
 
 /// A float constant to a byte.
-#[derive(Debug)]
 pub(super) struct ConstantColor;
 
 impl Unit for ConstantColor {
@@ -44,7 +40,6 @@ impl Unit for ConstantColor {
 }
 
 /// A window coordinate to 1/16 pixel.
-#[derive(Debug)]
 pub(super) struct VertexSnap;
 
 impl Unit for VertexSnap {
@@ -59,7 +54,6 @@ impl Unit for VertexSnap {
 }
 
 /// A depth to the buffer's units.
-#[derive(Debug)]
 pub(super) struct Depth;
 
 impl Unit for Depth {

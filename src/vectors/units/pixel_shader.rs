@@ -1,9 +1,7 @@
 //! One arithmetic instruction of ps.1.1.
 
 use super::program::{self, Through};
-use super::{CHANNELS, channels, named};
-use crate::column::Column;
-use crate::unit::{Conditions, Reach, Unit};
+use super::{CHANNELS, Column, Conditions, Reach, Unit, channels, named};
 use ninebit::state::{Combiners, Profile, Register, Scale};
 use ninebit_program::At;
 use ninebit_program::pixel_shader::{
@@ -12,7 +10,6 @@ use ninebit_program::pixel_shader::{
 };
 
 /// `mov r0, t3`, then the instruction: from t0, t1 and v0 to r0.
-#[derive(Debug)]
 pub(super) struct Instruction;
 
 /// The sources a, b, c.

@@ -1,8 +1,6 @@
 //! Programs of APIs as tables: one stage, unit or instruction, lowered to combiners as for a draw, and run on the registers of one pixel.
 
-use super::{CHANNELS, block, channels, color_results};
-use crate::column::{Column, Kind};
-use crate::unit::Conditions;
+use super::{CHANNELS, Column, Conditions, Kind, block, channels, color_results};
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;

@@ -1,7 +1,6 @@
 //! Triangles: which pixels they cover, and what the pixels get from the vertices.
 
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit};
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
 use ninebit::raster::setup::Triangle;
@@ -64,7 +63,6 @@ pub(super) fn is_covered(inputs: &[i64], profile: Profile) -> bool {
 }
 
 /// Whether a triangle covers a pixel.
-#[derive(Debug)]
 pub(super) struct Coverage;
 
 impl Unit for Coverage {
@@ -101,7 +99,6 @@ impl Unit for Coverage {
 }
 
 /// The weights of the vertices' colours.
-#[derive(Debug)]
 pub(super) struct ColorWeights;
 
 impl Unit for ColorWeights {
@@ -155,7 +152,6 @@ impl Unit for ColorWeights {
 }
 
 /// The depth of a pixel from the depths of three vertices.
-#[derive(Debug)]
 pub(super) struct DepthInterpolation;
 
 impl Unit for DepthInterpolation {
@@ -219,7 +215,6 @@ fn w(name: &str) -> Column {
 }
 
 /// One colour channel of a pixel.
-#[derive(Debug)]
 pub(super) struct ColorInterpolation;
 
 impl Unit for ColorInterpolation {
@@ -248,7 +243,6 @@ impl Unit for ColorInterpolation {
 }
 
 /// A texture coordinate of a pixel.
-#[derive(Debug)]
 pub(super) struct TextureCoordinate;
 
 impl Unit for TextureCoordinate {

@@ -1,8 +1,8 @@
 //! Alpha test, blending, surfaces.
 
-use super::{CHANNELS, block, bytes, channels, color_results, colors, named, put};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{
+    CHANNELS, Column, Conditions, Kind, Reach, Unit, block, bytes, channels, color_results, colors, named, put,
+};
 use ninebit::combiner::direct::Direct;
 use ninebit::number::Lanes16;
 use ninebit::rop::{blend, surface};
@@ -14,7 +14,6 @@ fn color(values: &[i64]) -> [i32; 4] {
 }
 
 /// Whether a fragment passes the alpha test.
-#[derive(Debug)]
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
@@ -31,7 +30,6 @@ impl Unit for AlphaTest {
 }
 
 /// A fragment and the surface.
-#[derive(Debug)]
 pub(super) struct Blend;
 
 fn blend_state(inputs: &[i64]) -> state::Blend {
@@ -85,7 +83,6 @@ impl Unit for Blend {
 }
 
 /// Bytes to a surface's word.
-#[derive(Debug)]
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
@@ -101,7 +98,6 @@ impl Unit for SurfaceStore {
 }
 
 /// A surface's word to the bytes that a blend reads.
-#[derive(Debug)]
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {

@@ -3,9 +3,7 @@
 use super::raster::LARGE;
 use super::texel::formats;
 use super::texture::{footprint, planned};
-use super::{float, named};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, float, named};
 use ninebit::raster::depth::word;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
@@ -32,7 +30,6 @@ fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interp
 }
 
 /// A texel behind a colour key.
-#[derive(Debug)]
 pub(super) struct ColorKey;
 
 impl Unit for ColorKey {
@@ -86,7 +83,6 @@ impl Unit for ColorKey {
 }
 
 /// A depth that is compared.
-#[derive(Debug)]
 pub(super) struct ShadowComparison;
 
 /// The float that a word of a float format stands for.
@@ -163,7 +159,6 @@ impl Unit for ShadowComparison {
 }
 
 /// The layer of a volume.
-#[derive(Debug)]
 pub(super) struct VolumeLayer;
 
 impl Unit for VolumeLayer {
@@ -218,7 +213,6 @@ impl Unit for VolumeLayer {
 }
 
 /// The taps of a footprint.
-#[derive(Debug)]
 pub(super) struct AnisotropyTaps;
 
 /// Pairs of taps at most.
@@ -287,7 +281,6 @@ impl Unit for AnisotropyTaps {
 }
 
 /// Coordinates that go the shorter way around.
-#[derive(Debug)]
 pub(super) struct CylindricalWrap;
 
 impl Unit for CylindricalWrap {

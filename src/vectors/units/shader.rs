@@ -1,8 +1,6 @@
 //! The texture shader's arithmetic.
 
-use super::{CHANNELS, bytes, channels, float, named, put};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, bytes, channels, float, named, put};
 use ninebit::number::convert::split;
 use ninebit::state::{DotMapping, Profile};
 use ninebit::texture::{dot, shader};
@@ -10,7 +8,6 @@ use ninebit::texture::{dot, shader};
 const NV2A: &[Profile] = &[Profile::Nv2a];
 
 /// A colour as the vector of a dot product.
-#[derive(Debug)]
 pub(super) struct Remap;
 
 impl Unit for Remap {
@@ -26,7 +23,6 @@ impl Unit for Remap {
 }
 
 /// Coordinates times a colour.
-#[derive(Debug)]
 pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
@@ -49,7 +45,6 @@ impl Unit for DotProduct {
 }
 
 /// By how much a bump map moves a coordinate.
-#[derive(Debug)]
 pub(super) struct BumpOffset;
 
 impl Unit for BumpOffset {
@@ -71,7 +66,6 @@ impl Unit for BumpOffset {
 }
 
 /// The luminance of a bump map.
-#[derive(Debug)]
 pub(super) struct Luminance;
 
 impl Unit for Luminance {
@@ -92,7 +86,6 @@ impl Unit for Luminance {
 }
 
 /// A byte, or a result of the dot unit, as a coordinate.
-#[derive(Debug)]
 pub(super) struct Dependent;
 
 impl Unit for Dependent {

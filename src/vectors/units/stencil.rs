@@ -1,13 +1,10 @@
 //! The stencil test.
 
-use super::named;
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, named};
 use ninebit::rop::stencil;
 use ninebit::state::{self, CompareFunction, Named, StencilOperation};
 
 /// Whether a fragment passes, and what is stored.
-#[derive(Debug)]
 pub(super) struct StencilTest;
 
 impl Unit for StencilTest {

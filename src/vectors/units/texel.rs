@@ -1,8 +1,6 @@
 //! Texels: words and blocks to bytes.
 
-use super::{color_results, named, put};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, color_results, named, put};
 use ninebit::state::{Named, Profile, TextureFormat};
 use ninebit::texture::{compressed, format};
 
@@ -20,7 +18,6 @@ fn is_compressed(format: TextureFormat) -> bool {
 }
 
 /// A texel's word to its bytes.
-#[derive(Debug)]
 pub(super) struct TexelExpansion;
 
 impl Unit for TexelExpansion {
@@ -44,7 +41,6 @@ impl Unit for TexelExpansion {
 }
 
 /// A texel of a compressed block.
-#[derive(Debug)]
 pub(super) struct CompressedBlock;
 
 impl Unit for CompressedBlock {

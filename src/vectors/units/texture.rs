@@ -1,8 +1,6 @@
 //! Where a texture unit looks, and how it mixes what it finds.
 
-use super::named;
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, named};
 use ninebit::state::{
     AddressMode, Filter, Level, MipFilter, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
 };
@@ -13,7 +11,7 @@ use ninebit::texture::{address, filter, lod, shader};
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
 
 /// Unit 0 with a texture of this format, of two dimensions and one texel.
-pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
+pub fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
     let (levels, face_words) = Level::chain(format, 1, 1, 1, false);
     PlannedUnit {
         index: 0,
@@ -60,7 +58,6 @@ fn place(inputs: &[i64], index: i64) -> [i64; 2] {
 }
 
 /// The nearest texel.
-#[derive(Debug)]
 pub(super) struct NearestAddress;
 
 impl Unit for NearestAddress {
@@ -86,7 +83,6 @@ impl Unit for NearestAddress {
 }
 
 /// The two texels of the linear filter along one axis.
-#[derive(Debug)]
 pub(super) struct LinearAddress;
 
 impl Unit for LinearAddress {
@@ -117,7 +113,6 @@ impl Unit for LinearAddress {
 }
 
 /// One linear step.
-#[derive(Debug)]
 pub(super) struct LinearStep;
 
 impl Unit for LinearStep {
@@ -134,7 +129,6 @@ impl Unit for LinearStep {
 }
 
 /// The mix of four texels.
-#[derive(Debug)]
 pub(super) struct Bilinear;
 
 impl Unit for Bilinear {
@@ -173,7 +167,6 @@ impl Unit for Bilinear {
 }
 
 /// A look-up in a cube map.
-#[derive(Debug)]
 pub(super) struct CubeFace;
 
 impl Unit for CubeFace {
@@ -210,7 +203,6 @@ impl Unit for CubeFace {
 }
 
 /// Filter and levels for a lod.
-#[derive(Debug)]
 pub(super) struct LevelChoice;
 
 impl Unit for LevelChoice {

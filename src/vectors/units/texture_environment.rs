@@ -1,9 +1,7 @@
 //! One unit of the OpenGL texture environment.
 
 use super::program::{self, RULES, Through};
-use super::{bytes, colors, named};
-use crate::column::{Column, Kind};
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, bytes, colors, named};
 use ninebit::state::{Combiners, Named, Profile, Register, Scale};
 use ninebit_program::At;
 use ninebit_program::texture_environment::{
@@ -48,7 +46,6 @@ fn block(
 }
 
 /// The modes of OpenGL 1.1.
-#[derive(Debug)]
 pub(super) struct Classic;
 
 /// A colour as a texture of a base format holds it.
@@ -103,7 +100,6 @@ impl Unit for Classic {
 }
 
 /// The combine functions.
-#[derive(Debug)]
 pub(super) struct Combine;
 
 const SOURCES: [EnvironmentSource; 4] = [

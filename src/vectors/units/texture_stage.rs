@@ -2,9 +2,7 @@
 
 use super::program::{self, RULES, Through};
 use super::texture_environment::some;
-use super::{bytes, colors, named};
-use crate::column::Column;
-use crate::unit::{Conditions, Reach, Unit};
+use super::{Column, Conditions, Reach, Unit, bytes, colors, named};
 use ninebit::state::{Combiners, Named, Profile, Register};
 use ninebit_program::At;
 use ninebit_program::texture_stages::{
@@ -12,7 +10,6 @@ use ninebit_program::texture_stages::{
 };
 
 /// D3DTOP with the arguments Texture and Current.
-#[derive(Debug)]
 pub(super) struct Stage;
 
 /// What combines colours: Disable ends the cascade, and the two bump operations move coordinates (`bump-offset`, `bump-luminance`).

@@ -7,13 +7,9 @@ use ninebit::texture::report::address_step;
 use ninebit::trace::{Observer, plain};
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::template::Template;
-use super::ProfileArgument;
-use super::inputs::set;
-use super::operation::{Column, Common, Operation, Results, drive};
-use super::words;
+use super::{
+    COORDINATES, Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, set, words,
+};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -36,47 +32,24 @@ pub(crate) struct Arguments {
 struct Address {
     mode: AddressMode,
     size: u32,
-    columns: [Column; 1],
 }
 
 /// Brings an index inside.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let Arguments { mode, size, .. } = *arguments;
     let template = Template {
-        scene: format!(
-            "    textures: {{\"t\": (source: Solid(width: {}, height: 1, color: (0, 0, 0)))}},\n",
-            arguments.size
-        ),
-        draw: format!("        textures: [(texture: \"t\", address_s: {})],\n", arguments.mode.name()),
+        scene: format!("    textures: {{\"t\": (source: Solid(width: {size}, height: 1, color: (0, 0, 0)))}},\n"),
+        draw: format!("        textures: [(texture: \"t\", address_s: {})],\n", mode.name()),
         ..Template::default()
     };
     template.read(arguments.profile.profile, context)?;
-    let name = "index".to_owned();
-    let mut column = Column { name, range: -16_777_216..=16_777_215, per_one: 1, signed_texel: false, value: None };
-    if let Some(index) = arguments.index {
-        set(&mut column, index)?;
-    }
-    drive(&Address { mode: arguments.mode, size: arguments.size, columns: [column] }, &arguments.common)
+    let how = "write `--index I`, or give a table with `--inputs`";
+    let mut columns = vec![Column::new(("index", "index"), COORDINATES, 1, how)];
+    set(&mut columns, arguments.index)?;
+    Setup::new("address", columns, "index", Address { mode, size }).drive(&arguments.common)
 }
 
 impl Operation for Address {
-    const NAME: &'static str = "address";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        (name == "index").then_some(0)
-    }
-
-    fn known(&self) -> String {
-        "index".to_owned()
-    }
-
-    fn how_to_give(&self, _: &Column) -> String {
-        "write `--index I`, or give a table with `--inputs`".to_owned()
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let texel = address(self.mode, values[0], self.size, false);
         if O::ON {

@@ -5,17 +5,13 @@ use ninebit::combiner::registers::channel_name;
 use ninebit::engine;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, SurfaceFormat};
+use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, SurfaceFormat};
 use ninebit::trace::Observer;
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::template::Template;
-use super::ProfileArgument;
-use super::inputs::{self, Numbers};
-use super::operation::{Column, Common, Operation, Results, drive};
-use super::words;
+use super::{
+    Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, inputs, set, words,
+};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -30,16 +26,16 @@ pub(crate) struct Arguments {
     destination_factor: BlendFactor,
     /// The fragment, 0 to 255: N, R,G,B or R,G,B,A
     #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    source: Option<Numbers>,
+    source: Option<[i64; 4]>,
     /// What the surface was given to hold, 0 to 255; it keeps what its format stores
     #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    destination: Option<Numbers>,
+    destination: Option<[i64; 4]>,
     /// The word that the surface holds, instead of `--destination`: for example 0x6000
     #[arg(long, value_name = "WORD", conflicts_with = "destination", value_parser = word)]
     stored: Option<u32>,
     /// The blend constant, 0 to 255
     #[arg(long, value_name = "R,G,B,A", default_value = "0", value_parser = inputs::color)]
-    constant: Numbers,
+    constant: [i64; 4],
     /// The surface's format, for example r5g6b5
     #[arg(long, value_name = "FORMAT", default_value = "a8r8g8b8", value_parser = words::surface)]
     surface: SurfaceFormat,
@@ -52,9 +48,7 @@ pub(crate) struct Arguments {
 /// The pixel's draw, planned; its colours come with each case.
 struct Pixel {
     plan: Plan,
-    profile: Profile,
     surface: SurfaceFormat,
-    columns: Vec<Column>,
 }
 
 /// The inputs: their names in traces, and as they are given.
@@ -80,45 +74,28 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     for draw in &mut plan.draws {
         draw.blended = draw.written;
     }
-    let mut columns: Vec<Column> = COLORS
-        .iter()
-        .flat_map(|(name, _)| (0..4).map(move |channel| format!("{name}.{}", channel_name(channel))))
-        .map(|name| Column { name, range: 0..=255, per_one: 255, signed_texel: false, value: None })
-        .collect();
     let stored = arguments.stored.map(|word| surface::read(arguments.surface, word).map(i64::from));
-    let destination = stored.or(arguments.destination.as_ref().map(Numbers::rgba));
-    let colors = [arguments.source.as_ref().map(Numbers::rgba), destination, Some(arguments.constant.rgba())];
-    for (first, color) in colors.into_iter().enumerate() {
-        if let Some(color) = color {
-            inputs::color_columns(&mut columns, 4 * first, color)?;
-        }
+    let given = [arguments.source, stored.or(arguments.destination), Some(arguments.constant)];
+    let mut columns = Vec::new();
+    for ((name, option), color) in COLORS.into_iter().zip(given) {
+        let how = format!("write `--{option} R,G,B,A`, or give a table with `--inputs`");
+        let channels = [0, 1, 2, 3].map(|channel| format!("{name}.{}", channel_name(channel)));
+        let mut channels = channels.map(|name| Column::new((&name, &name), 0..=255, 255, how.as_str()));
+        set(&mut channels, color.into_iter().flatten())?;
+        columns.extend(channels);
     }
-    let pixel = Pixel { plan, profile: arguments.profile.profile, surface: arguments.surface, columns };
-    drive(&pixel, &arguments.common)
-}
-
-impl Operation for Pixel {
-    const NAME: &'static str = "blend";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
+    let find = |_: &[Column], name: &str| {
         let (color, channel) = name.split_once('.')?;
         let color = COLORS.iter().position(|(own, given)| *own == color || *given == color)?;
         Some(4 * color + words::channel(channel)?)
-    }
+    };
+    let known = "source.r, source.g, source.b, source.a and so on for destination, constant";
+    let chip = Some((arguments.profile.profile, Policies::DEFAULT));
+    let pixel = Pixel { plan, surface: arguments.surface };
+    Setup { find, chip, ..Setup::new("blend", columns, known, pixel) }.drive(&arguments.common)
+}
 
-    fn known(&self) -> String {
-        "source.r, source.g, source.b, source.a and so on for destination, constant".to_owned()
-    }
-
-    fn how_to_give(&self, column: &Column) -> String {
-        let given = COLORS.iter().find(|(own, _)| column.name.starts_with(own)).map_or("source", |(_, given)| given);
-        format!("write `--{given} R,G,B,A`, or give a table with `--inputs`")
-    }
-
+impl Operation for Pixel {
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         // Every value is within a byte: the columns' ranges say so.
         let color =
@@ -154,10 +131,6 @@ impl Operation for Pixel {
             }
         }
         results
-    }
-
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        Some((self.profile, Policies::DEFAULT))
     }
 }
 

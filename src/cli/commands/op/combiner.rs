@@ -5,16 +5,11 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::{self, channel_name};
-use ninebit::state::{Bias, GeneralStage, MuxSelect, Named, Policies, Profile, Register, Scale};
+use ninebit::state::{Bias, GeneralStage, MuxSelect, Named, Policies, Register, Scale};
 use ninebit::trace::Observer;
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::template::Template;
-use super::inputs::{self, Contents, FourInputs};
-use super::operation::{Column, Operation, Results, drive};
-use super::words;
+use super::{Contents, Context, Failure, FourInputs, Operation, Results, Template, inputs, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -73,27 +68,17 @@ struct Stage {
     stage: GeneralStage,
     half: Half,
     mux_select: MuxSelect,
-    columns: Vec<Column>,
-    profile: Profile,
     policies: Policies,
 }
 
 /// Runs one general stage.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let Contents { profile, common, policies, .. } = &arguments.contents;
-    let (policies, columns) = (policies.policies()?, arguments.contents.columns()?);
-    let template = Template { draw: program(arguments), ..Template::default() };
-    let combiners = template.combiners(profile.profile, context)?;
-    let stage = combiners.stages.first().copied();
-    let operation = Stage {
-        stage: stage.unwrap_or(GeneralStage::idle([[0; 4]; 2])),
-        half: arguments.portion,
-        mux_select: combiners.mux_select,
-        columns,
-        profile: profile.profile,
-        policies,
-    };
-    drive(&operation, common)
+    arguments.contents.drive("combiner", |profile, policies| {
+        let template = Template { draw: program(arguments), ..Template::default() };
+        let combiners = template.combiners(profile, context)?;
+        let stage = combiners.stages.first().copied().unwrap_or(GeneralStage::idle([[0; 4]; 2]));
+        Ok(Stage { stage, half: arguments.portion, mux_select: combiners.mux_select, policies })
+    })
 }
 
 /// The stage as a scene writes it, one field a line.
@@ -147,12 +132,6 @@ fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
 }
 
 impl Operation for Stage {
-    const NAME: &'static str = "combiner";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let mut registers = inputs::load(values);
         let stage = PlannedStage {
@@ -178,9 +157,5 @@ impl Operation for Stage {
             }
         }
         results
-    }
-
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        Some((self.profile, self.policies))
     }
 }

@@ -4,7 +4,7 @@ use clap::Args;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{
-    AddressMode, Filter, Level, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit, Vertex, Vertices,
+    AddressMode, Filter, Level, Named, Profile, TextureFormat, TextureKind, TextureUnit, Vertex, Vertices,
 };
 use ninebit::texture::address::address;
 use ninebit::texture::filter::{linear, nearest};
@@ -12,20 +12,16 @@ use ninebit::texture::place::{Coordinates, Interpolated, Place, real_coordinate}
 use ninebit::texture::report::Report;
 use ninebit::texture::unit::PlannedUnit;
 use ninebit::trace::Observer;
+use ninebit_vectors::units;
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::template::Template;
-use super::ProfileArgument;
-use super::inputs::set;
-use super::operation::{Column, Common, Operation, Results, drive};
+use super::{Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, set};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The direction; its length does not matter
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    direction: Option<Direction>,
+    direction: Option<[i64; 3]>,
     /// Texels along a side of each face, a power of two
     #[arg(long, value_name = "N", default_value_t = 256)]
     size: u32,
@@ -35,19 +31,11 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// Three whole numbers of the direction's ratios.
-#[derive(Clone, Copy, Debug)]
-struct Direction([i64; 3]);
-
 /// A cube map and one triangle, at whose first vertex it is looked up.
 struct Cube {
     unit: PlannedUnit,
     triangle: Triangle,
-    columns: Vec<Column>,
 }
-
-/// Names in traces, and short ones.
-const COLUMNS: [(&str, &str); 3] = [("unit0.N_x0", "x"), ("unit0.N_y0", "y"), ("unit0.N_z0", "z")];
 
 /// Numbers of a direction have as many bits as those of the chip's (TEX-12).
 const MAX_COMPONENT: i64 = 1 << 28;
@@ -68,53 +56,20 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let Some(triangle) = Triangle::new(corners, false, Profile::Nv2a) else {
         return Err(Failure::usage("the operation has no triangle", "please report this with the command line"));
     };
-    let column = |name: &str| Column {
-        name: name.to_owned(),
-        range: -MAX_COMPONENT..=MAX_COMPONENT,
-        per_one: 1,
-        signed_texel: false,
-        value: None,
-    };
-    let mut columns: Vec<Column> = COLUMNS.iter().map(|(name, _)| column(name)).collect();
-    if let Some(Direction(values)) = arguments.direction {
-        columns.iter_mut().zip(values).try_for_each(|(column, value)| set(column, value))?;
-    }
+    let how = "write `--direction X,Y,Z`, or give a table with `--inputs`";
+    let names = [("unit0.N_x0", "x"), ("unit0.N_y0", "y"), ("unit0.N_z0", "z")];
+    let mut columns = names.map(|names| Column::new(names, -MAX_COMPONENT..=MAX_COMPONENT, 1, how));
+    set(&mut columns, arguments.direction.into_iter().flatten())?;
     let unit = PlannedUnit {
-        index: 0,
-        state: TextureUnit::new(0),
-        stage: ShaderStage::conventional(0, true),
         kind: TextureKind::Cube,
-        format: TextureFormat::R5G6B5,
         levels: vec![Level { offset: 0, width: side, height: side }],
         face_words: side as usize * side as usize,
-        layers: 1,
-        border: false,
-        dithered: false,
-        palette: None,
-        live: 15,
+        ..units::planned(TextureUnit::new(0), TextureFormat::R5G6B5)
     };
-    drive(&Cube { unit, triangle, columns }, &arguments.common)
+    Setup::new("cube", columns.into(), "x, y, z", Cube { unit, triangle }).drive(&arguments.common)
 }
 
 impl Operation for Cube {
-    const NAME: &'static str = "cube";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        COLUMNS.iter().position(|(own, short)| *own == name || *short == name)
-    }
-
-    fn known(&self) -> String {
-        "x, y, z".to_owned()
-    }
-
-    fn how_to_give(&self, _: &Column) -> String {
-        "write `--direction X,Y,Z`, or give a table with `--inputs`".to_owned()
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let [x, y, z] = [values[0], values[1], values[2]];
         let sample = Sample::new(&self.triangle, [1, 0, 0]);
@@ -155,7 +110,7 @@ impl Operation for Cube {
 }
 
 /// Three decimal numbers as whole ones of the same ratios.
-fn direction(text: &str) -> Result<Direction, String> {
+fn direction(text: &str) -> Result<[i64; 3], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let digits = |part: &str| part.split_once('.').map_or(0, |(_, fraction)| fraction.len());
     let most = parts.iter().map(|part| digits(part)).max().unwrap_or(0);
@@ -169,7 +124,7 @@ fn direction(text: &str) -> Result<Direction, String> {
     };
     let values: Option<Vec<i64>> = parts.iter().map(|part| whole(part)).collect();
     match values.as_deref() {
-        Some([x, y, z]) if most <= 9 => Ok(Direction([*x, *y, *z])),
+        Some([x, y, z]) if most <= 9 => Ok([*x, *y, *z]),
         _ => Err("not three decimal numbers with commas between, of at most nine decimals".to_owned()),
     }
 }

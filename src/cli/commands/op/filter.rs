@@ -2,27 +2,26 @@
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};
-use ninebit::state::{Level, ShaderStage, TextureFormat, TextureKind, TextureUnit};
+use ninebit::state::{TextureFormat, TextureUnit};
 use ninebit::texture::report::Report;
 use ninebit::texture::unit::{self, PlannedUnit};
 use ninebit::trace::{Observer, Rule};
+use ninebit_vectors::units;
 use serde_json::json;
 
-use super::super::exit::Failure;
-use super::inputs::set;
-use super::operation::{Column, Common, Operation, Results, drive};
+use super::{COORDINATES, Column, Common, Failure, Operation, Results, Setup, set};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Upper left, upper right, lower left, lower right, 0 to 255; or two numbers: one row
     #[arg(long, value_name = "TEXELS", value_parser = texels, allow_hyphen_values = true)]
-    texels: Option<Texels>,
+    texels: Option<[i64; 4]>,
     /// Weights of the right and of the lower texels, 0 to 255 of 256; or one number: no lower texels
     #[arg(long, value_name = "U,V", value_parser = pair)]
-    weights: Option<(i64, i64)>,
+    weights: Option<[i64; 2]>,
     /// The coordinates u and v in 1/256 texel, instead of weights
     #[arg(long, value_name = "U,V", value_parser = pair, conflicts_with = "weights", allow_hyphen_values = true)]
-    at: Option<(i64, i64)>,
+    at: Option<[i64; 2]>,
     /// The channel is signed: texels are -128 to 127, the register gets twice the mix
     #[arg(long)]
     signed: bool,
@@ -30,89 +29,42 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Texels([i64; 4]);
-
 /// A unit whose texels and weights are given.
 struct Mix {
     unit: PlannedUnit,
     /// The last two columns are coordinates instead of weights.
     coordinates: bool,
-    columns: Vec<Column>,
 }
 
 /// Mixes four texels.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let coordinates = arguments.at.is_some();
-    let mut columns: Vec<Column> = TEXELS
-        .iter()
-        .map(|(name, _)| {
-            let range = if arguments.signed { -128..=127 } else { 0..=255 };
-            Column { name: (*name).to_owned(), range, per_one: 255, signed_texel: arguments.signed, value: None }
-        })
-        .collect();
-    let (names, range) = if coordinates { (COORDINATES, -16_777_216..=16_777_215) } else { (WEIGHTS, 0..=255) };
-    columns.extend(names.map(|(name, _)| Column {
-        name: name.to_owned(),
-        range: range.clone(),
-        per_one: 256,
-        signed_texel: false,
-        value: None,
-    }));
-    if let Some(Texels(texels)) = arguments.texels {
-        columns.iter_mut().zip(texels).try_for_each(|(column, value)| set(column, value))?;
-    }
-    if let Some((u, v)) = arguments.at.or(arguments.weights) {
-        columns.iter_mut().skip(4).zip([u, v]).try_for_each(|(column, value)| set(column, value))?;
-    }
+    let texel = |name: &str| {
+        let range = if arguments.signed { -128..=127 } else { 0..=255 };
+        let column =
+            Column::new((&format!("unit0.texel{name}.r"), &format!("t{name}")), range, 255, "write `--texels A,B,C,D`");
+        Column { signed_texel: arguments.signed, ..column }
+    };
+    let (names, range, known) = match coordinates {
+        true => ([("unit0.u", "u"), ("unit0.v", "v")], COORDINATES, "u, v"),
+        false => {
+            let names = [("unit0.weight_u", "wu"), ("unit0.weight_v", "wv")];
+            (names, 0..=255, "wu, wv (or u, v, with `--at 0,0`)")
+        }
+    };
+    let mut texels = ["00", "10", "01", "11"].map(texel);
+    set(&mut texels, arguments.texels.into_iter().flatten())?;
+    let mut last = names.map(|names| Column::new(names, range.clone(), 256, "write `--weights U,V` or `--at U,V`"));
+    set(&mut last, arguments.at.or(arguments.weights).into_iter().flatten())?;
     // One channel stands for all: they do not touch each other.
     let state = TextureUnit { signed: [arguments.signed; 4], ..TextureUnit::new(0) };
-    let stage = ShaderStage::conventional(0, true);
-    let unit = PlannedUnit {
-        index: 0,
-        state,
-        stage,
-        kind: TextureKind::TwoDimensional,
-        format: TextureFormat::A8R8G8B8,
-        levels: vec![Level { offset: 0, width: 1, height: 1 }],
-        face_words: 1,
-        layers: 1,
-        border: false,
-        dithered: false,
-        palette: None,
-        live: 1,
-    };
-    drive(&Mix { unit, coordinates, columns }, &arguments.common)
+    let unit = PlannedUnit { live: 1, ..units::planned(state, TextureFormat::A8R8G8B8) };
+    let known = format!("t00, t10, t01, t11 (column, row), {known}");
+    let columns = texels.into_iter().chain(last).collect();
+    Setup::new("filter", columns, known, Mix { unit, coordinates }).drive(&arguments.common)
 }
 
-/// Names in traces, and short ones.
-const TEXELS: [(&str, &str); 4] =
-    [("unit0.texel00.r", "t00"), ("unit0.texel10.r", "t10"), ("unit0.texel01.r", "t01"), ("unit0.texel11.r", "t11")];
-const WEIGHTS: [(&str, &str); 2] = [("unit0.weight_u", "wu"), ("unit0.weight_v", "wv")];
-const COORDINATES: [(&str, &str); 2] = [("unit0.u", "u"), ("unit0.v", "v")];
-
 impl Operation for Mix {
-    const NAME: &'static str = "filter";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        let last = if self.coordinates { COORDINATES } else { WEIGHTS };
-        TEXELS.iter().chain(&last).position(|(own, short)| *own == name || *short == name)
-    }
-
-    fn known(&self) -> String {
-        let last = if self.coordinates { "u, v" } else { "wu, wv (or u, v, with `--at 0,0`)" };
-        format!("t00, t10, t01, t11 (column, row), {last}")
-    }
-
-    fn how_to_give(&self, column: &Column) -> String {
-        let option = if column.name.contains("texel") { "--texels A,B,C,D" } else { "--weights U,V` or `--at U,V" };
-        format!("write `{option}`")
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let report = Report { unit: &self.unit, prefix: "" };
         let exact = |value: i64| value as f64;
@@ -138,18 +90,18 @@ fn numbers(text: &str) -> Option<Vec<i64>> {
     text.split(',').map(|text| super::inputs::number(text.trim())).collect()
 }
 
-fn texels(text: &str) -> Result<Texels, String> {
+fn texels(text: &str) -> Result<[i64; 4], String> {
     match numbers(text).as_deref() {
-        Some([a, b]) => Ok(Texels([*a, *b, *a, *b])),
-        Some([a, b, c, d]) => Ok(Texels([*a, *b, *c, *d])),
+        Some([a, b]) => Ok([*a, *b, *a, *b]),
+        Some([a, b, c, d]) => Ok([*a, *b, *c, *d]),
         _ => Err("not two or four whole numbers with commas between".to_owned()),
     }
 }
 
-fn pair(text: &str) -> Result<(i64, i64), String> {
+fn pair(text: &str) -> Result<[i64; 2], String> {
     match numbers(text).as_deref() {
-        Some([u]) => Ok((*u, 0)),
-        Some([u, v]) => Ok((*u, *v)),
+        Some([u]) => Ok([*u, 0]),
+        Some([u, v]) => Ok([*u, *v]),
         _ => Err("not one or two whole numbers with a comma between".to_owned()),
     }
 }

@@ -9,12 +9,7 @@ use ninebit::state::{FinalCombiner, FinalRegister, Policies, Profile};
 use ninebit::trace::Observer;
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::template::Template;
-use super::inputs::{self, Contents, FourInputs};
-use super::operation::{Column, Operation, Results, drive};
-use super::words::{self, Input};
+use super::{Contents, Context, Failure, FourInputs, Input, Operation, Results, Template, inputs, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -45,19 +40,17 @@ pub(crate) struct Arguments {
 /// The final combiner with register contents.
 struct Final {
     planned: PlannedFinal,
-    columns: Vec<Column>,
     profile: Profile,
     policies: Policies,
 }
 
 /// Runs the final combiner.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let Contents { profile, common, policies, .. } = &arguments.contents;
-    let (policies, columns) = (policies.policies()?, arguments.contents.columns()?);
-    let template = Template { draw: program(arguments), ..Template::default() };
-    let profile = profile.profile;
-    let state = template.combiners(profile, context)?.final_combiner;
-    drive(&Final { planned: planned(state, arguments.g.is_some()), columns, profile, policies }, common)
+    arguments.contents.drive("final combiner", |profile, policies| {
+        let template = Template { draw: program(arguments), ..Template::default() };
+        let state = template.combiners(profile, context)?.final_combiner;
+        Ok(Final { planned: planned(state, arguments.g.is_some()), profile, policies })
+    })
 }
 
 /// The final combiner as a scene writes it, one field a line.
@@ -96,12 +89,6 @@ pub(super) fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
 }
 
 impl Operation for Final {
-    const NAME: &'static str = "final combiner";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let mut registers = inputs::load(values);
         let fragment = final_combiner::run(&self.planned, self.profile, &self.policies, &mut registers, observer);
@@ -109,9 +96,5 @@ impl Operation for Final {
             .filter(|channel| self.planned.live >> channel & 1 != 0)
             .map(|channel| (format!("fragment.{}", channel_name(channel)), json!(fragment[channel].fixed)))
             .collect()
-    }
-
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        Some((self.profile, self.policies))
     }
 }

@@ -5,13 +5,9 @@ use std::ops::RangeInclusive;
 use clap::Args;
 use ninebit::combiner::registers::{self, Registers, channel_name};
 use ninebit::number::Paired;
-use ninebit::state::{Named, Register};
+use ninebit::state::{Named, Policies, Profile, Register};
 
-use super::super::exit::Failure;
-use super::super::scene::PolicyArguments;
-use super::ProfileArgument;
-use super::operation::{Column, Common};
-use super::words::{self, Input};
+use super::{Column, Common, Failure, Input, Operation, PolicyArguments, ProfileArgument, Setup, set, words};
 
 /// What the name of `--in` and the four numbers after it give.
 #[derive(Clone, Debug)]
@@ -60,46 +56,50 @@ pub(super) struct Contents {
     registers: Vec<Assignment>,
     /// Constant colour 0, 0 to 255
     #[arg(long, value_name = "R,G,B,A", value_parser = color)]
-    const0: Option<Numbers>,
+    const0: Option<[i64; 4]>,
     /// Constant colour 1, 0 to 255
     #[arg(long, value_name = "R,G,B,A", value_parser = color)]
-    const1: Option<Numbers>,
+    const1: Option<[i64; 4]>,
     #[command(flatten)]
-    pub(super) profile: ProfileArgument,
+    profile: ProfileArgument,
     #[command(flatten)]
-    pub(super) policies: PolicyArguments,
+    policies: PolicyArguments,
     #[command(flatten)]
-    pub(super) common: Common,
+    common: Common,
 }
 
 impl Contents {
-    /// All registers as columns.
-    pub(super) fn columns(&self) -> Result<Vec<Column>, Failure> {
+    /// Runs an operation on registers, of the name and as these make it for a chip and policies.
+    pub(super) fn drive<T: Operation>(
+        &self,
+        name: &'static str,
+        operation: impl FnOnce(Profile, Policies) -> Result<T, Failure>,
+    ) -> Result<(), Failure> {
+        let (profile, policies) = (self.profile.profile, self.policies.policies()?);
         let mut columns = register_columns();
         assign(&mut columns, &self.registers)?;
-        for (register, color) in [(Register::ConstantColor0, &self.const0), (Register::ConstantColor1, &self.const1)] {
-            if let Some(color) = color {
-                color_columns(&mut columns, 4 * register as usize, color.rgba())?;
-            }
+        for (register, color) in [(Register::ConstantColor0, self.const0), (Register::ConstantColor1, self.const1)] {
+            set(&mut columns[4 * register as usize..], color.into_iter().flatten())?;
         }
-        Ok(columns)
+        on_registers(name, columns, (profile, policies), operation(profile, policies)?).drive(&self.common)
     }
 }
 
-/// Reads one, three or four whole numbers.
-pub(super) fn color(text: &str) -> Result<Numbers, String> {
-    numbers(text).map(Numbers)
+/// An operation on registers, with their columns.
+pub(super) fn on_registers<T: Operation>(
+    name: &'static str,
+    columns: Vec<Column>,
+    chip: (Profile, Policies),
+    operation: T,
+) -> Setup<T> {
+    let known = "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, spare0, spare1, const0, const1, fog";
+    let find = |_: &[Column], name: &str| register_column(name);
+    Setup { find, chip: Some(chip), ..Setup::new(name, columns, known, operation) }
 }
 
-/// One, three or four numbers.
-#[derive(Clone, Debug)]
-pub(super) struct Numbers(Vec<i64>);
-
-impl Numbers {
-    /// R, G, B, A: one number is all four; three leave alpha at 255, as colours in scenes do.
-    pub(super) fn rgba(&self) -> [i64; 4] {
-        four(&self.0)
-    }
+/// Reads R, G, B, A: one number is all four; three leave alpha at 255, as colours in scenes do.
+pub(super) fn color(text: &str) -> Result<[i64; 4], String> {
+    numbers(text).map(|numbers| four(&numbers))
 }
 
 fn numbers(text: &str) -> Result<Vec<i64>, String> {
@@ -144,7 +144,8 @@ pub(super) fn register_columns() -> Vec<Column> {
                 _ => SIGNED,
             };
             let name = format!("{}.{}", registers::name(register), channel_name(channel));
-            Column { name, range, per_one: 255, signed_texel: false, value: Some(0) }
+            let how = format!("write `--in {name}=N`");
+            Column { value: Some(0), ..Column::new((&name, &name), range, 255, how) }
         })
         .collect()
 }
@@ -156,41 +157,21 @@ pub(super) fn register_column(name: &str) -> Option<usize> {
     Some(4 * register as usize + words::channel(channel)?)
 }
 
-/// Names of the columns for messages.
-pub(super) const REGISTER_NAMES: &str = "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, spare0, spare1, const0, const1, fog";
-
 /// Puts what `--in` gives into the columns.
 pub(super) fn assign(columns: &mut [Column], assignments: &[Assignment]) -> Result<(), Failure> {
     for Assignment { name, values } in assignments {
         if name.contains('.') {
-            let column = register_column(name).and_then(|column| columns.get_mut(column));
-            let (Some(column), [value]) = (column, values.as_slice()) else {
+            let (Some(column), [value]) = (register_column(name), values.as_slice()) else {
                 let message = format!("`{name}` is not a channel of a register with one value");
                 return Err(Failure::usage(message, "write for example `--in tex0.a=128`"));
             };
-            set(column, *value)?;
+            set(&mut columns[column..], [*value])?;
             continue;
         }
         let register = words::register(name)
             .map_err(|message| Failure::usage(message, "write for example `--in tex0=128,128,255`"))?;
-        color_columns(columns, 4 * register as usize, four(values))?;
+        set(&mut columns[4 * register as usize..], four(values))?;
     }
-    Ok(())
-}
-
-/// Sets the four columns from `first`.
-pub(super) fn color_columns(columns: &mut [Column], first: usize, values: [i64; 4]) -> Result<(), Failure> {
-    columns.iter_mut().skip(first).zip(values).try_for_each(|(column, value)| set(column, value))
-}
-
-/// Sets a column, if the value is in its range.
-pub(super) fn set(column: &mut Column, value: i64) -> Result<(), Failure> {
-    if !column.range.contains(&value) {
-        let (from, to) = (column.range.start(), column.range.end());
-        let message = format!("{value} is out of range for `{}`", column.name);
-        return Err(Failure::usage(message, format!("write a whole number from {from} to {to}")));
-    }
-    column.value = Some(value);
     Ok(())
 }
 

@@ -19,8 +19,11 @@ pub(crate) mod words;
 use clap::{Args, Subcommand};
 use ninebit::state::Profile;
 
-use super::Context;
-use super::exit::Failure;
+use super::program_file::{Language, ProgramArguments};
+use super::{Context, Exit, Failure, Format, PolicyArguments, Report, Template, vectors};
+use inputs::{Assignment, Contents, FourInputs, number};
+use operation::{COORDINATES, Column, Common, Operation, Results, Setup, set};
+use words::Input;
 
 #[derive(Debug, Subcommand)]
 #[allow(rustdoc::broken_intra_doc_links, reason = "help texts have brackets that are no links")]

@@ -10,14 +10,10 @@ use clap::Args;
 use ninebit::number::{Lane, Paired};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit::trace::{Observer, Recorder, Step};
-use ninebit_files::output::{write_json, write_text};
 use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
 use serde_json::{Map, Value, json};
 
-use super::super::Format;
-use super::super::exit::Failure;
-use super::inputs::{self, number};
-use super::table;
+use super::{Failure, Format, number, table};
 
 /// Options of every operation.
 #[derive(Debug, Args)]
@@ -38,56 +34,66 @@ pub(super) struct Common {
 pub(super) struct Column {
     /// Its name in traces.
     pub(super) name: String,
+    /// Another name.
+    pub(super) short: String,
     /// What it may be.
     pub(super) range: RangeInclusive<i64>,
+    /// The same in words.
+    pub(super) wants: String,
     /// How many make 1.0; of a signed texel, in the ideal, 128 do (TEX-18).
     pub(super) per_one: i64,
     /// A signed texel.
     pub(super) signed_texel: bool,
+    /// How to give it on the command line.
+    pub(super) how_to_give: String,
     /// What was given; `None` if it must be given yet.
     pub(super) value: Option<i64>,
 }
 
+impl Column {
+    /// A column that must be given yet.
+    pub(super) fn new(
+        (name, short): (&str, &str),
+        range: RangeInclusive<i64>,
+        per_one: i64,
+        how_to_give: impl Into<String>,
+    ) -> Column {
+        Column {
+            name: name.to_owned(),
+            short: short.to_owned(),
+            wants: format!("a whole number from {} to {}", range.start(), range.end()),
+            range,
+            per_one,
+            signed_texel: false,
+            how_to_give: how_to_give.into(),
+            value: None,
+        }
+    }
+}
+
+/// Gives columns, from the first, their values.
+pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>) -> Result<(), Failure> {
+    for (column, value) in columns.iter_mut().zip(values) {
+        if !column.range.contains(&value) {
+            let message = format!("{value} is out of range for `{}`", column.name);
+            return Err(Failure::usage(message, format!("write {}", column.wants)));
+        }
+        column.value = Some(value);
+    }
+    Ok(())
+}
+
+/// Coordinates of texels, in whole ones or in 1/256.
+pub(super) const COORDINATES: RangeInclusive<i64> = -16_777_216..=16_777_215;
+
 /// What comes out: names and values, in order.
 pub(super) type Results = Vec<(String, Value)>;
 
-/// An operation, set up.
+/// What is done with the integers.
 pub(super) trait Operation {
-    /// The command's name.
-    const NAME: &'static str;
-
-    /// What results are headed with.
-    fn name(&self) -> &str {
-        Self::NAME
-    }
-
-    /// What it takes.
-    fn columns(&self) -> &[Column];
-
-    /// The column that a name, perhaps a short one, means: that of a register, unless the operation takes something else.
-    fn find(&self, name: &str) -> Option<usize> {
-        inputs::register_column(name)
-    }
-
-    /// Names that `find` knows, for messages.
-    fn known(&self) -> String {
-        inputs::REGISTER_NAMES.to_owned()
-    }
-
-    /// How to give a column on the command line.
-    fn how_to_give(&self, column: &Column) -> String {
-        format!("write `--in {}=N`", column.name)
-    }
-
-    /// The value of a column that a text means, if the column takes it.
-    fn read(&self, column: usize, text: &str) -> Option<i64> {
-        number(text).filter(|value| self.columns()[column].range.contains(value))
-    }
-
-    /// What a column takes.
-    fn wants(&self, column: usize) -> String {
-        let range = &self.columns()[column].range;
-        format!("a whole number from {} to {}", range.start(), range.end())
+    /// The value of the column at this place that a text means, if the column takes it.
+    fn read(&self, _place: usize, column: &Column, text: &str) -> Option<i64> {
+        number(text).filter(|value| column.range.contains(value))
     }
 
     /// Whether values of all columns go together; if not, what is wrong.
@@ -97,60 +103,79 @@ pub(super) trait Operation {
 
     /// Runs it on one value for each column.
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results;
+}
 
+/// An operation, set up.
+pub(super) struct Setup<T> {
+    /// What results are headed with.
+    pub(super) name: &'static str,
+    /// What it takes.
+    pub(super) columns: Vec<Column>,
+    /// The place of the column that a name, perhaps a short one, means.
+    pub(super) find: fn(&[Column], &str) -> Option<usize>,
+    /// Names that `find` knows, for messages.
+    pub(super) known: String,
     /// The chip and the policies, where they matter.
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        None
-    }
+    pub(super) chip: Option<(Profile, Policies)>,
+    /// What is done.
+    pub(super) operation: T,
 }
 
-/// Runs an operation on what was given: one case, or a table of them.
-pub(super) fn drive(operation: &impl Operation, common: &Common) -> Result<(), Failure> {
-    match &common.inputs {
-        Some(path) => table::run(operation, path, common.output.as_deref()),
-        None => {
-            let text = one(operation, common.format)?;
-            match common.format {
-                Format::Text => write_text(&text)?,
-                Format::Json => write_json(&text)?,
-            }
-            Ok(())
+impl<T: Operation> Setup<T> {
+    /// An operation for which the chip does not matter, and whose columns have the names that stand in them.
+    pub(super) fn new(name: &'static str, columns: Vec<Column>, known: impl Into<String>, operation: T) -> Setup<T> {
+        let find = |columns: &[Column], name: &str| columns.iter().position(|c| c.name == name || c.short == name);
+        Setup { name, columns, find, known: known.into(), chip: None, operation }
+    }
+
+    /// Runs it on what was given: one case, or a table of them.
+    pub(super) fn drive(&self, common: &Common) -> Result<(), Failure> {
+        if let Some(path) = &common.inputs {
+            return table::run(self, path, common.output.as_deref());
         }
-    }
-}
-
-/// One case with its trace.
-fn one<T: Operation>(operation: &T, format: Format) -> Result<String, Failure> {
-    let mut values = Vec::with_capacity(operation.columns().len());
-    for column in operation.columns() {
-        let missing = || Failure::usage(format!("`{}` is not given", column.name), operation.how_to_give(column));
-        values.push(column.value.ok_or_else(missing)?);
-    }
-    operation
-        .check(&values)
-        .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
-    let mut recorder = Recorder::default();
-    let results = operation.run(&values, &mut recorder);
-    let mut steps = given(operation.columns(), &values, &recorder.steps);
-    steps.append(&mut recorder.steps);
-    Ok(match format {
-        Format::Text => text(operation, &steps, &results),
-        Format::Json => {
-            let (profile, policies) = match operation.chip() {
-                Some((profile, policies)) => (json!(profile.name()), policies_value(&policies)),
-                None => (Value::Null, Value::Null),
-            };
+        let value = |column: &Column| {
+            let missing = || Failure::usage(format!("`{}` is not given", column.name), column.how_to_give.as_str());
+            column.value.ok_or_else(missing)
+        };
+        let values = self.columns.iter().map(value).collect::<Result<Vec<i64>, Failure>>()?;
+        self.operation
+            .check(&values)
+            .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
+        let mut recorder = Recorder::default();
+        let results = self.operation.run(&values, &mut recorder);
+        let mut steps = given(&self.columns, &values, &recorder.steps);
+        steps.append(&mut recorder.steps);
+        let json = || {
             let value = json!({
                 "format": "ninebit-op-1",
-                "operation": operation.name(),
-                "profile": profile,
-                "policies": policies,
+                "operation": self.name,
+                "profile": self.chip.map(|(profile, _)| profile.name()),
+                "policies": self.chip.map(|(_, policies)| policies_value(&policies)),
                 "steps": steps_value(&steps),
-                "results": results.into_iter().collect::<Map<String, Value>>(),
+                "results": results.iter().cloned().collect::<Map<String, Value>>(),
             });
             format!("{value:#}\n")
+        };
+        common.format.print(|| self.text(&steps, &results), json)
+    }
+
+    fn text(&self, steps: &[Step], results: &Results) -> String {
+        let mut out = String::new();
+        if let Some((profile, policies)) = &self.chip {
+            let _ = writeln!(out, "{}, profile {}", self.name, profile.name());
+            out.push_str(&policies_text(policies));
         }
-    })
+        if !steps.is_empty() {
+            out.push_str(&steps_text(steps));
+        }
+        if results.is_empty() {
+            out.push_str("  result: nothing is written\n");
+            return out;
+        }
+        let results: Vec<String> = results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
+        let _ = writeln!(out, "  result: {}", results.join("  "));
+        out
+    }
 }
 
 /// Steps for the given integers that the operation reads.
@@ -172,24 +197,6 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
             }
         })
         .collect()
-}
-
-fn text<T: Operation>(operation: &T, steps: &[Step], results: &Results) -> String {
-    let mut out = String::new();
-    if let Some((profile, policies)) = operation.chip() {
-        let _ = writeln!(out, "{}, profile {}", operation.name(), profile.name());
-        out.push_str(&policies_text(&policies));
-    }
-    if !steps.is_empty() {
-        out.push_str(&steps_text(steps));
-    }
-    if results.is_empty() {
-        out.push_str("  result: nothing is written\n");
-        return out;
-    }
-    let results: Vec<String> = results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
-    let _ = writeln!(out, "  result: {}", results.join("  "));
-    out
 }
 
 /// A result without quotes.

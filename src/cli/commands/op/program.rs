@@ -10,13 +10,11 @@ use ninebit::state::{Combiners, Policies, Profile, Register};
 use ninebit::trace::{Observer, Step};
 use serde_json::json;
 
-use super::super::Context;
-use super::super::exit::Failure;
-use super::super::program_file::{Language, ProgramArguments};
-use super::super::scene::PolicyArguments;
 use super::final_combiner::planned;
-use super::inputs::{self, Assignment};
-use super::operation::{Column, Common, Operation, Results, drive};
+use super::{
+    Assignment, Common, Context, Failure, Language, Operation, PolicyArguments, ProgramArguments, Results, Setup,
+    inputs,
+};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -40,7 +38,6 @@ pub(crate) struct Arguments {
 /// A program with what a pixel brings.
 struct Program {
     combiners: Combiners,
-    columns: Vec<Column>,
     profile: Profile,
     policies: Policies,
 }
@@ -70,24 +67,17 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     })?;
     let (scene, _) = arguments.program.read(file, language, context)?;
     let combiners = scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default();
-    drive(&Program { combiners, columns, profile: scene.profile, policies }, &arguments.common)
+    let profile = scene.profile;
+    let program = Program { combiners, profile, policies };
+    let setup = Setup {
+        find: |_, name| inputs::register_column(name).filter(|n| OWN.iter().all(|own| n / 4 != *own as usize)),
+        known: "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, fog".to_owned(),
+        ..inputs::on_registers("program", columns, (profile, policies), program)
+    };
+    setup.drive(&arguments.common)
 }
 
 impl Operation for Program {
-    const NAME: &'static str = "program";
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        inputs::register_column(name).filter(|n| OWN.iter().all(|register| n / 4 != *register as usize))
-    }
-
-    fn known(&self) -> String {
-        "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, fog".to_owned()
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let mut registers = inputs::load(values);
         registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
@@ -112,9 +102,5 @@ impl Operation for Program {
         let planned = final_combiner::PlannedFinal { reads_constants: true, ..planned(state, true) };
         let fragment = final_combiner::run(&planned, self.profile, &self.policies, &mut registers, observer);
         (0..4).map(|c| (format!("fragment.{}", channel_name(c)), json!(fragment[c].fixed))).collect()
-    }
-
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        Some((self.profile, self.policies))
     }
 }

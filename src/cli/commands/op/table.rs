@@ -10,17 +10,16 @@ use ninebit::trace::Silent;
 use ninebit_files::output::{Destination, write_stdout};
 use ninebit_files::read::{self, Kind, ReadError};
 
-use super::super::exit::{Exit, Failure, Report};
-use super::operation::{Operation, shown as written};
+use super::{Exit, Failure, Operation, Report, Setup, operation::shown as written};
 
 /// Broken rows that are named.
 const MAX_ERRORS: usize = 16;
 
 /// Runs an operation on each line of a table.
-pub(super) fn run(operation: &impl Operation, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
+pub(super) fn run(setup: &Setup<impl Operation>, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
     let destination = output.map(Destination::from);
     let text = read(path)?;
-    let results = evaluate(operation, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
+    let results = evaluate(setup, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
     match destination {
         Some(destination) => Ok(destination.write(results.as_bytes())?),
         None => Ok(write_stdout(results.as_bytes())?),
@@ -52,7 +51,7 @@ fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// The table with its results.
-fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<String, Failure> {
+fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<String, Failure> {
     // Lines that are empty or begin with # are no cases.
     let mut lines = (1_usize..)
         .zip(text.lines())
@@ -60,20 +59,20 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     let Some((number, header)) = lines.next() else {
         let message = format!("table `{}` has no header", shown::path(path));
-        return Err(Failure::invalid("NB0532", message, columns_help(operation)));
+        return Err(Failure::invalid("NB0532", message, columns_help(&setup.known)));
     };
     let names: Vec<&str> = header.split('\t').map(str::trim).collect();
-    let columns = header_columns(operation, path, number, &names)?;
-    let given: Vec<i64> = operation.columns().iter().map(|column| column.value.unwrap_or(0)).collect();
+    let columns = header_columns(setup, path, number, &names)?;
+    let given: Vec<i64> = setup.columns.iter().map(|column| column.value.unwrap_or(0)).collect();
     let mut out = String::new();
     let mut errors = Errors { shown: Vec::new(), rows: 0 };
     for (number, line) in lines {
         let fields: Vec<&str> = line.split('\t').map(str::trim).collect();
         let mut values = given.clone();
-        match row(operation, &columns, &names, &fields, &mut values) {
+        match row(setup, &columns, &names, &fields, &mut values) {
             Ok(()) if errors.rows > 0 => {}
             Ok(()) => {
-                let results = operation.run(&values, &mut Silent);
+                let results = setup.operation.run(&values, &mut Silent);
                 if out.is_empty() {
                     let results = results.iter().map(|(name, _)| format!("result.{name}"));
                     let all: Vec<String> = names.iter().map(|name| (*name).to_owned()).chain(results).collect();
@@ -99,14 +98,14 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
 }
 
 /// The operation's column behind each column of the table.
-fn header_columns(operation: &impl Operation, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
+fn header_columns<T>(setup: &Setup<T>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
     let wrong = |column: usize, what: String| {
         let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
-        Failure::invalid("NB0532", message, columns_help(operation))
+        Failure::invalid("NB0532", message, columns_help(&setup.known))
     };
     let mut columns = Vec::with_capacity(names.len());
     for (index, name) in names.iter().enumerate() {
-        let Some(column) = operation.find(name) else {
+        let Some(column) = (setup.find)(&setup.columns, name) else {
             let short: String = name.chars().take(40).collect();
             return Err(wrong(index, format!("there is no input `{}`", shown::name(&short))));
         };
@@ -115,21 +114,21 @@ fn header_columns(operation: &impl Operation, path: &Path, line: usize, names: &
         }
         columns.push(column);
     }
-    let missing = (0..).zip(operation.columns()).find(|(n, column)| column.value.is_none() && !columns.contains(n));
+    let missing = (0..).zip(&setup.columns).find(|(n, column)| column.value.is_none() && !columns.contains(n));
     if let Some((_, column)) = missing {
         let message = format!("table `{}` has no column `{}`", shown::path(path), column.name);
-        return Err(Failure::invalid("NB0532", message, operation.how_to_give(column)));
+        return Err(Failure::invalid("NB0532", message, column.how_to_give.as_str()));
     }
     Ok(columns)
 }
 
-fn columns_help(operation: &impl Operation) -> String {
-    format!("the first line names the inputs, apart by tabs: {}", operation.known())
+fn columns_help(known: &str) -> String {
+    format!("the first line names the inputs, apart by tabs: {known}")
 }
 
 /// Puts the values of one line in their places.
 fn row(
-    operation: &impl Operation,
+    setup: &Setup<impl Operation>,
     columns: &[usize],
     names: &[&str],
     fields: &[&str],
@@ -139,14 +138,14 @@ fn row(
         let plural = if fields.len() == 1 { "value" } else { "values" };
         return Err(format!("{} {plural}, the header has {}", fields.len(), columns.len()));
     }
-    for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
-        values[*column] = operation.read(*column, field).ok_or_else(|| {
-            let field: String = field.chars().take(40).collect();
-            let wanted = operation.wants(*column);
-            format!("column {} (`{}`): `{}` is not {wanted}", index + 1, names[index], shown::name(&field))
+    for (index, (field, place)) in fields.iter().zip(columns).enumerate() {
+        let column = &setup.columns[*place];
+        values[*place] = setup.operation.read(*place, column, field).ok_or_else(|| {
+            let field = shown::name(&field.chars().take(40).collect::<String>()).to_string();
+            format!("column {} (`{}`): `{field}` is not {}", index + 1, names[index], column.wants)
         })?;
     }
-    operation.check(values)
+    setup.operation.check(values)
 }
 
 /// Broken rows.

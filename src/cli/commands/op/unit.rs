@@ -1,19 +1,14 @@
 //! `ninebit op unit`: any unit of the conformance vectors on given numbers.
 
 use clap::Args;
-use ninebit::state::{Policies, Profile};
+use ninebit::state::Profile;
 use ninebit::trace::Observer;
 use ninebit_vectors::Unit;
 use ninebit_vectors::column::{Column as UnitColumn, Domain, Kind};
 use ninebit_vectors::unit::Conditions;
 use serde_json::{Value, json};
 
-use super::super::exit::Failure;
-use super::super::scene::PolicyArguments;
-use super::super::vectors;
-use super::inputs::number;
-use super::operation::{Column, Common, Operation, Results, drive};
-use super::words;
+use super::{Column, Common, Failure, Operation, PolicyArguments, Results, Setup, number, vectors, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -42,7 +37,6 @@ struct Asked {
     unit: &'static dyn Unit,
     conditions: Conditions,
     inputs: Vec<UnitColumn>,
-    columns: Vec<Column>,
 }
 
 /// Runs a unit.
@@ -54,57 +48,50 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let inputs = unit.inputs();
     let column = |input: &UnitColumn| {
         let (first, last) = input.kind.range();
-        Column { name: input.name.clone(), range: first..=last, per_one: 1, signed_texel: false, value: None }
+        let (name, wants) = (input.name.as_str(), wants(input));
+        // The name without what kind of column it is.
+        let short = name.split_once('.').map_or(name, |(_, own)| own);
+        let how = format!("write `--in {short}=VALUE`: {wants}");
+        Column { wants, ..Column::new((name, short), first..=last, 1, how) }
     };
-    let columns = inputs.iter().map(column).collect();
-    let conditions = Conditions { profile, policies: arguments.policies.policies()? };
-    let mut asked = Asked { unit, conditions, inputs, columns };
+    let columns: Vec<Column> = inputs.iter().map(column).collect();
+    let known = columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+    let policies = arguments.policies.policies()?;
+    let asked = Asked { unit, conditions: Conditions { profile, policies }, inputs };
+    let mut setup = Setup { chip: Some((profile, policies)), ..Setup::new(unit.name(), columns, known, asked) };
     for (name, text) in &arguments.given {
-        let Some(place) = asked.find(name) else {
+        let Some(place) = (setup.find)(&setup.columns, name) else {
             let message = format!("`{}` has no input `{name}`", unit.name());
-            return Err(Failure::usage(message, format!("its inputs are {}", asked.known())));
+            return Err(Failure::usage(message, format!("its inputs are {}", setup.known)));
         };
-        let value = asked.read(place, text).ok_or_else(|| {
-            let message = format!("`{text}` is out of range for `{}`", asked.inputs[place].name);
-            Failure::usage(message, format!("write {}", asked.wants(place)))
-        })?;
-        asked.columns[place].value = Some(value);
+        let column = &mut setup.columns[place];
+        column.value = Some(setup.operation.read(place, column, text).ok_or_else(|| {
+            let message = format!("`{text}` is out of range for `{}`", column.name);
+            Failure::usage(message, format!("write {}", column.wants))
+        })?);
     }
-    drive(&asked, &arguments.common)
+    setup.drive(&arguments.common)
 }
 
-/// A column's name without what kind of column it is.
-fn short(name: &str) -> &str {
-    name.split_once('.').map_or(name, |(_, own)| own)
+/// What a column takes.
+fn wants(input: &UnitColumn) -> String {
+    match (&input.domain, &input.kind) {
+        (Some(Domain::Listed(values)), kind) => {
+            let values: Vec<String> = values.iter().map(|value| kind.write(*value)).collect();
+            format!("one of {}", values.join(", "))
+        }
+        (Some(Domain::Word(bits)), _) => format!("a word of {bits} bits, such as 0x{:x}", (1_u64 << bits) - 1),
+        (Some(Domain::Float(negative, limit)), _) => {
+            let sign = if *negative { "" } else { ", not negative" };
+            format!("the bits of a float below 2^{limit}{sign}, such as 3f800000")
+        }
+        _ => format!("a whole number from {} to {}", input.nth(0), input.nth(input.size() - 1)),
+    }
 }
 
 impl Operation for Asked {
-    const NAME: &'static str = "unit";
-
-    fn name(&self) -> &str {
-        self.unit.name()
-    }
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        self.inputs.iter().position(|input| input.name == name || short(&input.name) == name)
-    }
-
-    fn known(&self) -> String {
-        let names: Vec<&str> = self.inputs.iter().map(|input| input.name.as_str()).collect();
-        names.join(", ")
-    }
-
-    fn how_to_give(&self, column: &Column) -> String {
-        let place = self.find(&column.name).unwrap_or(0);
-        format!("write `--in {}=VALUE`: {}", short(&column.name), self.wants(place))
-    }
-
-    fn read(&self, column: usize, text: &str) -> Option<i64> {
-        let input = &self.inputs[column];
+    fn read(&self, place: usize, _: &Column, text: &str) -> Option<i64> {
+        let input = &self.inputs[place];
         let value = match &input.kind {
             Kind::Name(names) => {
                 names.iter().position(|name| name.eq_ignore_ascii_case(text)).map(|place| place as i64)
@@ -115,29 +102,9 @@ impl Operation for Asked {
         value.filter(|value| input.narrowed(*value, *value).is_some())
     }
 
-    fn wants(&self, column: usize) -> String {
-        let input = &self.inputs[column];
-        match (&input.domain, &input.kind) {
-            (Some(Domain::Listed(values)), kind) => {
-                let values: Vec<String> = values.iter().map(|value| kind.write(*value)).collect();
-                format!("one of {}", values.join(", "))
-            }
-            (Some(Domain::Word(bits)), _) => format!("a word of {bits} bits, such as 0x{:x}", (1_u64 << bits) - 1),
-            (Some(Domain::Float(negative, limit)), _) => {
-                let sign = if *negative { "" } else { ", not negative" };
-                format!("the bits of a float below 2^{limit}{sign}, such as 3f800000")
-            }
-            _ => format!("a whole number from {} to {}", input.nth(0), input.nth(input.size() - 1)),
-        }
-    }
-
     fn check(&self, values: &[i64]) -> Result<(), String> {
         let fits = self.unit.accepts(values, self.conditions.profile);
         if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.unit.name())) }
-    }
-
-    fn chip(&self) -> Option<(Profile, Policies)> {
-        Some((self.conditions.profile, self.conditions.policies))
     }
 
     fn run<O: Observer>(&self, values: &[i64], _: &mut O) -> Results {

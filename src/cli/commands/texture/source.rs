@@ -11,9 +11,7 @@ use ninebit::state::{CUBE_FACES, Named, Profile, Scene, Texels, TextureFormat, T
 use ninebit_files::texels;
 use ninebit_scene::image::{self, Contents, ImageLimits};
 
-use super::Arguments;
-use crate::commands::Context;
-use crate::commands::exit::Failure;
+use super::{Arguments, Context, Failure};
 use crate::commands::scene::{PolicyArguments, load};
 
 /// A texture and how it is read.
@@ -42,8 +40,7 @@ impl Opened {
 pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Failure> {
     let name = shown::lossless(Path::new(&arguments.texture));
     if let Some(end) = name.find(".ron:") {
-        let (scene, texture) = (&name[..end + 4], &name[end + 5..]);
-        return of_scene(arguments, Path::new(scene), texture, name.clone(), context);
+        return of_scene(arguments, name, end + ".ron".len(), context);
     }
     let path = Path::new(&arguments.texture);
     if path.extension().is_some_and(|extension| extension == "ron") {
@@ -73,12 +70,8 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
             }
             let (width, height) = (picture.width, picture.height);
             let words = texels::pack(&picture.pixels, format).into();
-            (
-                plain_kind(width, height),
-                format,
-                Texels { width, height, levels: 1, layers: 1, border: false, words },
-                None,
-            )
+            let texels = Texels { width, height, levels: 1, layers: 1, border: false, words };
+            (plain_kind(width, height), format, texels, None)
         }
         Contents::Texture(dds) => {
             let format = arguments.format.unwrap_or(dds.format);
@@ -106,13 +99,9 @@ fn plain_kind(width: u32, height: u32) -> TextureKind {
     if powers { TextureKind::TwoDimensional } else { TextureKind::Rectangle }
 }
 
-fn of_scene(
-    arguments: &Arguments,
-    path: &Path,
-    texture: &str,
-    name: String,
-    context: Context,
-) -> Result<Opened, Failure> {
+/// The texture of a scene, behind the colon at `end` of its name.
+fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -> Result<Opened, Failure> {
+    let (path, texture) = (Path::new(&name[..end]), &name[end + 1..]);
     if arguments.profile.is_some() || arguments.format.is_some() {
         let help = "leave out `--profile` and `--format`";
         return Err(Failure::usage("a scene says itself what its profile and formats are", help));
@@ -154,19 +143,15 @@ fn of_scene(
 fn palette(arguments: &Arguments, scene: &Scene, texture: usize) -> Result<Arc<[u32]>, Failure> {
     let index = match &arguments.palette {
         Some(_) if scene.textures[texture].format != TextureFormat::P8 => {
-            let format = scene.textures[texture].format.name();
-            let message = format!("a texture of format {format} reads no palette");
+            let message = format!("a texture of format {} reads no palette", scene.textures[texture].format.name());
             return Err(Failure::usage(message, "leave out `--palette`"));
         }
         Some(name) => {
             let found = scene.palettes.iter().position(|palette| palette.name == *name);
             Some(found.ok_or_else(|| {
                 let names: Vec<String> = scene.palettes.iter().map(|palette| format!("`{}`", palette.name)).collect();
-                let help = if names.is_empty() {
-                    "it has none".to_owned()
-                } else {
-                    format!("its palettes: {}", names.join(", "))
-                };
+                let known = format!("its palettes: {}", names.join(", "));
+                let help = if names.is_empty() { "it has none" } else { &known };
                 Failure::usage(format!("the scene has no palette `{name}`"), help)
             })?)
         }
@@ -175,7 +160,6 @@ fn palette(arguments: &Arguments, scene: &Scene, texture: usize) -> Result<Arc<[
             units.find(|unit| unit.texture == texture).and_then(|unit| unit.palette)
         }
     };
-    Ok(index
-        .and_then(|index| scene.palettes.get(index))
-        .map_or_else(|| Arc::from([]), |palette| palette.entries.clone()))
+    let palette = index.and_then(|index| scene.palettes.get(index));
+    Ok(palette.map_or_else(|| Arc::from([]), |palette| palette.entries.clone()))
 }

@@ -9,7 +9,7 @@ use ninebit_files::output::write_text;
 use ninebit_vectors::results::{self, adopt, compare};
 use ninebit_vectors::{BEHAVIOUR, pack};
 
-use super::super::exit::Failure;
+use super::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -9,7 +9,7 @@ use ninebit_vectors::read::{Difference, Table};
 use ninebit_vectors::{BEHAVIOUR, pack};
 use rayon::prelude::*;
 
-use super::super::exit::Failure;
+use super::Failure;
 
 /// Rows of a unit that are shown.
 const SHOWN: usize = 5;
@@ -46,22 +46,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             let _ = writeln!(text, "    {}", shown.join(" "));
         }
     }
-    let (profile, level) = (&manifest.profile, &manifest.level);
-    let _ = writeln!(
-        text,
-        "{} units, {rows} rows of {profile} {level}: {}",
-        tables.len(),
-        match differing {
-            0 => "all as the model has them".to_owned(),
-            _ => format!("{differing} differ"),
-        }
-    );
-    if differing > 0 && manifest.behaviour_rev != BEHAVIOUR {
-        let _ = writeln!(
-            text,
-            "the pack is of behaviour {}, the model of {BEHAVIOUR}: see CHANGELOG.md, Numerics",
-            manifest.behaviour_rev
-        );
+    let (profile, level, revision) = (&manifest.profile, &manifest.level, manifest.behaviour_rev);
+    let verdict = if differing == 0 { "all as the model has them".to_owned() } else { format!("{differing} differ") };
+    let _ = writeln!(text, "{} units, {rows} rows of {profile} {level}: {verdict}", tables.len());
+    if differing > 0 && revision != BEHAVIOUR {
+        let _ =
+            writeln!(text, "the pack is of behaviour {revision}, the model of {BEHAVIOUR}: see CHANGELOG.md, Numerics");
     }
     write_text(&text)?;
     if differing > 0 { Err(Failure::difference()) } else { Ok(()) }

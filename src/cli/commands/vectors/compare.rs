@@ -6,12 +6,11 @@ use std::path::PathBuf;
 use clap::Args;
 use ninebit::shown;
 use ninebit_vectors::pack::{self, Manifest};
-use ninebit_vectors::results::compare::{self, Comparison, UnitComparison};
+use ninebit_vectors::results::compare::{self, Comparison, Explanation, UnitComparison};
 use ninebit_vectors::results::{self, Device, waiver};
 use serde_json::json;
 
-use super::super::Format;
-use super::super::exit::Failure;
+use super::{Failure, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -76,8 +75,7 @@ fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String
         details(unit, &mut text);
     }
     match &comparison.explanation {
-        Some(best) => {
-            let (policy, explains, breaks) = (&best.policy, best.explains, best.breaks);
+        Some(Explanation { policy, explains, breaks }) => {
             let _ = writeln!(
                 text,
                 "\n{policy} explains the most: {explains} rows that differ would not, {breaks} that agree would differ"
@@ -102,8 +100,7 @@ fn details(unit: &UnitComparison, text: &mut String) {
     let tags = unit.tags.iter().filter(|(_, share)| share.differ > 0);
     let tags: Vec<String> = tags.map(|(tag, share)| format!("{tag} {} of {}", share.differ, share.asked)).collect();
     let _ = writeln!(text, "  by tag: {}", tags.join(", "));
-    for explanation in &unit.policies {
-        let (policy, explains, breaks) = (&explanation.policy, explanation.explains, explanation.breaks);
+    for Explanation { policy, explains, breaks } in &unit.policies {
         let _ = writeln!(text, "  {policy} would explain {explains} and break {breaks}");
     }
     for row in &unit.rows {

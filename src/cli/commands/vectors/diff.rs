@@ -9,7 +9,7 @@ use ninebit_files::output::write_text;
 use ninebit_vectors::pack;
 use ninebit_vectors::read::{Table, TableRow};
 
-use super::super::exit::Failure;
+use super::Failure;
 
 /// Rows of a unit that are shown.
 const SHOWN: usize = 3;

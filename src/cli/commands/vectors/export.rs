@@ -13,7 +13,7 @@ use ninebit_vectors::pack::{self, Options};
 use ninebit_vectors::view::View;
 use ninebit_vectors::{Unit, units};
 
-use super::super::exit::Failure;
+use super::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -21,10 +21,10 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// The chip: nv10 or nv2a
-    #[arg(long, default_value = "nv2a", value_parser = super::profile)]
+    #[arg(long, default_value = "nv2a", value_parser = super::named::<Profile>)]
     profile: Profile,
     /// How many rows a unit has: L0 at most 1000, L1 60 000, L2 5 000 000
-    #[arg(long, default_value = "L0", value_parser = super::level)]
+    #[arg(long, default_value = "L0", value_parser = super::named::<Level>)]
     level: Level,
     /// Of the random rows
     #[arg(long, default_value_t = 1)]
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
 
 /// Writes a pack.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let profile = arguments.profile;
+    let Arguments { profile, level, seed, deciding, .. } = *arguments;
     let mut chosen = if arguments.units.is_empty() { units::all() } else { arguments.units.clone() };
     if let Some(unit) = arguments.units.iter().find(|unit| !unit.profiles().contains(&profile)) {
         return Err(super::lacks(*unit, profile));
@@ -57,14 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.gpu_batches && !views.contains(&View::Gpu) {
         views.push(View::Gpu);
     }
-    let options = Options {
-        profile,
-        level: arguments.level,
-        seed: arguments.seed,
-        units: chosen,
-        deciding: arguments.deciding,
-        views,
-    };
+    let options = Options { profile, level, seed, units: chosen, deciding, views };
     let manifest = pack::export(&arguments.output, &options)?;
     let mut text = String::new();
     for file in manifest.files.iter().filter(|file| file.path.ends_with(".tsv")) {

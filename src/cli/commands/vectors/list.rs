@@ -7,8 +7,7 @@ use ninebit::state::Named;
 use ninebit_vectors::{cases, handbook, units};
 use serde_json::json;
 
-use super::super::Format;
-use super::super::exit::Failure;
+use super::{Failure, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -12,12 +12,11 @@ use ninebit_files::output::{Destination, make_folder, write_text};
 use ninebit_vectors::error::VectorError;
 use ninebit_vectors::exhaustive::{Exhaustive, MAX_ROWS};
 use ninebit_vectors::part::Part;
-use ninebit_vectors::tree::{self, Done, Of, Tree};
+use ninebit_vectors::tree::{self, Of, Tree};
 use ninebit_vectors::{BEHAVIOUR, Unit};
 use rayon::prelude::*;
 
-use super::super::engine::threads;
-use super::super::exit::Failure;
+use super::{Failure, MAXIMUM_THREADS, named, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {
@@ -25,7 +24,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "UNIT", value_parser = super::unit)]
     unit: &'static dyn Unit,
     /// The chip: nv10 or nv2a
-    #[arg(long, default_value = "nv2a", value_parser = super::profile)]
+    #[arg(long, default_value = "nv2a", value_parser = named::<Profile>)]
     profile: Profile,
     /// Only rows of which this column has this number, or one of this range: COLUMN=NUMBER or COLUMN=FIRST..LAST, both included, or COLUMN=WORD/MASK,
     /// words that differ from WORD only in bits of MASK, or COLUMN=COLUMN, the number of the other; may be given for several columns
@@ -35,7 +34,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, value_parser = str::parse::<Shard>)]
     shard: Shard,
     /// Threads; 0 for one a core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<MAXIMUM_THREADS>)]
     threads: usize,
     /// The folder of the leaves; it is made, and leaves that are there are kept
     #[arg(short, long, value_name = "DIR")]
@@ -52,35 +51,22 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         let help = "`ninebit vectors list --format json` has the columns of every unit";
         Failure::usage(format!("--only: {message}"), help)
     })?;
-    let Some(sweep) = Exhaustive::of(*unit, *profile, part) else {
-        return Err(Failure::usage(
-            format!("`{}` has more than {MAX_ROWS} rows", [&[unit.name().to_owned()], &only[..]].concat().join(" ")),
-            "a sweep has every row; `--only COLUMN=NUMBERS` takes a part, `ninebit vectors export` boundaries and random ones",
-        ));
-    };
+    let sweep = Exhaustive::of(*unit, *profile, part).ok_or_else(|| {
+        let name = [&[unit.name().to_owned()], &only[..]].concat().join(" ");
+        let help = "a sweep has every row; `--only COLUMN=NUMBERS` takes a part, `ninebit vectors export` boundaries and random ones";
+        Failure::usage(format!("`{name}` has more than {MAX_ROWS} rows"), help)
+    })?;
     make_folder(output)?;
     let mine: Vec<u64> = (0..sweep.leaves).filter(|leaf| shard.takes(*leaf)).collect();
     let results: Vec<Result<bool, VectorError>> =
         on_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
-    let mut done = Done::default();
-    for result in results {
-        if result? {
-            done.computed += 1;
-        } else {
-            done.kept += 1;
-        }
-    }
-    let text = format!(
-        "{} {}, shard {}: {} of {} leaves, {} computed, {} were there\n",
-        Of::new(&sweep).name(),
-        profile.name(),
-        shard,
-        mine.len(),
-        sweep.leaves,
-        done.computed,
-        done.kept
-    );
-    Ok(write_text(&text)?)
+    let results = results.into_iter().collect::<Result<Vec<bool>, _>>()?;
+    let computed = results.iter().filter(|computed| **computed).count();
+    let (name, profile, leaves, kept) = (Of::new(&sweep).name(), profile.name(), mine.len(), mine.len() - computed);
+    Ok(write_text(&format!(
+        "{name} {profile}, shard {shard}: {leaves} of {} leaves, {computed} computed, {kept} were there\n",
+        sweep.leaves
+    ))?)
 }
 
 #[derive(Debug, Args)]
@@ -120,7 +106,7 @@ pub(crate) struct DigestArguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Threads; 0 for one a core
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<MAXIMUM_THREADS>)]
     threads: usize,
 }
 

@@ -1,7 +1,7 @@
 //! Values of texture stage states and render states.
 
 use crate::calls::{self, Part, PartKind, Value, one, out_of_range, without_prefix, wrong_kind};
-use crate::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
+use crate::texture_stages::{Operation, ResultArgument, StageArgument};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::number::convert::constant;
 use ninebit::state::Named;
@@ -27,10 +27,7 @@ fn known<T: Copy>(
 pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     match one(value, "number", findings)?.kind {
         PartKind::Integer(number) => Some(number),
-        _ => {
-            wrong_kind(&value.place, "a whole number", "variables have no value here: write the number", findings);
-            None
-        }
+        _ => wrong_kind(value, "a whole number", "variables have no value here: write the number", findings),
     }
 }
 
@@ -38,61 +35,43 @@ pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Optio
 pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<Operation> {
     let part = one(value, "operation", findings)?;
     if let PartKind::Integer(number) = part.kind {
-        let operation = Operation::from_value(number);
-        if operation.is_none() {
-            out_of_range(&part.place, "texture operation", number, "operations are 1 to 26", findings);
-        }
-        return operation;
+        let help = "operations are 1 to 26";
+        return Operation::from_value(number)
+            .or_else(|| out_of_range(part, "texture operation", number, help, findings));
     }
     let names: Vec<(&str, Operation)> = Operation::ALL.iter().map(|operation| (operation.name(), *operation)).collect();
     known(part, "texture operation", "D3DTOP_", call, &names, findings)
 }
 
-#[derive(Clone, Copy)]
-enum ArgumentWord {
-    Source(ArgumentSource),
-    Complement,
-    AlphaReplicate,
-}
-
 /// D3DTA, with modifiers.
 pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<StageArgument> {
-    const WORDS: &[(&str, ArgumentWord)] = &[
-        ("Diffuse", ArgumentWord::Source(ArgumentSource::Diffuse)),
-        ("Current", ArgumentWord::Source(ArgumentSource::Current)),
-        ("Texture", ArgumentWord::Source(ArgumentSource::Texture)),
-        ("TFactor", ArgumentWord::Source(ArgumentSource::TextureFactor)),
-        ("Specular", ArgumentWord::Source(ArgumentSource::Specular)),
-        ("Temp", ArgumentWord::Source(ArgumentSource::Temp)),
-        ("Constant", ArgumentWord::Source(ArgumentSource::Constant)),
-        ("Complement", ArgumentWord::Complement),
-        ("AlphaReplicate", ArgumentWord::AlphaReplicate),
+    const WORDS: &[(&str, u32)] = &[
+        ("Diffuse", 0),
+        ("Current", 1),
+        ("Texture", 2),
+        ("TFactor", 3),
+        ("Specular", 4),
+        ("Temp", 5),
+        ("Constant", 6),
+        ("Complement", 16),
+        ("AlphaReplicate", 32),
     ];
     let mut bits = 0;
     let mut sources = 0;
     for part in &value.parts {
-        if let PartKind::Integer(number) = part.kind {
-            if StageArgument::from_value(number).is_none() {
+        let number = match part.kind {
+            PartKind::Integer(number) if StageArgument::from_value(number).is_none() => {
                 let help = "an argument is 0 to 6, plus 16 for the complement and 32 for alpha in all channels";
-                out_of_range(&part.place, "texture argument", number, help, findings);
-                return None;
+                return out_of_range(part, "texture argument", number, help, findings);
             }
-            sources += u32::from(number & 48 == 0 || number & 15 != 0);
-            bits |= number;
-            continue;
-        }
-        match known(part, "texture argument", "D3DTA_", call, WORDS, findings)? {
-            ArgumentWord::Complement => bits |= 16,
-            ArgumentWord::AlphaReplicate => bits |= 32,
-            ArgumentWord::Source(source) => {
-                sources += 1;
-                bits |= ArgumentSource::ALL.iter().position(|known| *known == source).unwrap_or(0) as u32;
-            }
-        }
+            PartKind::Integer(number) => number,
+            _ => known(part, "texture argument", "D3DTA_", call, WORDS, findings)?,
+        };
+        sources += u32::from(number & 48 == 0 || number & 15 != 0);
+        bits |= number;
     }
     if sources > 1 {
-        wrong_kind(&value.place, "one source and its modifiers", "keep one of the sources", findings);
-        return None;
+        return wrong_kind(value, "one source and its modifiers", "keep one of the sources", findings);
     }
     StageArgument::from_value(bits)
 }
@@ -106,8 +85,7 @@ pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnosti
             5 => Some(ResultArgument::Temp),
             _ => {
                 let help = "a result is 1 (D3DTA_CURRENT) or 5 (D3DTA_TEMP)";
-                out_of_range(&part.place, "result argument", number, help, findings);
-                None
+                out_of_range(part, "result argument", number, help, findings)
             }
         };
     }
@@ -184,8 +162,7 @@ pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
                         "D3DCOLOR_COLORVALUE" | "D3DRGBA" | "D3DRGB" | "D3DXCOLOR" => "a number from 0.0 to 1.0",
                         _ => "a byte, 0 to 255",
                     };
-                    wrong_kind(&argument.place, what, HELP, findings);
-                    return None;
+                    return wrong_kind(argument, what, HELP, findings);
                 };
                 bytes.push(byte);
             }
@@ -204,10 +181,7 @@ pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
         }
         PartKind::Name | PartKind::Float(_) | PartKind::List(_) => None,
     };
-    if found.is_none() {
-        wrong_kind(&value.place, "a colour", HELP, findings);
-    }
-    found
+    found.or_else(|| wrong_kind(value, "a colour", HELP, findings))
 }
 
 fn byte(value: &Value<'_>) -> Option<u8> {
@@ -250,10 +224,7 @@ pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
         },
         PartKind::Name | PartKind::List(_) => None,
     };
-    let found = found.filter(|number| number.is_finite());
-    if found.is_none() {
-        let help = "write a fraction such as `0.5f` or `F2DW(0.5f)`, or the bits of one, 0x3f000000";
-        wrong_kind(&value.place, "a finite number", help, findings);
-    }
-    found
+    let help = "write a fraction such as `0.5f` or `F2DW(0.5f)`, or the bits of one, 0x3f000000";
+    let finite = found.filter(|number| number.is_finite());
+    finite.or_else(|| wrong_kind(value, "a finite number", help, findings))
 }
