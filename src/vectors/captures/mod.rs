@@ -321,20 +321,15 @@ pub fn pixels(of: &Rectangle) -> impl Iterator<Item = usize> + use<> {
     (y..y + height).flat_map(move |row| (x..x + width).map(move |column| (row * SIZE.0 + column) as usize))
 }
 
-/// Column and row of a pixel.
-fn place(at: usize) -> (u32, u32) {
-    (at as u32 % SIZE.0, at as u32 / SIZE.0)
-}
-
-fn holds(text: &[Rectangle], (x, y): (u32, u32)) -> bool {
-    text.iter().any(|r| (r.x..r.x + r.width).contains(&x) && (r.y..r.y + r.height).contains(&y))
-}
-
 /// The first 16 hexadecimal digits of the SHA-256 of the pixels outside the text, R, G, B, A, row by row.
 fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
-    let outside = pixels.iter().enumerate().filter(|(at, _)| !holds(text, place(*at)));
-    let bytes: Vec<u8> = outside.flat_map(|(_, pixel)| *pixel).collect();
-    hexadecimal(&Sha256::digest(bytes)[..8])
+    let mut outside = vec![true; pixels.len()];
+    for at in text.iter().flat_map(self::pixels) {
+        outside[at] = false;
+    }
+    let bytes = pixels.iter().zip(outside).filter_map(|(pixel, outside)| outside.then_some(*pixel));
+    let bytes: Vec<[u8; 4]> = bytes.collect();
+    hexadecimal(&Sha256::digest(bytes.as_flattened())[..8])
 }
 
 /// The beginning of a surface's memory as a texture of 32 bits.
