@@ -8,6 +8,7 @@ use ninebit_scene::diff::{CHANNELS, Difference, Histogram, Region, histogram_tex
 use serde_json::{Value, json};
 
 use super::{Findings, SceneFindings};
+use crate::replay::report::histograms;
 
 /// The channels that were compared, with their names.
 fn channels<'a>(findings: &'a Findings<'_>) -> Vec<(&'static str, &'a Histogram)> {
@@ -70,15 +71,8 @@ fn write_difference(out: &mut String, findings: &Findings<'_>) -> std::fmt::Resu
 
 fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result {
     let shown = difference.regions.len() as u64;
-    writeln!(
-        out,
-        "\n{}",
-        if difference.region_count == 1 {
-            "1 region".to_owned()
-        } else {
-            format!("{} regions", difference.region_count)
-        }
-    )?;
+    let plural = if difference.region_count == 1 { "" } else { "s" };
+    writeln!(out, "\n{} region{plural}", difference.region_count)?;
     if shown > 0 {
         writeln!(out, "{:>4}{:>10}  {:<24}{:<14}largest difference", "", "pixels", "columns and rows", "first pixel")?;
     }
@@ -98,16 +92,6 @@ fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result 
 /// The report for programs.
 pub(super) fn json(findings: &Findings<'_>) -> Value {
     let (arguments, difference) = (findings.arguments, &findings.difference);
-    let channels: Vec<Value> = channels(findings)
-        .into_iter()
-        .map(|(name, histogram)| {
-            let bucket = |b: &ninebit_scene::diff::Bucket| json!({ "from": b.from, "to": b.to, "pixels": b.pixels });
-            json!({
-                "channel": name, "pixels": histogram.different(), "largest": histogram.largest(),
-                "histogram": histogram.buckets().iter().map(bucket).collect::<Vec<_>>(),
-            })
-        })
-        .collect();
     let regions: Vec<Value> = (0..)
         .zip(&difference.regions)
         .map(|(number, region)| {
@@ -135,7 +119,7 @@ pub(super) fn json(findings: &Findings<'_>) -> Value {
         "pixels": difference.pixels(),
         "different": difference.different,
         "largest": difference.largest(),
-        "channels": channels,
+        "channels": histograms(channels(findings)),
         "region_count": difference.region_count,
         "regions": regions,
         "scene": scene,

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed, Summary};
 use ninebit::shown;
-use ninebit_scene::diff::CHANNELS;
+use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
 /// One JSON document; `docs/replay.md` describes it.
 pub fn json(all: &[Replayed]) -> String {
@@ -60,20 +60,18 @@ fn difference(difference: &Difference) -> Value {
     })
 }
 
+/// Histograms of channels, by name.
+pub(crate) fn histograms<'h>(channels: impl IntoIterator<Item = (&'static str, &'h Histogram)>) -> Value {
+    let channel = |(name, histogram): (&str, &Histogram)| {
+        let bucket = |b: &Bucket| json!({ "from": b.from, "to": b.to, "pixels": b.pixels });
+        let buckets: Vec<Value> = histogram.buckets().iter().map(bucket).collect();
+        json!({ "channel": name, "pixels": histogram.different(), "largest": histogram.largest(), "histogram": buckets })
+    };
+    channels.into_iter().map(channel).collect()
+}
+
 fn known(known: &Known) -> Value {
     let difference = &known.difference;
-    let channels: Vec<Value> = CHANNELS
-        .into_iter()
-        .zip(&difference.channels)
-        .map(|(name, histogram)| {
-            let buckets: Vec<Value> = histogram
-                .buckets()
-                .iter()
-                .map(|bucket| json!({ "from": bucket.from, "to": bucket.to, "pixels": bucket.pixels }))
-                .collect();
-            json!({ "channel": name, "pixels": histogram.different(), "largest": histogram.largest(), "histogram": buckets })
-        })
-        .collect();
     let first = &known.first;
     json!({
         "picture": match &known.origin {
@@ -83,7 +81,7 @@ fn known(known: &Known) -> Value {
         "pixels": difference.pixels(),
         "different": difference.different,
         "largest": difference.largest(),
-        "channels": channels,
+        "channels": histograms(CHANNELS.into_iter().zip(&difference.channels)),
         "first": { "x": first.x, "y": first.y, "expected": first.expected, "drawn": first.drawn },
         "trace": known.traces.as_ref().map(|traces| &traces.drawn),
         "expected_trace": known.traces.as_ref().and_then(|traces| traces.expected.as_ref()),

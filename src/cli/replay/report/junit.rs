@@ -44,26 +44,25 @@ fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
         ("name", &*name),
         ("file", &*path),
     ]);
-    match &one.outcome {
-        Outcome::Match | Outcome::Blessed { .. } => case.write_empty()?,
-        Outcome::Skipped(_) => case.write_inner_content(|writer| {
-            writer.create_element("skipped").with_attribute(("message", &*message)).write_empty()?;
-            Ok(())
-        })?,
-        Outcome::Differs(difference) => case.write_inner_content(|writer| {
-            let failure = writer.create_element("failure");
-            let attributes = [("message", &*message), ("type", "difference")];
-            failure
-                .with_attributes(attributes)
-                .write_text_content(BytesText::new(&shown::lines(&difference.text())))?;
-            Ok(())
-        })?,
-        Outcome::Failed(problem) => case.write_inner_content(|writer| {
-            let error = writer.create_element("error");
-            let attributes = [("message", &*message), ("type", &*format!("exit {code}"))];
-            error.with_attributes(attributes).write_text_content(BytesText::new(&shown::lines(&problem.text)))?;
-            Ok(())
-        })?,
+    let (element, told) = match &one.outcome {
+        Outcome::Match | Outcome::Blessed { .. } => {
+            case.write_empty()?;
+            return Ok(());
+        }
+        Outcome::Skipped(_) => ("skipped", None),
+        Outcome::Differs(difference) => ("failure", Some(("difference".to_owned(), difference.text()))),
+        Outcome::Failed(problem) => ("error", Some((format!("exit {code}"), problem.text.clone()))),
     };
+    case.write_inner_content(|writer| {
+        let element = writer.create_element(element).with_attribute(("message", &*message));
+        match told {
+            Some((kind, text)) => {
+                let text = shown::lines(&text);
+                element.with_attribute(("type", &*kind)).write_text_content(BytesText::new(&text))?
+            }
+            None => element.write_empty()?,
+        };
+        Ok(())
+    })?;
     Ok(())
 }

@@ -8,6 +8,7 @@ mod text;
 
 pub use github::{annotations, step_summary};
 pub use html::html;
+pub(crate) use json::histograms;
 pub use json::json;
 pub use junit::junit;
 pub use text::text;
