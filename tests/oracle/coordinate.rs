@@ -71,13 +71,13 @@ impl Setup {
     }
 
     fn component(&self, set: usize, n: usize) -> [f32; 3] {
-        self.vertices.map(|v| v.texture_coordinates[set][n])
+        self.vertices.each_ref().map(|v| v.texture_coordinates[set][n])
     }
 
     /// Nine products of one exponent, 28 bits, cut toward zero (TEX-15).
     fn three(&self, set: usize, which: [usize; 3]) -> [[i128; 3]; 3] {
         let parts: [(i128, i32); 9] = std::array::from_fn(|n| {
-            let (m, e) = split(self.component(set, which[n / 3])[n % 3]);
+            let (m, e) = split(self.vertices[n % 3].texture_coordinates[set][which[n / 3]]);
             (self.p[n % 3] * m, e)
         });
         let sizes = align(parts.map(|(m, e)| (m.abs(), e)), 28);

@@ -339,7 +339,7 @@ impl Setup {
             |n: i128, step: i32| if step > 0 { n.signum() * (n.abs() >> step.min(127) << step.min(127)) } else { n };
         let full = i128::from(format.largest());
         let floats = matches!(format, DepthFormat::Z16F | DepthFormat::Z24S8F);
-        let z = self.vertices.map(|v| match test.vertex_depths {
+        let z = self.vertices.each_ref().map(|v| match test.vertex_depths {
             VertexDepths::Fractions if !floats => {
                 let (m, e) = split(v.position[2].clamp(0.0, 1.0));
                 shift(m * full, e) as f32
@@ -347,7 +347,7 @@ impl Setup {
             _ => v.position[2],
         });
         // DEP-6: times w_1/w_k, 24 bits each; 61 bits of the largest count.
-        let w = self.vertices.map(|v| v.position[3]);
+        let w = self.vertices.each_ref().map(|v| v.position[3]);
         let in_perspective = |k: usize| {
             let ((m, e), (n, f)) = (split(w[1]), split(w[k]));
             let ratio = (m << 60) / n;
