@@ -59,5 +59,6 @@ fn one_pixel_makes_a_difference() {
     let last = pixels.len() - 1;
     pixels[last][3] ^= 1;
     assert!(!frame.is(&pixels));
+    assert!(!frame.is(&pixels[..at]), "a part of the frame");
     assert_eq!(captures::pixels(text).next(), Some(at));
 }

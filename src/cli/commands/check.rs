@@ -7,7 +7,7 @@ use ninebit::shown;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
-use super::{Context, Cost, Failure, Format, SceneArguments};
+use super::{Context, Cost, Failure, Format, SceneArguments, count};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -43,11 +43,6 @@ fn text(scene: &Scene, cost: &Cost) -> String {
     row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
     row("memory", format!("about {}", bytes(cost.memory_bytes)));
     text
-}
-
-/// A number of things.
-fn count(number: u64, thing: &str) -> String {
-    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A number of bytes for people, rounded up.

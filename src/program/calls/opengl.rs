@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Part, PartKind, Reader, Value, known, wrong_kind};
+use super::{Part, PartKind, Reader, Value, known, out_of_range, wrong_kind};
 use crate::finding::finding;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::number::convert::constant;
@@ -63,10 +63,8 @@ pub(crate) fn numbered(
     match index {
         Some(index) if index < count => Some(index),
         Some(index) => {
-            let message = format!("there is no {what} {index}");
             let help = format!("write GL_{name}0 to GL_{name}{}", count - 1);
-            findings.push(finding("NB0206", value.place.clone(), message, "out of range", help));
-            None
+            out_of_range(&value.place, what, index, &help, findings)
         }
         None => wrong_kind(value, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings),
     }

@@ -1,5 +1,6 @@
 //! Values of pasted text: numbers, names of an API, macros, lists.
 
+use std::fmt::Display;
 use std::ops::Range;
 
 use super::{Kind, Reader};
@@ -254,14 +255,14 @@ pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<D
 
 /// Records that there is no such number.
 pub(crate) fn out_of_range<T>(
-    part: &Part<'_>,
+    place: &Range<usize>,
     what: &str,
-    value: u32,
+    value: impl Display,
     help: &str,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<T> {
     let message = format!("there is no {what} {value}");
-    findings.push(finding("NB0206", part.place.clone(), message, "out of range", help));
+    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
     None
 }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::{CoordinateIndex, STAGES, TextureStages};
 use crate::At;
-use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary};
+use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary, out_of_range};
 use crate::finding::finding;
 use draw_state::{DrawStates, OTHER_STATES};
 use ninebit::diagnostic::Diagnostic;
@@ -197,10 +197,8 @@ impl<'t> Parser<'t> {
         let name = self.state(state, prefixes, STATES, call)?;
         let index = value::number(stage, &mut self.reader.findings)?;
         let Some(target) = self.program.stage_mut(index as usize) else {
-            let message = format!("there is no texture stage {index}");
             let help = format!("write 0 to {}", STAGES - 1);
-            self.reader.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
-            return None;
+            return out_of_range(&stage.place, "texture stage", index, &help, &mut self.reader.findings);
         };
         if target.place.is_empty() {
             target.place = state.clone();

@@ -325,7 +325,10 @@ pub fn pixels(of: &Rectangle) -> impl Iterator<Item = usize> + use<> {
 fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     let mut outside = vec![true; pixels.len()];
     for at in text.iter().flat_map(self::pixels) {
-        outside[at] = false;
+        // A picture may be smaller than a frame.
+        if let Some(outside) = outside.get_mut(at) {
+            *outside = false;
+        }
     }
     let bytes = pixels.iter().zip(outside).filter_map(|(pixel, outside)| outside.then_some(*pixel));
     let bytes: Vec<[u8; 4]> = bytes.collect();
