@@ -170,3 +170,31 @@ fn crates_are_listed() {
     }
     pages::hold("docs/architecture.md", "tests/architecture.rs", &table);
 }
+
+/// What has no examples in its documentation is not asked for any: collecting none takes rustdoc a second a crate.
+#[test]
+fn crates_without_tests_of_documentation_have_no_examples() {
+    let mut silent = 0;
+    for folder in ["cli", "files", "lab", "lower", "model", "program", "report", "scene", "vectors", "web"] {
+        let folder = Path::new("src").join(folder);
+        let own = folder.join("Cargo.toml");
+        let manifest = std::fs::read_to_string(if own.exists() { &own } else { Path::new("Cargo.toml") }).unwrap();
+        if !manifest.contains("doctest = false") {
+            continue;
+        }
+        silent += 1;
+        let mut found = Vec::new();
+        files(&folder, &mut found);
+        for path in found.iter().filter(|path| path.extension().is_some_and(|ending| ending == "rs")) {
+            let text = std::fs::read_to_string(path).unwrap();
+            let fences = text.lines().map(str::trim_start).filter_map(|line| {
+                let line = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?;
+                line.trim_start().strip_prefix("```")
+            });
+            // Every other one ends a block.
+            let opening: Vec<&str> = fences.step_by(2).collect();
+            assert!(opening.iter().all(|words| words.starts_with("text")), "{}: {opening:?}", path.display());
+        }
+    }
+    assert!(silent > 0);
+}

@@ -4,6 +4,8 @@
 use crate::settings;
 use ninebit_oracle as model;
 use ninebit_test_support::random_scene;
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
 
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
@@ -59,13 +61,40 @@ fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
     Ok(())
 }
 
-fn run(cases: u32, strategy: &BoxedStrategy<(Scene, Policies)>) {
-    let result =
-        runner(cases).run(strategy, |(scene, policies)| compare(&scene, &policies).map_err(TestCaseError::fail));
-    match result {
+/// Compares random scenes, some with other policies, and holds that in the first of them, so many, each name of `wanted` is met so often. To count
+/// takes longer than to draw.
+fn run(
+    cases: u32,
+    scenes: BoxedStrategy<Scene>,
+    (counted, often): (u32, u64),
+    wanted: impl FnOnce(&mut dyn FnMut(&'static str, &[&'static str])),
+) {
+    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
+    let (done, tally) = (Cell::new(0), RefCell::new(BTreeMap::new()));
+    let compared = |(scene, policies)| {
+        let compare = || compare(&scene, &policies).map_err(TestCaseError::fail);
+        if done.replace(done.get() + 1) >= counted {
+            return compare();
+        }
+        let (result, met) = model::tally::during(compare);
+        for (name, count) in met {
+            *tally.borrow_mut().entry(name).or_insert(0) += count;
+        }
+        result
+    };
+    match runner(cases).run(&(scenes, policies), compared) {
         Err(TestError::Fail(reason, (scene, policies))) => panic!("{reason}\n{policies:?}\n{scene:?}"),
         other => other.unwrap(),
     }
+    let tally = tally.into_inner();
+    println!("{tally:#?}");
+    let least = often * u64::from(cases.min(counted)) / u64::from(counted);
+    let mut missing = Vec::new();
+    wanted(&mut |group, names| {
+        let seldom = |name: &&&'static str| tally.get(&(group, **name)).copied().unwrap_or(0) < least;
+        missing.extend(names.iter().filter(seldom).map(|name| (group, *name)));
+    });
+    assert!(missing.is_empty(), "too seldom: {missing:?}");
 }
 
 /// Any value of every policy.
@@ -81,89 +110,68 @@ fn policies() -> impl Strategy<Value = Policies> {
 
 #[test]
 fn random_scenes_agree() {
-    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
-    run(settings::number("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
+    run(settings::number("NINEBIT_ORACLE_SCENES", 2000), random_scene::scene().boxed(), (400, 500), |need| {
+        // Depths and volumes come with the wider scenes.
+        let depths = TextureFormat::ALL.iter().position(|format| format.depth().is_some()).unwrap_or(0);
+        need("TextureFormat", &TextureFormat::NAMES[..depths]);
+        need("TextureKind", &TextureKind::NAMES[..3]);
+        need("outside", AddressMode::NAMES);
+        need("cube edge", &["Wrap"]);
+        need("border", &["color", "texels"]);
+        need("face", &["+X", "-X", "+Y", "-Y", "+Z", "-Z"]);
+        need("level", &["0", "1", "2", "3", "4"]);
+        for group in
+            ["magnified", "minified without levels", "minified to the nearest level", "minified between levels"]
+        {
+            need(group, Filter::NAMES);
+        }
+        need("lod", &["least", "measured"]);
+        if random_scene::FOG_FUNCTIONS {
+            need(FogMode::TYPE, FogMode::NAMES);
+        }
+        if random_scene::TEXTURE_SHADERS {
+            need(DotMapping::TYPE, DotMapping::NAMES);
+            need("fragment", &["culled", "kept"]);
+            need("operation", &OPERATIONS.split(' ').collect::<Vec<_>>());
+        }
+    });
 }
 
 #[test]
 fn wider_random_scenes_agree() {
-    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
-    run(settings::number("NINEBIT_ORACLE_WIDE_SCENES", 1000), &(random_scene::wide::scene(), policies).boxed());
+    run(
+        settings::number("NINEBIT_ORACLE_WIDE_SCENES", 1000),
+        random_scene::wide::scene().boxed(),
+        (1000, 10),
+        |need| {
+            need("TextureFormat", TextureFormat::NAMES);
+            need("TextureKind", TextureKind::NAMES);
+            need("shadow", CompareFunction::NAMES);
+            need("reference", ShadowReference::NAMES);
+            need("layer", AddressMode::NAMES);
+            need("layer", &["inside"]);
+            need("taps", &["1", "2", "4", "6", "8"]);
+            need("cylinder", &["moved", "stays"]);
+            need("texels", &["longer than pixels", "shorter than pixels"]);
+        },
+    );
 }
 
 #[test]
-fn wider_random_scenes_sample_in_every_way() {
-    let strategy = random_scene::wide::scene();
-    let mut runner = runner(400);
-    let ((), tally) = model::tally::during(|| {
-        for _ in 0..400 {
-            model::render(&strategy.new_tree(&mut runner).unwrap().current(), &Policies::DEFAULT);
-        }
-    });
-    println!("{tally:#?}");
-    let mut missing = Vec::new();
-    let mut need = |group: &'static str, names: &[&'static str]| {
-        missing.extend(names.iter().filter(|n| tally.get(&(group, **n)).is_none_or(|n| *n < 10)).map(|n| (group, *n)));
-    };
-    need("TextureFormat", TextureFormat::NAMES);
-    need("TextureKind", TextureKind::NAMES);
-    need("shadow", CompareFunction::NAMES);
-    need("reference", ShadowReference::NAMES);
-    need("layer", AddressMode::NAMES);
-    need("layer", &["inside"]);
-    need("taps", &["1", "2", "4", "6", "8"]);
-    need("cylinder", &["moved", "stays"]);
-    need("texels", &["longer than pixels", "shorter than pixels"]);
-    assert!(missing.is_empty(), "too seldom: {missing:?}");
-}
-
-#[test]
-fn random_scenes_draw_something_of_everything() {
+fn random_scenes_draw_something() {
     let strategy = random_scene::scene();
     let mut runner = runner(400);
     let mut rich = || {
         let scene = strategy.new_tree(&mut runner).unwrap().current();
-        let plain = Scene { draws: Vec::new(), ..scene.clone() };
-        let (before, after) = (model::render(&plain, &Policies::DEFAULT), model::render(&scene, &Policies::DEFAULT));
-        let mut words: Vec<u32> = Vec::new();
-        let mut changed = 0;
-        for (b, a) in before.iter().zip(&after) {
-            changed += b.words.iter().zip(&a.words).filter(|(b, a)| b != a).count();
-            words.extend(&a.words);
-        }
-        words.sort_unstable();
-        words.dedup();
-        changed > 10 && words.len() > 3
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let plain = Plan { draws: Vec::new(), ..plan.clone() };
+        let words =
+            |plan| render(plan, &RenderOptions::default()).surfaces.into_iter().flat_map(|surface| surface.words);
+        let changed = words(&plain).zip(words(&plan)).filter(|(before, after)| before != after).count();
+        changed > 10 && words(&plan).collect::<BTreeSet<u32>>().len() > 3
     };
-    let (rich, tally) = model::tally::during(|| (0..400).filter(|_| rich()).count());
-    println!("{rich} of 400 scenes are rich\n{tally:#?}");
+    let rich = (0..400).filter(|_| rich()).count();
     assert!(rich >= 200, "{rich} of 400");
-    let mut missing = Vec::new();
-    let mut need = |group: &'static str, names: &[&'static str]| {
-        missing.extend(names.iter().filter(|n| tally.get(&(group, **n)).is_none_or(|n| *n < 500)).map(|n| (group, *n)));
-    };
-    // Depths and volumes come with the wider scenes.
-    let depths = TextureFormat::ALL.iter().position(|format| format.depth().is_some()).unwrap_or(0);
-    need("TextureFormat", &TextureFormat::NAMES[..depths]);
-    need("TextureKind", &TextureKind::NAMES[..3]);
-    need("outside", AddressMode::NAMES);
-    need("cube edge", &["Wrap"]);
-    need("border", &["color", "texels"]);
-    need("face", &["+X", "-X", "+Y", "-Y", "+Z", "-Z"]);
-    need("level", &["0", "1", "2", "3", "4"]);
-    for group in ["magnified", "minified without levels", "minified to the nearest level", "minified between levels"] {
-        need(group, Filter::NAMES);
-    }
-    need("lod", &["least", "measured"]);
-    if random_scene::FOG_FUNCTIONS {
-        need(FogMode::TYPE, FogMode::NAMES);
-    }
-    if random_scene::TEXTURE_SHADERS {
-        need(DotMapping::TYPE, DotMapping::NAMES);
-        need("fragment", &["culled", "kept"]);
-        need("operation", &OPERATIONS.split(' ').collect::<Vec<_>>());
-    }
-    assert!(missing.is_empty(), "too seldom: {missing:?}");
 }
 
 /// Patterns of floats of all kinds, most of sizes that reach each other.

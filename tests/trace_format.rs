@@ -127,6 +127,15 @@ fn value_text(value: &Value) -> Option<String> {
 }
 
 impl Seen {
+    /// What other traces have shown, too.
+    fn add(&mut self, other: Seen) {
+        self.operations.extend(other.operations);
+        self.fragments += other.fragments;
+        for (block, names) in other.names {
+            self.names.entry(block).or_default().extend(names);
+        }
+    }
+
     /// A document: its fields against the page, its operations and names for later.
     fn document(&mut self, page: &Page, document: &Value) {
         let word = document["word"].as_u64().unwrap();
@@ -209,9 +218,8 @@ fn the_page_shows_the_vocabulary() {
     }
 }
 
-#[test]
-fn traces_and_the_page_agree() {
-    let page = Page::read();
+/// Traces of random scenes, recomputed and held against the page.
+fn random_traces(page: &Page) -> Seen {
     let mut seen = Seen::default();
     let mut runner = TestRunner::deterministic();
     let mut sequence = Random::seeded(1);
@@ -236,19 +244,38 @@ fn traces_and_the_page_agree() {
                         .unwrap_or_else(|error| panic!("{error}\n{draw:#}"));
                     assert_eq!(draw["stored"].as_bool(), Some(known.contains_key("stored.word")));
                 }
-                seen.document(&page, &document);
+                seen.document(page, &document);
             }
         }
     }
+    seen
+}
+
+/// Traces of the scenes of the repository, held against the page.
+fn repository_traces(page: &Page) -> Seen {
+    let mut seen = Seen::default();
     let files = scene_files::below(Path::new("vectors/scenes"));
     assert!(!files.is_empty());
     for path in files {
         let plan = plan_of(&path);
         for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
-            seen.document(&page, &trace_of_text(&plan, target, (size.0 / 2, size.1 / 2)));
-            seen.document(&page, &trace_of_text(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
+            seen.document(page, &trace_of_text(&plan, target, (size.0 / 2, size.1 / 2)));
+            seen.document(page, &trace_of_text(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
         }
     }
+    seen
+}
+
+#[test]
+fn traces_and_the_page_agree() {
+    let page = Page::read();
+    // Two at a time: one alone would be the last to end.
+    let seen = std::thread::scope(|scope| {
+        let random = scope.spawn(|| random_traces(&page));
+        let mut seen = repository_traces(&page);
+        seen.add(random.join().unwrap());
+        seen
+    });
     println!("{} fragments", seen.fragments);
     let unseen: Vec<_> = page.operations.difference(&seen.operations).collect();
     assert!(unseen.is_empty(), "operations of the page that no trace has: {unseen:?}");

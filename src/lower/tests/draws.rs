@@ -54,10 +54,20 @@ fn check(scene: &Scene, fragment: &DrawTrace, function: &Function, what: &str) -
 #[test]
 fn stored_words_are_those_of_traces() {
     let seed = setting("NINEBIT_LOWER_SEED").unwrap_or(23);
+    let count = setting("NINEBIT_LOWER_SCENES").unwrap_or(400);
+    let held: u64 = std::thread::scope(|scope| {
+        let halves = [0, 1].map(|half| scope.spawn(move || hold(seed + half, count.div_ceil(2))));
+        halves.into_iter().map(|half| half.join().unwrap()).sum()
+    });
+    assert!(held > 4 * count, "of {count} scenes {held} fragments were looked at");
+    println!("{held} fragments of {count} scenes");
+}
+
+/// Holds random scenes against their traces; the number of fragments.
+fn hold(seed: u64, count: u64) -> u64 {
     let mut runner = runner(seed);
     let (mut random, mut held) = (Random::seeded(seed), 0);
     let scenes = random_scene::scene();
-    let count = setting("NINEBIT_LOWER_SCENES").unwrap_or(400);
     for number in 0..count {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
         let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };
@@ -89,6 +99,5 @@ fn stored_words_are_those_of_traces() {
             }
         }
     }
-    assert!(held > 4 * count, "of {count} scenes {held} fragments were looked at");
-    println!("{held} fragments of {count} scenes");
+    held
 }

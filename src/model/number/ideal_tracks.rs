@@ -13,7 +13,7 @@ pub const IDEAL_TRACKS: usize = 1 + Part::ALL.len();
 /// * Strand 0 is the ideal.
 /// * Strand 1 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
 ///   The differences of neighbours add up to the whole error.
-/// * The last strand therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
+/// * The last track therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
 ///
 /// `IdealTracks<1>` is the last one alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +56,8 @@ impl<const N: usize> Ideal for IdealTracks<N> {
     #[inline(always)]
     fn absorb(mut self, fixed: f64, part: Part) -> (Self, f64) {
         let error = fixed - self.0[N - 1];
-        for (n, strand) in self.0.iter_mut().enumerate() {
-            *strand = if n > part as usize { *strand + error } else { *strand };
+        for (n, track) in self.0.iter_mut().enumerate() {
+            *track = if n > part as usize { *track + error } else { *track };
         }
         self.0[N - 1] = fixed;
         (self, error)
@@ -163,7 +163,7 @@ impl<const N: usize> Lane for IdealTracks<N> {
     #[inline(always)]
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
         let factor = factor();
-        self.map(|strand| strand.multiplied(fixed, || factor))
+        self.map(|track| track.multiplied(fixed, || factor))
     }
     #[inline(always)]
     fn halfway(a: Self, b: Self) -> Self {
