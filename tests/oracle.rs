@@ -61,8 +61,8 @@ fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares random scenes, some with other policies, and holds that in the first of them, so many, each name of `wanted` is met so often. To count
-/// takes longer than to draw.
+/// Compares random scenes, some with other policies. Among the first `counted` of them each name of `wanted` has to be met `often` times: to count
+/// all would take longer than to draw them.
 fn run(
     cases: u32,
     scenes: BoxedStrategy<Scene>,
