@@ -169,7 +169,7 @@ int main(int count, char **arguments)
 }
 "#;
 
-fn compile(text: &Generic, change: impl Fn(String) -> String, folder: &Path) -> Result<(), Failed> {
+fn compile(text: &Generic, level: &str, change: impl Fn(String) -> String, folder: &Path) -> Result<(), Failed> {
     let sources = text.c99();
     for (name, text) in [
         ("ninebit_combiners.h", sources.header),
@@ -180,7 +180,7 @@ fn compile(text: &Generic, change: impl Fn(String) -> String, folder: &Path) -> 
     }
     let flags = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_default();
     let mut build = Command::new(compiler());
-    build.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]).args(flags.split_whitespace());
+    build.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", level]).args(flags.split_whitespace());
     Ok(run(build.args(["-o", "pixels", "main.c", "ninebit_combiners.c"]), folder)?)
 }
 
@@ -197,7 +197,7 @@ fn c99() -> Result<(), Failed> {
         let sources = text.c99();
         let lines = sources.header.lines().count() + sources.source.lines().count();
         assert!(lines <= LINES, "{lines} lines");
-        compile(&text, |source| source, folder.path())?;
+        compile(&text, "-O1", |source| source, folder.path())?;
         let pixels = pixels(&text, batch.min(programs - first), 4, &mut random);
         std::fs::write(folder.path().join("pixels.bin"), bytes(&pixels))?;
         run(&mut Command::new("./pixels"), folder.path()).map_err(|failed| format!("batch {n}, {text:?}: {failed}"))?;
@@ -235,7 +235,7 @@ fn errors_are_noticed() -> Result<(), Failed> {
             changed[*at] = &line;
             let changed = changed.join("\n") + "\n";
             planted += 1;
-            if compile(&text, |_| changed.clone(), folder.path()).is_ok()
+            if compile(&text, "-O0", |_| changed.clone(), folder.path()).is_ok()
                 && run(&mut Command::new("./pixels"), folder.path()).is_ok()
             {
                 missed.push(line);
@@ -421,7 +421,7 @@ fn rows() -> Result<(), Failed> {
     let level = if setting("NINEBIT_GENERIC_LEVEL") == Some(1) { Level::L1 } else { Level::L0 };
     let text = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT };
     let folder = tempfile::tempdir()?;
-    compile(&text, |source| source, folder.path())?;
+    compile(&text, "-O1", |source| source, folder.path())?;
     let units = [
         "input-mapping",
         "product",
