@@ -1,6 +1,7 @@
 //! `docs/errors.md` has every code that the sources use, and no other, with the exit code that it has.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::architecture;
 use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -36,16 +37,10 @@ pub fn rows() -> Vec<Row> {
 }
 
 /// Codes that occur in the files of a folder.
-fn used(folder: &Path, codes: &mut BTreeSet<String>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            used(&path, codes);
-            continue;
-        }
-        if path.extension().is_some_and(|ending| ending == "gz") {
-            continue;
-        }
+fn used(folder: &Path) -> BTreeSet<String> {
+    let (mut found, mut codes) = (Vec::new(), BTreeSet::new());
+    architecture::files(folder, &mut found);
+    for path in found {
         let text = std::fs::read_to_string(&path).unwrap();
         for (at, _) in text.match_indices("\"NB") {
             let code = &text[at + 1..text[at + 1..].find('"').map_or(text.len(), |end| at + 1 + end)];
@@ -54,12 +49,12 @@ fn used(folder: &Path, codes: &mut BTreeSet<String>) {
             }
         }
     }
+    codes
 }
 
 #[test]
 fn the_page_has_every_code_and_no_other() {
-    let mut sources = BTreeSet::new();
-    used(Path::new("src"), &mut sources);
+    let sources = used(Path::new("src"));
     let rows = rows();
     assert_eq!(rows.iter().map(|row| row.code.clone()).collect::<BTreeSet<_>>(), sources);
     assert!(

@@ -165,10 +165,12 @@ fn random_scenes_draw_something() {
         let scene = strategy.new_tree(&mut runner).unwrap().current();
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
         let plain = Plan { draws: Vec::new(), ..plan.clone() };
-        let words =
-            |plan| render(plan, &RenderOptions::default()).surfaces.into_iter().flat_map(|surface| surface.words);
-        let changed = words(&plain).zip(words(&plan)).filter(|(before, after)| before != after).count();
-        changed > 10 && words(&plan).collect::<BTreeSet<u32>>().len() > 3
+        let [before, after] = [&plain, &plan].map(|plan| {
+            let surfaces = render(plan, &RenderOptions::default()).surfaces;
+            surfaces.into_iter().flat_map(|surface| surface.words).collect::<Vec<u32>>()
+        });
+        let changed = before.iter().zip(&after).filter(|(before, after)| before != after).count();
+        changed > 10 && after.into_iter().collect::<BTreeSet<u32>>().len() > 3
     };
     let rich = (0..400).filter(|_| rich()).count();
     assert!(rich >= 200, "{rich} of 400");

@@ -2,6 +2,7 @@
 //! it says of the operations is enough to recompute a trace under any policy.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::architecture;
 use crate::pages;
 use crate::scene_files;
 use ninebit_test_support::random_scene;
@@ -19,7 +20,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Random scenes whose traces are looked at.
 const SCENES: usize = 1000;
@@ -191,17 +192,6 @@ fn trace_of_text(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
     serde_json::from_str(&trace_json(plan, &engine::trace(plan, target, pixel, None).unwrap())).unwrap()
 }
 
-fn files_under(folder: &Path, files: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            files_under(&path, files);
-        } else if path.extension().is_none_or(|ending| ending != "gz") {
-            files.push(path);
-        }
-    }
-}
-
 fn plan_of(path: &Path) -> Plan {
     scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false))).plan
 }
@@ -309,7 +299,7 @@ fn the_example_is_a_step_of_its_trace() {
 fn the_page_lists_what_the_sources_have() {
     let page = Page::read();
     let mut files = Vec::new();
-    files_under(Path::new("src"), &mut files);
+    architecture::files(Path::new("src"), &mut files);
     let sources: String = files.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
     for operation in &page.operations {
         assert!(sources.contains(&format!("\"{operation}\"")), "{operation} is not in the sources");

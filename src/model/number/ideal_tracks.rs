@@ -10,8 +10,8 @@ pub const IDEAL_TRACKS: usize = 1 + Part::ALL.len();
 
 /// Real-number evaluations side by side, each in steps of 1/255.
 ///
-/// * Strand 0 is the ideal.
-/// * Strand 1 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
+/// * Track 0 is the ideal.
+/// * Track 1 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
 ///   The differences of neighbours add up to the whole error.
 /// * The last track therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
 ///
