@@ -27,6 +27,7 @@ mod settings;
 mod third_party;
 
 mod answers;
+mod api_programs;
 mod architecture;
 mod assets_images;
 mod assets_output;
@@ -61,6 +62,7 @@ mod results;
 mod scene_format;
 mod scene_hostile;
 mod scene_in_code;
+mod stability;
 mod techniques;
 mod texture_properties;
 mod textures;

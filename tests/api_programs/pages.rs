@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::markers::hold;
+use crate::pages::hold;
 use ninebit::state::{Combiners, Named, Profile};
 use ninebit_program::At;
 use ninebit_program::pixel_shader;

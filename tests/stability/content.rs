@@ -2,14 +2,12 @@
 
 use super::blocks;
 use super::view::FOLDER;
+use crate::dds;
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene::generate::{height_field, normal_map};
 use ninebit_scene::image::Rgba;
 use std::path::Path;
 use std::sync::Once;
-
-#[path = "../common/dds.rs"]
-mod dds;
 
 /// Rows of `angle-pairs.png`.
 pub const PAIRS: usize = 256;
@@ -104,7 +102,7 @@ static MADE: Once = Once::new();
 
 /// Writes the files, once, if they are to be written.
 pub fn bless() {
-    if super::settings::bless() {
+    if crate::settings::bless() {
         MADE.call_once(|| {
             for (name, bytes) in files() {
                 std::fs::write(Path::new(FOLDER).join(name), bytes).unwrap();

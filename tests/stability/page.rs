@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use super::settings::bless;
+use crate::settings::bless;
 
 const PAGE: &str = "docs/stability.md";
 const PICTURES: &str = "docs/pictures/stability";

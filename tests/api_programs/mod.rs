@@ -1,24 +1,15 @@
 //! Programs of APIs, against the formulas of the APIs: Direct3D texture stages and pixel shaders, and the OpenGL texture environment.
 //!
 //! The formulas stand here a second time, in float64 and from the APIs' own text, and know nothing of combiners.
-#![allow(
-    clippy::unwrap_used,
-    clippy::float_arithmetic,
-    reason = "a test fails by panicking; the reference is in real numbers"
-)]
 
 mod calls;
 mod direct3d;
-#[path = "../common/pages.rs"]
-mod markers;
 mod opengl;
 mod pages;
 mod pasted;
 mod pixel_shader;
 mod run;
 mod scenes;
-#[path = "../common/settings.rs"]
-mod settings;
 
 use ninebit::random::Random;
 

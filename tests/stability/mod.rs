@@ -1,16 +1,13 @@
 //! `docs/stability.md`, where sampling fails: every number, picture and chart of the page is made here again and compared.
 //!
 //! `ninebit chart --only stability` writes the section on methods. For the rest
-//! `BLESS=1 cargo test --test stability` writes the tables of the page, the pictures under `docs/pictures/stability` and the textures of
+//! `BLESS=1 cargo test --test suite stability::` writes the tables of the page, the pictures under `docs/pictures/stability` and the textures of
 //! `vectors/scenes/stability`; look at them before committing. What an item measures is in the file of its name.
-#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 mod blocks;
 mod chart;
 mod content;
 mod page;
-#[path = "../common/settings.rs"]
-mod settings;
 mod view;
 
 mod compressed;
