@@ -218,8 +218,12 @@ fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) 
     let (mut value, mut rest) = (0, 0);
     for bit in (0..24).rev() {
         rest = 2 * rest + (scale >> bit & 1) * part;
-        value = 2 * value + rest / d;
-        rest %= d;
+        value *= 2;
+        // Below three times d: at most two steps, and no division.
+        while rest >= d {
+            rest -= d;
+            value += 1;
+        }
     }
     (value + whole.clamp(-2 * LIMIT, 2 * LIMIT) * scale).clamp(-LIMIT, LIMIT)
 }
