@@ -247,7 +247,7 @@ fn broken_tables_say_where() {
     bench.run("op combiner --inputs large.tsv").failed(5, "error[NB0534]");
 }
 
-/// Operations that no scene may say, and what is said of them: of a general stage, and others.
+/// Operations that a chip does not take, and what is said of them: of a general stage, and others.
 const ILLEGAL: [(&str, &str); 20] = [
     ("combiner --a tex0 --scale 4 --bias", "error[NB0307]: bias NegativeHalf does not go with scale Four"),
     ("combiner --a tex0 --portion alpha --dot", "error[NB0306]: the alpha portion has no dot products"),
@@ -278,7 +278,7 @@ fn refused(bench: &Bench, illegal: &[(&str, &str)]) {
 }
 
 #[test]
-fn what_a_scene_may_not_say_is_refused_in_its_words() {
+fn what_a_chip_does_not_take_is_refused() {
     refused(&Bench::new(), &ILLEGAL[..10]);
 }
 
@@ -287,7 +287,7 @@ fn other_illegal_operations() {
     let bench = Bench::new();
     refused(&bench, &ILLEGAL[10..]);
     let text = bench.run("op combiner --a tex2").stderr;
-    assert!(text.contains("`--profile nv2a` chooses the other chip"), "{text}");
+    assert!(text.contains("op combiner --a tex2\n") && text.contains("^^^^ not on this chip"), "{text}");
 }
 
 #[test]

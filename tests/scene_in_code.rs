@@ -101,7 +101,7 @@ fn set(scene: &mut Scene, coordinates: [f32; 4]) {
 
 /// Every invariant of a scene, broken alone.
 const CASES: &[Case] = &[
-    ("draw 0: the draw goes into target 0 of 0", |s| s.targets.clear()),
+    ("NB0212: draw 0: the draw goes into target 0 of 0", |s| s.targets.clear()),
     ("the fog factor of vertex 1 is no number", |s| {
         let at = |n: usize| Vertex { fog: if n == 1 { f32::NAN } else { 1.0 }, ..s.draws[0].vertices.at(n) };
         s.draws[0].vertices = [0, 1, 2].map(at).to_vec().into();
@@ -141,24 +141,28 @@ const CASES: &[Case] = &[
     ("target `frame` clears its depth to 0x1000000", |s| s.targets[0].depth.as_mut().unwrap().clear = 1 << 24),
     ("palette `colours` has 3 entries", |s| s.palettes[0].entries = vec![0; 3].into()),
     ("palette `colours` has 0 entries", |s| s.palettes[0].entries = vec![].into()),
-    ("of 3 x 4", |s| texels(s).width = 3),
-    ("of 0 x 4", |s| texels(s).width = 0),
-    ("of 8192 x 4", |s| texels(s).width = 8192),
+    ("texture `grey`: a texture cannot be 3 x 4 (TEX-7)", |s| texels(s).width = 3),
+    ("a texture cannot be 0 x 4", |s| texels(s).width = 0),
+    ("a texture of 8192 x 4 is too large", |s| texels(s).width = 8192),
     ("of 1073741824 x 1073741824", |s| (texels(s).width, texels(s).height) = (1 << 30, 1 << 30)),
-    ("(Cube, A8R8G8B8) of 4 x 8", |s| (s.textures[0].kind, texels(s).height) = (TextureKind::Cube, 8)),
-    ("(Rectangle, DXT1) of 4 x 4", |s| {
+    ("texture `grey`: faces of a cube map cannot be 4 x 8", |s| {
+        (s.textures[0].kind, texels(s).height) = (TextureKind::Cube, 8)
+    }),
+    ("texture `grey`: a rectangle texture cannot be DXT1", |s| {
         (s.textures[0].kind, s.textures[0].format) = (TextureKind::Rectangle, TextureFormat::Dxt1);
     }),
     ("texture `grey` has 0 levels", |s| texels(s).levels = 0),
     ("texture `grey` has 4 levels", |s| texels(s).levels = 4),
     ("texture `grey` has 4294967295 levels", |s| texels(s).levels = u32::MAX),
-    ("texture `grey` has 2 levels", |s| (s.textures[0].kind, texels(s).levels) = (TextureKind::Rectangle, 2)),
+    ("a rectangle texture cannot have 2 levels", |s| {
+        (s.textures[0].kind, texels(s).levels) = (TextureKind::Rectangle, 2)
+    }),
     ("texture `grey` has 15 words", |s| texels(s).words = vec![0; 15].into()),
     ("texture `grey` has 0 words", |s| texels(s).words = vec![].into()),
     ("texture `grey` has 17 words", |s| texels(s).words = vec![0; 17].into()),
     ("texture `grey` has 16 words", |s| s.textures[0].kind = TextureKind::Cube),
     ("texture `grey` has 16 words", |s| texels(s).border = true),
-    ("texture `grey` has border texels and is Cube", |s| {
+    ("a texture with border texels cannot be Cube", |s| {
         (s.textures[0].kind, texels(s).border) = (TextureKind::Cube, true);
     }),
     ("word 0 of texture `grey` is 0xff804020", |s| s.textures[0].format = TextureFormat::R5G6B5),
@@ -170,8 +174,8 @@ const CASES: &[Case] = &[
     ("texture `shown` shows target `other` as TwoDimensional, R5G6B5", |s| {
         s.textures[1].format = TextureFormat::R5G6B5
     }),
-    ("texture `shown` (TwoDimensional, A8R8G8B8) of 8 x 9", |s| s.targets[1].height = 9),
-    ("draw 0: the draw goes into target 7 of 2", |s| s.draws[0].target = 7),
+    ("texture `shown`: a texture cannot be 8 x 9", |s| s.targets[1].height = 9),
+    ("NB0212: draw 0: the draw goes into target 7 of 2", |s| s.draws[0].target = 7),
     ("draw 0: index 2 is 99, and the draw has 3 vertices (RAS-4)", |s| s.draws[0].indices = [0, 1, 99].into()),
     ("index 0 is 0, and the draw has 0 vertices", |s| s.draws[0].vertices = Vertices::new()),
     ("the combiners have at least one general stage", |s| s.draws[0].combiners.stages.clear()),
@@ -240,18 +244,24 @@ const CASES: &[Case] = &[
 
 /// What nv10 lacks.
 const CASES_OF_NV10: &[Case] = &[
-    ("Nv10 has no surface format G8B8", |s| s.targets[1].format = SurfaceFormat::G8B8),
-    ("Nv10 has no texture format A8B8G8R8", |s| s.textures[0].format = TextureFormat::A8B8G8R8),
-    ("Nv10 has no textures with border texels", |s| texels(s).border = true),
-    ("(Rectangle, A8R8G8B8) of 3 x 4", |s| (s.textures[0].kind, texels(s).width) = (TextureKind::Rectangle, 3)),
+    ("surface format G8B8 does not exist on Nv10", |s| s.targets[1].format = SurfaceFormat::G8B8),
+    ("texture `grey`: texture format A8B8G8R8 does not exist on Nv10", |s| {
+        s.textures[0].format = TextureFormat::A8B8G8R8
+    }),
+    ("a texture with border texels does not exist on Nv10", |s| texels(s).border = true),
+    ("a rectangle texture cannot be 3 x 4 on Nv10", |s| {
+        (s.textures[0].kind, texels(s).width) = (TextureKind::Rectangle, 3)
+    }),
     ("3 general stages; Nv10 has 2", |s| s.draws[0].combiners.stages = vec![s.draws[0].combiners.stages[0]; 3]),
     ("Nv10 has no own constants", |s| s.draws[0].combiners.stages[0].constants = [[1; 4]; 2]),
-    ("Nv10 has no texture unit 2", |s| s.draws[0].textures[2] = Some(TextureUnit::new(0))),
-    ("Nv10 has no texture shader", |s| s.draws[0].texture_shader[1].operation = ShaderOperation::PassThrough),
-    ("Nv10 has no border colour", |s| unit(s).address_s = AddressMode::ClampToBorder),
-    ("Nv10 has no signed texture channel", |s| unit(s).signed[3] = true),
+    ("texture unit 2 does not exist on Nv10", |s| s.draws[0].textures[2] = Some(TextureUnit::new(0))),
+    ("a texture shader does not exist on Nv10", |s| {
+        s.draws[0].texture_shader[1].operation = ShaderOperation::PassThrough
+    }),
+    ("a border colour does not exist on Nv10", |s| unit(s).address_s = AddressMode::ClampToBorder),
+    ("a signed texture channel does not exist on Nv10", |s| unit(s).signed[3] = true),
     ("is addressed with another mode than ClampToEdge", |s| s.textures[0].kind = TextureKind::Rectangle),
-    ("Nv10 has no blend equation SignedAdd", |s| {
+    ("blend equation SignedAdd does not exist on Nv10", |s| {
         let (source, destination) = (BlendFactor::One, BlendFactor::One);
         s.draws[0].blend = Some(Blend { equation: BlendEquation::SignedAdd, source, destination });
     }),
@@ -272,7 +282,7 @@ fn every_invariant_is_refused_by_name() {
     }
     let error: Box<dyn std::error::Error> =
         Box::new(compile(&Scene { targets: vec![], ..plain(Profile::Nv2a) }).unwrap_err().remove(0));
-    assert_eq!(error.to_string(), "texture `shown` shows target 1 of 0; add a target first");
+    assert_eq!(error.to_string(), "NB0212: texture `shown` shows target 1 of 0; add a target first");
 }
 
 // ---- hostile scenes ----

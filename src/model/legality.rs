@@ -2,11 +2,16 @@
 //!
 //! Every language of programs ends here. Its front end keeps the places of what it read and names the registers in its own words.
 
+pub mod surface;
+pub mod texture;
+
 use std::ops::Range;
 
 use super::place::{Part, Place, Places};
 use crate::diagnostic::{Diagnostic, only_nv2a};
-use crate::state::{Bias, Combiners, Component, FinalRegister, GeneralStage, Named, Portion, Profile, Register, Scale};
+use crate::state::{
+    Bias, Combiners, Component, FinalRegister, GeneralStage, InputMapping, Named, Portion, Profile, Register, Scale,
+};
 
 /// What a language calls things.
 pub trait Notation {
@@ -135,6 +140,15 @@ pub fn only_final(place: Range<usize>, name: &str, help: &str) -> Diagnostic {
         .label("not in a general stage")
         .rule("CMB-12")
         .help(help)
+}
+
+/// The finding that an input of the final combiner is mapped otherwise than by inversion. The state cannot express it, so front ends do.
+pub fn final_mapping(place: impl Into<Option<Range<usize>>>, mapping: InputMapping) -> Option<Diagnostic> {
+    let has = matches!(mapping, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert);
+    let message = format!("the final combiner has no mapping {}", mapping.name());
+    let finding = Diagnostic::error("NB0311", place, message).label("not here").rule("FIN-1");
+    let help = "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage";
+    (!has).then(|| finding.help(help))
 }
 
 /// The walk over a program, in the order of execution.

@@ -32,13 +32,13 @@ use std::path::Path;
 use crate::assets::{Assets, Folder};
 use crate::truth::Truth;
 pub use error::SceneError;
-pub use lower::{DrawSpans, VertexSpans};
+pub use lower::{DrawSpans, ProgramLanguage, VertexSpans};
 use ninebit::diagnostic;
 pub use ninebit::diagnostic::{Diagnostic, ErrorKind, Severity, Source};
 use ninebit::limits::{FileLimit, Limits};
 use ninebit::plan::Plan;
 use ninebit::shown;
-use ninebit::state::Scene;
+use ninebit::state::{Profile, Scene};
 use ninebit_files::read::{self, Kind, ReadError};
 pub use render::render;
 pub use written::register_words;
@@ -116,6 +116,26 @@ pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Lo
 fn too_large(limit: FileLimit) -> Diagnostic {
     Diagnostic::error("NB0601", None, format!("the scene file is larger than {limit}"))
         .help("move repeated vertex lists to `names`, use generated meshes, or split the scene")
+}
+
+/// Reads a pixel program from a file of its own, as that of the one draw of a scene for the chip `profile`: one pixel, and in each unit a white texture
+/// of one texel.
+///
+/// # Errors
+/// The file is missing, too large or not UTF-8; it is no program of the language; the chip does not take it.
+pub fn load_program(
+    path: &Path,
+    language: ProgramLanguage,
+    profile: Profile,
+    limits: &Limits,
+) -> Result<(Scene, Plan), SceneError> {
+    let mut reader = reader::Reader::new("", Path::new(""), limits, &Folder);
+    reader.profile = profile;
+    let found = lower::program_file(&mut reader, path, language);
+    let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);
+    diagnostics.sort_by_key(Diagnostic::order);
+    let source = Source { name: shown::lossless(path), text: String::new() };
+    found.ok_or(SceneError { diagnostics, suppressed, source })
 }
 
 /// Reads and checks a scene from its text. `origin` is its path: messages name it, and the files that the scene names are looked

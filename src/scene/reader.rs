@@ -13,6 +13,7 @@ use super::notation::{Fault, FaultKind, Notation};
 use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
 use super::source::{Expected, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
+use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
 use ninebit_program::finding;
@@ -82,6 +83,16 @@ impl<'a> Reader<'a> {
         None
     }
 
+    /// Records what a check found. `None` if it found something.
+    pub(super) fn accept(&mut self, finding: Option<Diagnostic>) -> Option<()> {
+        finding.map_or(Some(()), |finding| self.refuse(finding))
+    }
+
+    /// What the chip and the limits take of textures.
+    pub(super) fn texture_checks(&self) -> TextureChecks {
+        TextureChecks { profile: self.profile, largest_side: self.limits.texture_side }
+    }
+
     /// Whether a further error would only be counted: its words need not be chosen.
     pub(super) fn is_full(&self) -> bool {
         self.errors > 0 && self.diagnostics.len() >= MAX_DIAGNOSTICS
@@ -94,6 +105,11 @@ impl<'a> Reader<'a> {
 
     pub(super) fn span<T>(&self, raw: &Raw<'a, T>) -> Range<usize> {
         self.range(raw.text)
+    }
+
+    /// Where a field stands, if it is written.
+    pub(super) fn place<T>(&self, field: &Option<Raw<'a, T>>) -> Option<Range<usize>> {
+        field.as_ref().map(|raw| self.span(raw))
     }
 
     /// Checks a part of the text. `None` once the reason has been recorded why it is not well formed.

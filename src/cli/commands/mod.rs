@@ -24,7 +24,6 @@ mod render;
 mod replay;
 mod scene;
 mod signals;
-mod template;
 mod terminal;
 mod texture;
 mod trace;
@@ -47,7 +46,6 @@ use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
 use scene::{PolicyArguments, SceneArguments};
-use template::Template;
 use terminal::{ColorChoice, Level};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners

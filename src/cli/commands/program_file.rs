@@ -1,18 +1,17 @@
-//! A pixel program in a file of its own, in any of the languages that a scene takes: read by the scene front end, as the program of a draw.
+//! A pixel program in a file of its own, in any of the languages that a scene takes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
-use ninebit::shown;
 use ninebit::state::{Named, Profile, Scene};
-use ninebit_files::read::{self, Kind};
-use ninebit_program::pixel_shader::{self, TextureOperation};
+use ninebit_scene::{ProgramLanguage, load_program};
 
-use super::{Context, Failure, Template};
+use super::scene::refused;
+use super::{Context, Failure, Report};
 
-/// What a program is written in.
+/// What a program is written in, as the command line calls it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Language {
     /// The combiner language
@@ -30,18 +29,6 @@ pub(crate) enum Language {
 }
 
 impl Language {
-    /// What a scene calls it.
-    fn variant(self) -> &'static str {
-        match self {
-            Language::Combiners => "CombinerText",
-            Language::Registers => "RegisterWords",
-            Language::CombinerCalls => "CombinerCalls",
-            Language::TextureStages => "TextureStages",
-            Language::TextureEnvironment => "TextureEnvironment",
-            Language::PixelShader => "PixelShader",
-        }
-    }
-
     /// The language of files of that name.
     fn of(path: &Path) -> Option<Language> {
         match path.extension()?.to_str()? {
@@ -49,6 +36,19 @@ impl Language {
             "words" | "psdef" => Some(Language::Registers),
             "psh" | "ps" => Some(Language::PixelShader),
             _ => None,
+        }
+    }
+}
+
+impl From<Language> for ProgramLanguage {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Combiners => ProgramLanguage::Combiners,
+            Language::Registers => ProgramLanguage::Registers,
+            Language::CombinerCalls => ProgramLanguage::CombinerCalls,
+            Language::TextureStages => ProgramLanguage::TextureStages,
+            Language::TextureEnvironment => ProgramLanguage::TextureEnvironment,
+            Language::PixelShader => ProgramLanguage::PixelShader,
         }
     }
 }
@@ -72,41 +72,11 @@ impl ProgramArguments {
 
     /// The program as that of the one draw of a scene, whose units all have a texture.
     pub(crate) fn read(&self, path: &Path, language: Language, context: Context) -> Result<(Scene, Plan), Failure> {
-        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
-            let help = "give the program's file a name in UTF-8";
-            Failure::usage(format!("`{}` cannot be named in a scene", shown::path(path)), help)
-        })?;
-        let units = self.profile.texture_units();
-        let mut cubes = vec![false; units];
-        if language == Language::PixelShader {
-            // What is wrong with the file is the front end's to say.
-            let bytes = read::bytes(path, Kind::Regular, Limits::default().program_file()).unwrap_or_default();
-            let textures = pixel_shader::parse(&String::from_utf8_lossy(&bytes)).map(|parsed| parsed.program.textures);
-            for texture in textures.into_iter().flatten() {
-                use TextureOperation::{Texm3x3spec, Texm3x3tex, Texm3x3vspec};
-                if let Some(cube) = cubes.get_mut(usize::from(texture.unit.value)) {
-                    *cube = matches!(texture.operation, Texm3x3tex | Texm3x3spec | Texm3x3vspec);
-                }
-            }
-        }
-        let solid = "Solid(width: 1, height: 1, color: (255, 255, 255))";
-        let faces: String = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"]
-            .iter()
-            .map(|face| format!("{face}: {solid}, "))
-            .collect();
-        let bound: Vec<&str> = cubes.iter().map(|cube| if *cube { "\"cube\"" } else { "\"plane\"" }).collect();
-        let template = Template {
-            scene: format!("    textures: {{ \"plane\": (source: {solid}), \"cube\": (source: Faces({faces})) }},\n"),
-            draw: format!(
-                "        textures: [{}],\n        program: {}(file: {name:?}),\n",
-                bound.join(", "),
-                language.variant()
-            ),
-            note: Some("`--profile nv10` or `nv2a` chooses the chip, `--from` the language"),
-            folder: path.parent().map_or_else(PathBuf::new, Path::to_path_buf),
-            ..Template::default()
-        };
-        template.read(self.profile, context)
+        load_program(path, language.into(), self.profile, &Limits::default()).map_err(|error| {
+            let note = "`--profile nv10` or `nv2a` chooses the chip, `--from` the language";
+            let text = format!("{}\n{note}\n", error.render(context.color));
+            Failure { report: Report::Text(text), ..refused(error) }
+        })
     }
 
     /// The name of the chip.

@@ -5,16 +5,17 @@
 //! where vertices end up (RAS-0) is found when triangles are formed.
 
 use super::PlanError;
-use crate::diagnostic::Severity;
+use crate::diagnostic::{Diagnostic, Severity, only_nv2a};
+use crate::legality::texture::TextureChecks;
 use crate::legality::{self, Notation};
 use crate::limits::Limits;
 use crate::place::Places;
 use crate::raster::GUARD;
 use crate::rop::surface;
 use crate::state::{
-    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, LARGEST_VOLUME, Level, Named, Palette, PolygonOffset,
-    Positions, Profile, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage,
-    TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
+    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, Level, Named, Palette, PolygonOffset, Positions, Profile,
+    Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
+    TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
@@ -48,32 +49,58 @@ struct Check<'s> {
 }
 
 impl Check<'_> {
-    fn refuse(&mut self, rule: impl Into<Option<&'static str>>, message: String, help: impl Into<String>) {
-        let (draw, help) = (self.draw, help.into());
-        let error = PlanError { draw, vertex: None, unit: None, unknown: false, rule: rule.into(), message, help };
-        self.errors.push(error);
+    fn refuse(
+        &mut self,
+        code: &'static str,
+        rule: impl Into<Option<&'static str>>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let (rule, message, help) = (rule.into(), message.into(), help.into());
+        self.errors.push(PlanError { draw: self.draw, vertex: None, unit: None, code, rule, message, help });
+    }
+
+    fn found(&mut self, finding: Diagnostic) {
+        self.refuse(finding.code, finding.rule, finding.message, finding.help.unwrap_or_default());
     }
 
     /// Refuses what only nv2a has.
-    fn only_nv2a(&mut self, rule: &'static str, has: bool, what: &str) {
+    fn only_nv2a(&mut self, code: &'static str, rule: &'static str, has: bool, what: &str) {
         if has && self.scene.profile == Profile::Nv10 {
-            self.refuse(rule, format!("Nv10 has no {what}"), "use the profile Nv2a, or leave it out");
+            self.found(only_nv2a(code, None, what, rule));
         }
+    }
+
+    fn accept(&mut self, finding: Option<Diagnostic>) {
+        finding.into_iter().for_each(|finding| self.found(finding));
+    }
+
+    /// Whether nothing was found about a texture.
+    fn accepts(&mut self, texture: &Texture, finding: Option<Diagnostic>) -> bool {
+        let Some(mut finding) = finding else { return true };
+        finding.message = format!("texture `{}`: {}", texture.name, finding.message);
+        self.found(finding);
+        false
+    }
+
+    fn texture_checks(&self) -> TextureChecks {
+        TextureChecks { profile: self.scene.profile, largest_side: self.limits.texture_side }
     }
 
     fn counts(&mut self) {
         let Scene { targets, draws, .. } = self.scene;
         let total = |count: fn(&Draw) -> usize| draws.iter().map(count).fold(0, usize::saturating_add);
         let limits = *self.limits;
-        for (count, most, what) in [
-            (targets.len(), limits.targets, "render targets"),
-            (draws.len(), limits.draws, "draws"),
-            (total(|draw| draw.vertices.len()), limits.vertices, "vertices of all draws"),
-            (total(|draw| draw.indices.len()), limits.indices, "indices of all draws"),
-            (self.scene.textures.len(), limits.textures, "textures"),
+        for (code, count, most, what) in [
+            ("NB0608", targets.len(), limits.targets, "render targets"),
+            ("NB0604", draws.len(), limits.draws, "draws"),
+            ("NB0603", total(|draw| draw.vertices.len()), limits.vertices, "vertices of all draws"),
+            ("NB0609", total(|draw| draw.indices.len()), limits.indices, "indices of all draws"),
+            ("NB0605", self.scene.textures.len(), limits.textures, "textures"),
         ] {
             if count > most {
                 self.refuse(
+                    code,
                     None,
                     format!("{count} {what} are more than {most}"),
                     "`limits::Limits` says what is allowed",
@@ -85,50 +112,44 @@ impl Check<'_> {
         let bytes = bytes.fold(0, u64::saturating_add);
         if bytes > limits.surface_bytes {
             let message = format!("the targets take {bytes} bytes; {} are allowed", limits.surface_bytes);
-            self.refuse(None, message, "make the targets smaller, or fewer");
+            self.refuse("NB0607", None, message, "make the targets smaller, or fewer");
         }
         // What textures share they decode apart.
         let bytes: u64 = self.scene.textures.iter().map(texel_bytes).fold(0, u64::saturating_add);
         if bytes > limits.texture_bytes {
             let message = format!("the textures take {bytes} bytes; {} are allowed", limits.texture_bytes);
-            self.refuse(None, message, "make the textures smaller, or fewer");
+            self.refuse("NB0607", None, message, "make the textures smaller, or fewer");
         }
     }
 
     fn targets(&mut self) {
         let most = self.limits.target_side.min((GUARD / 16) as u32);
+        let profile = self.scene.profile;
         for target in &self.scene.targets {
             let Target { name, width, height, format, depth, contents, .. } = target;
             for (side, what) in [(*width, "width"), (*height, "height")] {
                 if !(1..=most).contains(&side) {
                     let message = format!("the {what} of target `{name}` is {side}");
-                    self.refuse("RAS-0", message, format!("take 1 to {most}"));
+                    self.refuse("NB0606", "RAS-0", message, format!("take 1 to {most}"));
                 }
             }
             if let Some(words) = contents {
                 self.contents(target, words);
             }
-            self.only_nv2a("ROP-5", format.is_nv2a_only(), &format!("surface format {}", format.name()));
-            if let Some(depth) = depth
-                && depth.format.is_float()
-                && self.scene.profile == Profile::Nv10
-            {
-                let message =
-                    format!("target `{name}` has the depth format {}, which nv10 does not have", depth.format.name());
-                self.refuse("DEP-3", message, "take Z16 or Z24S8, or the profile Nv2a");
-            }
+            self.accept(legality::surface::format(*format, profile, None));
+            self.accept(depth.and_then(|depth| legality::surface::depth_format(depth.format, profile, None)));
             if let Some(depth) = depth
                 && depth.clear >> depth.format.bits() != 0
             {
                 let message = format!("target `{name}` clears its depth to {:#x}", depth.clear);
-                self.refuse("DEP-2", message, format!("take at most {} bits", depth.format.bits()));
+                self.refuse("NB0206", "DEP-2", message, format!("take at most {} bits", depth.format.bits()));
             }
             if let Some(depth) = depth
                 && depth.clear_stencil != 0
                 && !depth.format.has_stencil()
             {
                 let message = format!("target `{name}` clears a stencil that {} does not have", depth.format.name());
-                self.refuse("STN-1", message, "take Z24S8, or clear the stencil to 0");
+                self.refuse("NB0216", "STN-1", message, "take Z24S8, or clear the stencil to 0");
             }
         }
     }
@@ -139,14 +160,14 @@ impl Check<'_> {
         let pixels = u64::from(*width) * u64::from(*height);
         if words.len() as u64 != pixels {
             let message = format!("target `{name}` begins with {} words", words.len());
-            self.refuse(None, message, format!("its pixels take {pixels}"));
+            self.refuse("NB0226", None, message, format!("its pixels take {pixels}"));
         }
         let bits = 8 * format.bytes();
         if bits < 32
             && let Some(at) = words.iter().position(|word| word >> bits != 0)
         {
             let message = format!("word {at} that target `{name}` begins with is {:#x}", words[at]);
-            self.refuse("ROP-5", message, format!("a pixel of {} has {bits} bits", format.name()));
+            self.refuse("NB0226", "ROP-5", message, format!("a pixel of {} has {bits} bits", format.name()));
         }
     }
 
@@ -154,7 +175,7 @@ impl Check<'_> {
         for Palette { name, entries } in &self.scene.palettes {
             if !Palette::LENGTHS.contains(&entries.len()) {
                 let message = format!("palette `{name}` has {} entries", entries.len());
-                self.refuse("TEX-1", message, "take 32, 64, 128 or 256");
+                self.refuse("NB0233", "TEX-1", message, "take 32, 64, 128 or 256");
             }
         }
     }
@@ -165,11 +186,8 @@ impl Check<'_> {
                 return;
             }
             let name = &texture.name;
-            self.only_nv2a(
-                "TEX-1",
-                texture.format.is_nv2a_only(),
-                &format!("texture format {}", texture.format.name()),
-            );
+            let finding = self.texture_checks().format(texture.format, None);
+            self.accepts(texture, finding);
             match &texture.image {
                 TextureImage::Texels(texels) => {
                     if self.sides(texture, texels.width, texels.height) {
@@ -179,7 +197,7 @@ impl Check<'_> {
                 TextureImage::Target { target } | TextureImage::Depth { target } => {
                     let Some(shown) = self.scene.targets.get(*target) else {
                         let (message, help) = missing("target", *target, self.scene.targets.len());
-                        self.refuse(None, format!("texture `{name}` shows {message}"), help);
+                        self.refuse("NB0212", None, format!("texture `{name}` shows {message}"), help);
                         continue;
                     };
                     let of_depths = matches!(texture.image, TextureImage::Depth { .. });
@@ -203,7 +221,7 @@ impl Check<'_> {
                             format!("texture `{name}` shows {what}target `{}` as {kind}, {format}", shown.name);
                         let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels (a Rectangle may \
                                     have others, whole ones in each row), of depths for a depth buffer";
-                        self.refuse("TEX-1", message, help);
+                        self.refuse("NB0218", "TEX-1", message, help);
                     }
                     self.sides(texture, columns.unwrap_or(shown.width), shown.height);
                 }
@@ -213,58 +231,36 @@ impl Check<'_> {
 
     /// Whether the sides are such as the chip takes.
     fn sides(&mut self, texture: &Texture, width: u32, height: u32) -> bool {
-        let Texture { name, kind, format, .. } = texture;
-        let most = kind.largest_side(*format, self.scene.profile).min(self.limits.texture_side);
-        let before = self.errors.len();
-        let what = format!("texture `{name}` ({}, {}) of {width} x {height}", kind.name(), format.name());
-        if width == 0 || height == 0 || width.max(height) > most {
-            self.refuse("TEX-7", what, format!("take sides of 1 to {most} texels"));
-        } else if *kind == TextureKind::Rectangle {
-            if !format.is_linear(self.scene.profile) {
-                self.refuse("TEX-7", what, "the chip has no rectangle textures of this format: take another");
-            } else if self.scene.profile == Profile::Nv10 && width % 2 == 1 {
-                self.refuse("TEX-7", what, "the width of a rectangle texture is even on Nv10");
-            }
-        } else if !(width.is_power_of_two() && height.is_power_of_two()) {
-            self.refuse("TEX-7", what, "take sides that are powers of two, or the kind Rectangle");
-        } else if *kind == TextureKind::Cube && width != height {
-            self.refuse("TEX-12", what, "faces of a cube map are square");
-        }
-        self.errors.len() == before
+        let finding = self.texture_checks().sides(texture.kind, texture.format, [width, height], None);
+        self.accepts(texture, finding)
     }
 
     /// Levels, border and words of a texture whose sides are legal.
     fn texels(&mut self, texture: &Texture, texels: &Texels) {
         let Texture { name, kind, format, .. } = texture;
         let Texels { width, height, levels, layers, border, words } = texels;
-        let single = matches!(kind, TextureKind::Rectangle | TextureKind::ThreeDimensional);
-        let most = if single { 1 } else { Level::most(*width, *height) };
+        let checks = self.texture_checks();
+        let found = checks.levels(*kind, *levels, None).or_else(|| checks.layers(*kind, *layers, None));
+        let found = found.or_else(|| checks.border(*kind, *format, None).filter(|_| *border));
+        if !self.accepts(texture, found) {
+            return;
+        }
+        let most = Level::most(*width, *height);
         if !(1..=most).contains(levels) {
             let message = format!("texture `{name}` has {levels} levels");
-            self.refuse("TEX-9", message, format!("{} of {width} x {height} take 1 to {most}", kind.name()));
+            self.refuse("NB0230", "TEX-9", message, format!("{} of {width} x {height} take 1 to {most}", kind.name()));
             return;
         }
-        let volume = *kind == TextureKind::ThreeDimensional;
-        self.only_nv2a("VOL-1", volume, "textures of three dimensions");
-        if if volume { !layers.is_power_of_two() || *layers > LARGEST_VOLUME } else { *layers != 1 } {
+        if *kind != TextureKind::ThreeDimensional && *layers != 1 {
             let message = format!("texture `{name}` ({}) has {layers} layers", kind.name());
-            self.refuse(
-                "VOL-1",
-                message,
-                "a volume has a power of two of them, at most 512, and everything else has one",
-            );
+            self.refuse("NB0334", "VOL-1", message, "only a volume has more than one");
             return;
-        }
-        self.only_nv2a("TEX-7", *border, "textures with border texels");
-        if *border && (*kind != TextureKind::TwoDimensional || format.is_compressed()) {
-            let message = format!("texture `{name}` has border texels and is {}, {}", kind.name(), format.name());
-            self.refuse("TEX-7", message, "border texels go with uncompressed textures of two dimensions");
         }
         let faces = if *kind == TextureKind::Cube { CUBE_FACES as usize } else { *layers as usize };
         let expected = faces * Level::chain(*format, *width, *height, *levels, *border).1;
         if words.len() != expected {
             let message = format!("texture `{name}` has {} words", words.len());
-            self.refuse("TEX-1", message, format!("its faces and levels take {expected}"));
+            self.refuse("NB0235", "TEX-1", message, format!("its faces and levels take {expected}"));
             return;
         }
         let bits = 8 * format.bytes();
@@ -273,7 +269,7 @@ impl Check<'_> {
             && let Some(at) = words.iter().position(|word| word >> bits != 0)
         {
             let message = format!("word {at} of texture `{name}` is {:#x}", words[at]);
-            self.refuse("TEX-1", message, format!("a texel of {} has {bits} bits", format.name()));
+            self.refuse("NB0206", "TEX-1", message, format!("a texel of {} has {bits} bits", format.name()));
         }
     }
 
@@ -281,7 +277,7 @@ impl Check<'_> {
         let count = draw.vertices.len();
         if let Some(at) = draw.indices.iter().position(|index| *index as usize >= count) {
             let message = format!("index {at} is {}, and the draw has {count} vertices", draw.indices[at]);
-            self.refuse("RAS-4", message, "indices count vertices from 0");
+            self.refuse("NB0212", "RAS-4", message, "indices count vertices from 0");
         }
         if draw.fog.enabled
             && draw.fog.function.is_none()
@@ -289,6 +285,7 @@ impl Check<'_> {
         {
             let message = format!("the fog factor of vertex {at} is no number");
             self.refuse(
+                "NB0207",
                 "INT-5n",
                 message,
                 "factors run from 0, all fog, to 1; with a fog function coordinates may be anything",
@@ -300,7 +297,7 @@ impl Check<'_> {
             Some(target) => self.operations(draw, target),
             None => {
                 let (message, help) = missing("target", draw.target, self.scene.targets.len());
-                self.refuse(None, format!("the draw goes into {message}"), help);
+                self.refuse("NB0212", None, format!("the draw goes into {message}"), help);
             }
         }
     }
@@ -309,58 +306,54 @@ impl Check<'_> {
         if test.vertex_depths == VertexDepths::Steps && !matches!(draw.positions, Positions::Window) {
             let help = "give window positions, or depths as fractions";
             self.refuse(
+                "NB0206",
                 "DEP-1",
-                "vertex depths are steps of the buffer, and its positions are projected".to_owned(),
+                "vertex depths are steps of the buffer, and its positions are projected",
                 help,
             );
         }
         let PolygonOffset { bias, factor } = test.offset;
         if !bias.is_finite() || !factor.is_finite() {
             self.refuse(
+                "NB0207",
                 "DEP-5",
                 format!("the polygon offset has bias {bias} and factor {factor}"),
                 "take finite numbers",
             );
         }
         if test.w_buffer && factor != 0.0 {
-            let message = "it is not known how a polygon offset's factor counts in a w buffer".to_owned();
-            let help = "take a bias alone, or a z buffer";
-            let (draw, unit, rule) = (self.draw, None, Some("DEP-6"));
-            let help = help.to_string();
-            self.errors.push(PlanError { draw, vertex: None, unit, unknown: true, rule, message, help });
+            let message = "it is not known how a polygon offset's factor counts in a w buffer";
+            self.refuse("NB0402", "DEP-6", message, "take a bias alone, or a z buffer");
         }
         if let Some(DepthRange { lowest, highest, .. }) = test.range
             && !(lowest.is_finite() && highest.is_finite() && lowest <= highest)
         {
             let message = format!("the depth range is {lowest} to {highest}");
-            self.refuse("DEP-4", message, "take two finite numbers, the lower one first");
+            self.refuse("NB0206", "DEP-4", message, "take two finite numbers, the lower one first");
         }
     }
 
     fn operations(&mut self, draw: &Draw, target: &Target) {
         if draw.depth_test.is_some() && target.depth.is_none() {
             let message = format!("target `{}` has no depth buffer", target.name);
-            self.refuse("DEP-2", message, "give the target `depth`, or leave the depth test out");
+            self.refuse("NB0216", "DEP-2", message, "give the target `depth`, or leave the depth test out");
         }
         if let Some(test) = &draw.depth_test {
             self.depth_test(draw, test);
         }
         if draw.stencil_test.is_some() && !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
             let message = format!("target `{}` has no stencil", target.name);
-            self.refuse("STN-1", message, "give the target `depth` Z24S8, or leave the stencil test out");
+            self.refuse("NB0216", "STN-1", message, "give the target `depth` Z24S8, or leave the stencil test out");
         }
         if let Some(clip) = &draw.window_clip
             && !(1..=WINDOW_CLIP_RECTANGLES).contains(&clip.rectangles.len())
         {
             let message = format!("the window clip has {} rectangles", clip.rectangles.len());
-            self.refuse("CLP-1", message, format!("take 1 to {WINDOW_CLIP_RECTANGLES}"));
+            self.refuse("NB0211", "CLP-1", message, format!("take 1 to {WINDOW_CLIP_RECTANGLES}"));
         }
         let Some(blend) = draw.blend else { return };
-        if !surface::blends(target.format) {
-            let message = format!("surface format {} cannot be blended", target.format.name());
-            self.refuse("ROP-5", message, "leave `blend` out, or draw into a target with a colour format");
-        }
-        self.only_nv2a("ROP-3", blend.equation.is_nv2a_only(), &format!("blend equation {}", blend.equation.name()));
+        self.accept(legality::surface::blending(target.format, None));
+        self.accept(legality::surface::blend_equation(blend.equation, self.scene.profile, None));
     }
 
     fn combiners(&mut self, draw: &Draw) {
@@ -368,7 +361,7 @@ impl Check<'_> {
         for finding in
             checked.findings.into_iter().filter(|finding| finding.severity == Severity::Error).take(MAX_ERRORS)
         {
-            self.refuse(finding.rule, finding.message, finding.help.unwrap_or_default());
+            self.found(finding);
         }
     }
 
@@ -377,20 +370,15 @@ impl Check<'_> {
         for (index, (unit, stage)) in draw.textures.iter().zip(&draw.texture_shader).enumerate() {
             let conventional = matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
             let idle = unit.is_none() && stage.operation == ShaderOperation::None;
-            if index >= profile.texture_units() && !idle {
-                self.refuse(
-                    "CMB-12",
-                    format!("Nv10 has no texture unit {index}"),
-                    "use the profile Nv2a, or units 0 and 1",
-                );
-            }
-            self.only_nv2a("TSH-10", !conventional, "texture shader");
+            let missing = index >= profile.texture_units() && !idle;
+            self.only_nv2a("NB0319", "CMB-12", missing, &format!("texture unit {index}"));
+            self.only_nv2a("NB0340", "TSH-10", !conventional, "a texture shader");
             self.stage(draw, index, stage);
             if let Some(unit) = unit {
                 self.unit(draw, index, unit, stage);
             } else if stage.operation.samples() {
                 let message = format!("stage {index} samples, but its unit has no texture");
-                self.refuse("TSH-10", message, "bind a texture to the unit, or take the operation None");
+                self.refuse("NB0343", "TSH-10", message, "bind a texture to the unit, or take the operation None");
             }
         }
     }
@@ -400,17 +388,17 @@ impl Check<'_> {
         let name = stage.operation.name();
         if stage.coordinate_set >= draw.texture_shader.len() {
             let message = format!("stage {index} takes coordinate set {}", stage.coordinate_set);
-            self.refuse("TSH-10", message, "a vertex has the sets 0 to 3");
+            self.refuse("NB0319", "TSH-10", message, "a vertex has the sets 0 to 3");
         }
         if stage.previous >= index.max(1) {
             let message = format!("stage {index} reads unit {}", stage.previous);
-            self.refuse("TSH-10", message, "`previous` is a unit before this one; 0 at the first");
+            self.refuse("NB0342", "TSH-10", message, "`previous` is a unit before this one; 0 at the first");
         }
         if let Some(help) = ShaderStage::misplaced(&draw.texture_shader, index) {
-            self.refuse("TSH-10", format!("{name} cannot stand at stage {index} here"), help);
+            self.refuse("NB0341", "TSH-10", format!("{name} cannot stand at stage {index} here"), help);
         } else if ShaderStage::reads_too_late(&draw.texture_shader, index) {
-            let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2".to_owned();
-            self.refuse("TSH-10", message, "let `previous` be 0 or 1");
+            let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
+            self.refuse("NB0342", "TSH-10", message, "let `previous` be 0 or 1");
         }
         let finite = match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, luminance } => {
@@ -420,7 +408,12 @@ impl Check<'_> {
             _ => true,
         };
         if !finite {
-            self.refuse("NUM-0", format!("a number of {name} at stage {index} is not finite"), "take finite numbers");
+            self.refuse(
+                "NB0207",
+                "NUM-0",
+                format!("a number of {name} at stage {index} is not finite"),
+                "take finite numbers",
+            );
         }
     }
 
@@ -429,50 +422,56 @@ impl Check<'_> {
         let profile = self.scene.profile;
         let Some(texture) = self.scene.textures.get(unit.texture) else {
             let (message, help) = missing("texture", unit.texture, self.scene.textures.len());
-            self.refuse(None, format!("unit {index} samples {message}"), help);
+            self.refuse("NB0212", None, format!("unit {index} samples {message}"), help);
             return;
         };
         let Texture { name, kind, format, image } = texture;
         if stage.operation.samples() && !stage.operation.kinds().contains(kind) {
             let message = format!("{} does not sample a texture of kind {}", stage.operation.name(), kind.name());
-            self.refuse("TSH-10", message, "give the unit another texture, or take the operation for this kind");
+            self.refuse(
+                "NB0343",
+                "TSH-10",
+                message,
+                "give the unit another texture, or take the operation for this kind",
+            );
         }
         match unit.palette {
             Some(palette) if *format == TextureFormat::P8 && palette >= self.scene.palettes.len() => {
                 let (message, help) = missing("palette", palette, self.scene.palettes.len());
-                self.refuse("TEX-1", format!("unit {index} reads {message}"), help);
+                self.refuse("NB0212", "TEX-1", format!("unit {index} reads {message}"), help);
             }
             None if *format == TextureFormat::P8 => {
                 let message = format!("texture `{name}` is of format P8, and unit {index} has no palette");
-                self.refuse("TEX-1", message, "give the unit a `palette`");
+                self.refuse("NB0234", "TEX-1", message, "give the unit a `palette`");
             }
             Some(_) if *format != TextureFormat::P8 => {
                 let message = format!("texture `{name}` of format {} reads no palette", format.name());
-                self.refuse("TEX-1", message, format!("let `palette` of unit {index} be None"));
+                self.refuse("NB0234", "TEX-1", message, format!("let `palette` of unit {index} be None"));
             }
             _ => {}
         }
         if image.target() == Some(draw.target) {
             let message = format!("unit {index} samples the target that the draw goes into");
-            self.refuse(None, message, "draw into another target and sample that one");
+            self.refuse("NB0217", None, message, "draw into another target and sample that one");
         }
         if unit.color_key.is_some() && !unit.is_nearest() {
             let message = format!("unit {index} has a colour key and a filter: what comes out is not known");
-            self.refuse("KEY-1", message, "take the filter Nearest for minification and magnification");
+            self.refuse("NB0402", "KEY-1", message, "take the filter Nearest for minification and magnification");
         }
         if unit.color_key.is_some() && matches!(format, TextureFormat::R16B16 | TextureFormat::Y16) {
             let message = format!("a colour key on the format {} is not known", format.name());
-            self.refuse("KEY-1", message, "take a format of bytes");
+            self.refuse("NB0402", "KEY-1", message, "take a format of bytes");
         }
         self.sampling(draw, index, unit, texture);
         let modes = [unit.address_s, unit.address_t];
         if profile == Profile::Nv10 {
-            self.only_nv2a("TEX-7", modes.contains(&AddressMode::ClampToBorder), "border colour");
-            self.only_nv2a("TEX-18", unit.signed != [false; 4], "signed texture channel");
+            let findings = modes.map(|mode| self.texture_checks().address_mode(mode, None));
+            self.accept(findings.into_iter().flatten().next());
+            self.only_nv2a("NB0318", "TEX-18", unit.signed != [false; 4], "a signed texture channel");
             if *kind == TextureKind::Rectangle && modes != [AddressMode::ClampToEdge; 2] {
                 let message =
                     format!("rectangle texture `{name}` is addressed with another mode than ClampToEdge on Nv10");
-                self.refuse("TEX-7", message, "take ClampToEdge for s and t");
+                self.refuse("NB0330", "TEX-7", message, "take ClampToEdge for s and t");
             }
         }
         let TextureUnit { lod_bias, min_lod, max_lod, .. } = *unit;
@@ -480,7 +479,7 @@ impl Check<'_> {
             let message = format!("unit {index} has lod_bias {lod_bias}, min_lod {min_lod}, max_lod {max_lod}");
             let help =
                 "the bias is -4096 to 4095, the least lod 0 to 4095 and at most the greatest, which is at most 4095";
-            self.refuse("TEX-9", message, help);
+            self.refuse("NB0206", "TEX-9", message, help);
         }
     }
 }

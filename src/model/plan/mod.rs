@@ -11,6 +11,7 @@ pub mod windows;
 
 use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;
+use crate::diagnostic::Diagnostic;
 use crate::limits::Limits;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
@@ -25,6 +26,7 @@ use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::{Computed, Liveness};
 use std::fmt;
+use std::ops::Range;
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +52,8 @@ pub struct PlanError {
     pub vertex: Option<usize>,
     /// Index of the texture unit of the draw, if one is to blame.
     pub unit: Option<usize>,
-    /// Nobody knows what the chip does.
-    pub unknown: bool,
+    /// Stable code, as that of a [`Diagnostic`].
+    pub code: &'static str,
     /// Rule that sets the limit, if one does.
     pub rule: Option<&'static str>,
     /// What is wrong.
@@ -60,8 +62,17 @@ pub struct PlanError {
     pub help: String,
 }
 
+impl PlanError {
+    /// The same as a finding, of the part of a text that is to blame.
+    pub fn diagnostic(&self, place: impl Into<Option<Range<usize>>>) -> Diagnostic {
+        let finding = Diagnostic::error(self.code, place, self.message.as_str()).help(self.help.as_str());
+        Diagnostic { rule: self.rule, ..finding }
+    }
+}
+
 impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.code)?;
         match (self.draw, self.vertex) {
             (Some(draw), Some(vertex)) => write!(f, "draw {draw}, vertex {vertex}: ")?,
             (Some(draw), None) => write!(f, "draw {draw}: ")?,
@@ -237,7 +248,7 @@ impl Plan {
                         draw: Some(index),
                         vertex: Some(p.vertex),
                         unit: None,
-                        unknown: false,
+                        code: "NB0322",
                         rule: Some("RAS-0"),
                         message: format!(
                             "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
@@ -320,7 +331,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                     draw: Some(index),
                     vertex: Some(vertex),
                     unit: None,
-                    unknown: true,
+                    code: "NB0402",
                     rule: Some("CYL-1"),
                     message: format!("a texture with a cylindrical wrap has q = {}", set[3]),
                     help: "what comes out of projected coordinates is not known: take q = 1".to_string(),
@@ -343,7 +354,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                     draw: Some(index),
                     vertex: Some(vertex),
                     unit: None,
-                    unknown: false,
+                    code: "NB0322",
                     rule: Some("RAS-0"),
                     message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
                     help: "shift the coordinates by whole repeats, or split the geometry".to_string(),

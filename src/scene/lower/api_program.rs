@@ -43,7 +43,19 @@ pub(super) struct Lowered {
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
 }
 
+impl Lowered {
+    /// Combiners as they are written, which leave the units as they are.
+    pub(super) fn as_written(combiners: Combiners, units: &Units) -> Self {
+        Lowered { combiners, origins: Vec::new(), shader: units.shader }
+    }
+}
+
 impl ApiProgram {
+    /// The units whose instructions read a cube map.
+    pub(super) fn cubes(&self) -> [bool; TEXTURE_UNITS] {
+        if let ApiProgram::Shader(program) = self { program.cubes() } else { [false; TEXTURE_UNITS] }
+    }
+
     /// Lowers the program for a draw; the default program once the reason that it has no form has been recorded.
     pub(super) fn lower(&self, reader: &mut Reader<'_>, units: &Units, around: &mut Around) -> Lowered {
         let profile = reader.profile;

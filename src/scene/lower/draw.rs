@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::api_program::{Around, Lowered};
 use super::geometry::{geometry, vertex_side};
-use super::program::{Form, Program};
+use super::program::Program;
 use super::*;
 use crate::mesh::Mesh;
 use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Topology};
@@ -107,11 +107,9 @@ fn draw<'a>(
     if let Some(program) = program.as_deref() {
         asides(reader, fields, program);
     }
-    let as_written = |combiners| Lowered { combiners, origins: Vec::new(), shader: units.shader };
-    let (lowered, reads) = match program.as_deref().map(|program| &program.form) {
-        Some(Form::Combiners(program)) => (as_written(program.combiners.clone()), program.reads.clone()),
-        Some(Form::Api(program)) => (program.lower(reader, &units, &mut around), Default::default()),
-        None => (as_written(Combiners::default()), Default::default()),
+    let (lowered, reads) = match program.as_deref() {
+        Some(program) => program.lower(reader, &units, &mut around),
+        None => (Lowered::as_written(Combiners::default(), &units), Default::default()),
     };
     if let Some(made) = &mut geometry
         && !vertex_side(reader, made, &around.sets, &fog, viewer, &place)
@@ -247,7 +245,7 @@ fn indices<'a>(
     topology: Topology,
 ) -> Option<Arc<[u32]>> {
     if let Some(mesh) = mesh {
-        let unwanted = fields.indices.as_ref().map(|raw| reader.span(raw));
+        let unwanted = reader.place(&fields.indices);
         let topology_raw = fields.topology.as_ref().filter(|_| topology != Topology::Triangles);
         let unwanted = unwanted.or_else(|| topology_raw.map(|raw| reader.span(raw)));
         if let Some(place) = unwanted {

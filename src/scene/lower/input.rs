@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::raw::Tuple;
-use ninebit::legality::only_final;
+use ninebit::legality::{final_mapping, only_final};
 use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Register};
 
 /// An input taken apart: index of the mapping (`None`: none written), the register, the component if written.
@@ -78,11 +78,9 @@ pub(super) fn final_input<'a>(
     alpha: bool,
 ) -> Option<(FinalInput, Option<Span>)> {
     let (head, _) = raw.split();
-    let mapping = InputMapping::from_name(head);
-    if mapping.is_some_and(|m| !matches!(m, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert)) {
-        let message = format!("the final combiner has no mapping {head}");
-        let help = "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage";
-        return reader.refuse(finding("NB0311", reader.range(head), message, "not here", help).rule("FIN-1"));
+    if let Some(finding) = InputMapping::from_name(head).and_then(|mapping| final_mapping(reader.range(head), mapping))
+    {
+        return reader.refuse(finding);
     }
     let words = ["UnsignedIdentity", "Invert", "UnsignedInvert"];
     let Parts { mapping, register, component } = parts::<FinalRegister>(reader, raw.as_other(), &words)?;

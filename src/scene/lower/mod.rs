@@ -14,6 +14,7 @@ mod names;
 mod palette;
 mod pixel_shader;
 mod program;
+mod program_file;
 mod program_text;
 mod raster;
 mod register_words;
@@ -22,7 +23,6 @@ mod target;
 mod texgen;
 mod texture;
 mod texture_environment;
-mod texture_legal;
 mod texture_levels;
 mod texture_source;
 mod texture_stages;
@@ -46,6 +46,8 @@ use ninebit::diagnostic::File;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Profile, Scene};
 use ninebit_program::{finding, warning};
+pub use program::ProgramLanguage;
+pub(super) use program_file::program_file;
 pub(super) use target::Targets;
 pub(super) use texture::Textures;
 
@@ -183,19 +185,12 @@ fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<P
             (None, Some(unit)) if !draw.units[unit].is_empty() => draw.units[unit].clone(),
             (None, _) => draw.draw.clone(),
         });
-        let code = match error.unit {
-            _ if error.unknown => "NB0402",
-            Some(_) => "NB0333",
-            None => "NB0322",
-        };
         let label = match (error.vertex, error.draw.and_then(|draw| scene.draws.get(draw))) {
             (Some(vertex), Some(draw)) => format!("vertex {vertex} of `{}`", shorten(&draw.name)),
             _ if error.unit.is_some() => "this unit".to_owned(),
             _ => "this draw".to_owned(),
         };
-        let mut finding = Diagnostic::error(code, span, error.message).label(label).help(error.help);
-        finding.rule = error.rule;
-        reader.push(finding);
+        reader.push(error.diagnostic(span).label(label));
     }
     None
 }

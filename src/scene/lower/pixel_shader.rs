@@ -48,6 +48,17 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option
             }
         }
     };
+    let shader = shader(reader, text, constants, bumps)?;
+    (reader.errors == errors).then_some(shader)
+}
+
+/// Reads a shader's text, beside which the API sets constants and bump states.
+pub(super) fn shader(
+    reader: &mut Reader<'_>,
+    text: ProgramText,
+    constants: [Option<[f32; 4]>; CONSTANTS],
+    bumps: [Bump; TEXTURE_UNITS],
+) -> Option<ApiProgram> {
     let text = text.expanded(reader, Style::Assembler)?;
     let parsed = text.parsed(reader, pixel_shader::parse(&text.text))?;
     text.push(reader, parsed.warnings);
@@ -61,7 +72,7 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option
             reader.push(text.place(warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help)));
         }
     }
-    (reader.errors == errors).then(|| ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
+    Some(ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
 }
 
 /// The number in the name of a register. `None` once the reason that it is none has been recorded.
@@ -83,6 +94,18 @@ fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>)
 }
 
 impl ShaderProgram {
+    /// The units whose instructions read a cube map.
+    pub(super) fn cubes(&self) -> [bool; TEXTURE_UNITS] {
+        let mut cubes = [false; TEXTURE_UNITS];
+        for texture in &self.program.textures {
+            use pixel_shader::TextureOperation::{Texm3x3spec, Texm3x3tex, Texm3x3vspec};
+            if let Some(cube) = cubes.get_mut(usize::from(texture.unit.value)) {
+                *cube = matches!(texture.operation, Texm3x3tex | Texm3x3spec | Texm3x3vspec);
+            }
+        }
+        cubes
+    }
+
     /// Combiners, their origins, and the texture shader in its place.
     pub(super) fn lower(
         &self,

@@ -1,14 +1,17 @@
 //! Pixel programs: which language one is in, and what all of them have in common.
 
-use super::api_program::ApiProgram;
+use std::path::Path;
+
+use super::api_program::{ApiProgram, Around, Lowered};
 use super::program_text::{ProgramText, placed};
+use super::unit::Units;
 use super::*;
 use ninebit::legality::{Notation, check};
 use ninebit::state::Combiners;
 use ninebit_program::c_source::Style;
-use ninebit_program::combiner_calls;
 use ninebit_program::text::{self, words::Words};
 use ninebit_program::{Aside, Pasted, Places};
+use ninebit_program::{combiner_calls, texture_environment as environment, texture_stages as stages};
 
 /// A program as a draw takes it.
 pub(crate) struct Program {
@@ -50,33 +53,101 @@ pub(super) fn program<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Program
     let (kind, rest) = reader.variant(raw, "pixel program", KINDS)?;
     let errors = reader.errors;
     let mut asides = Vec::new();
-    let api = |form: Option<ApiProgram>, asides| form.map(|form| Program { form: Form::Api(form), asides });
-    let data = match kind {
+    let form = match kind {
         0 => {
             let (combiners, places) = combiner::combiners(reader, rest)?;
-            judge(reader, combiners, &places, &combiner::Fields, None)
+            Form::Combiners(judge(reader, combiners, &places, &combiner::Fields, None))
         }
-        1 => return api(texture_stages::read(reader, rest, &mut asides), asides),
-        2 => return api(texture_environment::read(reader, rest, &mut asides), asides),
-        3 => {
-            let program = ProgramText::read(reader, rest)?.expanded(reader, Style::Combiners)?;
-            let read = program.parsed(reader, text::read(&program.text))?;
-            program.push(reader, read.warnings);
-            judge(reader, read.combiners, &read.places, &Words, Some(&program))
-        }
-        4 => return api(pixel_shader::pixel_shader(reader, rest), asides),
-        6 => {
-            let text = ProgramText::read(reader, rest)?.expanded(reader, Style::Calls)?;
-            let combiner_calls::Program { combiners, places } =
-                pasted(reader, &text, combiner_calls::parse(&text.text), &mut asides)?;
-            judge(reader, combiners, &places, &combiner_calls::Words, Some(&text))
+        1 => Form::Api(texture_stages::read(reader, rest, &mut asides)?),
+        2 => Form::Api(texture_environment::read(reader, rest, &mut asides)?),
+        4 => Form::Api(pixel_shader::pixel_shader(reader, rest)?),
+        3 | 6 => {
+            let language = if kind == 3 { ProgramLanguage::Combiners } else { ProgramLanguage::CombinerCalls };
+            let text = ProgramText::read(reader, rest)?;
+            written(reader, language, text, &mut asides)?
         }
         _ => {
             let (combiners, places, inside) = register_words::program(reader, rest)?;
-            judge(reader, combiners, &places, &Words, inside.as_ref())
+            Form::Combiners(judge(reader, combiners, &places, &Words, inside.as_ref()))
         }
     };
-    (reader.errors == errors).then_some(Program { form: Form::Combiners(data), asides })
+    // A draw finds more about what is written for an API.
+    (reader.errors == errors || matches!(form, Form::Api(_))).then_some(Program { form, asides })
+}
+
+/// What a pixel program in a file of its own is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProgramLanguage {
+    /// The combiner language.
+    Combiners,
+    /// Register words: names or methods with their words.
+    Registers,
+    /// Calls of NV_register_combiners.
+    CombinerCalls,
+    /// Calls or effect states of Direct3D's texture stages.
+    TextureStages,
+    /// Calls of OpenGL's texture environment.
+    TextureEnvironment,
+    /// A Direct3D pixel shader, ps.1.1.
+    PixelShader,
+}
+
+/// Reads a pixel program in a file that no scene names. `None` once the reason that it is none has been recorded.
+pub(super) fn in_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLanguage) -> Option<Program> {
+    let (errors, mut asides) = (reader.errors, Vec::new());
+    let text = ProgramText::at(reader, path)?;
+    let form = written(reader, language, text, &mut asides)?;
+    (reader.errors == errors).then_some(Program { form, asides })
+}
+
+/// Reads a program that is a text.
+fn written(reader: &mut Reader<'_>, language: ProgramLanguage, text: ProgramText, asides: &mut Asides) -> Option<Form> {
+    Some(match language {
+        ProgramLanguage::Combiners => {
+            let text = text.expanded(reader, Style::Combiners)?;
+            let read = text.parsed(reader, text::read(&text.text))?;
+            text.push(reader, read.warnings);
+            Form::Combiners(judge(reader, read.combiners, &read.places, &Words, Some(&text)))
+        }
+        ProgramLanguage::Registers => {
+            let (combiners, places) = register_words::of_text(reader, &text)?;
+            Form::Combiners(judge(reader, combiners, &places, &Words, Some(&text)))
+        }
+        ProgramLanguage::CombinerCalls => {
+            let text = text.expanded(reader, Style::Calls)?;
+            let combiner_calls::Program { combiners, places } =
+                pasted(reader, &text, combiner_calls::parse(&text.text), asides)?;
+            Form::Combiners(judge(reader, combiners, &places, &combiner_calls::Words, Some(&text)))
+        }
+        ProgramLanguage::TextureStages => {
+            let text = text.expanded(reader, Style::Calls)?;
+            let program = pasted(reader, &text, stages::parse(&text.text), asides)?;
+            Form::Api(ApiProgram::Stages(program, Some(text)))
+        }
+        ProgramLanguage::TextureEnvironment => {
+            let text = text.expanded(reader, Style::Calls)?;
+            let program = pasted(reader, &text, environment::parse(&text.text), asides)?;
+            Form::Api(ApiProgram::Environment(program, Some(text)))
+        }
+        ProgramLanguage::PixelShader => {
+            Form::Api(pixel_shader::shader(reader, text, Default::default(), Default::default())?)
+        }
+    })
+}
+
+impl Program {
+    /// What it becomes in a draw, and the first place that reads each texture unit.
+    pub(super) fn lower(
+        &self,
+        reader: &mut Reader<'_>,
+        units: &Units,
+        around: &mut Around,
+    ) -> (Lowered, [Option<Span>; 4]) {
+        match &self.form {
+            Form::Combiners(program) => (Lowered::as_written(program.combiners.clone(), units), program.reads.clone()),
+            Form::Api(program) => (program.lower(reader, units, around), Default::default()),
+        }
+    }
 }
 
 /// The program of a pasted text, its warnings told or kept for the draws. `None` once the reasons that it is none have been recorded.
@@ -122,7 +193,7 @@ pub(super) fn calls<'a>(
     file: &Option<Raw<'a, String>>,
     (what, name): (&str, &str),
 ) -> Option<Option<ProgramText>> {
-    let given = [fields, text.as_ref().map(|raw| reader.span(raw)), file.as_ref().map(|raw| reader.span(raw))];
+    let given = [fields, reader.place(text), reader.place(file)];
     let mut given = given.into_iter().flatten();
     let (Some(first), Some(second)) = (given.next(), given.next()) else {
         let text = match (text, file) {

@@ -1,5 +1,6 @@
 //! The text of a program: in the scene or in a file of its own, and where its bytes stand.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
@@ -41,6 +42,13 @@ impl ProgramText {
     /// A text in a file. `None` once the reason that it cannot be read has been recorded.
     pub(super) fn file<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Self> {
         Self::file_up_to(reader, raw, reader.limits.program_file())
+    }
+
+    /// A text in a file that no scene names. `None` once the reason that it cannot be read has been recorded.
+    pub(super) fn at(reader: &mut Reader<'_>, path: &Path) -> Option<Self> {
+        let name = ninebit::shown::lossless(path);
+        let file = text_at(reader, path, (&name, path), None, reader.limits.program_file())?;
+        Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
     }
 
     /// The same of a file within a limit of its own.
@@ -120,7 +128,7 @@ pub(super) fn placed(text: Option<&ProgramText>, findings: Vec<Diagnostic>) -> V
     findings.into_iter().map(place).collect()
 }
 
-fn too_large(place: Span, most: FileLimit) -> Diagnostic {
+fn too_large(place: impl Into<Option<Span>>, most: FileLimit) -> Diagnostic {
     Diagnostic::error("NB0610", place, format!("this text is larger than {most}"))
         .label("too large")
         .help("`ninebit limits` prints what is allowed")
@@ -166,28 +174,43 @@ pub(super) fn text_file<'a>(
 ) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
-    let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
-    let path = match reader.assets.resolve(reader.folder, &name) {
-        Ok(path) => path,
-        Err(error) => {
-            return reader.refuse(refuse(error.code(), error.to_string(), error.help()));
+    match reader.assets.resolve(reader.folder, &name) {
+        Ok(path) => {
+            let whole = reader.folder.join(&name);
+            text_at(reader, &path, (&name, &whole), Some(named), most)
         }
-    };
-    let bytes = match reader.assets.bytes(&path, most) {
+        Err(error) => reader.refuse(finding(error.code(), named, error.to_string(), "this file", error.help())),
+    }
+}
+
+/// The text of a file, whose name is shown in short and in full. `named`: where the scene names it, if one does.
+fn text_at(
+    reader: &mut Reader<'_>,
+    path: &Path,
+    (name, shown): (&str, &Path),
+    named: Option<Span>,
+    most: FileLimit,
+) -> Option<Arc<diagnostic::File>> {
+    let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
+    let bytes = match reader.assets.bytes(path, most) {
         Ok(bytes) => bytes,
         Err(ReadError::TooLarge(most)) => {
             return reader.refuse(too_large(named, most));
         }
+        Err(ReadError::Missing) => {
+            let message = format!("`{}` does not exist", shorten(name));
+            return reader.refuse(refuse("NB0502", message, "check the spelling and the folder"));
+        }
         Err(error) => {
-            let message = format!("`{}` cannot be read: {error}", shorten(&name));
+            let message = format!("`{}` cannot be read: {error}", shorten(name));
             return reader.refuse(refuse("NB0540", message, "name a regular file that may be read"));
         }
     };
     let Ok(text) = String::from_utf8(bytes) else {
-        let message = format!("`{}` is not UTF-8 text", shorten(&name));
+        let message = format!("`{}` is not UTF-8 text", shorten(name));
         return reader.refuse(refuse("NB0541", message, "save the file as UTF-8"));
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    let source = Source { name: ninebit::shown::lossless(&reader.folder.join(&name)), text };
-    Some(Arc::new(diagnostic::File { source, named }))
+    let source = Source { name: ninebit::shown::lossless(shown), text };
+    Some(Arc::new(diagnostic::File { source, named: named.unwrap_or_default() }))
 }

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::raw::Numbers;
+use ninebit::legality;
 use ninebit::number::convert::constant;
-use ninebit::rop::surface;
 use ninebit::state::{
     AlphaTest, Blend, Combiners, CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, Positions, Rectangle,
     StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor, VertexDepths, WINDOW_CLIP_RECTANGLES,
@@ -18,7 +18,8 @@ const MAX_CLIP_COORDINATE: u32 = 65535;
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
     let fields = reader.read(&raw.as_other::<source::Blend<'a>>())?;
     let equation = fields.equation(reader);
-    reader.needs_nv2a(&fields.equation, equation.is_nv2a_only(), "NB0315", ("this blend equation", "ROP-3"));
+    let place = reader.place(&fields.equation);
+    reader.accept(legality::surface::blend_equation(equation, reader.profile, place));
     Some(Blend { equation, source: fields.source(reader), destination: fields.destination(reader) })
 }
 
@@ -54,11 +55,7 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
     draw.window_clip = fields.window_clip.as_ref().and_then(|raw| window_clip(reader, raw));
     if let Some(raw) = &fields.blend {
         draw.blend = reader.value(raw);
-        if !surface::blends(target.format) {
-            let message = format!("surface format {:?} cannot be blended", target.format);
-            let help = "leave `blend` out, or draw into a target with a colour format";
-            reader.push(finding("NB0316", reader.span(raw), message, "blending", help).rule("ROP-5"));
-        }
+        reader.accept(legality::surface::blending(target.format, Some(reader.span(raw))));
     }
     draw.blend_constant = color::bytes(fields.blend_constant(reader));
     draw.color_mask = fields.color_mask(reader);

@@ -38,13 +38,19 @@ pub(super) fn program<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Com
     if given.wrong {
         return None;
     }
-    match given.written.program() {
-        Ok((combiners, places)) => Some((combiners, places, inside)),
-        Err(findings) => {
-            placed(inside.as_ref(), findings).into_iter().for_each(|finding| reader.push(finding));
-            None
-        }
-    }
+    let (combiners, places) = decoded(reader, given.written, inside.as_ref())?;
+    Some((combiners, places, inside))
+}
+
+/// The program of words in a text of their own.
+pub(super) fn of_text(reader: &mut Reader<'_>, text: &ProgramText) -> Option<(Combiners, Places)> {
+    let given = listed(reader, text)?;
+    decoded(reader, given.written, Some(text))
+}
+
+fn decoded(reader: &mut Reader<'_>, words: Written, inside: Option<&ProgramText>) -> Option<(Combiners, Places)> {
+    let found = |findings| placed(inside, findings).into_iter().for_each(|finding| reader.push(finding));
+    words.program().map_err(found).ok()
 }
 
 /// Words in a text of their own, which are those of the scene's chip.

@@ -83,7 +83,7 @@ fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage:
     let operation_raw = fields.operation(reader);
     stage.coordinate_set = fields.coordinates(reader).map_or(stage.coordinate_set, |set| set as usize);
     stage.previous = fields.previous(reader).map_or(stage.previous, |unit| unit as usize);
-    places.previous = fields.previous.as_ref().map(|raw| reader.span(raw));
+    places.previous = reader.place(&fields.previous);
     if let Some(raw) = &fields.mapping {
         stage.mapping = reader.name::<DotMapping>(raw)?;
         places.mapping = Some(reader.span(raw));

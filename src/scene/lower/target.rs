@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::names::Index;
 use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
+use ninebit::legality;
 use ninebit::number::convert;
 use ninebit::raster::depth;
 use ninebit::state::{DepthBuffer, DepthFormat, Named, Target, TextureImage, TextureKind};
@@ -94,10 +95,10 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
     let (width, height, format) = (fields.width(reader), fields.height(reader), fields.format(reader));
     let mut target =
         Target { name, width, height, format, clear_color: [0; 4], contents: None, depth: None, clip: None };
-    reader.needs_nv2a(&fields.format, format.is_nv2a_only(), "NB0314", ("this surface format", "ROP-5"));
-    let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
-    let float = depth.is_some_and(DepthFormat::is_float);
-    reader.needs_nv2a(&fields.depth, float, "NB0314", ("this depth format", "DEP-3"));
+    reader.accept(legality::surface::format(format, reader.profile, reader.place(&fields.format)));
+    let depth: Option<DepthFormat> = fields.depth.as_ref().and_then(|raw| reader.name(raw));
+    let place = reader.place(&fields.depth);
+    reader.accept(depth.and_then(|depth| legality::surface::depth_format(depth, reader.profile, place)));
     let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     target.depth = depth.map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     target.clear_color = color::bytes(clear.color(reader));

@@ -2,7 +2,6 @@
 
 use super::names::Index;
 use super::palette::Palettes;
-use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::texture_source::{self, Given, Request, Variant, only};
 use super::*;
@@ -84,7 +83,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
         };
         let mut given = texture_source::read(reader, Variant::ALL[variant], &source, rest, &request)?;
         if fields.mips.is_some() && levels != Wanted::Own {
-            let place = fields.levels.as_ref().map(|raw| reader.span(raw));
+            let place = reader.place(&fields.levels);
             let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
             let message = "levels are counted and listed at once";
             return reader.refuse(finding("NB0230", place, message, "counted here", help));
@@ -93,21 +92,22 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
         let place = given.place.clone();
         let kind = settled_kind(reader, kind, &given)?;
         let format_place = format.map_or_else(|| place.clone(), |(_, place)| place);
-        legal::format(reader, given.format, format_place)?;
+        let checks = reader.texture_checks();
+        reader.accept(checks.format(given.format, Some(format_place)))?;
         if border {
             let place = fields.border.as_ref().map_or(place.clone(), |raw| reader.span(raw));
-            legal::border(reader, kind, given.format, place)?;
+            reader.accept(checks.border(kind, given.format, Some(place)))?;
         }
         let (width, height) = interior(reader, &given, border)?;
-        legal::sides(reader, kind, given.format, width, height, place)?;
+        reader.accept(checks.sides(kind, given.format, [width, height], Some(place)))?;
         let layers = if kind == TextureKind::ThreeDimensional { given.faces.len() as u32 } else { 1 };
-        legal::layers(reader, kind, layers, given.place.clone())?;
+        reader.accept(checks.layers(kind, layers, Some(given.place.clone())))?;
         match &fields.mips {
             Some(raw) => texture_levels::listed(reader, &mut given, raw, kind, &request)?,
             None => texture_levels::counted(reader, &mut given, levels, &request)?,
         }
         let levels = given.levels();
-        legal::levels(reader, kind, levels, given.place.clone())?;
+        reader.accept(checks.levels(kind, levels, Some(given.place.clone())))?;
         let first =
             reader.perhaps(&fields.first_level, |reader, raw| texture_levels::first(reader, &mut given, raw))?;
         let first = first.unwrap_or(0);
@@ -274,8 +274,9 @@ fn of_target<'a>(
         let help = format!("leave `format` out, which means {own:?} here, or take another with texels of {size}{or}");
         return reader.refuse(finding("NB0218", format_place, message, "another size", help));
     }
-    legal::format(reader, format, format_place)?;
-    legal::sides(reader, kind, format, columns.unwrap_or(target.width), target.height, place)?;
+    let checks = reader.texture_checks();
+    reader.accept(checks.format(format, Some(format_place)))?;
+    reader.accept(checks.sides(kind, format, [columns.unwrap_or(target.width), target.height], Some(place)))?;
     Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Target { target: index } })
 }
 
@@ -305,7 +306,8 @@ fn of_depths(
         let help = format!("leave `format` out, which means {} here", own.name());
         return reader.refuse(finding("NB0218", format_place, message, "another size, or no depths", help));
     }
-    legal::format(reader, format, format_place)?;
-    legal::sides(reader, kind, format, target.width, target.height, place)?;
+    let checks = reader.texture_checks();
+    reader.accept(checks.format(format, Some(format_place)))?;
+    reader.accept(checks.sides(kind, format, [target.width, target.height], Some(place)))?;
     Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Depth { target: index } })
 }

@@ -12,7 +12,7 @@ use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment,
 /// Reads the fields in the parentheses.
 pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asides) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
-    let units = fields.units.as_ref().map(|raw| reader.span(raw));
+    let units = reader.place(&fields.units);
     let written = calls(reader, units, &fields.text, &fields.file, ("a texture environment is", "units"))?;
     let mut program = match &written {
         None => TextureEnvironment::default(),

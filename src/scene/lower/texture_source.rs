@@ -1,9 +1,9 @@
 //! Where texels come from: files, raw memory, lists of words, made pictures.
 
-use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::*;
 use crate::raw::Tuple;
+use ninebit::legality::texture::no_texels;
 use ninebit::state::{CUBE_FACES, Named, TextureFormat};
 use ninebit_files::texels;
 
@@ -243,14 +243,14 @@ pub(super) fn sides<'a>(
     let (width, height) = (width?, height?);
     let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
     let (width, height) = (reader.read(&width)?, reader.read(&height)?);
-    let most = legal::largest_side(reader);
+    let checks = reader.texture_checks();
+    // Of any kind.
+    let most = checks.largest_side.min(if reader.profile == Profile::Nv10 { 2048 } else { 4096 });
     if width.max(height) > most + texture_levels::beyond(request.border) {
-        return reader.refuse(legal::too_large(reader, "a texture", [width, height], most, place));
+        return reader.refuse(checks.too_large("a texture", [width, height], most, Some(place)));
     }
     if width == 0 || height == 0 {
-        let message = format!("a texture cannot be {width} x {height}");
-        reader.push(finding("NB0219", place, message, "no texels", "write at least 1 for both").rule("TEX-7"));
-        return None;
+        return reader.refuse(no_texels("a texture", [width, height], Some(place)));
     }
     Some((width, height, place))
 }

@@ -14,7 +14,7 @@ use ninebit_program::texture_stages::{
 /// Reads the fields in the parentheses.
 pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asides) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
-    let stages = fields.stages.as_ref().map(|raw| reader.span(raw));
+    let stages = reader.place(&fields.stages);
     let written = calls(reader, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
     let mut program = match &written {
         None => TextureStages::default(),

@@ -1,7 +1,7 @@
 //! Texture units of a draw.
 
 use super::*;
-use ninebit::state::{AddressMode, ColorKey, Filter, ShaderStage, ShadowComparison, TEXTURE_UNITS, TextureUnit};
+use ninebit::state::{ColorKey, Filter, ShaderStage, ShadowComparison, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {
@@ -61,7 +61,8 @@ fn unit<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Unit>, index: usize) 
     (unit.address_s, unit.address_t, unit.address_r) = (s, t, r);
     let modes = [(&fields.address, both), (&fields.address_s, s), (&fields.address_t, t), (&fields.address_r, r)];
     for (field, mode) in modes {
-        reader.needs_nv2a(field, mode == AddressMode::ClampToBorder, "NB0317", ("a border colour", "TEX-7"));
+        let place = reader.place(field);
+        reader.accept(place.and_then(|place| reader.texture_checks().address_mode(mode, Some(place))));
     }
     unit.border_color = color::bytes(fields.border_color(reader));
     reader.needs_nv2a(&fields.border_color, true, "NB0317", ("a border colour", "TEX-7"));

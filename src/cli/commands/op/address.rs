@@ -1,14 +1,15 @@
 //! `ninebit op address`.
 
 use clap::Args;
-use ninebit::state::{AddressMode, Named};
+use ninebit::state::{AddressMode, TextureFormat, TextureKind};
 use ninebit::texture::address::address;
 use ninebit::texture::report::address_step;
 use ninebit::trace::{Observer, plain};
 use serde_json::json;
 
 use super::{
-    COORDINATES, Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, set, words,
+    COORDINATES, Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, set,
+    texture_checks, words,
 };
 
 #[derive(Debug, Args)]
@@ -37,12 +38,13 @@ struct Address {
 /// Brings an index inside.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let Arguments { mode, size, .. } = *arguments;
-    let template = Template {
-        scene: format!("    textures: {{\"t\": (source: Solid(width: {size}, height: 1, color: (0, 0, 0)))}},\n"),
-        draw: format!("        textures: [(texture: \"t\", address_s: {})],\n", mode.name()),
-        ..Template::default()
-    };
-    template.read(arguments.profile.profile, context)?;
+    let (line, checks) = (CommandLine::of_this_process(), texture_checks(&arguments.profile));
+    let (kind, format) = (TextureKind::TwoDimensional, TextureFormat::A8R8G8B8);
+    let findings = [
+        checks.sides(kind, format, [size, 1], line.place(&["size"])),
+        checks.address_mode(mode, line.place(&["mode"])),
+    ];
+    line.accept(findings.into_iter().flatten(), context)?;
     let how = "write `--index I`, or give a table with `--inputs`";
     let mut columns = vec![Column::new(("index", "index"), COORDINATES, 1, how)];
     set(&mut columns, arguments.index)?;

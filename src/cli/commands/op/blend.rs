@@ -3,14 +3,17 @@
 use clap::Args;
 use ninebit::combiner::registers::channel_name;
 use ninebit::engine;
+use ninebit::legality;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, SurfaceFormat};
+use ninebit::state::{
+    Blend, BlendEquation, BlendFactor, Combiners, Draw, FinalRegister, Policies, Scene, SurfaceFormat, Target, Vertex,
+};
 use ninebit::trace::Observer;
 use serde_json::json;
 
 use super::{
-    Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, inputs, set, words,
+    Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, inputs, set, words,
 };
 
 #[derive(Debug, Args)]
@@ -57,20 +60,27 @@ const COLORS: [(&str, &str); 3] =
 
 /// Blends one pixel.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let template = Template {
-        target: format!(", format: {}", arguments.surface.name()),
-        draw: format!(
-            "        program: Combiners(stages: [()], final_combiner: (d: ConstantColor0, g: (ConstantColor0, Alpha))),\n        \
-             blend: (equation: {}, source: {}, destination: {}),\n",
-            arguments.equation.name(),
-            arguments.source_factor.name(),
-            arguments.destination_factor.name()
-        ),
-        ..Template::default()
+    let Arguments { equation, source_factor: source, destination_factor: destination, .. } = *arguments;
+    let (profile, line) = (arguments.profile.profile, CommandLine::of_this_process());
+    let findings = [
+        legality::surface::blend_equation(equation, profile, line.place(&["equation"])),
+        legality::surface::format(arguments.surface, profile, line.place(&["surface"])),
+        legality::surface::blending(arguments.surface, line.place(&["surface"])),
+    ];
+    line.accept(findings.into_iter().flatten(), context)?;
+    let corners = [[0.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 1.0]];
+    let draw = Draw {
+        vertices: corners.into_iter().map(|position| Vertex { position, ..Vertex::default() }).collect(),
+        indices: [0, 1, 2].into(),
+        combiners: Combiners::showing(FinalRegister::ConstantColor0),
+        blend: Some(Blend { equation, source, destination }),
+        ..Draw::default()
     };
-    let (scene, planned) = template.read(arguments.profile.profile, context)?;
-    // Colours come with each case: nothing that those of the template settle may be left out.
-    let mut plan = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap_or(planned);
+    let targets = vec![Target::new(1, 1, arguments.surface)];
+    let scene = Scene { profile, targets, draws: vec![draw], ..Scene::default() };
+    // Colours come with each case: nothing that those of the draw settle may be left out.
+    let options = PlanOptions { prune: false, ..PlanOptions::default() };
+    let mut plan = Plan::compile(&scene, &options).map_err(|_| Failure::fault("a pixel cannot be planned"))?;
     for draw in &mut plan.draws {
         draw.blended = draw.written;
     }

@@ -1,15 +1,15 @@
 //! `ninebit op combiner`.
 
-use std::fmt::Write;
-
 use clap::{Args, ValueEnum};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::{self, channel_name};
-use ninebit::state::{Bias, GeneralStage, MuxSelect, Named, Policies, Register, Scale};
+use ninebit::legality::{self, Help, Notation};
+use ninebit::place::{Part, Place, Places};
+use ninebit::state::{Bias, Combiners, Component, GeneralStage, MuxSelect, Policies, Register, Scale};
 use ninebit::trace::Observer;
 use serde_json::json;
 
-use super::{Contents, Context, Failure, FourInputs, Operation, Results, Template, inputs, words};
+use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, Operation, Results, inputs, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -74,45 +74,62 @@ struct Stage {
 /// Runs one general stage.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     arguments.contents.drive("combiner", |profile, policies| {
-        let template = Template { draw: program(arguments), ..Template::default() };
-        let combiners = template.combiners(profile, context)?;
-        let stage = combiners.stages.first().copied().unwrap_or(GeneralStage::idle([[0; 4]; 2]));
-        Ok(Stage { stage, half: arguments.portion, mux_select: combiners.mux_select, policies })
+        let line = CommandLine::of_this_process();
+        let (stage, places) = stage(arguments, &line);
+        let combiners = Combiners { stages: vec![stage], ..Combiners::default() };
+        line.accept(legality::check(&combiners, profile, &places, &Options).findings, context)?;
+        Ok(Stage { stage, half: arguments.portion, mux_select: arguments.mux_select, policies })
     })
 }
 
-/// The stage as a scene writes it, one field a line.
-fn program(arguments: &Arguments) -> String {
-    let mut fields: Vec<(&str, String)> = Vec::new();
-    fields.extend(arguments.inputs.fields());
-    for (name, output) in ["ab", "cd", "sum"].into_iter().zip(outputs(arguments)) {
-        let word = |register: Register| if register == Register::Zero { "Discard" } else { register.name() };
-        fields.extend(output.map(|output| (name, word(output).to_owned())));
+/// What the command line calls things.
+pub(super) struct Options;
+
+impl Notation for Options {
+    fn help(&self, help: Help) -> &'static str {
+        match help {
+            Help::OtherRegister => "send one of them to another register, or write `discard` for it",
+            Help::FogBlue => "write `fog.b` for the fog colour's blue",
+            help => help.text(),
+        }
     }
-    for (name, flag) in [
-        ("ab_dot", arguments.ab_dot),
-        ("cd_dot", arguments.cd_dot),
-        ("ab_blue_to_alpha", arguments.ab_blue_to_alpha),
-        ("cd_blue_to_alpha", arguments.cd_blue_to_alpha),
-        ("mux", arguments.mux),
+}
+
+/// The stage, and where its options stand.
+fn stage(arguments: &Arguments, line: &CommandLine) -> (GeneralStage, Places) {
+    let (mut stage, mut places) = (GeneralStage::default(), Places::default());
+    let alpha = arguments.portion == Half::Alpha;
+    let mut note = |part, names: &[&str]| {
+        let place = Place::General { stage: 0, alpha, part };
+        line.place(names).into_iter().for_each(|span| places.set(place, span));
+    };
+    let (portion, usual) = if alpha { (&mut stage.alpha, Component::Alpha) } else { (&mut stage.rgb, Component::Rgb) };
+    for (n, (name, input)) in arguments.inputs.all().into_iter().enumerate() {
+        let Some(input) = input else { continue };
+        portion.inputs[n] = Input { component: input.component.or(Some(usual)), ..input }.into();
+        note(Part::Input(n), &[name]);
+    }
+    let slots = [&mut portion.ab_output, &mut portion.cd_output, &mut portion.sum_output];
+    let names = ["ab", "cd", "sum"];
+    for (n, ((slot, name), output)) in slots.into_iter().zip(names).zip(outputs(arguments)).enumerate() {
+        *slot = output.unwrap_or(*slot);
+        note(Part::Output(n), &[name]);
+    }
+    (portion.ab_dot_product, portion.cd_dot_product) = (arguments.ab_dot, arguments.cd_dot);
+    (portion.ab_blue_to_alpha, portion.cd_blue_to_alpha) = (arguments.ab_blue_to_alpha, arguments.cd_blue_to_alpha);
+    (portion.mux, portion.scale) = (arguments.mux, arguments.scale);
+    portion.bias = if arguments.bias { Bias::NegativeHalf } else { Bias::None };
+    for (part, names) in [
+        (Part::Dot(0), &["ab-dot", "dot"][..]),
+        (Part::Dot(1), &["cd-dot"]),
+        (Part::BlueToAlpha(0), &["ab-blue-to-alpha", "blue-to-alpha"]),
+        (Part::BlueToAlpha(1), &["cd-blue-to-alpha"]),
+        (Part::Scale, &["scale"]),
+        (Part::Bias, &["bias"]),
     ] {
-        fields.extend(flag.then(|| (name, "true".to_owned())));
+        note(part, names);
     }
-    if arguments.scale != Scale::One {
-        fields.push(("scale", arguments.scale.name().to_owned()));
-    }
-    if arguments.bias {
-        fields.push(("bias", Bias::NegativeHalf.name().to_owned()));
-    }
-    let mut text = String::new();
-    for (name, value) in fields {
-        let _ = writeln!(text, "                {name}: {value},");
-    }
-    let portion = if arguments.portion == Half::Rgb { "rgb" } else { "alpha" };
-    format!(
-        "        program: Combiners(\n            mux_select: {},\n            stages: [({portion}: (\n{text}            ))],\n        ),\n",
-        arguments.mux_select.name()
-    )
+    (stage, places)
 }
 
 /// Destinations of AB, CD and the sum: as given, or one that shows the result.

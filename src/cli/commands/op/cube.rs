@@ -15,7 +15,9 @@ use ninebit::trace::Observer;
 use ninebit_vectors::units;
 use serde_json::json;
 
-use super::{Column, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, Template, set};
+use super::{
+    Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, set, texture_checks,
+};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -43,15 +45,10 @@ const MAX_COMPONENT: i64 = 1 << 28;
 /// Looks up a cube map.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let side = arguments.size;
-    let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
-    let face = |name: &str| format!("{name}: Solid(width: {side}, height: {side}, color: (0, 0, 0))");
-    let faces: Vec<String> = faces.into_iter().map(face).collect();
-    let template = Template {
-        scene: format!("    textures: {{\"t\": (kind: Cube, format: R5G6B5, source: Faces({}))}},\n", faces.join(", ")),
-        draw: "        textures: [\"t\"],\n".to_owned(),
-        ..Template::default()
-    };
-    template.read(arguments.profile.profile, context)?;
+    let line = CommandLine::of_this_process();
+    let (kind, format) = (TextureKind::Cube, TextureFormat::R5G6B5);
+    let finding = texture_checks(&arguments.profile).sides(kind, format, [side; 2], line.place(&["size"]));
+    line.accept(finding, context)?;
     let corners = [[0.0, 0.0, 0.0, 1.0], [2.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0]];
     let Some(triangle) = Triangle::new(corners, false, Profile::Nv2a) else {
         return Err(Failure::usage("the operation has no triangle", "please report this with the command line"));
@@ -61,10 +58,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let mut columns = names.map(|names| Column::new(names, -MAX_COMPONENT..=MAX_COMPONENT, 1, how));
     set(&mut columns, arguments.direction.into_iter().flatten())?;
     let unit = PlannedUnit {
-        kind: TextureKind::Cube,
+        kind,
         levels: vec![Level { offset: 0, width: side, height: side }],
         face_words: side as usize * side as usize,
-        ..units::planned(TextureUnit::new(0), TextureFormat::R5G6B5)
+        ..units::planned(TextureUnit::new(0), format)
     };
     Setup::new("cube", columns.into(), "x, y, z", Cube { unit, triangle }).drive(&arguments.common)
 }

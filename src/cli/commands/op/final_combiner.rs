@@ -1,15 +1,17 @@
 //! `ninebit op final`.
 
-use std::fmt::Write;
-
 use clap::Args;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::registers::channel_name;
-use ninebit::state::{FinalCombiner, FinalRegister, Policies, Profile};
+use ninebit::diagnostic::Diagnostic;
+use ninebit::legality;
+use ninebit::place::{Place, Places};
+use ninebit::state::{Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, Policies, Profile};
 use ninebit::trace::Observer;
 use serde_json::json;
 
-use super::{Contents, Context, Failure, FourInputs, Input, Operation, Results, Template, inputs, words};
+use super::combiner::Options;
+use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, Operation, Results, inputs, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -47,30 +49,33 @@ struct Final {
 /// Runs the final combiner.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     arguments.contents.drive("final combiner", |profile, policies| {
-        let template = Template { draw: program(arguments), ..Template::default() };
-        let state = template.combiners(profile, context)?.final_combiner;
+        let (combiners, places, findings) = program(arguments);
+        let checked = legality::check(&combiners, profile, &places, &Options);
+        CommandLine::of_this_process().accept(findings.into_iter().chain(checked.findings), context)?;
+        let state = combiners.final_combiner;
         Ok(Final { planned: planned(state, arguments.g.is_some()), profile, policies })
     })
 }
 
-/// The final combiner as a scene writes it, one field a line.
-fn program(arguments: &Arguments) -> String {
-    let others = [("e", &arguments.e), ("f", &arguments.f), ("g", &arguments.g)];
-    let others = others.into_iter().filter_map(|(name, input)| Some((name, input.as_ref()?.scene())));
-    let mut text = String::new();
-    for (name, input) in arguments.inputs.fields().chain(others) {
-        let _ = writeln!(text, "                {name}: {input},");
+/// A program with this final combiner, where its options stand, and what is wrong with them by themselves.
+fn program(arguments: &Arguments) -> (Combiners, Places, Vec<Diagnostic>) {
+    let line = CommandLine::of_this_process();
+    let (mut state, mut places, mut findings) = (FinalCombiner::default(), Places::default(), Vec::new());
+    let others = [("e", arguments.e), ("f", arguments.f), ("g", arguments.g)];
+    for (n, (name, input)) in arguments.inputs.all().into_iter().chain(others).enumerate() {
+        let Some(input) = input else { continue };
+        let place = line.place(&[name]);
+        findings.extend(input.mapping.and_then(|mapping| legality::final_mapping(place.clone(), mapping)));
+        place.into_iter().for_each(|place| places.set(Place::FinalInput(n), place));
+        match state.inputs.get_mut(n) {
+            Some(slot) => *slot = input.into(),
+            None => state.g = Input { component: input.component.or(Some(Component::Alpha)), ..input }.into(),
+        }
     }
-    for (name, value) in [
-        ("color_sum_clamp", !arguments.no_color_sum_clamp),
-        ("invert_spare0", arguments.invert_spare0),
-        ("invert_secondary", arguments.invert_secondary),
-    ] {
-        let _ = writeln!(text, "                {name}: {value},");
-    }
-    format!(
-        "        program: Combiners(\n            stages: [()],\n            final_combiner: (\n{text}            ),\n        ),\n"
-    )
+    state.color_sum_clamp = !arguments.no_color_sum_clamp;
+    (state.invert_spare0, state.invert_secondary) = (arguments.invert_spare0, arguments.invert_secondary);
+    let stages = vec![GeneralStage::default()];
+    (Combiners { stages, final_combiner: state, ..Combiners::default() }, places, findings)
 }
 
 /// The state, of which everything that is set is needed.

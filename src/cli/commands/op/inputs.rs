@@ -41,10 +41,9 @@ pub(super) struct FourInputs<R: Named + Send + Sync> {
 }
 
 impl<R: Named + Send + Sync> FourInputs<R> {
-    /// Those that are given, as fields of a scene.
-    pub(super) fn fields(&self) -> impl Iterator<Item = (&'static str, String)> {
-        let all = [("a", &self.a), ("b", &self.b), ("c", &self.c), ("d", &self.d)];
-        all.into_iter().filter_map(|(name, input)| Some((name, input.as_ref()?.scene())))
+    /// A to D, with the names of their options.
+    pub(super) fn all(&self) -> [(&'static str, Option<Input<R>>); 4] {
+        [("a", self.a), ("b", self.b), ("c", self.c), ("d", self.d)]
     }
 }
 

@@ -1,11 +1,11 @@
 //! `ninebit op`: one operation of the chip on given integers, without a scene.
 //!
-//! Nothing of a rule stands here. What an operation is set to is written down as a scene and read by the scene front end, whose checks
-//! are thus the checks of this command; the model's own functions then run on the given integers.
+//! Nothing of a rule stands here. Options become state, the model says whether a chip takes it, and its own functions then run on the given integers.
 
 mod address;
 mod blend;
 mod combiner;
+mod command_line;
 mod cube;
 mod filter;
 mod final_combiner;
@@ -17,10 +17,13 @@ mod unit;
 pub(crate) mod words;
 
 use clap::{Args, Subcommand};
+use ninebit::legality::texture::TextureChecks;
+use ninebit::limits::Limits;
 use ninebit::state::Profile;
 
 use super::program_file::{Language, ProgramArguments};
-use super::{Context, Exit, Failure, Format, PolicyArguments, Report, Template, vectors};
+use super::{Context, Exit, Failure, Format, PolicyArguments, Report, vectors};
+use command_line::CommandLine;
 use inputs::{Assignment, Contents, FourInputs, number};
 use operation::{COORDINATES, Column, Common, Operation, Results, Setup, set};
 use words::Input;
@@ -67,6 +70,11 @@ struct ProfileArgument {
     /// The chip: nv10 or nv2a
     #[arg(long, value_name = "PROFILE", default_value = "nv10", value_parser = words::profile)]
     profile: Profile,
+}
+
+/// What the chip takes of textures.
+fn texture_checks(profile: &ProfileArgument) -> TextureChecks {
+    TextureChecks { profile: profile.profile, largest_side: Limits::default().texture_side }
 }
 
 /// Runs one operation.

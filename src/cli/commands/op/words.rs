@@ -1,8 +1,8 @@
 //! Words of the command line: the names of the state's enumerations, those of the vendor's extensions, and short ones.
 
 use ninebit::state::{
-    AddressMode, BlendEquation, BlendFactor, Component, InputMapping, MuxSelect, Named, Profile, Register, Scale,
-    SurfaceFormat,
+    AddressMode, BlendEquation, BlendFactor, CombinerInput, Component, FinalInput, FinalRegister, InputMapping,
+    MuxSelect, Named, Profile, Register, Scale, SurfaceFormat,
 };
 
 /// A word without what only decorates it: `GL_SPARE0_NV`, `Spare0` and `spare0` are one.
@@ -98,16 +98,19 @@ pub(super) struct Input<R> {
     pub(super) mapping: Option<InputMapping>,
 }
 
-impl<R: Named> Input<R> {
-    /// The input as a scene writes it.
-    pub(super) fn scene(&self) -> String {
-        let register = self.register.name();
-        let pair = self.component.map(|component| format!("{register}, {}", component.name()));
-        match (self.mapping, pair) {
-            (None, None) => register.to_owned(),
-            (None, Some(pair)) => format!("({pair})"),
-            (Some(mapping), pair) => format!("{}({})", mapping.name(), pair.unwrap_or(register.to_owned())),
-        }
+impl From<Input<Register>> for CombinerInput {
+    /// Without a component red, green and blue.
+    fn from(input: Input<Register>) -> Self {
+        let mapping = input.mapping.unwrap_or(InputMapping::UnsignedIdentity);
+        CombinerInput { register: input.register, component: input.component.unwrap_or(Component::Rgb), mapping }
+    }
+}
+
+impl From<Input<FinalRegister>> for FinalInput {
+    /// The same. Another mapping than those of the final combiner is the identity: who asks has refused it.
+    fn from(input: Input<FinalRegister>) -> Self {
+        let invert = input.mapping == Some(InputMapping::UnsignedInvert);
+        FinalInput { register: input.register, component: input.component.unwrap_or(Component::Rgb), invert }
     }
 }
 
@@ -188,7 +191,6 @@ pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ninebit::state::FinalRegister;
 
     #[test]
     fn one_register_by_all_its_names() {
@@ -205,15 +207,23 @@ mod tests {
     }
 
     #[test]
-    fn inputs_are_taken_apart_and_written_as_scenes_do() {
-        let scene = |text: &str| input::<Register>(text).map(|input| input.scene());
-        assert_eq!(scene("tex0").as_deref(), Ok("Texture0"));
-        assert_eq!(scene("tex0.a").as_deref(), Ok("(Texture0, Alpha)"));
-        assert_eq!(scene("zero:invert").as_deref(), Ok("UnsignedInvert(Zero)"));
-        assert_eq!(scene("primary.b:half_bias_negate").as_deref(), Ok("HalfBiasNegate(PrimaryColor, Blue)"));
-        assert_eq!(scene("fog:SIGNED_NEGATE_NV").as_deref(), Ok("SignedNegate(Fog)"));
-        assert!(scene("tex0:sine").is_err_and(|e| e.contains("half_bias, half_bias_negate")));
-        assert!(scene("tex0.q").is_err() && scene("").is_err());
+    fn inputs_are_taken_apart() {
+        let state = |text: &str| input::<Register>(text).map(CombinerInput::from);
+        let expected = |register, component, mapping| Ok(CombinerInput { register, component, mapping });
+        let unsigned = InputMapping::UnsignedIdentity;
+        assert_eq!(state("tex0"), expected(Register::Texture0, Component::Rgb, unsigned));
+        assert_eq!(state("tex0.a"), expected(Register::Texture0, Component::Alpha, unsigned));
+        assert_eq!(state("zero:invert"), expected(Register::Zero, Component::Rgb, InputMapping::UnsignedInvert));
+        assert_eq!(
+            state("primary.b:half_bias_negate"),
+            expected(Register::PrimaryColor, Component::Blue, InputMapping::HalfBiasNegate)
+        );
+        assert_eq!(state("fog:SIGNED_NEGATE_NV"), expected(Register::Fog, Component::Rgb, InputMapping::SignedNegate));
+        let inverted = input("ef:invert").map(FinalInput::from);
+        let register = FinalRegister::ETimesF;
+        assert_eq!(inverted, Ok(FinalInput { register, component: Component::Rgb, invert: true }));
+        assert!(state("tex0:sine").is_err_and(|e| e.contains("half_bias, half_bias_negate")));
+        assert!(state("tex0.q").is_err() && state("").is_err());
     }
 
     #[test]

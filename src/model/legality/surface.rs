@@ -1,0 +1,38 @@
+//! What the chips take of surfaces: formats, and blending on them.
+
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::rop::surface;
+use crate::state::{BlendEquation, DepthFormat, Named, Profile, SurfaceFormat};
+
+/// The bytes of a text that are to blame, if it has them.
+type Place = Option<Range<usize>>;
+
+/// The finding that a chip lacks a format of surfaces.
+pub fn format(format: SurfaceFormat, profile: Profile, place: Place) -> Option<Diagnostic> {
+    let what = format!("surface format {}", format.name());
+    (format.is_nv2a_only() && profile == Profile::Nv10).then(|| only_nv2a("NB0314", place, &what, "ROP-5"))
+}
+
+/// The finding that a chip lacks a format of depth buffers.
+pub fn depth_format(format: DepthFormat, profile: Profile, place: Place) -> Option<Diagnostic> {
+    let what = format!("depth format {}", format.name());
+    (format.is_float() && profile == Profile::Nv10).then(|| only_nv2a("NB0314", place, &what, "DEP-3"))
+}
+
+/// The finding that a chip lacks a blend equation.
+pub fn blend_equation(equation: BlendEquation, profile: Profile, place: Place) -> Option<Diagnostic> {
+    let what = format!("blend equation {}", equation.name());
+    (equation.is_nv2a_only() && profile == Profile::Nv10).then(|| only_nv2a("NB0315", place, &what, "ROP-3"))
+}
+
+/// The finding that a surface cannot be blended.
+pub fn blending(format: SurfaceFormat, place: Place) -> Option<Diagnostic> {
+    (!surface::blends(format)).then(|| {
+        Diagnostic::error("NB0316", place, format!("surface format {} cannot be blended", format.name()))
+            .label("blending")
+            .rule("ROP-5")
+            .help("leave `blend` out, or draw into a target with a colour format")
+    })
+}

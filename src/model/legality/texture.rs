@@ -1,0 +1,159 @@
+//! What the chips take of textures: formats, sides, layers, levels and border texels, by kind.
+
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
+
+/// Checks textures for a chip. Each check gives the finding, if there is one, at the place that it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureChecks {
+    /// The chip.
+    pub profile: Profile,
+    /// Texels along a side that [`Limits`](crate::limits::Limits) allow, whatever the chip does.
+    pub largest_side: u32,
+}
+
+/// The bytes of a text that are to blame, if it has them.
+type Place = Option<Range<usize>>;
+
+fn cannot(what: &str, [width, height]: [u32; 2]) -> String {
+    format!("{what} cannot be {width} x {height}")
+}
+
+/// The finding that a side has no texels.
+pub fn no_texels(what: &str, sides: [u32; 2], place: Place) -> Diagnostic {
+    Diagnostic::error("NB0219", place, cannot(what, sides))
+        .label("no texels")
+        .rule("TEX-7")
+        .help("write at least 1 for both")
+}
+
+impl TextureChecks {
+    /// The format exists on the chip.
+    pub fn format(self, format: TextureFormat, place: Place) -> Option<Diagnostic> {
+        let what = format!("texture format {}", format.name());
+        (format.is_nv2a_only() && self.profile == Profile::Nv10).then(|| only_nv2a("NB0320", place, &what, "TEX-1"))
+    }
+
+    /// Sides that the chip and the limits allow: powers of two, or any of a rectangle; of a cube map square.
+    pub fn sides(
+        self,
+        kind: TextureKind,
+        format: TextureFormat,
+        [width, height]: [u32; 2],
+        place: Place,
+    ) -> Option<Diagnostic> {
+        let what = match kind {
+            TextureKind::TwoDimensional => "a texture",
+            TextureKind::Rectangle => "a rectangle texture",
+            TextureKind::Cube => "a face of a cube map",
+            TextureKind::ThreeDimensional => "a layer of a volume",
+        };
+        let most = self.largest_side.min(kind.largest_side(format, self.profile));
+        if width.max(height) > most {
+            return Some(self.too_large(what, [width, height], most, place));
+        }
+        if width == 0 || height == 0 {
+            return Some(no_texels(what, [width, height], place));
+        }
+        if kind == TextureKind::Rectangle {
+            return self.rectangle(format, [width, height], place);
+        }
+        if !(width.is_power_of_two() && height.is_power_of_two()) {
+            let next = |side: u32| side.checked_next_power_of_two().unwrap_or(most).min(most);
+            let finding = Diagnostic::error("NB0219", place, cannot(what, [width, height]))
+                .label("sides must be powers of two")
+                .rule("TEX-7");
+            let other = if kind == TextureKind::TwoDimensional { ", or write `kind: Rectangle`" } else { "" };
+            return Some(finding.help(format!("make it {} x {}, for example{other}", next(width), next(height))));
+        }
+        (kind == TextureKind::Cube && width != height).then(|| {
+            Diagnostic::error("NB0231", place, cannot("faces of a cube map", [width, height]))
+                .label("not square")
+                .rule("TEX-12")
+                .help("make every face as wide as high")
+        })
+    }
+
+    /// The finding that a side is too long.
+    pub fn too_large(self, what: &str, [width, height]: [u32; 2], most: u32, place: Place) -> Diagnostic {
+        let on = if self.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
+        Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
+            .label(format!("a side has at most {most} texels on {:?}", self.profile))
+            .help(format!("scale it down{on}"))
+    }
+
+    /// Linear layouts have neither blocks nor indices; nv10 has four of them, of even width.
+    fn rectangle(self, format: TextureFormat, [width, height]: [u32; 2], place: Place) -> Option<Diagnostic> {
+        let (message, help) = if !format.is_linear(Profile::Nv2a) {
+            let message = format!("a rectangle texture cannot be {}", format.name());
+            (message, "use another format, or another kind")
+        } else if !format.is_linear(self.profile) {
+            let message = format!("a rectangle texture cannot be {} on Nv10", format.name());
+            (message, "use A8R8G8B8, R5G6B5, A1R5G5B5 or I8, or write `profile: Nv2a`")
+        } else if self.profile == Profile::Nv10 && width % 2 == 1 {
+            let message = format!("a rectangle texture cannot be {width} x {height} on Nv10: its width is odd");
+            (message, "make the width even, or write `profile: Nv2a`")
+        } else {
+            return None;
+        };
+        Some(Diagnostic::error("NB0330", place, message).label("not as a rectangle").rule("TEX-7").help(help))
+    }
+
+    /// Layers of a volume, which nv2a has.
+    pub fn layers(self, kind: TextureKind, layers: u32, place: Place) -> Option<Diagnostic> {
+        if kind != TextureKind::ThreeDimensional {
+            return None;
+        }
+        if self.profile == Profile::Nv10 {
+            return Some(only_nv2a("NB0334", place, "a texture of three dimensions", "VOL-1"));
+        }
+        let legal = layers.is_power_of_two() && layers <= LARGEST_VOLUME;
+        (!legal).then(|| {
+            Diagnostic::error("NB0334", place, format!("a volume cannot have {layers} layers"))
+                .label("a power of two of them")
+                .rule("VOL-1")
+                .help(format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}"))
+        })
+    }
+
+    /// A rectangle has one level, and a volume.
+    pub fn levels(self, kind: TextureKind, levels: u32, place: Place) -> Option<Diagnostic> {
+        let (what, rule, help) = match kind {
+            TextureKind::ThreeDimensional => {
+                ("volume", "VOL-1", "write `levels: 1`: which of them a volume reads is not known")
+            }
+            TextureKind::Rectangle => {
+                ("rectangle texture", "TEX-9", "write `levels: 1`, or scale it to powers of two and leave `kind` out")
+            }
+            _ => return None,
+        };
+        let message = format!("a {what} cannot have {levels} levels");
+        (levels > 1).then(|| Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help))
+    }
+
+    /// A border colour is known of nv2a.
+    pub fn address_mode(self, mode: AddressMode, place: Place) -> Option<Diagnostic> {
+        let lacks = mode == AddressMode::ClampToBorder && self.profile == Profile::Nv10;
+        lacks.then(|| only_nv2a("NB0317", place, "a border colour", "TEX-7"))
+    }
+
+    /// Border texels: of nv2a, two dimensions, no blocks.
+    pub fn border(self, kind: TextureKind, format: TextureFormat, place: Place) -> Option<Diagnostic> {
+        if self.profile == Profile::Nv10 {
+            return Some(only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
+        }
+        if kind == TextureKind::TwoDimensional && !format.is_compressed() {
+            return None;
+        }
+        let what = if format.is_compressed() { format.name() } else { kind.name() };
+        let help = "border texels are modelled for uncompressed textures of two dimensions: write `border: false`";
+        Some(
+            Diagnostic::error("NB0331", place, format!("a texture with border texels cannot be {what}"))
+                .label("does not go with it")
+                .rule("TEX-7")
+                .help(help),
+        )
+    }
+}
