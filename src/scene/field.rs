@@ -2,11 +2,14 @@
 
 use std::ops::RangeInclusive;
 
+use super::lower::{alpha_reference, viewer};
 use super::outline::{Described, Form, Kind};
 use super::raw::Raw;
 use super::reader::{Name, Reader, quoted};
+use super::source::{AlphaReference, ViewerWord};
 use ninebit::limits::Limits;
 use ninebit::state::Named;
+use ninebit::vertex::Viewer;
 
 /// A structure has no field of this name.
 pub(super) const UNKNOWN: &str = "NB0201";
@@ -72,6 +75,37 @@ impl<'a, T: Named> Shown<'a> for Name<T> {
     }
 }
 
+impl<'a> Valued<'a> for AlphaReference {
+    type Value = u8;
+
+    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<u8> {
+        alpha_reference(reader, raw)
+    }
+}
+
+impl<'a> Shown<'a> for AlphaReference {
+    fn shown(value: &u8) -> String {
+        value.to_string()
+    }
+}
+
+impl<'a> Valued<'a> for ViewerWord {
+    type Value = Viewer;
+
+    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Viewer> {
+        viewer(reader, raw)
+    }
+}
+
+impl<'a> Shown<'a> for ViewerWord {
+    fn shown(value: &Viewer) -> String {
+        match value {
+            Viewer::Local => "Local".to_owned(),
+            Viewer::Infinite(direction) => format!("Infinite{}", listed(direction)),
+        }
+    }
+}
+
 /// Numbers as they are written in parentheses.
 pub(super) fn listed(values: &[impl ToString]) -> String {
     format!("({})", values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
@@ -108,6 +142,11 @@ impl Field {
 
     pub(super) fn within<T: ToString>(self, range: &RangeInclusive<T>) -> Self {
         Field { values: format!("{} to {}", range.start().to_string(), range.end().to_string()), ..self }
+    }
+
+    /// One of some words, of which the first is the default.
+    pub(super) fn one_of(self, words: &[&str]) -> Self {
+        Field { values: quoted(words), ..self }.written(words[0])
     }
 
     pub(super) fn up_to(self, limit: impl ToString) -> Self {
@@ -185,6 +224,11 @@ macro_rules! read_field {
             self.$field.as_ref().and_then(|raw| reader.flags(raw, counted, $default, said)).unwrap_or($default)
         }
     };
+    ($field:ident $type:ty, [one of $what:literal: $($word:literal),+]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<usize> {
+            reader.choice(&self.$field, $what, &[$($word),+])
+        }
+    };
     ($field:ident $type:ty, [color] $default:expr) => {
         pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> VertexColor {
             self.$field.as_ref().and_then(|raw| reader.value(raw)).unwrap_or(VertexColor::Bytes($default))
@@ -214,6 +258,7 @@ macro_rules! described_field {
         $field.written(&listed(&$default[..*$range.end()]))
     };
     ($field:expr, $type:ty, [flags $($more:tt)*] $default:expr) => { $field.written(&listed(&$default)) };
+    ($field:expr, $type:ty, [one of $what:literal: $($word:literal),+]) => { $field.one_of(&[$($word),+]) };
     ($field:expr, $type:ty, [color] $default:expr) => { $field.written(&listed(&$default)) };
 }
 pub(super) use described_field;

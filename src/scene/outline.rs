@@ -218,7 +218,7 @@ described! {
     source::Unit => Form::OrName(source::UnitState::form, "texture");
     Vec<u32>, Reserved, source::Matrix, source::MeshSource, source::ImageSource, source::ShaderStage, source::ShaderOperation,
     source::Attribute, source::ShaderConstant, source::CoordinateSource, source::Generator, source::Input, source::FinalInput,
-    source::Output, source::NormalSource, source::StageArgument, source::TransformFlags, source::Word => Form::Value(Kind::Other);
+    source::Output, source::NormalSource, source::StageArgument, source::TransformFlags, source::Word, source::ViewerWord, source::AlphaReference => Form::Value(Kind::Other);
 }
 impl<T: Named> Described for Name<T> {
     fn form() -> Form {

@@ -221,5 +221,9 @@ pub(super) struct StageArgument;
 
 /// `Count3`, or `(Count3, Projected)`.
 pub(super) struct TransformFlags;
+/// `Local`, `Infinite` or `Infinite(x, y, z)`.
+pub(super) struct ViewerWord;
+/// A byte, or `Float(...)`.
+pub(super) struct AlphaReference;
 /// A word without further meaning to the types: one of a few.
 pub(super) struct Word;

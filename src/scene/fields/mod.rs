@@ -13,6 +13,7 @@
 //! | `[numbers range, "a normal"]` | so many numbers in parentheses; of the default those that are not written |
 //! | `[flags "four"]` | so many flags in parentheses |
 //! | `[color]` | a colour; its default is bytes |
+//! | `[one of "axis": "Horizontal", "Vertical"]` | the index of the word; that of the first if it is absent |
 //! | `[any]` | a number, also one that is not finite |
 //! | `[or "words"]` | nothing: its readers say what holds where it is absent, the document in these words |
 

@@ -123,8 +123,8 @@ source! {
         file: String [required],
         /// the height of the brightest texel, in texels
         scale: f32 = normal_map::Options::default().scale as f32,
-        /// the channel that holds heights: `Red` or `Alpha`
-        channel: Word [or "`Red`"],
+        /// the channel that holds heights
+        channel: Word [one of "channel of heights": "Red", "Alpha"],
     }
     /// Values that repeat.
     struct Names {
@@ -244,7 +244,7 @@ source! {
         /// `(red, green, blue, alpha)`: what is written
         color_mask: Tuple<'a, bool> [flags "four", help(CHANNELS)] = [true; 4],
         /// only `false`: what the chip does is not known (ROP-7)
-        dither: bool [or "`false`"],
+        dither: bool = false,
         /// keeps fragments by the stored [stencil](#stencil-test), and changes it; the target needs one
         stencil_test: StencilTest<'a> [or "no test, no write"],
         /// this entry is a [clear](#clears), not a draw
@@ -257,7 +257,7 @@ source! {
         texgen: List<'a, CoordinateSource> [or "coordinates as they are given"],
         /// where reflections are seen from: `Local`, the origin of eye space; `Infinite`, far away, looking along -z; `Infinite(x, y, z)`, along that
         /// direction of eye space
-        viewer: Word [or "`Local`"],
+        viewer: ViewerWord = ninebit::vertex::Viewer::Local,
         /// a [matrix](#matrices) for each [coordinate set](#generated-texture-coordinates)
         texture_matrices: List<'a, Matrix> [or "coordinates as they are given"],
         /// `false`: the scene's [truth](#truth) says nothing of this draw
@@ -308,8 +308,8 @@ source! {
             [or "v0 `Position`, v3 `Normal`, v7 `TextureCoordinates`; of listed vertices v5 `Diffuse`, v6 `Specular`"],
         /// as in `Matrix`
         viewport: Viewport<'a> [or "the whole target"],
-        /// depths that clip space has before division by w: `MinusOneToOne`, as of OpenGL's projections, or `ZeroToOne`, as of Direct3D's
-        clip_depth: Word [or "`MinusOneToOne`"],
+        /// depths that clip space has before division by w, as of OpenGL's projections or as of Direct3D's
+        clip_depth: Word [one of "range of depths in clip space": "MinusOneToOne", "ZeroToOne"],
         /// what it runs over, as in `Matrix`
         vertices: VertexList [or "one of the two"], mesh: MeshSource [or "one of the two"],
     }
@@ -376,8 +376,8 @@ source! {
     struct LightVector {
         /// of a lamp, or the direction toward a light far away; one of the two
         position: Numbers, direction: Numbers,
-        /// `Tangent` (along tangent, binormal and normal) or `Object`
-        space: Word [or "`Tangent`"],
+        /// along tangent, binormal and normal, or as the vertices
+        space: Word [one of "space": "Tangent", "Object"],
     }
     struct HalfVector "half vector" {
         /// of the light, as above
@@ -385,7 +385,7 @@ source! {
         /// the viewer's position
         viewer: Numbers [required numbers 3..=3, "the viewer's position"],
         /// as above
-        space: Word [or "`Tangent`"],
+        space: Word [one of "space": "Tangent", "Object"],
     }
     struct Frustum "projection" {
         /// the window's edges, at the distance `near`
@@ -441,7 +441,7 @@ source! {
         /// how alpha compares with the reference
         function: Name<state::CompareFunction> [required],
         /// a byte; of a greater number the low eight bits count, and a warning says so. Or `Float(0.5)`, which becomes a byte as constants do
-        reference: Word [or "0"],
+        reference: AlphaReference = 0,
     }
     struct DepthTest {
         /// how a fragment's depth compares with the stored one

@@ -72,8 +72,8 @@ source! {
         width: u32 [required], height: u32 [required],
         /// colours of the first and the last column or row; between them each channel is rounded to the nearest step
         from: Color [required], to: Color [required],
-        /// `Horizontal` or `Vertical`
-        axis: Word [or "`Horizontal`"],
+        /// along rows, or down
+        axis: Word [one of "axis": "Horizontal", "Vertical"],
     }
     struct UnitState "texture unit" {
         /// its name
@@ -123,13 +123,16 @@ source! {
         /// the earlier unit whose colour it reads: 0 or 1 for unit 2, 0 to 2 for unit 3
         previous: u32 [or "the unit before" in 0..=2, "an earlier texture unit"],
         /// of a dot product: what that colour's bytes stand for (TSH-1 to TSH-3)
-        mapping: Name<state::DotMapping> [or "`ZeroToOne`"],
+        mapping: Name<state::DotMapping> = state::DotMapping::ZeroToOne,
         /// which of the four sets of coordinates
         coordinates: u32 [or "the unit's `coordinates`, else its number" in 0..=3, "a set of texture coordinates"],
     }
     struct CullFragment {
-        /// `Negative` or `NotNegative`: what drops the fragment
-        s: Word [or "`Negative`"], t: Word [or "`Negative`"], r: Word [or "`Negative`"], q: Word [or "`Negative`"],
+        /// what drops the fragment
+        s: Word [one of "sign to be dropped": "Negative", "NotNegative"],
+        t: Word [one of "sign to be dropped": "Negative", "NotNegative"],
+        r: Word [one of "sign to be dropped": "Negative", "NotNegative"],
+        q: Word [one of "sign to be dropped": "Negative", "NotNegative"],
     }
     struct BumpEnvironment "operation" {
         /// `(m0, m1, m2, m3)`

@@ -61,14 +61,14 @@ pub(super) fn source<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribut
         5 => {
             let fields = reader.read(&Raw::<source::LightVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
-            let tangent_space = in_tangent_space(reader, &fields.space);
+            let tangent_space = fields.space(reader).map(|space| space == 0);
             Source::Light { light: light?, tangent_space: tangent_space? }
         }
         _ => {
             let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
             let viewer = fields.viewer(reader).map(|[x, y, z, _]| [x, y, z]);
-            let tangent_space = in_tangent_space(reader, &fields.space);
+            let tangent_space = fields.space(reader).map(|space| space == 0);
             Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
         }
     })
@@ -99,11 +99,6 @@ pub(super) fn place<'a>(
             ))
         }
     }
-}
-
-/// Whether a vector stands along the tangents.
-fn in_tangent_space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
-    reader.choice(raw, "space", &["Tangent", "Object"]).map(|space| space == 0)
 }
 
 /// Where the attributes of a mesh go.

@@ -89,8 +89,7 @@ fn draw<'a>(
     let truth = fields.truth.as_ref().and_then(|raw| Some((reader.read(raw)?, reader.span(raw))));
     let mut geometry = fields.vertices(reader).and_then(|raw| geometry(reader, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, &fields.texgen, &fields.texture_matrices);
-    let viewer =
-        fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(ninebit::vertex::Viewer::Local);
+    let viewer = fields.viewer(reader);
     let fog = fog::fog(reader, &fields.fog);
     let mut units = unit::units(reader, &fields.textures);
     shader::shader(reader, &mut units, &fields.texture_shader);

@@ -48,7 +48,9 @@ use ninebit::state::{Profile, Scene};
 use ninebit_program::{finding, warning};
 pub use program::ProgramLanguage;
 pub(super) use program_file::program_file;
+pub(super) use raster::alpha_reference;
 pub(super) use target::Targets;
+pub(super) use texgen::viewer;
 pub(super) use texture::Textures;
 
 /// Bytes of the text.

@@ -59,11 +59,9 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
     }
     draw.blend_constant = color::bytes(fields.blend_constant(reader));
     draw.color_mask = fields.color_mask(reader);
-    if let Some(raw) = &fields.dither
-        && reader.read(raw) == Some(true)
-    {
+    if fields.dither(reader) {
         reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), "what dithering does is not known")
+            Diagnostic::error("NB0402", reader.place(&fields.dither), "what dithering does is not known")
                 .label("cannot be modelled")
                 .rule("ROP-7")
                 .note("no document and no capture gives the dither matrix")
@@ -76,12 +74,12 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
 fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>) -> Option<AlphaTest> {
     let fields = reader.read(raw)?;
     let function = fields.function(reader);
-    let reference = fields.reference.as_ref().map_or(Some(0), |raw| alpha_reference(reader, raw));
-    Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
+    let reference = fields.reference(reader);
+    Some(AlphaTest { function: reader.name(&function?)?, reference })
 }
 
 /// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
-fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<u8> {
+pub(crate) fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaReference>) -> Option<u8> {
     if let ("Float", rest) = raw.split() {
         let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1..=1, [0.0; 4])?;
         return Some(constant(value));

@@ -2,7 +2,7 @@
 
 use super::unit::Units;
 use super::*;
-use ninebit::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
+use ninebit::state::{Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 
 /// Operations as they are written; the last three are refused by name.
 const OPERATIONS: &[&str] = &[
@@ -84,10 +84,8 @@ fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage:
     stage.coordinate_set = fields.coordinates(reader).map_or(stage.coordinate_set, |set| set as usize);
     stage.previous = fields.previous(reader).map_or(stage.previous, |unit| unit as usize);
     places.previous = reader.place(&fields.previous);
-    if let Some(raw) = &fields.mapping {
-        stage.mapping = reader.name::<DotMapping>(raw)?;
-        places.mapping = Some(reader.span(raw));
-    }
+    stage.mapping = fields.mapping(reader);
+    places.mapping = reader.place(&fields.mapping);
     let raw = operation_raw?;
     places.stage = reader.span(&raw);
     stage.operation = operation(reader, &raw)?;
@@ -137,10 +135,8 @@ fn fields<'a, T: source::Expected<'a> + Default>(reader: &mut Reader<'a>, rest: 
 
 fn cull<'a>(reader: &mut Reader<'a>, rest: &'a str) -> Option<ShaderOperation> {
     let fields = fields::<source::CullFragment<'a>>(reader, rest)?;
-    let mut drops_not_negative = [false; 4];
-    for (field, slot) in [&fields.s, &fields.t, &fields.r, &fields.q].into_iter().zip(&mut drops_not_negative) {
-        *slot = reader.choice(field, "sign to be dropped", &["Negative", "NotNegative"])? == 1;
-    }
+    let signs = [fields.s(reader)?, fields.t(reader)?, fields.r(reader)?, fields.q(reader)?];
+    let drops_not_negative = signs.map(|sign| sign == 1);
     Some(ShaderOperation::CullFragment { drops_not_negative })
 }
 

@@ -81,7 +81,7 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
 }
 
 /// `Local`, `Infinite`, or `Infinite(x, y, z)`.
-pub(super) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Viewer> {
+pub(crate) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ViewerWord>) -> Option<Viewer> {
     const VIEWERS: &[&str] = &["Local", "Infinite"];
     match reader.variant_of(raw, "viewer", VIEWERS, 1)? {
         (0, _) => Some(Viewer::Local),

@@ -259,7 +259,7 @@ fn heights<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::HeightFile<'a>>) -
     let image = picture(reader, &file)?;
     let default = normal_map::Options::default();
     let scale = f64::from(fields.scale(reader));
-    let channel = reader.choice(&fields.channel, "channel of heights", &["Red", "Alpha"])?;
+    let channel = fields.channel(reader)?;
     let channel = [HeightChannel::Red, HeightChannel::Alpha][channel];
     Some((image, normal_map::Options { scale, channel, ..default }))
 }

@@ -19,7 +19,7 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
     let mut viewport = viewport(reader, &fields.viewport, target);
-    if reader.choice(&fields.clip_depth, "range of depths in clip space", &["MinusOneToOne", "ZeroToOne"]) == Some(1) {
+    if fields.clip_depth(reader) == Some(1) {
         depth_from_zero(&mut viewport);
     }
     let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());

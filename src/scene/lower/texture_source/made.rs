@@ -39,7 +39,7 @@ pub(super) fn picture<'a>(reader: &mut Reader<'a>, kind: Variant, text: &'a str,
             let sides = self::sides(reader, sides, request)?;
             let from = fields.from(reader).and_then(|raw| color::constant(reader, &raw));
             let to = fields.to(reader).and_then(|raw| color::constant(reader, &raw));
-            let vertical = reader.choice(&fields.axis, "axis", &["Horizontal", "Vertical"])? == 1;
+            let vertical = fields.axis(reader)? == 1;
             let (from, to, last) = (from?, to?, if vertical { sides.1 - 1 } else { sides.0 - 1 });
             let mix = move |a: u8, b: u8, at: u32| match last {
                 0 => a,
