@@ -20,6 +20,11 @@ fn is_hidden(c: char) -> bool {
             | '\u{fff9}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}' | '\u{e0000}'..='\u{e007f}')
 }
 
+/// A number of things: `1 pixel`, `2 pixels`.
+pub fn count(number: u64, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
 /// A name, or another text of one line: `\n`, `\t`, `\u{1b}` for what must not be there.
 ///
 /// ```

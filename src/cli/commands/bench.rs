@@ -14,7 +14,7 @@ use ninebit_files::read::page;
 use serde::Serialize;
 
 use super::scene::{Failed, PolicyArguments, each, load};
-use super::{Context, EngineArguments, Failure, FormatArguments, count};
+use super::{Context, EngineArguments, Failure, FormatArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -182,7 +182,7 @@ fn peak_memory() -> Option<u64> {
 
 fn text(document: &Document) -> String {
     let Document { engine, isa, threads, .. } = document;
-    let threads = count(*threads as u64, "thread");
+    let threads = shown::count(*threads as u64, "thread");
     let mut text = format!(
         "engine {engine}, {isa}, {threads}. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
          {:>10} {:>10} {:>10} {:>10} {:>22}  scene\n",

@@ -13,7 +13,7 @@ use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::{EngineArguments, Failure, Format, count};
+use super::{EngineArguments, Failure, Format};
 use ninebit_scene::diff::{self, Difference, Options};
 
 /// Frames of a real NV2A, drawn again.
@@ -166,7 +166,7 @@ fn text(outcomes: &[Outcome], has_captures: bool) -> String {
         *of = (of.0 + 1, of.1 + known.pixels);
     }
     for (rule, (frames, pixels)) in &open {
-        let _ = writeln!(text, "open, {rule}: {}, {}", count(*frames as u64, "frame"), diff::pixels(*pixels));
+        let _ = writeln!(text, "open, {rule}: {}, {}", shown::count(*frames as u64, "frame"), diff::pixels(*pixels));
     }
     let differing: Vec<&Outcome> = outcomes.iter().filter(|outcome| !outcome.is_as_known()).collect();
     for Outcome { frame, difference, exact } in differing.iter().take(SHOWN) {

@@ -7,7 +7,7 @@ use ninebit::shown;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
-use super::{Context, Cost, Failure, Format, SceneArguments, count};
+use super::{Context, Cost, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -33,7 +33,7 @@ fn text(scene: &Scene, cost: &Cost) -> String {
         let _ = writeln!(text, "{name:<16}{value}");
     };
     row("profile", scene.profile.name().to_owned());
-    row("draws", format!("{} ({}, {} vertices)", cost.draws, count(cost.triangles, "triangle"), cost.vertices));
+    row("draws", format!("{} ({}, {} vertices)", cost.draws, shown::count(cost.triangles, "triangle"), cost.vertices));
     for target in &scene.targets {
         let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
         let (width, height, format) = (target.width, target.height, target.format.name());

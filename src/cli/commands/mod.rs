@@ -171,11 +171,6 @@ fn named<T: Named>(text: &str) -> Result<T, String> {
     one_of(T::NAMES, text).map(|index| T::ALL[index])
 }
 
-/// A number of things.
-fn count(number: u64, thing: &str) -> String {
-    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
-}
-
 /// Reads a whole number from 0 to `MOST`.
 fn up_to<const MOST: usize>(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|number| *number <= MOST).ok_or_else(|| format!("not a number from 0 to {MOST}"))

@@ -321,8 +321,7 @@ impl Summary {
 
 impl std::fmt::Display for Summary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let plural = if self.scenes == 1 { "" } else { "s" };
-        write!(f, "{} scene{plural}: {} as expected", self.scenes, self.matching)?;
+        write!(f, "{}: {} as expected", shown::count(self.scenes as u64, "scene"), self.matching)?;
         for (count, what) in [
             (self.differing, "different"),
             (self.failed, "failed"),

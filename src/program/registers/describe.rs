@@ -3,6 +3,7 @@
 use super::code::{final_of, input_of, portion_of};
 use super::{RegisterWords, Word};
 use crate::text::words::{final_operand, operand, register};
+use ninebit::shown;
 use ninebit::state::{Bias, Named, Profile, Register, Scale};
 
 /// A word and what it says.
@@ -81,9 +82,8 @@ fn meaning(words: &RegisterWords, word: Word, index: usize) -> String {
 }
 
 fn stages(count: u32, mux: u32) -> String {
-    let plural = if count == 1 { "" } else { "s" };
     let bit = if mux & 1 == 1 { "most" } else { "least" };
-    format!("{count} stage{plural}; mux by the {bit} significant bit")
+    format!("{}; mux by the {bit} significant bit", shown::count(count.into(), "stage"))
 }
 
 fn named<const N: usize>(names: &str, values: [String; N]) -> String {

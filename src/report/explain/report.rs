@@ -18,8 +18,7 @@ pub fn explanation_text(plan: &Plan, draws: &[DrawExplanation], counted: Option<
 }
 
 fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Option<&[DrawCounts]>) -> std::fmt::Result {
-    let plural = if draws.len() == 1 { "" } else { "s" };
-    writeln!(out, "profile {}, {} draw{plural}", plan.profile.name(), draws.len())?;
+    writeln!(out, "profile {}, {}", plan.profile.name(), shown::count(draws.len() as u64, "draw"))?;
     for (number, draw) in draws.iter().enumerate() {
         writeln!(out, "\ndraw {number} `{}` to `{}`", shown::name(&draw.name), shown::name(&draw.target))?;
         if let Some((program, vertices)) = &draw.vertex_program {

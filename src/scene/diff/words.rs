@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::Histogram;
+use ninebit::shown;
 
 /// Names of the channels in the order of a pixel's bytes.
 pub const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
@@ -46,7 +47,7 @@ fn write_histogram(out: &mut String, title: &str, channels: &[(&str, &Histogram)
 
 /// `1 pixel`, `2 pixels`.
 pub fn pixels(count: u64) -> String {
-    format!("{count} pixel{}", if count == 1 { "" } else { "s" })
+    shown::count(count, "pixel")
 }
 
 /// A share in percent, rounded to two digits; what is not nothing, and not all, is not shown as such.

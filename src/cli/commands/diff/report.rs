@@ -7,7 +7,6 @@ use ninebit_report::{trace_text, trace_value};
 use ninebit_scene::diff::{CHANNELS, Difference, Histogram, Region, histogram_text, pixels, share};
 use serde_json::{Value, json};
 
-use super::super::count;
 use super::{Findings, SceneFindings};
 use crate::replay::report::histograms;
 
@@ -72,7 +71,7 @@ fn write_difference(out: &mut String, findings: &Findings<'_>) -> std::fmt::Resu
 
 fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result {
     let shown = difference.regions.len() as u64;
-    writeln!(out, "\n{}", count(difference.region_count, "region"))?;
+    writeln!(out, "\n{}", shown::count(difference.region_count, "region"))?;
     if shown > 0 {
         writeln!(out, "{:>4}{:>10}  {:<24}{:<14}largest difference", "", "pixels", "columns and rows", "first pixel")?;
     }
