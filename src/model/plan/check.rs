@@ -56,8 +56,7 @@ impl Check<'_> {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
-        let (rule, message, help) = (rule.into(), message.into(), help.into());
-        self.errors.push(PlanError { draw: self.draw, vertex: None, unit: None, code, rule, message, help });
+        self.errors.push(PlanError { draw: self.draw, ..PlanError::new(code, rule, message, help) });
     }
 
     fn found(&mut self, finding: Diagnostic) {

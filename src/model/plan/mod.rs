@@ -63,6 +63,17 @@ pub struct PlanError {
 }
 
 impl PlanError {
+    /// An error of the scene as a whole.
+    fn new(
+        code: &'static str,
+        rule: impl Into<Option<&'static str>>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        let (rule, message, help) = (rule.into(), message.into(), help.into());
+        PlanError { draw: None, vertex: None, unit: None, code, rule, message, help }
+    }
+
     /// The same as a finding, of the part of a text that is to blame.
     pub fn diagnostic(&self, place: impl Into<Option<Range<usize>>>) -> Diagnostic {
         let finding = Diagnostic::error(self.code, place, self.message.as_str()).help(self.help.as_str());
@@ -244,28 +255,21 @@ impl Plan {
             match assemble(draw) {
                 Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, (&black, &stray), options)),
                 Err(positions) => errors.extend(positions.into_iter().map(|p| {
-                    PlanError {
-                        draw: Some(index),
-                        vertex: Some(p.vertex),
-                        unit: None,
-                        code: "NB0322",
-                        rule: Some("RAS-0"),
-                        message: format!(
-                            "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
-                            p.window[0], p.window[1], p.window[3]
-                        ),
-                        help: match draw.positions {
-                            Positions::Window => {
-                                "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
-                                 a vertex far outside the view can be cut off by splitting its triangle"
-                            }
-                            Positions::Clip(_) => {
-                                "keep w at most 2^20; what lies behind the viewer or far outside the view is cut off, \
-                                 as long as its numbers are not so large that none is left in 32 bits"
-                            }
+                    let [x, y, _, w] = p.window;
+                    let message =
+                        format!("window position x = {x}, y = {y}, w = {w} lies outside the rasteriser's domain");
+                    let help = match draw.positions {
+                        Positions::Window => {
+                            "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
+                             a vertex far outside the view can be cut off by splitting its triangle"
                         }
-                        .to_string(),
-                    }
+                        Positions::Clip(_) => {
+                            "keep w at most 2^20; what lies behind the viewer or far outside the view is cut off, \
+                             as long as its numbers are not so large that none is left in 32 bits"
+                        }
+                    };
+                    let error = PlanError::new("NB0322", "RAS-0", message, help);
+                    PlanError { draw: Some(index), vertex: Some(p.vertex), ..error }
                 })),
             }
         }
@@ -327,15 +331,10 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
             };
             if turns && finite && set[3] != 1.0 && found < MAX_ERRORS {
                 found += 1;
-                errors.push(PlanError {
-                    draw: Some(index),
-                    vertex: Some(vertex),
-                    unit: None,
-                    code: "NB0402",
-                    rule: Some("CYL-1"),
-                    message: format!("a texture with a cylindrical wrap has q = {}", set[3]),
-                    help: "what comes out of projected coordinates is not known: take q = 1".to_string(),
-                });
+                let message = format!("a texture with a cylindrical wrap has q = {}", set[3]);
+                let help = "what comes out of projected coordinates is not known: take q = 1";
+                let error = PlanError::new("NB0402", "CYL-1", message, help);
+                errors.push(PlanError { draw: Some(index), vertex: Some(vertex), ..error });
             }
             if outside && found < MAX_ERRORS {
                 found += 1;
@@ -350,15 +349,10 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                     }
                     _ => "is not a finite number".to_string(),
                 };
-                errors.push(PlanError {
-                    draw: Some(index),
-                    vertex: Some(vertex),
-                    unit: None,
-                    code: "NB0322",
-                    rule: Some("RAS-0"),
-                    message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
-                    help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
-                });
+                let message = format!("texture coordinate ({}, {}) {what}", set[0], set[1]);
+                let help = "shift the coordinates by whole repeats, or split the geometry";
+                let error = PlanError::new("NB0322", "RAS-0", message, help);
+                errors.push(PlanError { draw: Some(index), vertex: Some(vertex), ..error });
             }
         }
     }

@@ -16,8 +16,7 @@ impl Check<'_> {
         help: impl Into<String>,
     ) {
         let code = if unknown { "NB0402" } else { "NB0333" };
-        let (draw, help) = (self.draw, help.into());
-        self.errors.push(PlanError { draw, vertex: None, unit: Some(unit), code, rule: Some(rule), message, help });
+        self.errors.push(PlanError { draw: self.draw, unit: Some(unit), ..PlanError::new(code, rule, message, help) });
     }
 
     /// How a unit samples a texture.
