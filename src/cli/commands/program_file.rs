@@ -8,8 +8,8 @@ use ninebit::plan::Plan;
 use ninebit::state::{Named, Profile, Scene};
 use ninebit_scene::{ProgramLanguage, load_program};
 
-use super::scene::refused;
-use super::{Context, Failure, Report};
+use super::scene::refused_beside;
+use super::{Context, Failure};
 
 /// What a program is written in, as the command line calls it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -72,11 +72,9 @@ impl ProgramArguments {
 
     /// The program as that of the one draw of a scene, whose units all have a texture.
     pub(crate) fn read(&self, path: &Path, language: Language, context: Context) -> Result<(Scene, Plan), Failure> {
-        load_program(path, language.into(), self.profile, &Limits::default()).map_err(|error| {
-            let note = "`--profile nv10` or `nv2a` chooses the chip, `--from` the language";
-            let text = format!("{}\n{note}\n", error.render(context.color));
-            Failure { report: Report::Text(text), ..refused(error) }
-        })
+        let note = "`--profile nv10` or `nv2a` chooses the chip, `--from` the language";
+        let loaded = load_program(path, language.into(), self.profile, &Limits::default());
+        loaded.map_err(|error| refused_beside(error, note, context))
     }
 
     /// The name of the chip.

@@ -97,6 +97,12 @@ pub(crate) fn refused(error: SceneError) -> Failure {
     Failure { exit, report: Report::Scene(Box::new(error)) }
 }
 
+/// Options or a program that stand for a scene which was not accepted; `note` is said under its findings.
+pub(crate) fn refused_beside(error: SceneError, note: &str, context: Context) -> Failure {
+    let text = format!("{}\n{note}\n", error.render(context.color));
+    Failure { report: Report::Text(text), ..refused(error) }
+}
+
 /// What became of several scenes.
 pub(crate) struct Each<T> {
     /// What was made of those that are sound.

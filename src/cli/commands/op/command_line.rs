@@ -7,8 +7,8 @@ use ninebit::diagnostic::{Diagnostic, Severity, Source};
 use ninebit::shown;
 use ninebit_scene::SceneError;
 
-use super::{Context, Failure, Report};
-use crate::commands::scene::refused;
+use super::{Context, Failure};
+use crate::commands::scene::refused_beside;
 
 /// The command line as one text, for messages that point into it.
 pub(super) struct CommandLine {
@@ -61,8 +61,7 @@ impl CommandLine {
         if error.diagnostics.is_empty() {
             return Ok(());
         }
-        let text = format!("{}\n`--profile nv10` or `nv2a` chooses the chip\n", error.render(context.color));
-        Err(Failure { report: Report::Text(text), ..refused(error) })
+        Err(refused_beside(error, "`--profile nv10` or `nv2a` chooses the chip", context))
     }
 }
 
