@@ -7,7 +7,7 @@ use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
 use ninebit::legality::{Notation, check};
-use ninebit::state::Combiners;
+use ninebit::state::{Combiners, named};
 use ninebit_program::c_source::Style;
 use ninebit_program::text::{self, words::Words};
 use ninebit_program::{Aside, Pasted, Places};
@@ -75,21 +75,24 @@ pub(super) fn program<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Program
     (reader.errors == errors || matches!(form, Form::Api(_))).then_some(Program { form, asides })
 }
 
-/// What a pixel program in a file of its own is written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ProgramLanguage {
-    /// The combiner language.
-    Combiners,
-    /// Register words: names or methods with their words.
-    Registers,
-    /// Calls of NV_register_combiners.
-    CombinerCalls,
-    /// Calls or effect states of Direct3D's texture stages.
-    TextureStages,
-    /// Calls of OpenGL's texture environment.
-    TextureEnvironment,
-    /// A Direct3D pixel shader, ps.1.1.
-    PixelShader,
+named! {
+    /// What a pixel program in a file of its own is written in, by the names of the command line.
+    pub enum ProgramLanguage =>
+    /// A line about it.
+    about: &'static str {
+        /// The combiner language.
+        Combiners = "combiners" => "The combiner language",
+        /// Names or methods of registers with their words.
+        Registers = "registers" => "Register words: names or methods with their words",
+        /// Calls of NV_register_combiners.
+        CombinerCalls = "combiner-calls" => "Calls of NV_register_combiners",
+        /// Direct3D's texture stages.
+        TextureStages = "texture-stages" => "Calls or effect states of Direct3D's texture stages",
+        /// OpenGL's texture environment.
+        TextureEnvironment = "texture-environment" => "Calls of OpenGL's texture environment",
+        /// Direct3D's pixel shaders.
+        PixelShader = "pixel-shader" => "A Direct3D pixel shader, ps.1.1",
+    }
 }
 
 /// Reads a pixel program in a file that no scene names. `None` once the reason that it is none has been recorded.

@@ -21,7 +21,7 @@ use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
 use ninebit::state::Profile;
 
-use super::program_file::{Language, ProgramArguments};
+use super::program_file::ProgramArguments;
 use super::{Context, Exit, Failure, Format, PolicyArguments, Report, vectors};
 use command_line::CommandLine;
 use inputs::{Assignment, Contents, FourInputs, number};

@@ -8,12 +8,12 @@ use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::channel_name;
 use ninebit::state::{Combiners, Policies, Profile, Register};
 use ninebit::trace::{Observer, Step};
+use ninebit_scene::ProgramLanguage;
 use serde_json::json;
 
 use super::final_combiner::planned;
 use super::{
-    Assignment, Common, Context, Failure, Language, Operation, PolicyArguments, ProgramArguments, Results, Setup,
-    inputs,
+    Assignment, Common, Context, Failure, Operation, PolicyArguments, ProgramArguments, Results, Setup, inputs,
 };
 
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     }
     let (file, language) = match (&arguments.file, &arguments.words) {
         (Some(file), _) => (file, arguments.program.language(file)),
-        (None, Some(words)) => (words, Some(Language::Registers)),
+        (None, Some(words)) => (words, Some(ProgramLanguage::Registers)),
         (None, None) => return Err(Failure::usage("no program is given", "name its file")),
     };
     let language = language.ok_or_else(|| {
