@@ -6,11 +6,13 @@ use ninebit_test_support::random_scene;
 
 use std::path::Path;
 
+use ninebit::combiner::registers::Registers;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::state::*;
 use ninebit_program::text::{parse, print, read};
+use ninebit_program::{combiner_calls, pixel_shader};
 use ninebit_scene as scene;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -305,4 +307,28 @@ fn the_same_program_in_every_language_draws_the_same_bytes() {
         assert_eq!((&text, &text_picture), (&program, &picture), "{name}");
     }
     assert_eq!(words, program);
+}
+
+/// The same steps in code that take a text to combiners and back, or run it, in three languages.
+#[test]
+fn programs_are_read_printed_and_run_by_code() {
+    let text = "{ rgb { spare0 = expand(tex0) . expand(col0); } } out.rgb = unsigned(spare0); out.a = spare0.a;";
+    let program = parse(text, Profile::Nv10).expect("a sound program").combiners;
+    assert!(program.stages[0].rgb.ab_dot_product);
+    assert_eq!(parse(&print(&program), Profile::Nv10).expect("what is printed can be read").combiners, program);
+    let mut registers = Registers::new();
+    registers.load(Register::Texture0, [128, 128, 255, 255]);
+    registers.load(Register::PrimaryColor, [128, 200, 230, 255]);
+    assert_eq!(program.run(registers, &Policies::DEFAULT), [203, 203, 203, 255]);
+
+    let text = "glFinalCombinerInputNV(GL_VARIABLE_D_NV, GL_PRIMARY_COLOR_NV, GL_UNSIGNED_IDENTITY_NV, GL_RGB);";
+    let program = combiner_calls::parse(text).expect("a sound call").program.combiners;
+    assert_eq!(program.final_combiner.inputs[3].register, FinalRegister::PrimaryColor);
+
+    let text = "ps.1.1\ntex t0 // normals\ntex t1\ndp3_sat r1, t0_bx2, v0_bx2\nmul r0, t1, r1";
+    let shader = pixel_shader::parse(text).expect("a sound program").program;
+    let lowered = pixel_shader::lower(&shader, &pixel_shader::Context::new(Profile::Nv2a)).expect("two general stages");
+    assert_eq!(lowered.combiners.stages.len(), 2);
+    let printed = pixel_shader::print(&shader);
+    assert_eq!(pixel_shader::parse(&printed).map(|again| pixel_shader::print(&again.program)), Ok(printed));
 }

@@ -4,15 +4,7 @@
 //! integer operations; rules of numbers are read in a lane of their own. Each line knows its range, so that what cannot happen is left out and no width is guessed.
 //! What the four languages write differently is all that they have of their own.
 //!
-//! ```
-//! use ninebit::state::{Combiners, GeneralStage};
-//! use ninebit_lower::{Function, Language, Named, Options};
-//!
-//! let program = Combiners { stages: vec![GeneralStage::initial([[0; 4]; 2])], ..Combiners::default() };
-//! let function = Function::of_program(&program, &Options::default());
-//! let named = Named { name: "shade".to_string(), about: "the initial program".to_string(), function: &function };
-//! println!("{}", Language::Glsl.print(&[named]));
-//! ```
+//! The example `shader` prints a combiner program as GLSL.
 
 pub mod code;
 mod generic;

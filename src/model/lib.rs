@@ -28,22 +28,7 @@
 //! One pixel: a white triangle, its colour halved by the final combiner (128 of 255, times 255, rounded to the nearest 255th).
 //!
 //! ```
-//! use ninebit::engine::{RenderOptions, render};
-//! use ninebit::plan::{Plan, PlanOptions};
-//! use ninebit::state::*;
-//!
-//! let mut combiners = Combiners::default();
-//! combiners.final_combiner = FinalCombiner { constants: [[128; 4], [0; 4]], ..FinalCombiner::default() };
-//! combiners.final_combiner.inputs[0].register = FinalRegister::ConstantColor0; // A
-//! combiners.final_combiner.inputs[1].register = FinalRegister::PrimaryColor; // B
-//! let corner = |x: f32, y: f32| Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() };
-//! let vertices = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 2.0)].into();
-//! let draw = Draw { vertices, indices: [0, 1, 2].into(), combiners, ..Draw::default() };
-//! let targets = vec![Target::new(1, 1, SurfaceFormat::A8R8G8B8)];
-//! let scene = Scene { profile: Profile::Nv2a, targets, draws: vec![draw], ..Scene::default() };
-//! let plan = Plan::compile(&scene, &PlanOptions::default()).expect("within the limits");
-//! let frames = render(&plan, &RenderOptions::default());
-//! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);
+#![doc = include_str!("examples/pixel.rs")]
 //! ```
 
 pub mod algebra;

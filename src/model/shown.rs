@@ -26,14 +26,6 @@ pub fn count(number: u64, thing: &str) -> String {
 }
 
 /// A name, or another text of one line: `\n`, `\t`, `\u{1b}` for what must not be there.
-///
-/// ```
-/// use ninebit::shown;
-/// assert_eq!(shown::name("wall"), "wall");
-/// assert_eq!(shown::name("a\n::error::b\u{1b}[31m"), r"a\n::error::b\u{1b}[31m");
-/// assert_eq!(shown::name("::error::b"), r"\u{3a}:error::b");
-/// assert_eq!(shown::name("##[error]b"), r"#\u{23}[error]b");
-/// ```
 pub fn name(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
@@ -133,6 +125,14 @@ pub fn excerpt(text: &str) -> Cow<'_, str> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn names_are_one_line_that_gives_no_orders() {
+        assert_eq!(name("wall"), "wall");
+        assert_eq!(name("a\n::error::b\u{1b}[31m"), r"a\n::error::b\u{1b}[31m");
+        assert_eq!(name("::error::b"), r"\u{3a}:error::b");
+        assert_eq!(name("##[error]b"), r"#\u{23}[error]b");
+    }
 
     /// Characters that names are made of, the hostile ones among them often.
     fn hostile() -> impl Strategy<Value = String> {

@@ -1,13 +1,4 @@
 //! Register combiners as the calls of OpenGL that set them, pasted: NV_register_combiners and NV_register_combiners2.
-//!
-//! ```
-//! use ninebit_program::combiner_calls::parse;
-//! use ninebit::state::FinalRegister;
-//!
-//! let text = "glFinalCombinerInputNV(GL_VARIABLE_D_NV, GL_PRIMARY_COLOR_NV, GL_UNSIGNED_IDENTITY_NV, GL_RGB);";
-//! let program = parse(text).expect("a sound call").program;
-//! assert_eq!(program.combiners.final_combiner.inputs[3].register, FinalRegister::PrimaryColor);
-//! ```
 
 use std::ops::Range;
 

@@ -22,23 +22,7 @@ impl Combiners {
     /// the program's, and the alpha of SPARE0 begins as that of TEXTURE0 (CMB-13). Legality is not asked for: [`legality::check`](crate::legality::check)
     /// does that.
     ///
-    /// ```
-    /// use ninebit::combiner::registers::Registers;
-    /// use ninebit::state::{CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, Policies, Portion, Register};
-    ///
-    /// // SPARE0 = expand(TEXTURE0) . expand(PRIMARY), shown as it is.
-    /// let input = |register| CombinerInput { register, mapping: InputMapping::ExpandNormal, component: Component::Rgb };
-    /// let mut rgb = Portion { ab_dot_product: true, ab_output: Register::Spare0, ..Portion::idle(Component::Rgb) };
-    /// (rgb.inputs[0], rgb.inputs[1]) = (input(Register::Texture0), input(Register::PrimaryColor));
-    /// let mut program = Combiners { stages: vec![GeneralStage { rgb, ..GeneralStage::default() }], ..Combiners::default() };
-    /// program.final_combiner = FinalCombiner::default();
-    /// program.final_combiner.inputs[3].register = FinalRegister::Spare0; // D
-    ///
-    /// let mut registers = Registers::new();
-    /// registers.load(Register::Texture0, [128, 128, 255, 255]);
-    /// registers.load(Register::PrimaryColor, [128, 200, 230, 255]);
-    /// assert_eq!(program.run(registers, &Policies::DEFAULT), [203, 203, 203, 255]);
-    /// ```
+    /// The example `stage` runs a program on every pair of bytes.
     pub fn run(&self, registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
         let mut observer = Silent;
         let constants = |_: &mut _, of: [[u8; 4]; 2], _| of.map(|constant| constant.map(i32::from));

@@ -1,16 +1,5 @@
 //! Direct3D pixel shaders, version 1.1: read, held against the language's rules, lowered to register combiners and a texture shader, printed.
 //!
-//! ```
-//! use ninebit_program::pixel_shader::{Context, lower, parse, print};
-//! use ninebit::state::Profile;
-//!
-//! let text = "ps.1.1\ntex t0 // normals\ntex t1\ndp3_sat r1, t0_bx2, v0_bx2\nmul r0, t1, r1";
-//! let shader = parse(text).expect("a sound program").program;
-//! let lowered = lower(&shader, &Context::new(Profile::Nv2a)).expect("two general stages");
-//! assert_eq!(lowered.combiners.stages.len(), 2);
-//! assert_eq!(parse(&print(&shader)).map(|again| print(&again.program)), Ok(print(&shader)));
-//! ```
-//!
 //! The language is in `docs/pixel-shader.md`.
 
 mod check;

@@ -1,16 +1,5 @@
 //! The combiner language: general stages and final combiner as statements.
 //!
-//! ```
-//! use ninebit_program::text::{parse, print};
-//! use ninebit::state::Profile;
-//!
-//! let text = "{ rgb { spare0 = expand(tex0) . expand(col0); } } out.rgb = unsigned(spare0); out.a = tex0.a;";
-//! let program = parse(text, Profile::Nv10).expect("a sound program");
-//! assert!(program.combiners.stages[0].rgb.ab_dot_product);
-//! let normal = print(&program.combiners);
-//! assert_eq!(parse(&normal, Profile::Nv10).expect("what is printed can be read").combiners, program.combiners);
-//! ```
-//!
 //! The grammar is in `docs/combiner-language.md`.
 
 mod final_part;
