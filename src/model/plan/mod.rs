@@ -193,6 +193,11 @@ impl PlannedDraw {
     pub fn kills(&self) -> bool {
         self.shader.as_ref().is_some_and(PlannedShader::kills) || self.units.iter().any(|unit| unit.state.kills())
     }
+
+    /// Whether every pixel that it covers is stored: nothing kills fragments, and nothing tests them.
+    pub fn stores_all(&self) -> bool {
+        !self.kills() && self.alpha_test.is_none() && self.stencil_test.is_none() && self.depth_test.is_none()
+    }
 }
 
 /// Constants of a draw's state that settle something for every pixel.

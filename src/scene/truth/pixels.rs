@@ -9,7 +9,7 @@ use ninebit::engine::walk::{self, Band};
 use ninebit::engine::{RenderOptions, TextureWords, cleared, render};
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal::Outline;
-use ninebit::state::{Vertex, VertexColor};
+use ninebit::state::{TriangleVertices, Vertex, VertexColor};
 use ninebit::trace::Silent;
 
 /// A given normal that is shorter stands for none: bytes of 128 are the zero vector, and half a step away from it.
@@ -88,8 +88,10 @@ fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>
     let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
     for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
         let described = truth.meshes.get(number).is_some_and(Option::is_some);
+        let stores_all = planned.stores_all();
         walk::covered(plan, planned, band.rows(), |context, i, j| {
-            if walk::pixel(context, &images, &mut band, i, j, &mut Silent) && described {
+            let stored = stores_all || walk::pixel(context, &images, &mut band, i, j, &mut Silent);
+            if stored && described {
                 seen[j as usize * width + i as usize] = Some((number, context.number));
             }
         });
@@ -98,17 +100,17 @@ fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>
 }
 
 /// A point of a mesh.
-struct Point {
+struct Point<'a> {
     position: Vector,
     /// Unit tangent, binormal, normal.
     basis: [Vector; 3],
     coordinates: [f64; 2],
-    planned: [Vertex; 3],
+    planned: TriangleVertices<'a>,
     weights: [f64; 3],
 }
 
 /// The point at a pixel's centre. `None` for a triangle whose corners are not all the mesh's own.
-fn point(planned: &PlannedDraw, mesh: &Arc<Mesh>, triangle: usize, (column, row): (u32, u32)) -> Option<Point> {
+fn point<'a>(planned: &'a PlannedDraw, mesh: &Mesh, triangle: usize, (column, row): (u32, u32)) -> Option<Point<'a>> {
     let triangles = &planned.assembly.triangles;
     if triangle >= triangles.len() {
         return None;
@@ -117,8 +119,8 @@ fn point(planned: &PlannedDraw, mesh: &Arc<Mesh>, triangle: usize, (column, row)
     if corners.iter().any(|corner| *corner >= mesh.positions.len()) {
         return None;
     }
-    let vertices = planned.assembly.triangle(triangle).all();
-    let outline = Outline::new(vertices.map(|vertex| vertex.position), planned.perspective)?;
+    let vertices = planned.assembly.triangle(triangle);
+    let outline = Outline::new(vertices.positions(), planned.perspective)?;
     let weights = outline.weights(i64::from(column), i64::from(row));
     let mix = |values: &[[f32; 3]]| mixed(weights, corners.map(|corner| wide(values[corner])));
     let texture = corners.map(|corner| mesh.texture_coordinates[corner].map(f64::from));
@@ -150,13 +152,13 @@ pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
 }
 
 /// An interpolated vector of the vertices.
-fn interpolated(point: &Point, what: Interpolated) -> Vector {
+fn interpolated(point: &Point<'_>, what: Interpolated) -> Vector {
     let signed = |color: &VertexColor| real_color(color).map(|c| 2.0 * c - 1.0);
     let set = |vertex: &Vertex, n: usize| {
         let [s, t, r, _] = vertex.texture_coordinates[n].map(f64::from);
         [s, t, r]
     };
-    let values = point.planned.map(|vertex| match what {
+    let values = point.planned.all().map(|vertex| match what {
         Interpolated::PrimaryColor => signed(&vertex.diffuse),
         Interpolated::SecondaryColor => signed(&vertex.specular),
         Interpolated::T0 => set(&vertex, 0),
@@ -168,7 +170,7 @@ fn interpolated(point: &Point, what: Interpolated) -> Vector {
 }
 
 /// The normal of the surface, object space.
-fn normal(truth: &Truth, point: &Point) -> Vector {
+fn normal(truth: &Truth, point: &Point<'_>) -> Vector {
     let mapped = |vector: Vector| from_tangent(&point.basis, vector);
     unit_or_zero(match &truth.normal {
         NormalSource::Mesh => point.basis[2],
@@ -180,7 +182,7 @@ fn normal(truth: &Truth, point: &Point) -> Vector {
     })
 }
 
-fn shade(truth: &Truth, point: &Point, given: Option<(Vector, Space)>) -> Pixel {
+fn shade(truth: &Truth, point: &Point<'_>, given: Option<(Vector, Space)>) -> Pixel {
     let mut pixel = Pixel { color: [0.0; 3], normal: [0.0; 3], basis: point.basis };
     pixel.normal = match given {
         Some((vector, _)) if dot(vector, vector) < SHORTEST * SHORTEST => [0.0; 3],
@@ -198,7 +200,7 @@ fn shade(truth: &Truth, point: &Point, given: Option<(Vector, Space)>) -> Pixel 
     pixel
 }
 
-fn light(truth: &Truth, point: &Point, normal: Vector) -> [f64; 3] {
+fn light(truth: &Truth, point: &Point<'_>, normal: Vector) -> [f64; 3] {
     let mut sum = truth.material.ambient;
     let mut add = |term: [f64; 3]| sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
     for light in &truth.lights {
