@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let progress = Progress::new("where methods fail", context.color);
         let report = |done: usize, total: usize| progress.report(done as u64, total as u64);
         let measured = experiments::page::measure(&report).map_err(|error| refused(*error))?;
-        let (section, pictures) = experiments::page::files(&measured)?;
+        let (section, pictures) = experiments::page::files(&measured);
         page = Some(stability_page(&arguments.out.join(STABILITY), &section));
         files.extend(pictures);
     }

@@ -188,11 +188,23 @@ const GRID: &str = "#e4e4e4";
 pub(super) const SCALE: f32 = 2.0;
 
 impl Drawing {
-    /// Draws it.
+    /// Draws it in both formats.
     ///
     /// # Errors
     /// The PNG cannot be encoded.
     pub fn draw(&self) -> Result<Picture, OutputError> {
+        let scene = self.scene();
+        let fail = |reason| encode_error(self.size.map(|side| (side * f64::from(SCALE)) as u32), reason);
+        let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(fail)?;
+        Ok(Picture { svg: text_of(&scene), png })
+    }
+
+    /// Draws it as SVG alone.
+    pub fn svg(&self) -> String {
+        text_of(&self.scene())
+    }
+
+    fn scene(&self) -> Scene {
         let legend = self.legend();
         let widest = legend.iter().map(|entry| labels::text_width(&entry.label, f64::from(BODY))).fold(0.0, f64::max);
         let [left, right, top, bottom] = MARGINS;
@@ -241,9 +253,7 @@ impl Drawing {
             bold: false,
             color: None,
         });
-        let fail = |reason| encode_error(self.size.map(|side| (side * f64::from(SCALE)) as u32), reason);
-        let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(fail)?;
-        Ok(Picture { svg: numbered_anew(&SvgBackend::new().render_scene(&scene)) + "\n", png })
+        scene
     }
 
     fn legend(&self) -> Vec<LegendEntry> {
@@ -308,6 +318,11 @@ impl Drawing {
             });
         }
     }
+}
+
+/// The text of an SVG.
+fn text_of(scene: &Scene) -> String {
+    numbered_anew(&SvgBackend::new().render_scene(scene)) + "\n"
 }
 
 impl Series {
@@ -375,5 +390,6 @@ mod tests {
         let png = image::load_from_memory(&picture.png).unwrap();
         assert_eq!((png.width(), png.height()), (800, 600));
         assert_eq!(drawing.draw().unwrap(), picture);
+        assert_eq!(drawing.svg(), picture.svg);
     }
 }

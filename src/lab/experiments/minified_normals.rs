@@ -14,7 +14,8 @@ pub(super) fn experiment() -> Experiment {
     let method = |name: &str, squarings: u32, filter: &'static str| {
         Method::new(name, [1.0, 12.0], move |texels| {
             let pixels = draw(&text(texels, squarings, filter))?;
-            Ok(root_mean_square(&errors(&pixels, 0, |at| seen(at, texels, squarings))))
+            let normals: Vec<[f64; 2]> = (0..TEXELS).map(tilt).map(|tilt| [sin(tilt), cos(tilt)]).collect();
+            Ok(root_mean_square(&errors(&pixels, 0, |at| seen(&normals, at, texels, squarings))))
         })
     };
     Experiment::new("minified-normals", "A highlight on bumps that get smaller")
@@ -34,17 +35,14 @@ fn tilt(texel: usize) -> f64 {
 }
 
 /// The mean of the highlight over the texels that a pixel covers.
-fn seen(at: f64, texels: f64, squarings: u32) -> f64 {
+fn seen(normals: &[[f64; 2]], at: f64, texels: f64, squarings: u32) -> f64 {
     const SAMPLES: usize = 64;
     let sample = |n: usize| {
         let place = at * texels * PIXELS as f64 + (centre(n, SAMPLES) - 0.5) * texels;
         // Between texels as an exact filter mixes them, brought to unit length.
         let left = (place - 0.5).floor();
         let weight = place - 0.5 - left;
-        let normal = |texel: f64| {
-            let tilt = tilt(texel.rem_euclid(TEXELS as f64) as usize);
-            [sin(tilt), cos(tilt)]
-        };
+        let normal = |texel: f64| normals[texel.rem_euclid(TEXELS as f64) as usize];
         let (a, b) = (normal(left), normal(left + 1.0));
         let mixed = [0, 1].map(|k| a[k] + (b[k] - a[k]) * weight);
         let cosine = mixed[1] / (mixed[0] * mixed[0] + mixed[1] * mixed[1]).sqrt();

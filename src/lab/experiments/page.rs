@@ -5,7 +5,6 @@ use serde::Serialize;
 use super::{Experiment, Threshold, experiments, threshold};
 use crate::chart::page::{File, comma_separated, fill, number, plain, table};
 use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
-use ninebit_files::output::OutputError;
 use ninebit_scene::SceneError;
 
 /// The prose.
@@ -48,15 +47,12 @@ pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<Sce
 }
 
 /// The section of the page, and the files that it shows.
-///
-/// # Errors
-/// A picture cannot be encoded.
-pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
+pub fn files(all: &[Measured]) -> (String, Vec<File>) {
     let (mut parts, mut files) = (Vec::new(), Vec::new());
     for measured in all {
         let experiment = &measured.experiment;
         let path = format!("{FOLDER}/{}.svg", experiment.name);
-        files.push(File::text(path.clone(), drawing(measured).draw()?.svg));
+        files.push(File::text(path.clone(), drawing(measured).svg()));
         let text = format!("![{}]({path})\n\n{}", experiment.title, table(&measured.rows()));
         parts.push((experiment.name.to_owned(), text));
         parts.push((format!("{}.limit", experiment.name), plain(experiment.limit)));
@@ -72,7 +68,7 @@ pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
         format!("{FOLDER}/thresholds.json"),
         serde_json::to_string_pretty(&document).unwrap_or_default() + "\n",
     ));
-    Ok((fill(TEMPLATE, &parts), files))
+    (fill(TEMPLATE, &parts), files)
 }
 
 impl Measured {
