@@ -1,12 +1,12 @@
 //! Whole general stages: everything is read before anything is written.
 
 use super::block::{self, Sixteen};
-use super::{Column, Conditions, Kind, Reach, Unit, channels, named, put, scale_takes_bias, step};
+use super::{Column, Conditions, Kind, Reach, Unit, channels, named, put, scale_takes_bias};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;
 use ninebit::number::Lane;
 use ninebit::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Portion, Profile, Register, Scale};
-use ninebit::trace::{Observer, Recorder, Silent};
+use ninebit::trace::Silent;
 
 const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 const FACTORS: [&str; 4] = ["mid.A", "mid.B", "mid.C", "mid.D"];
@@ -232,13 +232,8 @@ impl Unit for BlueToAlpha {
 /// A register value handed from one stage to the next.
 pub(super) struct TwoStages;
 
-/// Red of SPARE0 after both.
-fn two_stages<L: Lane, O: Observer>(
-    inputs: &[i64],
-    at: impl Fn(usize) -> L,
-    conditions: &Conditions,
-    observer: &mut O,
-) -> L {
+/// Red of SPARE0 after each.
+fn two_stages<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &Conditions) -> [L; 2] {
     let signed = [InputMapping::SignedIdentity as i64; 4];
     let mut first = portion(Component::Rgb, &signed);
     (first.scale, first.bias, first.sum_output) = (named(inputs[0]), named(inputs[1]), Register::Spare0);
@@ -254,10 +249,10 @@ fn two_stages<L: Lane, O: Observer>(
     let alpha = Portion::idle(Component::Alpha);
     let mut after = stage(second, alpha);
     after.index = 1;
-    for stage in [stage(first, alpha), after] {
-        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, observer);
-    }
-    file.read(Register::Spare0, 0)
+    [stage(first, alpha), after].map(|stage| {
+        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut Silent);
+        file.read(Register::Spare0, 0)
+    })
 }
 
 impl Unit for TwoStages {
@@ -283,17 +278,18 @@ impl Unit for TwoStages {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut recorder = Recorder::default();
-        let out = two_stages(inputs, |n| inputs[n] as i32, conditions, &mut recorder);
-        // `spare0.r` is written twice; the first is the first stage's.
-        results[0] = step(&recorder.steps, "spare0.r");
-        let mapped = recorder.steps.iter().find(|step| step.name == "stage1.rgb.A.r");
-        results[1] = mapped.map_or(0, |step| if step.per_one == 255 { 2 * step.value } else { step.value });
-        results[2] = out.into();
+        let [between, after] = two_stages(inputs, |n| inputs[n] as i32, conditions);
+        let [mapped] = ninebit::combiner::mapping::map([between], named(inputs[2]), &conditions.policies);
+        results[0] = between.into();
+        results[1] = <i32 as Lane>::observe_factor(mapped).0;
+        results[2] = after.into();
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let rows = |rows: &Sixteen| [two_stages(inputs, |n| rows.at(n), conditions, &mut Silent)];
+        let rows = |rows: &Sixteen| {
+            let [_, after] = two_stages(inputs, |n| rows.at(n), conditions);
+            [after]
+        };
         (varying >= 4).then(|| block::registers(inputs, varying, out, rows))
     }
 }
