@@ -38,7 +38,9 @@ fn difference(got: &[Surface], expected: &[Surface]) -> Option<(usize, u32, u32,
     for (target, (g, e)) in got.iter().zip(expected).enumerate() {
         for (name, g, e, width) in [("word", &g.words, &e.words, g.width), ("depth", &g.depth, &e.depth, g.width)] {
             assert_eq!(g.len(), e.len(), "{name}s of target {target}");
-            if let Some(at) = (0..g.len()).find(|at| g[*at] != e[*at]) {
+            if g != e
+                && let Some(at) = (0..g.len()).find(|at| g[*at] != e[*at])
+            {
                 let (x, y) = (at as u32 % width, at as u32 / width);
                 return Some((target, x, y, format!("{name} {:#010x}, oracle {:#010x}", g[at], e[at])));
             }
