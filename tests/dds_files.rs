@@ -288,7 +288,8 @@ proptest! {
         (file.words[WIDTH], file.words[HEIGHT]) = sides;
         if let Ok(image) = read(&file) {
             let (_, face) = ninebit::state::Level::chain(image.format, image.width, image.height, image.levels, false);
-            prop_assert_eq!(image.words.len(), face * if image.cube { 6 } else { 1 });
+            let faces = if image.cube { 6 } else { image.layers.map_or(1, |layers| layers as usize) };
+            prop_assert_eq!(image.words.len(), face * faces);
         }
     }
 }
