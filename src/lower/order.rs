@@ -5,9 +5,7 @@ use ninebit::combiner::mapping;
 use ninebit::combiner::output;
 use ninebit::combiner::registers::channel_name;
 use ninebit::number::{Factor as _, Register as _, Sum as _};
-use ninebit::state::{
-    Bias, CompareFunction, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Named, Policies, Scale,
-};
+use ninebit::state::*;
 use ninebit::trace::Rule;
 
 use crate::code::{Code, Test};

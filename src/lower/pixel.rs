@@ -4,10 +4,7 @@ use ninebit::combiner::registers::Registers;
 use ninebit::number::Register as _;
 use ninebit::plan::PlannedDraw;
 use ninebit::rop::{blend, surface};
-use ninebit::state::{
-    AlphaTest, Blend, Combiners, CompareFunction, Draw, Policies, Register, Scene, ShaderOperation, SurfaceFormat,
-    TextureKind,
-};
+use ninebit::state::*;
 use ninebit::texture::unit::PlannedUnit;
 
 use crate::code::{Code, Line, Operand, Operation, Range, Test};

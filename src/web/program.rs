@@ -2,10 +2,7 @@
 
 use std::fmt::Display;
 
-use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, Draw, FinalInput, FinalRegister, InputMapping, MuxSelect, Named,
-    Portion, Register, Scale, Scene,
-};
+use ninebit::state::*;
 use ninebit_program::registers::{describe, encode};
 use ninebit_program::text::print;
 use ninebit_scene::outline::{Content, Node, outline};

@@ -1,8 +1,6 @@
 //! Highlights stored in a cube map: how many texels a face they need.
 
-use super::portable::pow;
-use super::strip::{WIDTH, byte, byte_texels, centre, largest_error, row, scene};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 /// Toward the middle of the highlight.
 const AXIS: [f64; 3] = [0.3, 0.1, 1.0];

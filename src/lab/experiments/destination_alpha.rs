@@ -1,8 +1,6 @@
 //! Numbers that are gathered in destination alpha, eight bits a pass.
 
-use super::portable::pow;
-use super::strip::{WIDTH, byte, bytes, centre, largest_error, scene, whole_row};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| {

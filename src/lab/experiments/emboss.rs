@@ -1,8 +1,6 @@
 //! Embossing: the slope of a height field as the difference of two fetches.
 
-use super::portable::{cos, sin};
-use super::strip::{WIDTH, byte, bytes, draw, errors, largest, row, scene};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 /// Texels of the height field, and of one wave of it.
 const TEXELS: usize = 64;

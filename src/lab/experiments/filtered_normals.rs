@@ -1,9 +1,6 @@
 //! Normals between two texels, shortened by the filter.
 
-use super::portable::{cos, pow, sin};
-use super::strip::{WIDTH, colors, largest_error, row, scene};
-use super::{Experiment, Method, Scale, steps};
-use ninebit_scene::generate::normal_map::encode;
+use super::*;
 
 const DOT: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), ";
 /// One step of Newton's method first: N + N (1 - N . N) / 2.

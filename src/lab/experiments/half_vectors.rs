@@ -1,8 +1,6 @@
 //! Half vectors that are computed at the vertices and interpolated.
 
-use super::portable::{exp2, pow};
-use super::strip::{WIDTH, highlight, largest_error, scene};
-use super::{Experiment, Method, Scale};
+use super::*;
 use std::fmt::Write;
 
 /// Where light and viewer stand over a floor, x and height.

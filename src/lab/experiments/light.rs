@@ -1,10 +1,6 @@
 //! A directional light that sinks to the horizon of a bumpy surface and below it.
 
-use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, centre, draw, errors, largest, leaning, root_mean_square, scene, whole_row};
-use super::{Experiment, Method, Scale, steps};
-use ninebit_scene::SceneError;
-use ninebit_scene::generate::normal_map::encode;
+use super::*;
 
 /// What happens to light that comes from below the surface.
 #[derive(Clone, Copy)]

@@ -1,10 +1,7 @@
 //! Light vectors longer than one.
 
 use super::order::pass;
-use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, byte, bytes, centre, colors, highlight, largest_error, scene, whole_row};
-use super::{Experiment, Method, Scale, steps};
-use ninebit_scene::generate::normal_map::encode;
+use super::*;
 
 /// The light stands in the middle of an octant.
 const THIRD: f64 = 0.577_350_269_189_625_8;

@@ -1,8 +1,6 @@
 //! Highlights of a bumpy surface that moves away.
 
-use super::portable::{cos, exp2, pow, sin};
-use super::strip::{angle, centre, draw, errors, highlight, leaning, root_mean_square, row, scene};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 const PIXELS: usize = 256;
 /// Texels of the map.

@@ -1,9 +1,6 @@
 //! Tangent bases where a texture is mirrored.
 
-use super::portable::{cos, sin};
-use super::strip::{WIDTH, colors, draw, errors, root_mean_square, scene};
-use super::{Experiment, Method, Scale, steps};
-use ninebit_scene::generate::normal_map::encode;
+use super::*;
 
 /// Toward the light: along the binormal and up.
 const LIGHT: [f64; 3] = [0.0, 0.6, 0.8];

@@ -23,7 +23,9 @@ mod strip;
 mod subtraction;
 
 use ninebit_scene::SceneError;
-use portable::{exp2, log2};
+use ninebit_scene::generate::normal_map::encode;
+use portable::*;
+use strip::*;
 
 /// How far a picture is off for a value of the parameter.
 pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync>;

@@ -1,8 +1,6 @@
 //! A signed dot product as passes that add and passes that subtract.
 
-use super::portable::{cos, sin};
-use super::strip::{WIDTH, angle, byte, bytes, centre, largest_error, scene, whole_row};
-use super::{Experiment, Method, Scale, steps};
+use super::*;
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, additions_first: bool| {

@@ -1,8 +1,6 @@
 //! Highlights by a table of powers in a texture.
 
-use super::portable::{exp2, pow};
-use super::strip::{WIDTH, byte, bytes, centre, largest_error, row, scene};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 /// Pixels: more than the largest table has texels.
 const PIXELS: usize = 8 * WIDTH;

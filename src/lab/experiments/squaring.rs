@@ -1,8 +1,6 @@
 //! Highlights by squaring a dot product again and again.
 
-use super::portable::{cos, log2, pow};
-use super::strip::{self, WIDTH, angle, draw, errors, highlight, largest, leaning, scene, whole_row};
-use super::{Experiment, Method, Scale};
+use super::*;
 
 /// Pixels: several for each byte of the dot product.
 const PIXELS: usize = 4 * WIDTH;

@@ -3,11 +3,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::portable::{cos, sin};
+use super::{cos, encode, sin};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 pub(super) use ninebit_scene::generate::byte;
-use ninebit_scene::generate::normal_map::encode;
 use ninebit_scene::{SceneError, parse};
 
 /// Pixels of a strip.

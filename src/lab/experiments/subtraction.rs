@@ -1,7 +1,6 @@
 //! Subtracting a pass without a subtracting blend: a (1 - b) in place of a - b.
 
-use super::strip::{WIDTH, bytes, draw, scene, whole_row};
-use super::{Experiment, Method, Scale, steps};
+use super::*;
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str| Method::new(name, [255.0, 0.0], move |gap| error(gap as u8, blend));

@@ -5,10 +5,7 @@ use ninebit::combiner::registers::Registers;
 use ninebit::combiner::{final_combiner, general};
 use ninebit::number::Register as _;
 use ninebit::rop::{blend, surface};
-use ninebit::state::{
-    Bias, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, Component, FinalCombiner, FinalInput,
-    FinalRegister, HalfBiasConstant, InputMapping, MuxSelect, Named, Policies, Portion, Register, Scale, SurfaceFormat,
-};
+use ninebit::state::*;
 use ninebit_program::registers::{OPERATIONS, raster};
 
 use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test};

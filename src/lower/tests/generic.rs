@@ -15,10 +15,7 @@ use ninebit::combiner::direct::Direct;
 use ninebit::combiner::registers::Registers;
 use ninebit::random::Random;
 use ninebit::rop::{blend, surface};
-use ninebit::state::{
-    Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, FinalRegister, InputMapping, Named, Policies,
-    Profile, Register, SurfaceFormat,
-};
+use ninebit::state::*;
 use ninebit::trace::Silent;
 use ninebit_lower::Generic;
 use ninebit_program::registers::raster::{self, Method};

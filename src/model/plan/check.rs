@@ -12,11 +12,7 @@ use crate::limits::Limits;
 use crate::place::Places;
 use crate::raster::GUARD;
 use crate::rop::surface;
-use crate::state::{
-    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, Level, Named, Palette, PolygonOffset, Positions, Profile,
-    Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
-    TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
-};
+use crate::state::*;
 
 /// At most this many errors of one kind of thing: the rest would say the same.
 const MAX_ERRORS: usize = 8;

@@ -3,10 +3,7 @@
 use crate::algebra::{Algebra, Trail};
 use crate::combiner::registers::{bit, bits, initially_undefined};
 use crate::rop::{blend, surface};
-use crate::state::{
-    AddressMode, Blend, Draw, Register, ShaderOperation, Target, Texture, TextureFormat, TextureImage, TextureUnit,
-    VertexColor, Vertices,
-};
+use crate::state::*;
 use crate::texture::format::expand;
 
 /// Whether the blend yields its source, and whether it yields its destination, in every one of the `written` channels. `zero` are channels of

@@ -5,10 +5,7 @@ use crate::combiner::final_combiner::{self, PlannedFinal};
 use crate::combiner::general::{self, PlannedPortion, PlannedStage};
 use crate::combiner::registers::{REGISTERS, Registers, bit, initially_undefined};
 use crate::rop::blend;
-use crate::state::{
-    Blend, Combiners, DotMapping, Draw, FinalInput, Named, Portion, Register, ShaderOperation, SurfaceFormat,
-    TEXTURE_UNITS,
-};
+use crate::state::*;
 
 const RGB: u8 = 7;
 const ALPHA: u8 = 8;

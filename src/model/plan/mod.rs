@@ -17,11 +17,7 @@ use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::{stencil, surface};
 use crate::state::named;
-use crate::state::{
-    AlphaTest, Blend, CompareFunction, Cull, DepthFormat, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect,
-    Policies, Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, StencilTest,
-    SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
-};
+use crate::state::*;
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::{Computed, Liveness};

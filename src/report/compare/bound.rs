@@ -4,9 +4,7 @@
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal;
 use ninebit::raster::interpolate::SHORT_BITS;
-use ninebit::state::{
-    ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, TriangleVertices,
-};
+use ninebit::state::*;
 use ninebit::texture::unit::PlannedUnit;
 use ninebit::trace::Rule;
 

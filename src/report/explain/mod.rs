@@ -16,10 +16,7 @@ use crate::planes;
 use ninebit::engine;
 use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::rop::{self, surface};
-use ninebit::state::{
-    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, ShadowReference,
-    StageOrigin, StencilOperation, StencilTest, TEXTURE_UNITS, TextureKind, VertexProgram,
-};
+use ninebit::state::*;
 use ninebit::texture::unit::PlannedUnit;
 use ninebit_program::text::print;
 use ninebit_program::text::words::register;

@@ -4,9 +4,6 @@ use super::pixel_shader::ShaderProgram;
 use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
-use ninebit::state::{
-    Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS, TextureKind, TextureUnit,
-};
 use ninebit::vertex::texgen::CoordinateSet;
 use ninebit_program::At;
 use ninebit_program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};

@@ -4,8 +4,6 @@
 use super::matrix::{dot, normalize, subtract};
 use super::*;
 use crate::mesh::Mesh;
-use crate::raw::Numbers;
-use ninebit::state::{Vertex, VertexColor, Vertices};
 
 /// What of a mesh goes into one output of its vertices.
 pub(super) enum Source {

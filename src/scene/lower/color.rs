@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::raw::{Few, Numbers, Tuple};
-use ninebit::state::VertexColor;
 
 /// A constant colour: four bytes.
 pub(super) fn constant<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<[u8; 4]> {

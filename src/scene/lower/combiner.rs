@@ -2,11 +2,7 @@
 
 use super::input::{final_input, general_input};
 use super::*;
-use crate::raw::Tuple;
 use ninebit::legality::{Help, Notation, stage_count};
-use ninebit::state::{
-    Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, Named, Portion, Register,
-};
 use ninebit_program::{Part, Place, Places};
 
 /// The words of scene files.

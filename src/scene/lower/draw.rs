@@ -1,14 +1,12 @@
 //! Draws, in the order of the text.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use super::api_program::{Around, Lowered};
 use super::geometry::{geometry, vertex_side};
 use super::program::Program;
 use super::*;
 use crate::mesh::Mesh;
-use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Topology};
 
 /// A draw and what else is known of it.
 pub(super) struct Drawn {

@@ -1,7 +1,6 @@
 //! The fog of a draw: its colour, its function, and where the function's coordinate comes from.
 
 use super::*;
-use ninebit::state::{Fog, FogFunction, FogMode, Named};
 use ninebit::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
 
 /// Fog as it was written.

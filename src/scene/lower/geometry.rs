@@ -1,13 +1,11 @@
 //! Where the vertices of a draw come from, and what the vertex side makes of them.
 
 use std::rc::Rc;
-use std::sync::Arc;
 
 use super::attribute::{Outputs, Source};
 use super::vertex::VertexData;
 use super::*;
 use crate::mesh::Mesh;
-use ninebit::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use ninebit::vertex::fog::{self as vertex_fog, FogSource};
 use ninebit::vertex::texgen::CoordinateSet;
 use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};

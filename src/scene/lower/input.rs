@@ -1,9 +1,7 @@
 //! Inputs of the combiners: register, component, mapping.
 
 use super::*;
-use crate::raw::Tuple;
 use ninebit::legality::{final_mapping, only_final};
-use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Register};
 
 /// An input taken apart: index of the mapping (`None`: none written), the register, the component if written.
 struct Parts<'a, R> {

@@ -2,7 +2,6 @@
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::*;
-use crate::raw::{Numbers, Tuple};
 use ninebit::vertex::Rows;
 
 pub(super) const IDENTITY: Rows =

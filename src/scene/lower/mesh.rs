@@ -1,7 +1,5 @@
 //! Meshes: generated, listed, from files.
 
-use std::sync::Arc;
-
 use super::program_text::ProgramText;
 use super::*;
 use crate::mesh::{self, Mesh, MeshError, Surface};

@@ -2,17 +2,14 @@
 
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::sync::Arc;
 
 use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
 use crate::field::Valued;
 use crate::mesh::Mesh;
-use crate::raw::Numbers;
 use crate::reader::Entry;
 use crate::wording::closest;
-use ninebit::state::{Blend, VertexColor};
 use ninebit::vertex::Rows;
 
 /// Longest chain of names that stand for names.

@@ -2,8 +2,6 @@
 
 use super::names::Index;
 use super::*;
-use crate::raw::Entries;
-use ninebit::state::{Named, Palette, TextureFormat};
 
 /// The palettes, and where they were named.
 #[derive(Default)]

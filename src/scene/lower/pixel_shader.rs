@@ -4,7 +4,6 @@ use super::api_program::{ApiProgram, Around};
 use super::program_text::ProgramText;
 use super::unit::Units;
 use super::*;
-use ninebit::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
 use ninebit_program::c_source::Style;
 use ninebit_program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
 

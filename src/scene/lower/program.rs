@@ -7,7 +7,7 @@ use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
 use ninebit::legality::{Notation, check};
-use ninebit::state::{Combiners, named};
+use ninebit::state::named;
 use ninebit_program::c_source::Style;
 use ninebit_program::text::{self, words::Words};
 use ninebit_program::{Aside, Pasted, Places};

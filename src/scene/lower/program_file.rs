@@ -6,10 +6,6 @@ use super::api_program::Around;
 use super::program::{Form, ProgramLanguage, in_file};
 use super::unit::Units;
 use super::*;
-use ninebit::state::{
-    CUBE_FACES, Draw, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture, TextureFormat, TextureImage,
-    TextureKind, TextureUnit, Vertex,
-};
 
 /// The scene of one pixel that the program of a file draws. `None` once the reason that there is none has been recorded.
 pub(crate) fn program_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLanguage) -> Option<(Scene, Plan)> {

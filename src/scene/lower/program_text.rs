@@ -1,11 +1,9 @@
 //! The text of a program: in the scene or in a file of its own, and where its bytes stand.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::*;
 use crate::literal::Literal;
-use crate::raw::Tuple;
 use ninebit::diagnostic::{self, Source};
 use ninebit::limits::FileLimit;
 use ninebit_files::read::ReadError;

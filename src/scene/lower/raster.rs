@@ -1,15 +1,8 @@
 //! Raster operations of a draw.
 
 use super::*;
-use crate::raw::Numbers;
 use ninebit::legality;
 use ninebit::number::convert::constant;
-use ninebit::state::{
-    AlphaTest, Blend, Combiners, CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, Positions, Rectangle,
-    StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor, VertexDepths, WINDOW_CLIP_RECTANGLES,
-    WindowClip,
-};
-use std::sync::Arc;
 
 /// The most columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;

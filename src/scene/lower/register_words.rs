@@ -2,7 +2,6 @@
 
 use super::program_text::{ProgramText, placed};
 use super::*;
-use ninebit::state::{Combiners, Named};
 use ninebit_program::Places;
 use ninebit_program::registers::{Word, Written, read};
 

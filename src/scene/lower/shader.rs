@@ -2,7 +2,6 @@
 
 use super::unit::Units;
 use super::*;
-use ninebit::state::{Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 
 /// Operations as they are written; the last three are refused by name.
 const OPERATIONS: &[&str] = &[

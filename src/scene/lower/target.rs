@@ -1,15 +1,12 @@
 //! Render targets.
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
-use std::sync::Arc;
-
 use super::names::Index;
 use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;
 use ninebit::raster::depth;
-use ninebit::state::{DepthBuffer, DepthFormat, Named, Target, TextureImage, TextureKind};
 
 /// The targets, and where they were named.
 #[derive(Default)]

@@ -1,8 +1,6 @@
 //! How the coordinate sets of a draw are made: generators and texture matrices.
 
 use super::*;
-use crate::raw::Numbers;
-use ninebit::state::TEXTURE_UNITS;
 use ninebit::vertex::Viewer;
 use ninebit::vertex::texgen::{CoordinateSet, Emboss, Generator};
 use ninebit_program::texture_stages::Generation;

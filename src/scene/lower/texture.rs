@@ -7,9 +7,6 @@ use super::texture_source::{self, Given, Request, Variant, only};
 use super::*;
 use crate::reader::Entry;
 use ninebit::rop::surface;
-use ninebit::state::{
-    CUBE_FACES, DepthFormat, Named, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
-};
 
 /// The textures, and where they were named.
 #[derive(Default)]

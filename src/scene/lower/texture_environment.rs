@@ -5,7 +5,6 @@ use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::reader::Name;
 use crate::source::List;
-use ninebit::state::{Named, Scale};
 use ninebit_program::At;
 use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 

@@ -2,7 +2,6 @@
 
 use super::texture_source::{self, Given, Request, Variant};
 use super::*;
-use ninebit::state::{BORDER_TEXELS, Level, Named, TextureKind};
 use ninebit_files::texels;
 
 /// `levels` of a texture.

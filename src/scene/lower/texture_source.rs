@@ -2,9 +2,7 @@
 
 use super::texture_levels::{self, Wanted};
 use super::*;
-use crate::raw::Tuple;
 use ninebit::legality::texture::no_texels;
-use ninebit::state::{CUBE_FACES, Named, TextureFormat};
 use ninebit_files::texels;
 
 mod made;

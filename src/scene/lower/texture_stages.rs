@@ -3,8 +3,6 @@
 use super::api_program::{ApiProgram, name_at};
 use super::program::{Asides, calls, pasted};
 use super::*;
-use crate::raw::Tuple;
-use ninebit::state::Named;
 use ninebit_program::At;
 use ninebit_program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,

@@ -1,8 +1,6 @@
 //! What the picture ought to show: light, eye, material and surface of the scene's `truth`.
 #![allow(clippy::float_arithmetic, reason = "describes a float64 reference; nothing of this is stored")]
 
-use std::sync::Arc;
-
 use super::attribute::{self, Light as Place};
 use super::draw::Drawn;
 use super::texture_source::only;
@@ -10,14 +8,12 @@ use super::*;
 use crate::generate::normal_map::{self, HeightChannel};
 use crate::generate::{hemisphere, occlusion};
 use crate::image::{self, ImageLimits, Rgba};
-use crate::raw::{Numbers, Tuple};
 use crate::reader::Name;
 use crate::truth::{
     Equation, Eye, Field, HemisphereLight, Interpolated, Light, Material, NormalHolder, NormalSource, ShadingNormal,
     Truth, real_color,
 };
 use crate::vector::wide;
-use ninebit::state::{Named, Register};
 
 /// Reads the truth of a scene. `None`: it has none, or the reason that it cannot be read has been recorded.
 pub(super) fn truth<'a>(

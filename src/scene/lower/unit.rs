@@ -1,7 +1,6 @@
 //! Texture units of a draw.
 
 use super::*;
-use ninebit::state::{ColorKey, Filter, ShaderStage, ShadowComparison, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {

@@ -1,7 +1,6 @@
 //! What a unit may do depends on the texture that it samples.
 
 use super::*;
-use ninebit::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit};
 
 /// Gives the unit its palette, and holds it against its texture. `fields` is `None` where only the texture's name is written, which
 /// stands at `place`.

@@ -1,8 +1,6 @@
 //! Lists of vertices as written.
 
 use super::*;
-use crate::raw::Numbers;
-use ninebit::state::{Vertex, Vertices};
 
 /// Vertices and where each stands.
 pub(crate) struct VertexData {

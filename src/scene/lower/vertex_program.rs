@@ -9,7 +9,6 @@ use super::program_text::ProgramText;
 use super::vertex::VertexData;
 use super::*;
 use inputs::Input;
-use ninebit::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use ninebit_program::c_source::Style;
 use ninebit_program::vertex_shader::{self, Written, print};

@@ -6,9 +6,7 @@ use super::draws::{
 use super::images::{self, Color, Image, checker};
 use super::texel_formats::texture;
 use super::{Frames, space};
-use ninebit::state::{
-    AddressMode, BORDER_TEXELS, Draw, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
-};
+use ninebit::state::*;
 
 /// Eight colours that go on from row to row, in fields of so many texels.
 fn blocks(colors: [Color; 8], size: u32) -> impl Image {

@@ -2,9 +2,7 @@
 
 use super::draws::{FETCHED, argb, corners, frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
 use super::{Drawn, Frames};
-use ninebit::state::{
-    ColorKey, ColorKeyMode, Combiners, Draw, FinalRegister, Scene, Texture, TextureFormat, TextureUnit, VertexColor,
-};
+use ninebit::state::*;
 
 /// The keys of the four units, A8R8G8B8.
 const KEYS: [u32; 4] = [0xf000_00ff, 0xf1ff_00ff, 0xf280_0080, 0xf3ff_0000];

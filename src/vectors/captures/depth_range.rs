@@ -4,9 +4,7 @@ use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, ne
 use super::images::{self, checker};
 use super::primitives::FAR_DEPTHS;
 use super::{Frames, space};
-use ninebit::state::{
-    CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, TextureFormat, Topology, Vertex, VertexColor,
-};
+use ninebit::state::*;
 
 /// The deepest depth of 24 bits.
 const DEEPEST: f32 = 16_777_215.0;

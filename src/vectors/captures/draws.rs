@@ -1,11 +1,7 @@
 //! What the programs' draws have in common.
 
 use super::{Drawn, SIZE, images};
-use ninebit::state::{
-    AddressMode, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthRange, DepthTest, Draw, Filter,
-    FinalRegister, Palette, Profile, Scene, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture,
-    TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
-};
+use ninebit::state::*;
 use ninebit_program::text;
 use std::sync::Arc;
 

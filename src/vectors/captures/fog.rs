@@ -3,9 +3,7 @@
 use super::draws::{Canvas, corners, draw, in_steps, program, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
 use super::{Drawn, Frames, space};
-use ninebit::state::{
-    Combiners, CompareFunction, DepthRange, Draw, Fog, FogFunction, FogMode, Profile, Topology, Vertex, VertexColor,
-};
+use ninebit::state::*;
 use ninebit::vertex::fog::passed;
 
 /// The modes by the names of frames.

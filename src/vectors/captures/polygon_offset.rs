@@ -2,9 +2,7 @@
 
 use super::draws::{draw, frame_buffer, in_steps, scene};
 use super::{Drawn, Frames, SIZE, Shown};
-use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest, Draw, PolygonOffset, Rectangle, Topology, Vertex,
-};
+use ninebit::state::*;
 
 const FORMATS: [(DepthFormat, &str); 4] = [
     (DepthFormat::Z16, "ZBuf16D"),

@@ -4,10 +4,7 @@ use super::draws::{Canvas, abgr, argb, corners, draw, fetching, nearest, placed,
 use super::images::{self, checker};
 use super::space::{self, without_depth};
 use super::{Drawn, Frames};
-use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, ProvokingVertex, ShadeModel, Texture, TextureFormat,
-    Topology, Vertex, VertexColor,
-};
+use ninebit::state::*;
 
 /// Colours of the vertices, A8B8G8R8.
 const COLORS: [u32; 10] = [

@@ -5,10 +5,7 @@ use super::draws::{
 };
 use super::images::{checker, gradient};
 use super::{Frames, images, space, texel_formats};
-use ninebit::state::{
-    AddressMode, Draw, TEXTURE_UNITS, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology,
-    Vertex, VertexColor,
-};
+use ninebit::state::*;
 
 const SIDE: u32 = 256;
 const LAYERS: u32 = 4;

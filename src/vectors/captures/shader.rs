@@ -8,10 +8,7 @@ use super::primitives::FAR_DEPTHS;
 use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
 use super::texel_formats::{Variant, packed, texture, variants};
 use super::{Frames, assets};
-use ninebit::state::{
-    Combiners, CompareFunction, DepthTest, DotMapping, Draw, Filter, ShaderOperation, ShaderStage, TEXTURE_UNITS,
-    Texture, TextureFormat, TextureKind, TextureUnit, Topology, Vertex, VertexColor,
-};
+use ninebit::state::*;
 use std::sync::Arc;
 
 /// The corners of a cube's six faces.

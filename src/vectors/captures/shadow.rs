@@ -2,10 +2,7 @@
 
 use super::draws::{corners, nearest, quads, rectangle, textured, with_primary_alpha};
 use super::{Frames, SIZE, images};
-use ninebit::state::{
-    CompareFunction, Draw, FinalRegister, ShadowComparison, ShadowReference, TextureFormat, TextureKind, TextureUnit,
-    Topology, VertexColor,
-};
+use ninebit::state::*;
 
 /// Functions by their names in frames.
 const FUNCTIONS: [(CompareFunction, &str); 8] = [

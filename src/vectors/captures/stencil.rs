@@ -2,10 +2,7 @@
 
 use super::draws::{frame_buffer, rectangle, scene};
 use super::{Drawn, Frames, Shown};
-use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, Named, StencilOperation, StencilTest, Target,
-    VertexColor,
-};
+use ninebit::state::*;
 
 fn target(stencil: u8) -> Target {
     let depth = DepthBuffer { format: DepthFormat::Z24S8, clear: 0xffff, clear_stencil: stencil };

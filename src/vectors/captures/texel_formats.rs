@@ -6,9 +6,7 @@ use super::draws::{
 };
 use super::images::{self, Color, Image, bulge, checker, gradient, grey};
 use super::{Frames, assets, space};
-use ninebit::state::{
-    Draw, Filter, MipFilter, Named, SurfaceFormat, Target, Texture, TextureFormat, TextureKind, TextureUnit, Topology,
-};
+use ninebit::state::*;
 
 /// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {

@@ -5,10 +5,7 @@
 
 use super::{Draw, Path, Placement, Read};
 use ninebit::legality::Notation;
-use ninebit::state::{
-    CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, MuxSelect, Named,
-    Portion, Profile, Register,
-};
+use ninebit::state::*;
 use ninebit_program::combiner_calls::{self, Words};
 
 /// 1 as an input.

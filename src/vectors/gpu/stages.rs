@@ -3,10 +3,7 @@
 use super::combiners::{Output, Program, input, load, one, rgb_stage, sign, stage};
 use super::{Case, Placement, Read, byte};
 use crate::units::final_combiner::OWN;
-use ninebit::state::{
-    Bias, CombinerInput, Component, FinalCombiner, FinalInput, FinalRegister, InputMapping, MuxSelect, Portion,
-    Profile, Register, Scale,
-};
+use ninebit::state::*;
 
 const IDENTITY: InputMapping = InputMapping::UnsignedIdentity;
 const SIGNED: InputMapping = InputMapping::SignedIdentity;

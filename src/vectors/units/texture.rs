@@ -1,9 +1,7 @@
 //! Where a texture unit looks, and how it mixes what it finds.
 
 use super::{Column, Conditions, Kind, Reach, Unit, named};
-use ninebit::state::{
-    AddressMode, Filter, Level, MipFilter, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
-};
+use ninebit::state::*;
 use ninebit::texture::cube::Face;
 use ninebit::texture::unit::PlannedUnit;
 use ninebit::texture::{address, filter, lod, shader};

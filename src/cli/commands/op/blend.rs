@@ -6,9 +6,7 @@ use ninebit::engine;
 use ninebit::legality;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{
-    Blend, BlendEquation, BlendFactor, Combiners, Draw, FinalRegister, Policies, Scene, SurfaceFormat, Target, Vertex,
-};
+use ninebit::state::*;
 use ninebit::trace::Observer;
 use serde_json::json;
 

@@ -3,9 +3,7 @@
 use clap::Args;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
-use ninebit::state::{
-    AddressMode, Filter, Level, Named, Profile, TextureFormat, TextureKind, TextureUnit, Vertex, Vertices,
-};
+use ninebit::state::*;
 use ninebit::texture::address::address;
 use ninebit::texture::filter::{linear, nearest};
 use ninebit::texture::place::{Coordinates, Interpolated, Place, real_coordinate};

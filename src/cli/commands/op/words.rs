@@ -1,9 +1,6 @@
 //! Words of the command line: the names of the state's enumerations, those of the vendor's extensions, and short ones.
 
-use ninebit::state::{
-    AddressMode, BlendEquation, BlendFactor, CombinerInput, Component, FinalInput, FinalRegister, InputMapping,
-    MuxSelect, Named, Profile, Register, Scale, SurfaceFormat,
-};
+use ninebit::state::*;
 
 /// A word without what only decorates it: `GL_SPARE0_NV`, `Spare0` and `spare0` are one.
 fn plain(word: &str) -> String {

@@ -1,9 +1,7 @@
 //! What a texture unit asks for beyond addressing and filtering: comparisons (SHD-1), anisotropy (TEX-17), cylindrical wrap (CYL-1), volumes (VOL-1).
 
 use super::{Check, PlanError};
-use crate::state::{
-    AddressMode, Draw, MipFilter, Named, ShaderOperation, Texture, TextureKind, TextureUnit, largest_anisotropy,
-};
+use crate::state::*;
 
 impl Check<'_> {
     /// Refuses what a unit does; `unknown`: for want of knowledge.

@@ -3,7 +3,6 @@
 use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
 use ninebit::limits::FileLimit;
-use ninebit::state::Level;
 use std::path::Path;
 
 /// A picture, or a DDS file with its levels and faces.

@@ -1,7 +1,6 @@
 //! Constants of a vertex program: `{ c0: Matrix(...), c12: (0, 0, 1) }`.
 
 use super::*;
-use crate::raw::{Entries, Numbers, Tuple};
 use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
 /// A program with its text.
