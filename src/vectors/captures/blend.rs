@@ -5,42 +5,20 @@ use super::draws::{
     without_alpha,
 };
 use super::images::{self, checker, four_gradients, solid};
-use super::{Drawn, Frames};
+use super::{Drawn, Frames, named};
 use ninebit::rop::surface;
 use ninebit::state::Named as _;
 use ninebit::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, Draw, FinalRegister, SurfaceFormat, Target, Texture,
-    TextureFormat, TextureKind, Topology, VertexColor,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Draw, FinalRegister, SurfaceFormat, Target, Texture, TextureFormat,
+    TextureKind, Topology, VertexColor,
 };
 use std::sync::Arc;
 
-const EQUATIONS: [(&str, BlendEquation); 7] = [
-    ("ADD", BlendEquation::Add),
-    ("SUB", BlendEquation::Subtract),
-    ("REVSUB", BlendEquation::ReverseSubtract),
-    ("MIN", BlendEquation::Min),
-    ("MAX", BlendEquation::Max),
-    ("SADD", BlendEquation::SignedAdd),
-    ("SREVSUB", BlendEquation::SignedReverseSubtract),
-];
+/// Names of [`BlendEquation::ALL`] in those of frames.
+const EQUATIONS: &str = "ADD SUB REVSUB MIN MAX SADD SREVSUB";
 
-const FACTORS: [(&str, BlendFactor); 15] = [
-    ("0", BlendFactor::Zero),
-    ("1", BlendFactor::One),
-    ("srcRGB", BlendFactor::SourceColor),
-    ("1-srcRGB", BlendFactor::OneMinusSourceColor),
-    ("srcA", BlendFactor::SourceAlpha),
-    ("1-srcA", BlendFactor::OneMinusSourceAlpha),
-    ("dstA", BlendFactor::DestinationAlpha),
-    ("1-dstA", BlendFactor::OneMinusDestinationAlpha),
-    ("dstRGB", BlendFactor::DestinationColor),
-    ("1-dstRGB", BlendFactor::OneMinusDestinationColor),
-    ("srcAsat", BlendFactor::SourceAlphaSaturate),
-    ("cRGB", BlendFactor::ConstantColor),
-    ("1-cRGB", BlendFactor::OneMinusConstantColor),
-    ("cA", BlendFactor::ConstantAlpha),
-    ("1-cA", BlendFactor::OneMinusConstantAlpha),
-];
+/// The same of [`BlendFactor::ALL`].
+const FACTORS: &str = "0 1 srcRGB 1-srcRGB srcA 1-srcA dstA 1-dstA dstRGB 1-dstRGB srcAsat cRGB 1-cRGB cA 1-cA";
 
 /// What is drawn over each other, A8B8G8R8: squares in squares, whose alpha is blended, and a stack of squares.
 const NESTED: [u32; 4] = [0x7f00_cc00, 0xffcc_0000, 0x8000_00ff, 0x00ff_ffff];
@@ -105,9 +83,9 @@ pub(super) fn tests(frames: &mut Frames) {
     let first = |size, field| Arc::new(images::texture(TextureFormat::A8B8G8R8, size, grey(0x3333_3333, field)));
     let (large, small) = (Arc::new(background(24)), Arc::new(background(16)));
     let (square, strip, sheet) = (first([256, 256], 16), first([64, 256], 16), first([512, 512], 8));
-    for (equation_name, equation) in EQUATIONS {
-        for (source_name, source) in FACTORS {
-            for (name, destination) in FACTORS {
+    for (equation_name, equation) in named(EQUATIONS) {
+        for (source_name, source) in named(FACTORS) {
+            for (name, destination) in named(FACTORS) {
                 if (source, destination) == (BlendFactor::Zero, BlendFactor::Zero) {
                     continue;
                 }
@@ -126,7 +104,7 @@ pub(super) fn tests(frames: &mut Frames) {
             frames.paint(format!("#spot_{source_name}_{equation_name}"), 0xff31_2f31, move |canvas| {
                 over(canvas, &small);
                 let mut draws = Vec::new();
-                for ((_, destination), corner) in FACTORS.into_iter().zip(places([0.0; 2], [103.0, 136.0], 5)) {
+                for (&destination, corner) in BlendFactor::ALL.iter().zip(places([0.0; 2], [103.0, 136.0], 5)) {
                     let blend = Blend { equation, source, destination };
                     let [left, top] = corner;
                     draws.extend(colors_blended(blend, corner, 24.0));
@@ -288,26 +266,17 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
 
 /// Surface_format.
 pub(super) fn surface_formats(frames: &mut Frames) {
-    for (name, format) in [
-        ("X1R5G5B5_Z1R5G5B5", SurfaceFormat::X1R5G5B5Z),
-        ("X1R5G5B5_O1R5G5B5", SurfaceFormat::X1R5G5B5O),
-        ("R5G6B5", SurfaceFormat::R5G6B5),
-        ("X8R8G8B8_Z8R8G8B8", SurfaceFormat::X8R8G8B8Z),
-        ("X8R8G8B8_O8R8G8B8", SurfaceFormat::X8R8G8B8O),
-        ("X1A7R8G8B8_Z1A7R8G8B8", SurfaceFormat::X1A7R8G8B8Z),
-        ("X1A7R8G8B8_O1A7R8G8B8", SurfaceFormat::X1A7R8G8B8O),
-        ("A8R8G8B8", SurfaceFormat::A8R8G8B8),
-        ("B8", SurfaceFormat::B8),
-        ("G8B8", SurfaceFormat::G8B8),
-    ] {
+    let names = "A8R8G8B8 X8R8G8B8_Z8R8G8B8 X8R8G8B8_O8R8G8B8 R5G6B5 X1R5G5B5_Z1R5G5B5 X1R5G5B5_O1R5G5B5 \
+                 X1A7R8G8B8_Z1A7R8G8B8 X1A7R8G8B8_O1A7R8G8B8 B8 G8B8";
+    for (name, format) in named(names) {
         frames.make(format!("Fmt_{name}"), move || surface_format(format));
     }
 }
 
 /// Alpha_func: ramps of alpha, wide and steep, and one value.
 pub(super) fn alpha_function(frames: &mut Frames) {
-    let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always".split(' ');
-    for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
+    let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always";
+    for (name, function) in named(names) {
         for (state, enabled) in [("Enabled", true), ("Disabled", false)] {
             let mut canvas = Canvas::new(0xff22_2322);
             let mut top = (480.0 - 256.0) / 3.0 * 2.0;

@@ -2,19 +2,12 @@
 
 use super::draws::{Canvas, corners, draw, in_steps, program, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
-use super::{Drawn, Frames, space};
+use super::{Drawn, Frames, named, space};
 use ninebit::state::*;
 use ninebit::vertex::fog::passed;
 
-/// The modes by the names of frames.
-const MODES: [(&str, FogMode); 6] = [
-    ("linear", FogMode::Linear),
-    ("exp", FogMode::Exp),
-    ("exp2", FogMode::Exp2),
-    ("exp_abs", FogMode::ExpAbs),
-    ("exp2_abs", FogMode::Exp2Abs),
-    ("linear_abs", FogMode::LinearAbs),
-];
+/// Names of [`FogMode::ALL`] in those of frames.
+const MODES: &str = "linear exp exp2 linear_abs exp_abs exp2_abs";
 
 /// The programs' parameters: fog that is whole at 200, or of a density of 0.025.
 fn parameters(mode: FogMode, start: f32) -> [f32; 2] {
@@ -92,7 +85,7 @@ fn one(clear: u32, draw: Draw) -> Drawn {
 }
 
 fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) {
-    for (name, mode) in MODES {
+    for (name, mode) in named(MODES) {
         let function = function(mode, parameters(mode, 1.0));
         let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
         frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
@@ -222,7 +215,7 @@ const RED: [u8; 3] = [255, 0, 0];
 
 /// Fog_param: 320 coordinates through eight multipliers, and 340 biases.
 pub(super) fn parameters_varied(frames: &mut Frames) {
-    for (name, mode) in MODES {
+    for (name, mode) in named(MODES) {
         let name = name.replace("linear", "lin");
         let bias = match mode {
             FogMode::Linear | FogMode::LinearAbs => 2.0,
@@ -265,7 +258,7 @@ fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
 
 /// Fog_gen: panels farther and farther away, with coordinates of five sources; with a vertex program all but one take what it passes.
 pub(super) fn generated(frames: &mut Frames) {
-    for (name, mode) in MODES {
+    for (name, mode) in named(MODES) {
         for source in SOURCES {
             for is_program in [false, true] {
                 if is_program && source == "radial" {
@@ -343,7 +336,7 @@ fn exceptional_panel(edges: [f32; 4], d: f32) -> impl Iterator<Item = (Vertex, f
 /// Fog_exceptional_value: a vertex program passes coordinates of every kind, or their reciprocals; one of no number under 24 pairs of parameters.
 pub(super) fn exceptional(frames: &mut Frames) {
     let places = || grid([48.0, 70.0], 64.0, [24.0, 38.0]);
-    for (name, mode) in MODES {
+    for (name, mode) in named(MODES) {
         for source in SOURCES.into_iter().filter(|source| *source != "radial") {
             for (prefix, is_reciprocal) in [("", false), ("RCP-", true)] {
                 frames.make(format!("{prefix}FogExc-{name}-{source}"), move || {

@@ -33,7 +33,7 @@ use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{Rectangle, Scene, SurfaceFormat, Texture, TextureFormat, TextureKind};
+use ninebit::state::{Named, Rectangle, Scene, SurfaceFormat, Texture, TextureFormat, TextureKind};
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -72,6 +72,11 @@ impl Drawn {
     fn colors(scene: Scene) -> Drawn {
         Drawn { scene, before: None, view: None, shown: Shown::Colors }
     }
+}
+
+/// The variants of an enumeration with their names in those of frames, given in the same order.
+fn named<T: Named>(names: &'static str) -> impl Iterator<Item = (&'static str, T)> {
+    names.split(' ').zip(T::ALL.iter().copied())
 }
 
 /// A frame that was captured.

@@ -7,7 +7,7 @@ use super::images::{self, Color, checker, four_gradients, gradient, luminance, s
 use super::primitives::FAR_DEPTHS;
 use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
 use super::texel_formats::{Variant, packed, texture, variants};
-use super::{Frames, assets};
+use super::{Frames, assets, named};
 use ninebit::state::*;
 use std::sync::Arc;
 
@@ -202,14 +202,7 @@ pub(super) fn cube_maps(frames: &mut Frames) {
             cubes(canvas, along, |draw| fetching(draw, 3, nearest(0)));
         });
     }
-    for (name, mapping) in [
-        ("0to1", DotMapping::ZeroToOne),
-        ("-1to1D3D", DotMapping::MinusOneToOneD3d),
-        ("-1to1GL", DotMapping::MinusOneToOneGl),
-        ("-1to1", DotMapping::MinusOneToOne),
-        ("HiLo_1", DotMapping::Hilo1),
-        ("HiLoHemi", DotMapping::HiloHemisphere),
-    ] {
+    for (name, mapping) in named("0to1 -1to1D3D -1to1GL -1to1 HiLo_1 HiLoHemi") {
         let mut make = |prefix: String, operation, eye, cube: &Arc<Texture>| {
             let [normals, cube] = [&normals, cube].map(Arc::clone);
             frames.paint(format!("{prefix}_{name}"), 0xfe13_1313, move |canvas| {

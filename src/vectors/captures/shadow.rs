@@ -1,20 +1,11 @@
 //! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two.
 
 use super::draws::{corners, nearest, quads, rectangle, textured, with_primary_alpha};
-use super::{Frames, SIZE, images};
+use super::{Frames, SIZE, images, named};
 use ninebit::state::*;
 
-/// Functions by their names in frames.
-const FUNCTIONS: [(CompareFunction, &str); 8] = [
-    (CompareFunction::Never, "N"),
-    (CompareFunction::Greater, "GT"),
-    (CompareFunction::Equal, "EQ"),
-    (CompareFunction::GreaterOrEqual, "GE"),
-    (CompareFunction::Less, "LT"),
-    (CompareFunction::NotEqual, "NE"),
-    (CompareFunction::LessOrEqual, "LE"),
-    (CompareFunction::Always, "A"),
-];
+/// Names of [`CompareFunction::ALL`] in those of frames.
+const FUNCTIONS: &str = "N LT EQ LE GT NE GE A";
 
 /// Formats, the bits of names, and least, greatest and reference word.
 const RANGES: [(TextureFormat, u32, [u32; 3]); 6] = [
@@ -91,7 +82,7 @@ pub(super) fn given(frames: &mut Frames) {
         let memory = words(format, values);
         let texels = memory.iter().map(|word| if bits == 24 { word.rotate_right(8) } else { *word });
         let texture = images::of_words(TextureKind::Rectangle, format, [SIZE.0, SIZE.1], 1, texels.collect());
-        for (function, name) in FUNCTIONS {
+        for (name, function) in named(FUNCTIONS) {
             for (reference, stage) in [(ShadowReference::R, 3), (ShadowReference::Zero, 2)] {
                 let unit = TextureUnit { shadow: Some(ShadowComparison { function, reference }), ..nearest(0) };
                 let [least, greatest, r] = values;

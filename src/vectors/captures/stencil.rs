@@ -1,7 +1,7 @@
 //! STN-1: what is stored by zero and replace, with and without either test; stacks of operations, seen through all functions.
 
 use super::draws::{frame_buffer, rectangle, scene};
-use super::{Drawn, Frames, Shown};
+use super::{Drawn, Frames, Shown, named};
 use ninebit::state::*;
 
 fn target(stencil: u8) -> Target {
@@ -87,8 +87,8 @@ pub(super) fn functions(frames: &mut Frames) {
             left += 81.0;
         }
     }
-    let names = "Never Less Equal LessThanOrEqual Greater NotEqual GreaterThanOrEqual Always".split(' ');
-    for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
+    let names = "Never Less Equal LessThanOrEqual Greater NotEqual GreaterThanOrEqual Always";
+    for (name, function) in named(names) {
         let mut last = rectangle([120.0, 40.0, 530.0, 450.0], color(0.0, 0.75, 0.0));
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));
