@@ -80,15 +80,7 @@ const MAPPINGS: &str = "UNSIGNED_IDENTITY UNSIGNED_INVERT EXPAND_NORMAL EXPAND_N
                         HALF_BIAS_NORMAL HALF_BIAS_NEGATE SIGNED_IDENTITY SIGNED_NEGATE";
 const COMPONENTS: &[(&str, Component)] =
     &[("RGB", Component::Rgb), ("ALPHA", Component::Alpha), ("BLUE", Component::Blue)];
-const VARIABLES: &[(&str, usize)] = &[
-    ("VARIABLE_A", 0),
-    ("VARIABLE_B", 1),
-    ("VARIABLE_C", 2),
-    ("VARIABLE_D", 3),
-    ("VARIABLE_E", 4),
-    ("VARIABLE_F", 5),
-    ("VARIABLE_G", 6),
-];
+const VARIABLES: &str = "VARIABLE_A VARIABLE_B VARIABLE_C VARIABLE_D VARIABLE_E VARIABLE_F VARIABLE_G";
 /// Parameters: the two constants by their number, and others.
 const PARAMETERS: &[(&str, usize)] = &[
     ("CONSTANT_COLOR0", 0),
@@ -105,6 +97,11 @@ const SCALES: &[(&str, Scale)] = &[
     ("SCALE_BY_ONE_HALF", Scale::Half),
 ];
 const BIASES: &[(&str, Bias)] = &[("NONE", Bias::None), ("BIAS_BY_NEGATIVE_ONE_HALF", Bias::NegativeHalf)];
+
+/// The variables by number.
+fn variables() -> Vec<(&'static str, usize)> {
+    VARIABLES.split(' ').zip(0..).collect()
+}
 
 impl<'t> Parser<'t> {
     /// One call; `None` once the reason that it sets nothing has been recorded.
@@ -226,7 +223,7 @@ impl<'t> Parser<'t> {
     /// An input of a portion: the variable, the register, its mapping, its components.
     fn input(&mut self, portion: (usize, bool), values: [&Value<'t>; 4]) -> Option<()> {
         let [variable, input, mapping, usage] = values;
-        let n = choose(variable, "variable of a general stage", &VARIABLES[..4], &mut self.reader.findings);
+        let n = choose(variable, "variable of a general stage", &variables()[..4], &mut self.reader.findings);
         let register = self.register(input);
         let mapping = choose(mapping, "mapping", &table(MAPPINGS), &mut self.reader.findings);
         let component = choose(usage, "component usage", COMPONENTS, &mut self.reader.findings);
@@ -273,7 +270,7 @@ impl<'t> Parser<'t> {
     /// The same of the final combiner.
     fn final_input(&mut self, [variable, input, mapping, usage]: [&Value<'t>; 4]) -> Option<()> {
         let findings = &mut self.reader.findings;
-        let n = choose(variable, "variable of the final combiner", VARIABLES, findings);
+        let n = choose(variable, "variable of the final combiner", &variables(), findings);
         let register = choose(input, "register", &table(REGISTERS), findings);
         let mapped = choose(mapping, "mapping", &table(MAPPINGS), findings);
         let component = choose(usage, "component usage", COMPONENTS, findings);

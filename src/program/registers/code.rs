@@ -5,33 +5,15 @@ use ninebit::state::{
     Bias, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Portion, Profile, Register, Scale,
 };
 
-/// Codes of the registers, in the order of the codes. 6 and 7 are none.
-const REGISTERS: [(u32, FinalRegister); 14] = [
-    (0, FinalRegister::Zero),
-    (1, FinalRegister::ConstantColor0),
-    (2, FinalRegister::ConstantColor1),
-    (3, FinalRegister::Fog),
-    (4, FinalRegister::PrimaryColor),
-    (5, FinalRegister::SecondaryColor),
-    (8, FinalRegister::Texture0),
-    (9, FinalRegister::Texture1),
-    (10, FinalRegister::Texture2),
-    (11, FinalRegister::Texture3),
-    (12, FinalRegister::Spare0),
-    (13, FinalRegister::Spare1),
-    (14, FinalRegister::Spare0PlusSecondary),
-    (15, FinalRegister::ETimesF),
-];
-
-/// The code of a register.
+/// The code of a register: its number among all, but for 6 and 7, which are none.
 pub fn register_code(register: impl Into<FinalRegister>) -> u32 {
-    let register = register.into();
-    REGISTERS.iter().find(|(_, known)| *known == register).map_or(0, |(code, _)| *code)
+    let number = register.into() as u32;
+    if number < 6 { number } else { number + 2 }
 }
 
 /// The register of a code.
 pub(super) fn final_register(code: u32) -> FinalRegister {
-    REGISTERS.iter().find(|(known, _)| *known == code & 15).map_or(FinalRegister::Zero, |(_, register)| *register)
+    FinalRegister::ALL.iter().copied().find(|known| register_code(*known) == code & 15).unwrap_or(FinalRegister::Zero)
 }
 
 fn general_register(code: u32) -> Register {

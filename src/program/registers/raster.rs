@@ -1,7 +1,7 @@
 //! Methods of the raster operations and what their values mean: the same numbers in the NV10 and the NV20 class. Names are those of the Xbox's headers, in lower case.
 
 use super::layout::Field;
-use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, SurfaceFormat, named};
+use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, SurfaceFormat, named};
 
 named! {
     /// A method of the raster operations.
@@ -47,25 +47,13 @@ pub fn compare_function(function: CompareFunction) -> u32 {
     0x200 + function as u32
 }
 
+/// The values of blend factors, in the order of [`BlendFactor`].
+const BLEND_FACTORS: [u32; BlendFactor::ALL.len()] =
+    [0, 1, 0x300, 0x301, 0x302, 0x303, 0x304, 0x305, 0x306, 0x307, 0x308, 0x8001, 0x8002, 0x8003, 0x8004];
+
 /// The value of a blend factor.
 pub fn blend_factor(factor: BlendFactor) -> u32 {
-    match factor {
-        BlendFactor::Zero => 0,
-        BlendFactor::One => 1,
-        BlendFactor::SourceColor => 0x300,
-        BlendFactor::OneMinusSourceColor => 0x301,
-        BlendFactor::SourceAlpha => 0x302,
-        BlendFactor::OneMinusSourceAlpha => 0x303,
-        BlendFactor::DestinationAlpha => 0x304,
-        BlendFactor::OneMinusDestinationAlpha => 0x305,
-        BlendFactor::DestinationColor => 0x306,
-        BlendFactor::OneMinusDestinationColor => 0x307,
-        BlendFactor::SourceAlphaSaturate => 0x308,
-        BlendFactor::ConstantColor => 0x8001,
-        BlendFactor::OneMinusConstantColor => 0x8002,
-        BlendFactor::ConstantAlpha => 0x8003,
-        BlendFactor::OneMinusConstantAlpha => 0x8004,
-    }
+    BLEND_FACTORS[factor as usize]
 }
 
 /// The value of a blend equation.

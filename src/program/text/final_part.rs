@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::parser::{GivenUp, Parser, Source};
-use super::words::{REGISTERS, find};
+use super::words::{find, registers};
 use crate::Place;
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
@@ -230,7 +230,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
         parser.cursor.advance();
         parser.sign('(')?;
     } else if find(function).is_none() && !function.is_empty() {
-        let known: Vec<&str> = REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert"]).collect();
+        let known: Vec<&str> = registers().chain(["unsigned", "unsigned_invert"]).collect();
         return Err(parser.unknown("input", &known));
     }
     let Source { register, component, .. } = parser.register()?;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Program;
 use super::final_part::Final;
 use super::portion::PortionReader;
-use super::words::{REGISTERS, find};
+use super::words::{find, registers};
 use crate::cursor::Cursor;
 pub(super) use crate::cursor::{GivenUp, Read};
 use crate::finding::{finding, foreign, header};
@@ -262,7 +262,7 @@ impl<'t> Parser<'t> {
             return Err(self.expected("a register"));
         }
         let Some(register) = find(self.cursor.word()) else {
-            let known: Vec<&str> = REGISTERS.iter().map(|(name, _)| *name).collect();
+            let known: Vec<&str> = registers().collect();
             return Err(self.unknown("register", &known));
         };
         self.cursor.advance();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::parser::{Parser, Read, Source};
-use super::words::{MAPPINGS, REGISTERS, find};
+use super::words::{MAPPINGS, find, registers};
 use crate::finding::finding;
 use crate::{Part, Place};
 use ninebit::diagnostic::Diagnostic;
@@ -151,7 +151,7 @@ impl PortionReader {
         }
         let register = find(parser.cursor.word()).and_then(general);
         let Some(register) = register.filter(|register| *register != Register::Zero) else {
-            let known = REGISTERS[4..12].iter().map(|(name, _)| *name).chain(["discard"]).chain(CALLS);
+            let known = registers().take(12).skip(4).chain(["discard"]).chain(CALLS);
             let known: Vec<&str> = known.collect();
             return Err(parser.unknown_or_expected("destination or statement", &known));
         };
@@ -195,7 +195,7 @@ impl PortionReader {
             parser.cursor.advance();
             parser.sign('(')?;
         } else if find(parser.cursor.word()).is_none() && !parser.cursor.word().is_empty() {
-            let known = REGISTERS[..12].iter().map(|(name, _)| *name).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
+            let known = registers().take(12).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
             let known: Vec<&str> = known.collect();
             return Err(parser.unknown("input", &known));
         }

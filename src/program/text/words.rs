@@ -1,25 +1,10 @@
 //! The words of the language: registers, components, mappings.
 
 use ninebit::legality::{Help, Notation};
-use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Scale};
+use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named as _, Scale};
 
-/// Registers by name. The last two exist in the final combiner only.
-pub const REGISTERS: &[(&str, FinalRegister)] = &[
-    ("zero", FinalRegister::Zero),
-    ("const0", FinalRegister::ConstantColor0),
-    ("const1", FinalRegister::ConstantColor1),
-    ("fog", FinalRegister::Fog),
-    ("col0", FinalRegister::PrimaryColor),
-    ("col1", FinalRegister::SecondaryColor),
-    ("tex0", FinalRegister::Texture0),
-    ("tex1", FinalRegister::Texture1),
-    ("tex2", FinalRegister::Texture2),
-    ("tex3", FinalRegister::Texture3),
-    ("spare0", FinalRegister::Spare0),
-    ("spare1", FinalRegister::Spare1),
-    ("color_sum", FinalRegister::Spare0PlusSecondary),
-    ("final_product", FinalRegister::ETimesF),
-];
+/// Names of the registers, in the order of [`FinalRegister`]. The last two exist in the final combiner only.
+const REGISTERS: &str = "zero const0 const1 fog col0 col1 tex0 tex1 tex2 tex3 spare0 spare1 color_sum final_product";
 
 /// Functions of general inputs that stand without a minus, and what they are with one.
 pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
@@ -29,15 +14,19 @@ pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
     ("half_bias", InputMapping::HalfBiasNormal, Some(InputMapping::HalfBiasNegate)),
 ];
 
+/// The names of the registers, in the order of [`FinalRegister`].
+pub(super) fn registers() -> impl Iterator<Item = &'static str> {
+    REGISTERS.split(' ')
+}
+
 /// The register of that name.
 pub(super) fn find(name: &str) -> Option<FinalRegister> {
-    REGISTERS.iter().find(|(known, _)| *known == name).map(|(_, register)| *register)
+    registers().position(|known| known == name).map(|number| FinalRegister::ALL[number])
 }
 
 /// The name of a register.
 pub fn register(register: impl Into<FinalRegister>) -> &'static str {
-    let register = register.into();
-    REGISTERS.iter().find(|(_, known)| *known == register).map_or("", |(name, _)| *name)
+    registers().nth(register.into() as usize).unwrap_or_default()
 }
 
 /// A register and its component. `alpha`: in an alpha portion, where the component is always written, but for zero.
@@ -55,8 +44,12 @@ pub(crate) fn source(of: impl Into<FinalRegister>, component: Component, alpha: 
 
 /// An input of a general stage.
 pub(crate) fn operand(input: &CombinerInput, alpha: bool) -> String {
-    let source = source(input.register, input.component, alpha);
-    match input.mapping {
+    mapped(input.mapping, source(input.register, input.component, alpha))
+}
+
+/// What is made of a source by a mapping.
+pub fn mapped(mapping: InputMapping, source: String) -> String {
+    match mapping {
         InputMapping::UnsignedIdentity => format!("unsigned({source})"),
         InputMapping::UnsignedInvert => format!("unsigned_invert({source})"),
         InputMapping::ExpandNormal => format!("expand({source})"),

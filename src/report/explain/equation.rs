@@ -9,7 +9,7 @@ use ninebit::plan::PlannedDraw;
 use ninebit::rop::blend;
 use ninebit::state::{Bias, FinalRegister, InputMapping, MuxSelect, Named, Policies, Register, Scale};
 use ninebit::trace::Rule;
-use ninebit_program::text::words::register;
+use ninebit_program::text::words::{mapped, register};
 
 /// A term; products bind closer than sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -126,13 +126,7 @@ impl Algebra for Printed {
             ) => Term::Zero,
             (InputMapping::UnsignedInvert, Term::Zero) => Term::One,
             (InputMapping::SignedIdentity, term) => term,
-            (InputMapping::SignedNegate, _) => Term::Plain(format!("-{name}")),
-            (InputMapping::UnsignedIdentity, _) => Term::Plain(format!("unsigned({name})")),
-            (InputMapping::UnsignedInvert, _) => Term::Plain(format!("unsigned_invert({name})")),
-            (InputMapping::ExpandNormal, _) => Term::Plain(format!("expand({name})")),
-            (InputMapping::ExpandNegate, _) => Term::Plain(format!("-expand({name})")),
-            (InputMapping::HalfBiasNormal, _) => Term::Plain(format!("half_bias({name})")),
-            (InputMapping::HalfBiasNegate, _) => Term::Plain(format!("-half_bias({name})")),
+            (mapping, _) => Term::Plain(mapped(mapping, name)),
         };
         self.of(term)
     }
