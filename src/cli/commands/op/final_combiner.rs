@@ -49,17 +49,17 @@ struct Final {
 /// Runs the final combiner.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     arguments.contents.drive("final combiner", |profile, policies| {
-        let (combiners, places, findings) = program(arguments);
+        let line = CommandLine::of_this_process();
+        let (combiners, places, findings) = program(arguments, &line);
         let checked = legality::check(&combiners, profile, &places, &Options);
-        CommandLine::of_this_process().accept(findings.into_iter().chain(checked.findings), context)?;
+        line.accept(findings.into_iter().chain(checked.findings), context)?;
         let state = combiners.final_combiner;
         Ok(Final { planned: planned(state, arguments.g.is_some()), profile, policies })
     })
 }
 
 /// A program with this final combiner, where its options stand, and what is wrong with them by themselves.
-fn program(arguments: &Arguments) -> (Combiners, Places, Vec<Diagnostic>) {
-    let line = CommandLine::of_this_process();
+fn program(arguments: &Arguments, line: &CommandLine) -> (Combiners, Places, Vec<Diagnostic>) {
     let (mut state, mut places, mut findings) = (FinalCombiner::default(), Places::default(), Vec::new());
     let others = [("e", arguments.e), ("f", arguments.f), ("g", arguments.g)];
     for (n, (name, input)) in arguments.inputs.all().into_iter().chain(others).enumerate() {
