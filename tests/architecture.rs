@@ -202,3 +202,28 @@ fn crates_without_tests_of_documentation_have_no_examples() {
     }
     assert!(silent > 0);
 }
+
+/// One version of Rust is pinned for who builds the repository and promised to who uses a crate of it.
+#[test]
+fn the_pinned_compiler_is_the_promised_one() {
+    let value = |path: &str, key: &str| {
+        let text = std::fs::read_to_string(path).unwrap();
+        let line = text.lines().find_map(|line| line.strip_prefix(key)).unwrap();
+        line.trim_matches(['=', ' ', '"']).to_owned()
+    };
+    let (pinned, promised) = (value("rust-toolchain.toml", "channel"), value("Cargo.toml", "rust-version"));
+    assert_eq!(pinned, format!("{promised}.0"));
+}
+
+/// A recipe runs Cargo or a script of the repository.
+#[test]
+fn recipes_run_what_there_is() {
+    let text = std::fs::read_to_string("justfile").unwrap();
+    let commands = text.lines().filter_map(|line| line.strip_prefix("    "));
+    let programs: Vec<&str> =
+        commands.map(|line| line.trim_start_matches("BLESS=1 ").split(' ').next().unwrap()).collect();
+    assert!(programs.len() >= 10, "{programs:?}");
+    for program in programs.into_iter().filter(|program| !["cargo", "@just"].contains(program)) {
+        assert!(Path::new(program).is_file(), "the justfile runs {program}");
+    }
+}

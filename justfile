@@ -1,0 +1,41 @@
+# The scripts of this repository under one roof: `just` lists them (https://just.systems). Each runs without `just`, too.
+
+_list:
+    @just --list --unsorted
+
+# Formatting, lints, tests, replay, readers of vectors, documentation: what a change has to pass
+gate:
+    .ci/run
+
+# All tests, or those whose names contain a word
+test *NAME:
+    cargo test {{ NAME }}
+
+# Write generated parts of documents, messages of broken scenes and figures of techniques; look at the differences afterwards
+bless:
+    BLESS=1 cargo test
+
+# Write digests of scenes
+bless-digests:
+    cargo run --release -- replay --bless vectors/scenes
+
+# Make the module of `ninebit inspect` anew; `just module --check` compares
+module *OPTIONS:
+    src/web/build {{ OPTIONS }}
+
+# Make the charts and their page anew
+charts:
+    cargo run --release -- chart
+
+# Licences, advisories and versions of crates
+dependencies:
+    .ci/check-dependencies
+
+# What readers of vectors in other languages need, then the readers
+readers:
+    vectors/harness/install
+    vectors/harness/check
+
+# The thirteen workloads beside llvmpipe
+peers *OPTIONS:
+    benches/peers/compare.sh {{ OPTIONS }}
