@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::state::Profile;
+
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
@@ -157,6 +159,18 @@ pub fn only_nv2a(
         .label("not on this chip")
         .rule(rule)
         .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
+}
+
+/// [`only_nv2a`], where something needs the larger chip and `profile` is the smaller one.
+pub fn needs_nv2a(
+    profile: Profile,
+    needs: bool,
+    code: &'static str,
+    place: impl Into<Option<Range<usize>>>,
+    what: &str,
+    rule: &'static str,
+) -> Option<Diagnostic> {
+    (needs && profile == Profile::Nv10).then(|| only_nv2a(code, place, what, rule))
 }
 
 /// A text and its name in messages.

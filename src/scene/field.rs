@@ -47,19 +47,25 @@ pub(super) trait Shown<'a>: Valued<'a> {
 }
 
 macro_rules! valued {
-    ($($type:ty: $read:ident),+) => { $(impl<'a> Valued<'a> for $type {
-        type Value = $type;
-        fn value(reader: &mut Reader<'a>, raw: &Raw<'a, $type>) -> Option<$type> {
-            reader.$read(raw)
+    ($($type:ty => $value:ty: $read:path),+) => { $(impl<'a> Valued<'a> for $type {
+        type Value = $value;
+        fn value(reader: &mut Reader<'a>, raw: &Raw<'a, $type>) -> Option<$value> {
+            $read(reader, raw)
         }
     }
     impl<'a> Shown<'a> for $type {
-        fn shown(value: &$type) -> String {
+        fn shown(value: &$value) -> String {
             value.to_string()
         }
     })+ };
 }
-valued!(bool: read, u8: read, u32: read, f32: finite);
+valued!(
+    bool => bool: Reader::read,
+    u8 => u8: Reader::read,
+    u32 => u32: Reader::read,
+    f32 => f32: Reader::finite,
+    AlphaReference => u8: alpha_reference
+);
 
 impl<'a, T: Named> Valued<'a> for Name<T> {
     type Value = T;
@@ -72,20 +78,6 @@ impl<'a, T: Named> Valued<'a> for Name<T> {
 impl<'a, T: Named> Shown<'a> for Name<T> {
     fn shown(value: &T) -> String {
         value.name().to_owned()
-    }
-}
-
-impl<'a> Valued<'a> for AlphaReference {
-    type Value = u8;
-
-    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<u8> {
-        alpha_reference(reader, raw)
-    }
-}
-
-impl<'a> Shown<'a> for AlphaReference {
-    fn shown(value: &u8) -> String {
-        value.to_string()
     }
 }
 

@@ -6,7 +6,7 @@ use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
 use super::assets::Assets;
-use super::diagnostic::{Diagnostic, only_nv2a};
+use super::diagnostic::{Diagnostic, needs_nv2a};
 use super::field::{COUNT, FINITE, KIND, MISSING, RANGE, TWICE, UNKNOWN, Valued, WORD};
 use super::lower::{Names, Targets, Textures};
 use super::notation::{Fault, FaultKind, Notation};
@@ -364,8 +364,8 @@ impl<'a> Reader<'a> {
         code: &'static str,
         (what, rule): (&str, &'static str),
     ) {
-        if let Some(raw) = field.as_ref().filter(|_| needs && self.profile == Profile::Nv10) {
-            self.push(only_nv2a(code, self.span(raw), what, rule));
+        if let Some(raw) = field {
+            self.accept(needs_nv2a(self.profile, needs, code, self.span(raw), what, rule));
         }
     }
 

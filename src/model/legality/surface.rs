@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::diagnostic::{Diagnostic, needs_nv2a};
 use crate::rop::surface;
 use crate::state::{BlendEquation, DepthFormat, Named, Profile, SurfaceFormat};
 
@@ -12,19 +12,19 @@ type Place = Option<Range<usize>>;
 /// The finding that a chip lacks a format of surfaces.
 pub fn format(format: SurfaceFormat, profile: Profile, place: Place) -> Option<Diagnostic> {
     let what = format!("surface format {}", format.name());
-    (format.is_nv2a_only() && profile == Profile::Nv10).then(|| only_nv2a("NB0314", place, &what, "ROP-5"))
+    needs_nv2a(profile, format.is_nv2a_only(), "NB0314", place, &what, "ROP-5")
 }
 
 /// The finding that a chip lacks a format of depth buffers.
 pub fn depth_format(format: DepthFormat, profile: Profile, place: Place) -> Option<Diagnostic> {
     let what = format!("depth format {}", format.name());
-    (format.is_float() && profile == Profile::Nv10).then(|| only_nv2a("NB0314", place, &what, "DEP-3"))
+    needs_nv2a(profile, format.is_float(), "NB0314", place, &what, "DEP-3")
 }
 
 /// The finding that a chip lacks a blend equation.
 pub fn blend_equation(equation: BlendEquation, profile: Profile, place: Place) -> Option<Diagnostic> {
     let what = format!("blend equation {}", equation.name());
-    (equation.is_nv2a_only() && profile == Profile::Nv10).then(|| only_nv2a("NB0315", place, &what, "ROP-3"))
+    needs_nv2a(profile, equation.is_nv2a_only(), "NB0315", place, &what, "ROP-3")
 }
 
 /// The finding that a surface cannot be blended.

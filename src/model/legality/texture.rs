@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
 use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
 
 /// Checks textures for a chip. Each check gives the finding, if there is one, at the place that it is told.
@@ -33,7 +33,7 @@ impl TextureChecks {
     /// The format exists on the chip.
     pub fn format(self, format: TextureFormat, place: Place) -> Option<Diagnostic> {
         let what = format!("texture format {}", format.name());
-        (format.is_nv2a_only() && self.profile == Profile::Nv10).then(|| only_nv2a("NB0320", place, &what, "TEX-1"))
+        needs_nv2a(self.profile, format.is_nv2a_only(), "NB0320", place, &what, "TEX-1")
     }
 
     /// Sides that the chip and the limits allow: powers of two, or any of a rectangle; of a cube map square.
@@ -81,6 +81,7 @@ impl TextureChecks {
         let on = if self.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
         Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
             .label(format!("a side has at most {most} texels on {:?}", self.profile))
+            .rule("TEX-7")
             .help(format!("scale it down{on}"))
     }
 
@@ -135,8 +136,7 @@ impl TextureChecks {
 
     /// A border colour is known of nv2a.
     pub fn address_mode(self, mode: AddressMode, place: Place) -> Option<Diagnostic> {
-        let lacks = mode == AddressMode::ClampToBorder && self.profile == Profile::Nv10;
-        lacks.then(|| only_nv2a("NB0317", place, "a border colour", "TEX-7"))
+        needs_nv2a(self.profile, mode == AddressMode::ClampToBorder, "NB0317", place, "a border colour", "TEX-7")
     }
 
     /// Border texels: of nv2a, two dimensions, no blocks.

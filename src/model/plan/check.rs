@@ -5,7 +5,7 @@
 //! where vertices end up (RAS-0) is found when triangles are formed.
 
 use super::PlanError;
-use crate::diagnostic::{Diagnostic, Severity, only_nv2a};
+use crate::diagnostic::{Diagnostic, Severity, needs_nv2a};
 use crate::legality::texture::TextureChecks;
 use crate::legality::{self, Notation};
 use crate::limits::Limits;
@@ -61,9 +61,7 @@ impl Check<'_> {
 
     /// Refuses what only nv2a has.
     fn only_nv2a(&mut self, code: &'static str, rule: &'static str, has: bool, what: &str) {
-        if has && self.scene.profile == Profile::Nv10 {
-            self.found(only_nv2a(code, None, what, rule));
-        }
+        self.accept(needs_nv2a(self.scene.profile, has, code, None, what, rule));
     }
 
     fn accept(&mut self, finding: Option<Diagnostic>) {
@@ -74,6 +72,7 @@ impl Check<'_> {
     fn accepts(&mut self, texture: &Texture, finding: Option<Diagnostic>) -> bool {
         let Some(mut finding) = finding else { return true };
         finding.message = format!("texture `{}`: {}", texture.name, finding.message);
+        finding.help = Some(format!("{}: {}", finding.label, finding.help.unwrap_or_default()));
         self.found(finding);
         false
     }

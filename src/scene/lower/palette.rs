@@ -55,10 +55,8 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
         let message = format!("a palette cannot have {} entries", words.len());
         return reader.refuse(finding("NB0233", place, message, "another number", HELP).rule("TEX-1"));
     }
-    if words.len() < 256 && reader.profile == Profile::Nv10 {
-        let what = format!("a palette of {} entries", words.len());
-        return reader.refuse(target::only_nv2a("NB0332", place, &what, "TEX-1"));
-    }
+    let what = format!("a palette of {} entries", words.len());
+    reader.accept(target::needs_nv2a(reader.profile, words.len() < 256, "NB0332", place, &what, "TEX-1"))?;
     Some(words)
 }
 

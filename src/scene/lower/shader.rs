@@ -38,8 +38,8 @@ pub(super) fn shader<'a>(
 ) {
     let Some(raw) = raw else { return };
     let Some(list) = reader.read(raw) else { return };
-    if reader.profile == Profile::Nv10 {
-        reader.push(target::only_nv2a("NB0340", reader.span(raw), "a texture shader", "TSH-10"));
+    let lacks = target::needs_nv2a(reader.profile, true, "NB0340", reader.span(raw), "a texture shader", "TSH-10");
+    if reader.accept(lacks).is_none() {
         return;
     }
     let mut places: [Option<Places>; TEXTURE_UNITS] = [const { None }; TEXTURE_UNITS];

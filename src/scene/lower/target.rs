@@ -3,7 +3,7 @@
 
 use super::names::Index;
 use super::*;
-pub(super) use ninebit::diagnostic::only_nv2a;
+pub(super) use ninebit::diagnostic::needs_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;
 use ninebit::raster::depth;

@@ -40,11 +40,8 @@ fn exists(reader: &mut Reader<'_>, index: usize, place: Span) -> bool {
         reader.push(finding("NB0319", place, message, "one too many", help).rule("TSH-11"));
         return false;
     }
-    if index >= reader.profile.texture_units() {
-        reader.push(target::only_nv2a("NB0319", place, &format!("coordinate set {index}"), "TSH-11"));
-        return false;
-    }
-    true
+    let (what, lacks) = (format!("coordinate set {index}"), index >= reader.profile.texture_units());
+    reader.accept(target::needs_nv2a(reader.profile, lacks, "NB0319", place, &what, "TSH-11")).is_some()
 }
 
 fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, index: usize) -> Option<CoordinateSet> {

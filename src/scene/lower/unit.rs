@@ -30,9 +30,8 @@ pub(super) fn units<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Li
             reader.push(finding("NB0319", place, message, "one too many", help).rule("CMB-12"));
             break;
         }
-        if index >= available {
-            reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
-        }
+        let what = format!("texture unit {index}");
+        reader.accept(target::needs_nv2a(reader.profile, index >= available, "NB0319", place.clone(), &what, "CMB-12"));
         units.places[index] = place;
         if let Some((unit, coordinate_set, place)) = unit(reader, raw, index) {
             units.bound[index] = Some(unit);
