@@ -571,3 +571,15 @@ fn hostile_scenes_are_planned_or_refused() {
     println!("{drawn} of {count} hostile scenes are drawn");
     assert!(drawn > count / 20 && drawn < count, "{drawn} of {count}");
 }
+
+/// What a text is told at its place, a scene without one is told as well: the bound, and the rule.
+#[test]
+fn a_texture_that_is_too_large_is_told_its_bound() {
+    let mut scene = plain(Profile::Nv10);
+    let TextureImage::Texels(texels) = &mut scene.textures[0].image else { unreachable!("texels of its own") };
+    texels.width = 8192;
+    let errors = compile(&scene).unwrap_err();
+    let error = errors.iter().find(|error| error.code == "NB0321").unwrap();
+    assert_eq!(error.rule, Some("TEX-7"));
+    assert_eq!(error.help, "a side has at most 2048 texels on Nv10: scale it down; profile Nv2a allows 4096");
+}
