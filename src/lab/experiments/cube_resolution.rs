@@ -10,7 +10,7 @@ const REACH: f64 = 0.8;
 pub(super) fn experiment() -> Experiment {
     let method = |exponent: i32| {
         Method::new(format!("exponent {exponent}"), [256.0, 4.0], move |side| {
-            largest_error(&text(side as usize, exponent), 0, |at| {
+            largest_error(picture(side as usize, exponent), 0, |at| {
                 highlight([REACH * (2.0 * at - 1.0), 0.2, 1.0], exponent)
             })
         })
@@ -28,22 +28,18 @@ fn highlight(direction: [f64; 3], exponent: i32) -> f64 {
     pow(cosine.max(0.0), f64::from(exponent))
 }
 
-/// Directions along a face; only that face holds anything.
-fn text(side: usize, exponent: i32) -> String {
-    let mut texels = Vec::with_capacity(side * side);
-    for row in 0..side {
-        let y = 1.0 - 2.0 * centre(row, side);
-        texels.extend((0..side).map(|column| byte(highlight([2.0 * centre(column, side) - 1.0, y, 1.0], exponent))));
+/// Directions along a face; only that face, the fifth, holds anything.
+fn picture(side: usize, exponent: i32) -> Pixels {
+    let mut words = vec![0; 6 * side * side];
+    for (n, word) in words[4 * side * side..5 * side * side].iter_mut().enumerate() {
+        let (x, y) = (2.0 * centre(n % side, side) - 1.0, 1.0 - 2.0 * centre(n / side, side));
+        *word = u32::from(byte(highlight([x, y, 1.0], exponent)));
     }
-    let front = byte_texels(side, &texels);
-    let dark = format!("Solid(width: {side}, height: {side}, color: (0, 0, 0))");
-    let cube = format!(
-        "\"highlight\": (format: I8, source: Faces(positive_x: {dark}, negative_x: {dark}, positive_y: {dark}, \
-         negative_y: {dark}, positive_z: {front}, negative_z: {dark})), "
-    );
-    let draw = format!(
-        "({}, textures: [\"highlight\"], program: Combiners(stages: [()], final_combiner: (d: Texture0)))",
-        row(WIDTH, &format!("t0: ({}, 0.2, 1)", -REACH), &format!("t0: ({REACH}, 0.2, 1)"))
-    );
-    scene("Nv2a", WIDTH, "", &cube, &draw)
+    let mut cube = Texture { kind: TextureKind::Cube, ..texture(TextureFormat::I8, side, words) };
+    if let TextureImage::Texels(texels) = &mut cube.image {
+        texels.height = side as u32;
+    }
+    let ends = [[-REACH, 0.2, 1.0], [REACH, 0.2, 1.0]];
+    let row = row(WIDTH, ends, TextureUnit::new(0), Combiners::showing(FinalRegister::Texture0));
+    drawn(Profile::Nv2a, WIDTH, vec![cube], vec![row])
 }

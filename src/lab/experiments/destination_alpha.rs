@@ -3,8 +3,8 @@
 use super::*;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| {
-        Method::new(name, [1.0, 128.0], move |passes| largest_error(&text(passes, blend, part), 3, |at| at))
+    let method = |name: &str, blend: [BlendFactor; 2], part: fn(f64, f64) -> f64| {
+        Method::new(name, [1.0, 128.0], move |passes| largest_error(picture(passes, blend, part), 3, |at| at))
     };
     Experiment::new("destination-alpha", "A number gathered in destination alpha")
         .moving(
@@ -14,24 +14,21 @@ pub(super) fn experiment() -> Experiment {
         )
         .measuring("largest error, 8-bit steps", 4.0)
         .by([
-            method("sum of equal parts", "(source: One, destination: One)", |value, passes| value / passes),
-            method("product of equal factors", "(source: Zero, destination: SourceAlpha)", |value, passes| {
+            method("sum of equal parts", [BlendFactor::One, BlendFactor::One], |value, passes| value / passes),
+            method("product of equal factors", [BlendFactor::Zero, BlendFactor::SourceAlpha], |value, passes| {
                 pow(value, 1.0 / passes)
             }),
         ])
 }
 
 /// Each pass brings the same part of what is to come out, as a byte.
-fn text(passes: f64, blend: &str, part: fn(f64, f64) -> f64) -> String {
-    let texels: Vec<u8> = (0..WIDTH).map(|x| byte(part(centre(x, WIDTH), passes))).collect();
-    let pass = |blend: &str| {
-        format!(
-            "({}, textures: [(texture: \"part\", mag_filter: Nearest)], program: Combiners(stages: [()], \
-             final_combiner: (g: Texture0)), color_mask: (false, false, false, true), blend: {blend}), ",
-            whole_row(WIDTH)
-        )
-    };
+fn picture(passes: f64, [source, destination]: [BlendFactor; 2], part: fn(f64, f64) -> f64) -> Pixels {
+    let texels = bytes((0..WIDTH).map(|x| byte(part(centre(x, WIDTH), passes))));
+    let pass = whole_row(WIDTH, 0, Combiners::showing(FinalRegister::Texture0));
+    let pass = Draw { color_mask: [false, false, false, true], ..pass };
+    let blend = Some(Blend { equation: BlendEquation::Add, source, destination });
+    let mut draws = vec![Draw { blend, ..pass.clone() }; passes as usize];
     // The first pass replaces what was there.
-    let draws = pass("()") + &pass(blend).repeat(passes as usize - 1);
-    scene("Nv10", WIDTH, "", &bytes("part", WIDTH, &texels), &draws)
+    draws[0] = pass;
+    drawn(Profile::Nv10, WIDTH, vec![texels], draws)
 }

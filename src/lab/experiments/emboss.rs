@@ -11,7 +11,7 @@ const AMPLITUDE: f64 = 0.4;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, back: f64| {
         Method::new(name, [1.0, 7.0], move |offset| {
-            let pixels = draw(&text(offset, back))?;
+            let pixels = picture(offset, back)?;
             let steepest = 255.0 * offset * 0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE;
             // What the slope alone would give: one half, less the rise over the offset.
             let ideal = |at: f64| 0.5 - offset * slope(at * TEXELS as f64);
@@ -29,18 +29,22 @@ fn slope(at: f64) -> f64 {
     0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE * cos(std::f64::consts::TAU * at / WAVE)
 }
 
-fn text(offset: f64, back: f64) -> String {
+fn picture(offset: f64, back: f64) -> Pixels {
     let height = |n: usize| {
         let at = n as f64 + 0.5;
         byte(0.5 + 0.5 * AMPLITUDE * sin(std::f64::consts::TAU * at / WAVE))
     };
-    let heights: Vec<u8> = (0..TEXELS).map(height).collect();
-    let [near, far] = [-back * offset, (1.0 - back) * offset].map(|texels| texels / TEXELS as f64);
-    let end = |s: f64| format!("t0: ({}, 0), t1: ({}, 0)", s + near, s + far);
-    let draw = format!(
-        "({}, textures: [\"height\", \"height\"], program: Combiners(stages: [(rgb: (a: Texture0, b: UnsignedInvert(Zero), \
-         c: UnsignedInvert(Texture1), d: UnsignedInvert(Zero), sum: Spare0, bias: NegativeHalf))], final_combiner: (d: Spare0)))",
-        row(WIDTH, &end(0.0), &end(1.0))
-    );
-    scene("Nv10", WIDTH, "", &bytes("height", TEXELS, &heights), &draw)
+    let end = |s: f64| {
+        let mut end = Vertex::default();
+        for (set, texels) in [-back * offset, (1.0 - back) * offset].into_iter().enumerate() {
+            end.texture_coordinates[set][0] = (s + texels / TEXELS as f64) as f32;
+        }
+        end
+    };
+    let inverted = mapped(InputMapping::UnsignedInvert, Register::Texture1);
+    let mut difference = sum(plain(Register::Texture0), inverted);
+    difference.rgb.bias = Bias::NegativeHalf;
+    let vertices = quad([0.0, WIDTH as f64], [end(0.0), end(1.0)]).into();
+    let draw = quads(vertices, &[TextureUnit::new(0); 2], program([0; 3], vec![difference]));
+    drawn(Profile::Nv10, WIDTH, vec![bytes((0..TEXELS).map(height))], vec![draw])
 }

@@ -1,7 +1,6 @@
 //! Half vectors that are computed at the vertices and interpolated.
 
 use super::*;
-use std::fmt::Write;
 
 /// Where light and viewer stand over a floor, x and height.
 const LIGHT: [f64; 2] = [0.6, 1.0];
@@ -12,7 +11,7 @@ const SQUARINGS: usize = 3;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, parts: usize| {
         Method::new(name, [0.1, 8.0], move |extent| {
-            largest_error(&text(extent, parts), 0, |at| {
+            largest_error(picture(extent, parts), 0, |at| {
                 pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS))
             })
         })
@@ -42,17 +41,15 @@ fn half_vector(x: f64) -> [f64; 2] {
     unit([light[0] + eye[0], light[1] + eye[1]])
 }
 
-fn text(extent: f64, parts: usize) -> String {
-    let mut vertices = String::new();
-    for part in 0..parts {
-        let [left, right] = [part, part + 1].map(|n| n as f64 / parts as f64);
-        for (at, y) in [(left, 0), (right, 0), (right, 1), (left, 1)] {
-            let [x, z] = half_vector(place(at, extent)).map(|n| 0.5 + 0.5 * n);
-            // Writing to a string cannot fail.
-            let _ = write!(vertices, "(position: ({}, {y}), diffuse: Float({x}, 0.5, {z}, 1)), ", at * WIDTH as f64);
-        }
-    }
-    let program = highlight("PrimaryColor", [128, 128, 255], SQUARINGS);
-    let draw = format!("(vertices: Window([{vertices}]), topology: Quads, program: {program})");
-    scene("Nv2a", WIDTH, "", "", &draw)
+fn picture(extent: f64, parts: usize) -> Pixels {
+    let vertices = (0..parts).flat_map(|part| {
+        let ends = [part, part + 1].map(|n| n as f64 / parts as f64);
+        let vectors = ends.map(|at| {
+            let [x, z] = half_vector(place(at, extent));
+            pointing([x, 0.0, z])
+        });
+        quad(ends.map(|at| at * WIDTH as f64), vectors)
+    });
+    let program = highlight(Register::PrimaryColor, [128, 128, 255], SQUARINGS);
+    drawn(Profile::Nv2a, WIDTH, vec![], vec![quads(vertices.collect(), &[], program)])
 }

@@ -46,20 +46,18 @@ fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f6
     let tilt = |at: f64| angle(-bumps, bumps, at);
     let normals = leaning(WIDTH, |x| tilt(centre(x, WIDTH)));
     let [r, g, b] = encode([cos(elevation), 0.0, sin(elevation)]);
-    let dot = "a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true";
-    let stages = match shadow {
-        Shadow::None => format!("(rgb: ({dot}))"),
-        Shadow::Term => format!(
-            "(rgb: ({dot}), alpha: (a: ExpandNormal(ConstantColor0, Blue), b: UnsignedInvert(Zero), ab: Spare0, \
-             scale: Four)), (rgb: (a: Spare0, b: (Spare0, Alpha), ab: Spare0))"
-        ),
-    };
-    let draw_text = format!(
-        "({}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: Combiners(constants: (({r}, {g}, {b})), \
-         stages: [{stages}], final_combiner: (d: Spare0)))",
-        whole_row(WIDTH)
-    );
-    let pixels = draw(&scene("Nv2a", WIDTH, "", &normals, &draw_text))?;
+    let direction = expanded(Register::ConstantColor0);
+    let mut stages = vec![dot_product(expanded(Register::Texture0), direction)];
+    if matches!(shadow, Shadow::Term) {
+        let term = &mut stages[0].alpha;
+        term.inputs[0] = CombinerInput { component: Component::Blue, ..direction };
+        term.inputs[1].mapping = InputMapping::UnsignedInvert;
+        (term.ab_output, term.scale) = (Register::Spare0, ninebit::state::Scale::Four);
+        let lit = plain(Register::Spare0);
+        stages.push(product(lit, CombinerInput { component: Component::Alpha, ..lit }));
+    }
+    let row = whole_row(WIDTH, 0, program([r, g, b], stages));
+    let pixels = drawn(Profile::Nv2a, WIDTH, vec![normals], vec![row])?;
     let ideal =
         |at: f64| if elevation <= 0.0 { 0.0 } else { cos(tilt(at) - (std::f64::consts::FRAC_PI_2 - elevation)) };
     let wanted = (0..WIDTH).map(|x| 255.0 * ideal(centre(x, WIDTH)).max(0.0)).collect();

@@ -7,9 +7,9 @@ use super::*;
 const THIRD: f64 = 0.577_350_269_189_625_8;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, text: fn(f64) -> String| {
+    let method = |name: &str, picture: fn(f64) -> Pixels| {
         Method::new(name, [1.0, 1.9], move |length| {
-            largest_error(&text(length), 0, |at| {
+            largest_error(picture(length), 0, |at| {
                 let [x, y, z] = normal(at);
                 length * THIRD * (x + y + z)
             })
@@ -28,29 +28,17 @@ fn normal(at: f64) -> [f64; 3] {
     [side, sin(tilt), side]
 }
 
-fn combined(length: f64) -> String {
-    let normals = colors("normals", (0..WIDTH).map(|x| encode(normal(centre(x, WIDTH)))));
-    let program = highlight("Texture0", encode([(length * THIRD).min(1.0); 3]), 0);
-    let row = whole_row(WIDTH);
-    let draw = format!("({row}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: {program})");
-    scene("Nv2a", WIDTH, "", &normals, &draw)
+fn combined(length: f64) -> Pixels {
+    let normals = colors((0..WIDTH).map(|x| encode(normal(centre(x, WIDTH)))));
+    let program = highlight(Register::Texture0, encode([(length * THIRD).min(1.0); 3]), 0);
+    drawn(Profile::Nv2a, WIDTH, vec![normals], vec![whole_row(WIDTH, 0, program)])
 }
 
-fn passes(length: f64) -> String {
-    let half = |name: &str, of: fn([f64; 3]) -> f64| {
-        let texels: Vec<u8> = (0..WIDTH).map(|x| byte(of(normal(centre(x, WIDTH))).max(0.0))).collect();
-        bytes(name, WIDTH, &texels)
-    };
-    let textures = half("+x", |[x, _, _]| x)
-        + &half("+y", |[_, y, _]| y)
-        + &half("-y", |[_, y, _]| -y)
-        + &half("+z", |[_, _, z]| z);
+fn passes(length: f64) -> Pixels {
+    let half = |of: fn([f64; 3]) -> f64| bytes((0..WIDTH).map(|x| byte(of(normal(centre(x, WIDTH))).max(0.0))));
+    let halves = vec![half(|[x, _, _]| x), half(|[_, y, _]| y), half(|[_, _, z]| z), half(|[_, y, _]| -y)];
     let light = byte((length * THIRD).min(1.0));
-    let draws = [
-        pass("+x", light, "Add"),
-        pass("+y", light, "Add"),
-        pass("+z", light, "Add"),
-        pass("-y", light, "ReverseSubtract"),
-    ];
-    scene("Nv2a", WIDTH, "", &textures, &draws.concat())
+    let equations = [BlendEquation::Add, BlendEquation::Add, BlendEquation::Add, BlendEquation::ReverseSubtract];
+    let draws = (0..).zip(equations).map(|(n, equation)| pass(n, light, equation)).collect();
+    drawn(Profile::Nv2a, WIDTH, halves, draws)
 }

@@ -1,6 +1,7 @@
 //! Highlights of a bumpy surface that moves away.
 
 use super::*;
+use ninebit_files::texels::halve;
 
 const PIXELS: usize = 256;
 /// Texels of the map.
@@ -9,9 +10,9 @@ const TEXELS: usize = 512;
 const TILT: f64 = 35.0;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, squarings: u32, filter: &'static str| {
+    let method = |name: &str, squarings: u32, mip_filter: MipFilter| {
         Method::new(name, [1.0, 12.0], move |texels| {
-            let pixels = draw(&text(texels, squarings, filter))?;
+            let pixels = picture(texels, squarings, mip_filter)?;
             let normals: Vec<[f64; 2]> = (0..TEXELS).map(tilt).map(|tilt| [sin(tilt), cos(tilt)]).collect();
             Ok(root_mean_square(&errors(&pixels, 0, |at| seen(&normals, at, texels, squarings))))
         })
@@ -20,9 +21,9 @@ pub(super) fn experiment() -> Experiment {
         .moving("texels a pixel", Scale::Real(0.02), (0..=40).map(|n| exp2(f64::from(n) / 8.0)).collect())
         .measuring("rms error, 8-bit steps", 20.0)
         .by([
-            method("N . H, levels", 0, "mip_filter: Linear"),
-            method("(N . H)^8, levels", 3, "mip_filter: Linear"),
-            method("(N . H)^8, level 0 alone", 3, "mip_filter: None"),
+            method("N . H, levels", 0, MipFilter::Linear),
+            method("(N . H)^8, levels", 3, MipFilter::Linear),
+            method("(N . H)^8, level 0 alone", 3, MipFilter::None),
         ])
 }
 
@@ -49,11 +50,19 @@ fn seen(normals: &[[f64; 2]], at: f64, texels: f64, squarings: u32) -> f64 {
     (0..SAMPLES).map(sample).sum::<f64>() / SAMPLES as f64
 }
 
-fn text(texels: f64, squarings: u32, filter: &str) -> String {
-    let normals = leaning(TEXELS, tilt).replacen("(source:", "(levels: All, source:", 1);
-    let right = format!("t0: ({}, 0)", texels * PIXELS as f64 / TEXELS as f64);
-    let (row, program) =
-        (row(PIXELS, "t0: (0, 0)", &right), highlight("Texture0", [128, 128, 255], squarings as usize));
-    let draw = format!("({row}, textures: [(texture: \"normals\", {filter})], program: {program})");
-    scene("Nv2a", PIXELS, "", &normals, &draw)
+fn picture(texels: f64, squarings: u32, mip_filter: MipFilter) -> Pixels {
+    let mut normals = leaning(TEXELS, tilt);
+    if let TextureImage::Texels(image) = &mut normals.image {
+        let mut level = image.words.to_vec();
+        let mut words = level.clone();
+        while level.len() > 1 {
+            level = halve(&level, level.len() as u32, 1, normals.format);
+            words.extend(&level);
+        }
+        (image.levels, image.words) = (Level::most(image.width, 1), words.into());
+    }
+    let ends = [[0.0; 3], [texels * PIXELS as f64 / TEXELS as f64, 0.0, 0.0]];
+    let unit = TextureUnit { mip_filter, ..TextureUnit::new(0) };
+    let program = highlight(Register::Texture0, [128, 128, 255], squarings as usize);
+    drawn(Profile::Nv2a, PIXELS, vec![normals], vec![row(PIXELS, ends, unit, program)])
 }

@@ -1,20 +1,15 @@
 //! Tangent bases where a texture is mirrored.
 
 use super::*;
+use ninebit_scene::mesh::{Surface, mesh};
 
 /// Toward the light: along the binormal and up.
 const LIGHT: [f64; 3] = [0.0, 0.6, 0.8];
-/// The left half of a square shows the texture mirrored; corners of the halves as x, y, s, t.
-const LEFT: &str = "(position: (-1, -1), normal: (0, 0, 1), t0: (1, 1)), (position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), \
-     (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), (position: (-1, 1), normal: (0, 0, 1), t0: (1, 0)), ";
-const RIGHT: &str = "(position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), (position: (1, -1), normal: (0, 0, 1), t0: (1, 1)), \
-     (position: (1, 1), normal: (0, 0, 1), t0: (1, 0)), (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), ";
-
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, vertices: fn() -> String| {
+    let method = |name: &str, vertices: fn() -> Vec<Vertex>| {
         Method::new(name, [0.05, 45.0], move |degrees: f64| {
             let tilt = degrees.to_radians();
-            let pixels = draw(&text(tilt, &vertices()))?;
+            let pixels = picture(tilt, vertices())?;
             Ok(root_mean_square(&errors(&pixels, 0, |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2])))
         })
     };
@@ -22,13 +17,7 @@ pub(super) fn experiment() -> Experiment {
         .moving("tilt of the mapped normal, degrees", Scale::Real(0.05), steps(0.0, 45.0, 46))
         .measuring("rms error, 8-bit steps", 8.0)
         .by([
-            method("bases of the mesh, split where it is mirrored", || {
-                let [x, y, z] = LIGHT;
-                format!(
-                    "vertices: Matrix(matrix: Identity, mesh: Triangles(vertices: [{LEFT}{RIGHT}], indices: [0, 1, 2, 0, 2, 3, 4, \
-                     5, 6, 4, 6, 7]), diffuse: LightVector(direction: ({x}, {y}, {z})))"
-                )
-            }),
+            method("bases of the mesh, split where it is mirrored", of_the_mesh),
             method("binormal taken as N x T", || {
                 // Where s runs to the left, N x T points against the binormal.
                 listed([-LIGHT[1], -LIGHT[1]], [LIGHT[1], LIGHT[1]])
@@ -37,24 +26,37 @@ pub(super) fn experiment() -> Experiment {
         ])
 }
 
-/// Quads with light vectors whose binormal components are given at the ends of each half.
-fn listed(left: [f64; 2], right: [f64; 2]) -> String {
-    let vertex = |x: usize, y: usize, binormal: f64| {
-        let [g, b] = [binormal, LIGHT[2]].map(|n| 0.5 + 0.5 * n);
-        format!("(position: ({x}, {y}), diffuse: Float(0.5, {g}, {b}, 1)), ")
+/// A square whose left half shows the texture mirrored, with light vectors in the bases of its corners.
+fn of_the_mesh() -> Vec<Vertex> {
+    let half = |[left, right]: [f32; 2], [s, other]: [f32; 2]| {
+        [[left, -1.0, s, 1.0], [right, -1.0, other, 1.0], [right, 1.0, other, 0.0], [left, 1.0, s, 0.0]]
     };
-    let quad = |from: usize, to: usize, [a, b]: [f64; 2]| {
-        vertex(from, 0, a) + &vertex(to, 0, b) + &vertex(to, 1, b) + &vertex(from, 1, a)
+    let corners = [half([-1.0, 0.0], [1.0, 0.0]), half([0.0, 1.0], [0.0, 1.0])].concat();
+    let mesh = mesh(&Surface {
+        positions: corners.iter().map(|[x, y, ..]| [*x, *y, 0.0]).collect(),
+        normals: vec![[0.0, 0.0, 1.0]; 8],
+        texture_coordinates: corners.iter().map(|[.., s, t]| [*s, *t]).collect(),
+        indices: vec![0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
+    });
+    let light = |n: usize| {
+        [mesh.tangents[n], mesh.binormals[n], mesh.normals[n]]
+            .map(|axis| (0..3).map(|k| f64::from(axis[k]) * LIGHT[k]).sum::<f64>())
     };
-    format!("vertices: Window([{}{}]), topology: Quads", quad(0, WIDTH / 2, left), quad(WIDTH / 2, WIDTH, right))
+    let places = [[0, WIDTH / 2], [WIDTH / 2, WIDTH]].map(|ends| ends.map(|x| x as f64));
+    (0..2).flat_map(|half| quad(places[half], [4 * half, 4 * half + 1].map(|n| pointing(light(n))))).collect()
+}
+
+/// Light vectors whose binormal components are given at the ends of each half.
+fn listed(left: [f64; 2], right: [f64; 2]) -> Vec<Vertex> {
+    let lit = |binormal: f64| pointing([0.0, binormal, LIGHT[2]]);
+    let middle = (WIDTH / 2) as f64;
+    [quad([0.0, middle], left.map(lit)), quad([middle, WIDTH as f64], right.map(lit))].concat()
 }
 
 /// A map of one normal that leans along the binormal.
-fn text(tilt: f64, vertices: &str) -> String {
-    let normals = colors("normals", std::iter::once(encode([0.0, sin(tilt), cos(tilt)])));
-    let draw = format!(
-        "({vertices}, textures: [\"normals\"], program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), \
-         b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true))], final_combiner: (d: Spare0)))"
-    );
-    scene("Nv10", WIDTH, "", &normals, &draw)
+fn picture(tilt: f64, vertices: Vec<Vertex>) -> Pixels {
+    let normals = colors(std::iter::once(encode([0.0, sin(tilt), cos(tilt)])));
+    let dot = dot_product(expanded(Register::Texture0), expanded(Register::PrimaryColor));
+    let draw = quads(vertices, &[TextureUnit::new(0)], program([0; 3], vec![dot]));
+    drawn(Profile::Nv10, WIDTH, vec![normals], vec![draw])
 }

@@ -10,7 +10,7 @@ const FROM: f64 = 0.75;
 pub(super) fn experiment() -> Experiment {
     let method = |texels: usize| {
         Method::new(format!("{texels} texels, filtered"), [1.0, 4096.0], move |exponent| {
-            largest_error(&text(texels, exponent), 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))
+            largest_error(picture(texels, exponent), 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))
         })
     };
     Experiment::new("power-table", "Highlight by a table of powers")
@@ -20,12 +20,11 @@ pub(super) fn experiment() -> Experiment {
 }
 
 /// The cosine along the strip looks its power up.
-fn text(texels: usize, exponent: f64) -> String {
-    let table: Vec<u8> = (0..texels).map(|n| byte(pow(centre(n, texels), exponent))).collect();
-    let draw = format!(
-        "({}, textures: [(texture: \"powers\", address: ClampToEdge)], \
-         program: Combiners(stages: [()], final_combiner: (d: Texture0)))",
-        row(PIXELS, &format!("t0: ({FROM}, 0)"), "t0: (1, 0)")
-    );
-    scene("Nv2a", PIXELS, "", &bytes("powers", texels, &table), &draw)
+fn picture(texels: usize, exponent: f64) -> Pixels {
+    let table = bytes((0..texels).map(|n| byte(pow(centre(n, texels), exponent))));
+    let clamp = AddressMode::ClampToEdge;
+    let unit = TextureUnit { address_s: clamp, address_t: clamp, ..TextureUnit::new(0) };
+    let ends = [[FROM, 0.0, 0.0], [1.0, 0.0, 0.0]];
+    let row = row(PIXELS, ends, unit, Combiners::showing(FinalRegister::Texture0));
+    drawn(Profile::Nv2a, PIXELS, vec![table], vec![row])
 }

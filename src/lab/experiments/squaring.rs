@@ -9,9 +9,7 @@ const TILT: f64 = 50.0;
 
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| {
-        Method::new(name, [2.0, 128.0], move |exponent| {
-            Ok(of(&draw(&text(log2(exponent).round() as usize))?, exponent))
-        })
+        Method::new(name, [2.0, 128.0], move |exponent| Ok(of(&picture(log2(exponent).round() as usize)?, exponent)))
     };
     Experiment::new("squaring", "Highlight by repeated squaring")
         .moving("exponent", Scale::Doubling, (1..8).map(|n| f64::from(1 << n)).collect())
@@ -25,11 +23,10 @@ pub(super) fn experiment() -> Experiment {
 }
 
 /// N . H, then so many squarings.
-fn text(squarings: usize) -> String {
+fn picture(count: usize) -> Pixels {
     let normals = leaning(PIXELS, |x| angle(-TILT, TILT, strip::centre(x, PIXELS)));
-    let (row, program) = (whole_row(PIXELS), highlight("Texture0", [128, 128, 255], squarings));
-    let draw = format!("({row}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: {program})");
-    scene("Nv2a", PIXELS, "", &normals, &draw)
+    let row = whole_row(PIXELS, 0, highlight(Register::Texture0, [128, 128, 255], count));
+    drawn(Profile::Nv2a, PIXELS, vec![normals], vec![row])
 }
 
 /// The largest difference of two neighbours.

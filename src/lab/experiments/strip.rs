@@ -1,68 +1,91 @@
 //! What the scenes of experiments are made of: strips of pixels, rows of texels, and the errors of what is drawn.
 
-use std::fmt::Write;
-use std::path::Path;
-
 use super::{cos, encode, sin};
+use ninebit::diagnostic::Source;
 use ninebit::engine::{RenderOptions, render};
-use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+pub(super) use ninebit::state::*;
+use ninebit_scene::SceneError;
 pub(super) use ninebit_scene::generate::byte;
-use ninebit_scene::{SceneError, parse};
 
 /// Pixels of a strip.
 pub(super) const WIDTH: usize = 256;
 
-/// Draws a scene; R, G, B, A of its first target.
-pub(super) fn draw(text: &str) -> Result<Vec<[u8; 4]>, Box<SceneError>> {
-    let loaded = parse(text, Path::new("experiment.ron"), &Limits::default())?;
-    let frames = render(&loaded.plan, &RenderOptions::default());
+/// R, G, B, A of the pixels of a strip.
+pub(super) type Pixels = Result<Vec<[u8; 4]>, Box<SceneError>>;
+
+/// What draws leave on one row of pixels that is black and transparent at first.
+pub(super) fn drawn(profile: Profile, width: usize, textures: Vec<Texture>, draws: Vec<Draw>) -> Pixels {
+    let targets = vec![Target::new(width as u32, 1, SurfaceFormat::A8R8G8B8)];
+    let scene = Scene { profile, targets, textures, draws, ..Scene::default() };
+    let plan = Plan::compile(&scene, &PlanOptions::default()).map_err(|errors| {
+        let diagnostics = errors.iter().map(|error| error.diagnostic(None)).collect();
+        let source = Source { name: "experiment".to_owned(), text: String::new() };
+        Box::new(SceneError { diagnostics, suppressed: 0, source })
+    })?;
+    let frames = render(&plan, &RenderOptions::default());
     Ok(frames.surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default())
 }
 
-/// A scene whose target is one row of pixels, black and transparent at first.
-pub(super) fn scene(profile: &str, width: usize, names: &str, textures: &str, draws: &str) -> String {
-    format!(
-        "(version: 1, profile: {profile}, names: ({names}), targets: [(name: \"frame\", width: {width}, height: 1, \
-         clear: (color: (0, 0, 0, 0)))], textures: {{ {textures} }}, draws: [{draws}])"
-    )
+/// A vertex whose coordinate set 0 is s, t, r.
+pub(super) fn vertex([s, t, r]: [f64; 3]) -> Vertex {
+    let mut vertex = Vertex::default();
+    vertex.texture_coordinates[0] = [s as f32, t as f32, r as f32, 1.0];
+    vertex
 }
 
-/// Vertices that cover the row; `left` and `right` are further fields of those at its ends.
-pub(super) fn row(width: usize, left: &str, right: &str) -> String {
-    format!(
-        "vertices: Window([(position: (0, 0), {left}), (position: ({width}, 0), {right}), (position: ({width}, 1), {right}), \
-         (position: (0, 1), {left})]), topology: Quads"
-    )
+/// A vertex with a vector in its primary colour, the components of -1 to 1 as 0 to 1.
+pub(super) fn pointing(vector: [f64; 3]) -> Vertex {
+    let [x, y, z] = vector.map(|n| (0.5 + 0.5 * n) as f32);
+    Vertex { diffuse: VertexColor::Floats([x, y, z, 1.0]), ..Vertex::default() }
 }
 
-/// The row with coordinate set 0 running from 0 to 1.
-pub(super) fn whole_row(width: usize) -> String {
-    row(width, "t0: (0, 0)", "t0: (1, 0)")
+/// A quad that covers the row from one pixel to another.
+pub(super) fn quad([from, to]: [f64; 2], [left, right]: [Vertex; 2]) -> [Vertex; 4] {
+    let corner = |x: f64, y, vertex| Vertex { position: [x as f32, y, 0.0, 1.0], ..vertex };
+    [corner(from, 0.0, left), corner(to, 0.0, right), corner(to, 1.0, right), corner(from, 1.0, left)]
+}
+
+/// A draw of quads.
+pub(super) fn quads(vertices: Vec<Vertex>, units: &[TextureUnit], combiners: Combiners) -> Draw {
+    let indices = (0..vertices.len() as u32).collect();
+    let mut draw = Draw { vertices: vertices.into(), indices, topology: Topology::Quads, combiners, ..Draw::default() };
+    for (index, unit) in units.iter().enumerate() {
+        draw.textures[index] = Some(*unit);
+        draw.texture_shader[index] = ShaderStage::conventional(index, true);
+    }
+    draw
+}
+
+/// A draw that covers the row, with coordinate set 0 running between two places.
+pub(super) fn row(width: usize, ends: [[f64; 3]; 2], unit: TextureUnit, combiners: Combiners) -> Draw {
+    quads(quad([0.0, width as f64], ends.map(vertex)).into(), &[unit], combiners)
+}
+
+/// The row with texture `n` along it, texel by texel.
+pub(super) fn whole_row(width: usize, n: usize, combiners: Combiners) -> Draw {
+    let unit = TextureUnit { mag_filter: Filter::Nearest, ..TextureUnit::new(n) };
+    row(width, [[0.0; 3], [1.0, 0.0, 0.0]], unit, combiners)
+}
+
+/// A texture of two dimensions, of one level.
+pub(super) fn texture(format: TextureFormat, width: usize, words: Vec<u32>) -> Texture {
+    let (columns, rows) = (width as u32, (words.len() / width.max(1)) as u32);
+    let texels = Texels { width: columns, height: rows, levels: 1, layers: 1, border: false, words: words.into() };
+    let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
+    Texture { name: "texels".to_owned(), kind, format, image }
 }
 
 /// A texture of one row of colours.
-pub(super) fn colors(name: &str, texels: impl Iterator<Item = [u8; 3]>) -> String {
-    let words: Vec<String> = texels.map(|[r, g, b]| format!("ff{r:02x}{g:02x}{b:02x}")).collect();
-    format!("\"{name}\": (source: Texels(width: {}, height: 1, rows: [\"{}\"])), ", words.len(), words.join(" "))
+pub(super) fn colors(texels: impl Iterator<Item = [u8; 3]>) -> Texture {
+    let words: Vec<u32> = texels.map(|[r, g, b]| u32::from_be_bytes([0xff, r, g, b])).collect();
+    texture(TextureFormat::A8R8G8B8, words.len(), words)
 }
 
-/// A texture of rows of bytes, read as red, green, blue and alpha alike.
-pub(super) fn bytes(name: &str, width: usize, texels: &[u8]) -> String {
-    format!("\"{name}\": (format: I8, source: {}), ", byte_texels(width, texels))
-}
-
-/// The source of rows of bytes.
-pub(super) fn byte_texels(width: usize, texels: &[u8]) -> String {
-    let mut rows = String::new();
-    for row in texels.chunks(width.max(1)) {
-        rows.push('"');
-        for byte in row {
-            // Writing to a string cannot fail.
-            let _ = write!(rows, "{byte:02x} ");
-        }
-        rows.push_str("\", ");
-    }
-    format!("Texels(width: {width}, height: {}, rows: [{rows}])", texels.len() / width.max(1))
+/// A texture of one row of bytes, read as red, green, blue and alpha alike.
+pub(super) fn bytes(texels: impl Iterator<Item = u8>) -> Texture {
+    let words: Vec<u32> = texels.map(u32::from).collect();
+    texture(TextureFormat::I8, words.len(), words)
 }
 
 /// The centre of a pixel along the strip, 0 to 1.
@@ -88,23 +111,81 @@ pub(super) fn largest(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()))
 }
 
-/// The largest error of what a scene shows in a channel.
-pub(super) fn largest_error(text: &str, channel: usize, ideal: impl Fn(f64) -> f64) -> Result<f64, Box<SceneError>> {
-    Ok(largest(&errors(&draw(text)?, channel, ideal)))
+/// The largest error of a channel.
+pub(super) fn largest_error(
+    pixels: Pixels,
+    channel: usize,
+    ideal: impl Fn(f64) -> f64,
+) -> Result<f64, Box<SceneError>> {
+    Ok(largest(&errors(&pixels?, channel, ideal)))
+}
+
+/// The colour of a register through a mapping.
+pub(super) fn mapped(mapping: InputMapping, register: Register) -> CombinerInput {
+    CombinerInput { register, mapping, component: Component::Rgb }
+}
+
+/// The colour of a register as a vector.
+pub(super) fn expanded(register: Register) -> CombinerInput {
+    mapped(InputMapping::ExpandNormal, register)
+}
+
+/// The colour of a register as it is.
+pub(super) fn plain(register: Register) -> CombinerInput {
+    mapped(InputMapping::UnsignedIdentity, register)
+}
+
+/// The number 1.
+pub(super) fn one() -> CombinerInput {
+    mapped(InputMapping::UnsignedInvert, Register::Zero)
+}
+
+/// SPARE0 = A B.
+pub(super) fn product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
+    let mut stage = GeneralStage::default();
+    stage.rgb.inputs[..2].copy_from_slice(&[a, b]);
+    stage.rgb.ab_output = Register::Spare0;
+    stage
+}
+
+/// SPARE0 = A . B.
+pub(super) fn dot_product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
+    let mut stage = product(a, b);
+    stage.rgb.ab_dot_product = true;
+    stage
+}
+
+/// SPARE0 = A + C.
+pub(super) fn sum(a: CombinerInput, c: CombinerInput) -> GeneralStage {
+    let mut stage = GeneralStage::default();
+    stage.rgb.inputs = [a, one(), c, one()];
+    stage.rgb.sum_output = Register::Spare0;
+    stage
+}
+
+/// A program that shows SPARE0 and has one constant colour in all its stages.
+pub(super) fn program([r, g, b]: [u8; 3], stages: Vec<GeneralStage>) -> Combiners {
+    let mut combiners = Combiners { stages, ..Combiners::showing(FinalRegister::Spare0) };
+    combiners.final_combiner.constants[0] = [r, g, b, 255];
+    combiners.stages.iter_mut().for_each(|stage| stage.constants[0] = [r, g, b, 255]);
+    combiners
+}
+
+/// So many squarings of SPARE0.
+pub(super) fn squarings(count: usize) -> impl Iterator<Item = GeneralStage> {
+    let base = plain(Register::Spare0);
+    std::iter::repeat_n(product(base, base), count)
 }
 
 /// A program: the dot product of the normals that a register holds with a constant direction, then so many squarings.
-pub(super) fn highlight(normals: &str, [r, g, b]: [u8; 3], squarings: usize) -> String {
-    let squares = "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(squarings);
-    format!(
-        "Combiners(constants: (({r}, {g}, {b})), stages: [(rgb: (a: ExpandNormal({normals}), b: ExpandNormal(ConstantColor0), \
-         ab: Spare0, ab_dot: true)), {squares}], final_combiner: (d: Spare0))"
-    )
+pub(super) fn highlight(normals: Register, direction: [u8; 3], count: usize) -> Combiners {
+    let dot = dot_product(expanded(normals), expanded(Register::ConstantColor0));
+    program(direction, std::iter::once(dot).chain(squarings(count)).collect())
 }
 
 /// A map of normals that lean so far along x.
-pub(super) fn leaning(count: usize, tilt: impl Fn(usize) -> f64) -> String {
-    colors("normals", (0..count).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])))
+pub(super) fn leaning(count: usize, tilt: impl Fn(usize) -> f64) -> Texture {
+    colors((0..count).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])))
 }
 
 /// The square root of the mean square.
