@@ -7,3 +7,4 @@
 pub mod accuracy;
 pub mod chart;
 pub mod experiments;
+mod stages;

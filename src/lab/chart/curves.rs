@@ -1,26 +1,22 @@
 //! How the cost of a frame grows with what is drawn: in proportion, and not at all with what nothing sees.
 
+use std::sync::OnceLock;
+
 use serde::Serialize;
 
 use super::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
-use super::surfaces::planned;
+use super::surfaces::read;
 use super::timing::{Effort, frames};
+use crate::stages::*;
 use ninebit::engine::{RenderOptions, Renderer};
 use ninebit::plan::Plan;
+use ninebit::state::{self, GeneralStage, Register};
 use ninebit_scene::SceneError;
 
-/// The scene, with places for what varies.
-const TEMPLATE: &str = include_str!("curve.ron");
-const DRAW: &str = include_str!("curve_draw.ron");
-
-/// A dot product of what the stage before has left.
-const DOT: &str = "(rgb: (a: ExpandNormal(Spare0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true)),";
-/// A choice between two products.
-const MUX: &str = "(rgb: (a: Spare0, b: PrimaryColor, c: Texture0, d: PrimaryColor, sum: Spare0, mux: true)),";
-/// The first stage.
-const FIRST: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true), alpha: (a: Texture0, b: PrimaryColor, ab: Spare0)),";
-/// A stage whose result nothing reads.
-const UNSEEN: &str = "(rgb: (a: Texture0, b: PrimaryColor, ab: Spare1)),";
+/// The scene, without what varies: a draw for each grid of [`CELLS`].
+const SCENE: &str = include_str!("curve.ron");
+/// Columns and rows of the grids.
+const CELLS: [usize; 6] = [1, 4, 11, 32, 101, 320];
 
 /// A scene of some size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,17 +81,52 @@ pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     ]
 }
 
+/// The scene of the file, which is read once.
+fn base() -> Result<&'static state::Scene, Box<SceneError>> {
+    static BASE: OnceLock<state::Scene> = OnceLock::new();
+    if let Some(scene) = BASE.get() {
+        return Ok(scene);
+    }
+    let scene = read(SCENE)?;
+    Ok(BASE.get_or_init(|| scene))
+}
+
+/// A dot product of what the stage before has left.
+fn continued() -> GeneralStage {
+    dot_product(expanded(Register::Spare0), expanded(Register::PrimaryColor))
+}
+
+/// A choice between two products.
+fn choice() -> GeneralStage {
+    let mut stage = GeneralStage::default();
+    stage.rgb.inputs =
+        [Register::Spare0, Register::PrimaryColor, Register::Texture0, Register::PrimaryColor].map(plain);
+    (stage.rgb.sum_output, stage.rgb.mux) = (Register::Spare0, true);
+    stage
+}
+
 impl Scene {
     /// The scene, ready to be drawn.
     ///
     /// # Errors
-    /// The scene is not accepted: a fault of the template.
+    /// The scene is not accepted: a fault of the file.
     pub fn plan(&self) -> Result<Plan, Box<SceneError>> {
-        let seen = (1..self.stages).map(|n| if n % 4 == 3 { MUX } else { DOT });
-        let stages: String =
-            std::iter::once(FIRST).chain(seen).chain(std::iter::repeat_n(UNSEEN, self.unseen)).collect();
-        let (side, cells, draws) = (self.side.to_string(), self.cells.to_string(), DRAW.repeat(self.draws));
-        planned(TEMPLATE, &[("SIDE", &side), ("CELLS", &cells), ("STAGES", &stages), ("DRAWS", &draws)])
+        let mut scene = base()?.clone();
+        let draw = CELLS.iter().position(|cells| *cells == self.cells).unwrap_or(0);
+        let mut draw = scene.draws.swap_remove(draw);
+        let (texture, color) = (Register::Texture0, Register::PrimaryColor);
+        let mut first = dot_product(expanded(texture), expanded(color));
+        first.alpha.inputs[0].register = texture;
+        first.alpha.inputs[1].register = color;
+        first.alpha.ab_output = Register::Spare0;
+        let seen = (1..self.stages).map(|n| if n % 4 == 3 { choice() } else { continued() });
+        let mut unseen = product(plain(texture), plain(color));
+        unseen.rgb.ab_output = Register::Spare1;
+        draw.combiners.stages =
+            std::iter::once(first).chain(seen).chain(std::iter::repeat_n(unseen, self.unseen)).collect();
+        scene.draws = vec![draw; self.draws];
+        resize(&mut scene, self.side);
+        planned(&scene)
     }
 
     /// A point of what is counted.

@@ -5,14 +5,16 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::timing::{Effort, Spread, frames};
+use crate::stages::*;
 use ninebit::engine::{Engine, RenderOptions, count};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
+use ninebit::state::*;
 use ninebit::trace::Work;
 use ninebit_scene::{SceneError, parse};
 
-/// The scene, with places for what varies.
-const TEMPLATE: &str = include_str!("surface.ron");
+/// The scene, without what varies.
+const SCENE: &str = include_str!("surface.ron");
 
 /// What a surface has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,62 +74,73 @@ pub fn surfaces() -> Vec<(&'static str, Surface)> {
     ]
 }
 
-/// The scene of a template, with what stands in its places.
+/// A scene file of this folder, without what varies.
 ///
 /// # Errors
-/// The scene is not accepted: a fault of the template.
-pub(super) fn planned(template: &str, parts: &[(&str, &str)]) -> Result<Plan, Box<SceneError>> {
-    let text = parts.iter().fold(template.to_owned(), |text, (place, with)| text.replace(&format!("<{place}>"), with));
-    Ok(parse(&text, Path::new("template.ron"), &Limits::default())?.plan)
+/// The scene is not accepted: a fault of the file.
+pub(super) fn read(text: &str) -> Result<Scene, Box<SceneError>> {
+    Ok(parse(text, Path::new("chart.ron"), &Limits::default())?.scene)
 }
 
 impl Surface {
     /// The scene of this surface, square, so many pixels wide.
     ///
     /// # Errors
-    /// The scene is not accepted: a fault of the template.
+    /// The scene is not accepted: a fault of the file.
     pub fn plan(&self, side: usize) -> Result<Plan, Box<SceneError>> {
-        let filter = if self.filtered { "Linear" } else { "Nearest" };
-        let unit = |name: &str| format!("(texture: \"{name}\", mag_filter: {filter}, min_filter: {filter}), ");
-        let units = [unit("normals"), unit("colors")][..self.units.max(if self.unused { 2 } else { 0 })].concat();
-        let first = if self.units > 0 { "Texture0" } else { "SecondaryColor" };
-        let second = if self.units > 1 { "Texture1" } else { "PrimaryColor" };
-        let alpha = |a: &str, b: &str| match self.alpha {
-            true => format!(", alpha: (a: {a}, b: {b}, ab: Spare0)"),
-            false => String::new(),
-        };
-        let stage = |rgb: &str, a: &str, b: &str| format!("(rgb: ({rgb}){})", alpha(a, b));
-        let dot = |b: &str| format!("a: ExpandNormal({first}), b: ExpandNormal({b}), ab: Spare0, ab_dot: true");
-        let mut stages = match self.stages {
-            0 => "()".to_owned(),
-            1 => stage(&dot(second), first, second),
-            _ => {
-                stage(&dot("PrimaryColor"), first, "PrimaryColor")
-                    + ", "
-                    + &stage(&format!("a: Spare0, b: {second}, ab: Spare0"), "Spare0", second)
+        let mut scene = read(SCENE)?;
+        resize(&mut scene, side);
+        let draw = &mut scene.draws[0];
+        let filter = if self.filtered { Filter::Linear } else { Filter::Nearest };
+        for index in 0..if self.unused { 2 } else { self.units } {
+            let unit = TextureUnit::new(index);
+            draw.textures[index] = Some(TextureUnit { min_filter: filter, mag_filter: filter, ..unit });
+            draw.texture_shader[index] = ShaderStage::conventional(index, true);
+        }
+        let first = if self.units > 0 { Register::Texture0 } else { Register::SecondaryColor };
+        let second = if self.units > 1 { Register::Texture1 } else { Register::PrimaryColor };
+        let stage = |rgb: GeneralStage, a: Register, b: Register| {
+            let mut stage = rgb;
+            if self.alpha {
+                for (input, register) in stage.alpha.inputs.iter_mut().zip([a, b]) {
+                    input.register = register;
+                }
+                stage.alpha.ab_output = Register::Spare0;
             }
+            stage
+        };
+        let dot = |b: Register| stage(dot_product(expanded(first), expanded(b)), first, b);
+        draw.combiners.stages = match self.stages {
+            0 => vec![GeneralStage::default()],
+            1 => vec![dot(second)],
+            _ => vec![
+                dot(Register::PrimaryColor),
+                stage(product(plain(Register::Spare0), plain(second)), Register::Spare0, second),
+            ],
         };
         if self.unused {
-            stages += ", (rgb: (a: Texture1, b: Texture1, ab: Spare1))";
+            let mut unread = product(plain(Register::Texture1), plain(Register::Texture1));
+            unread.rgb.ab_output = Register::Spare1;
+            draw.combiners.stages.push(unread);
         }
         let shown = match (self.stages, self.units) {
-            (0, 0) => "PrimaryColor",
-            (0, _) => "Texture0",
-            _ => "Spare0",
+            (0, 0) => FinalRegister::PrimaryColor,
+            (0, _) => FinalRegister::Texture0,
+            _ => FinalRegister::Spare0,
         };
-        let color = if self.fog { format!("a: (Fog, Alpha), b: {shown}, c: Fog") } else { format!("d: {shown}") };
-        let alpha = if self.alpha { ", g: Spare0" } else { "" };
-        let side = side.to_string();
-        let parts = [
-            ("SIDE", side.as_str()),
-            ("UNITS", units.as_str()),
-            ("STAGES", stages.as_str()),
-            ("COLOR", color.as_str()),
-            ("ALPHA", alpha),
-            ("FOG", if self.fog { "fog: (color: (90, 100, 110))," } else { "" }),
-            ("BLEND", if self.blend { "blend: (source: One, destination: One)," } else { "" }),
-        ];
-        planned(TEMPLATE, &parts)
+        let mut mix = FinalCombiner::default();
+        if self.fog {
+            draw.fog = Fog { enabled: true, color: [90, 100, 110], function: None };
+            mix.inputs[0] = FinalInput { component: Component::Alpha, ..FinalInput::zero(Component::Alpha) };
+            (mix.inputs[0].register, mix.inputs[1].register) = (FinalRegister::Fog, shown);
+            mix.inputs[2].register = FinalRegister::Fog;
+        } else {
+            mix.inputs[3].register = shown;
+        }
+        draw.combiners.final_combiner = mix;
+        let (source, destination) = (BlendFactor::One, BlendFactor::One);
+        draw.blend = self.blend.then_some(Blend { equation: BlendEquation::Add, source, destination });
+        planned(&scene)
     }
 
     /// What it costs.

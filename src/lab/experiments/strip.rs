@@ -1,9 +1,8 @@
 //! What the scenes of experiments are made of: strips of pixels, rows of texels, and the errors of what is drawn.
 
 use super::{cos, encode, sin};
-use ninebit::diagnostic::Source;
+pub(super) use crate::stages::*;
 use ninebit::engine::{RenderOptions, render};
-use ninebit::plan::{Plan, PlanOptions};
 pub(super) use ninebit::state::*;
 use ninebit_scene::SceneError;
 pub(super) use ninebit_scene::generate::byte;
@@ -18,11 +17,7 @@ pub(super) type Pixels = Result<Vec<[u8; 4]>, Box<SceneError>>;
 pub(super) fn drawn(profile: Profile, width: usize, textures: Vec<Texture>, draws: Vec<Draw>) -> Pixels {
     let targets = vec![Target::new(width as u32, 1, SurfaceFormat::A8R8G8B8)];
     let scene = Scene { profile, targets, textures, draws, ..Scene::default() };
-    let plan = Plan::compile(&scene, &PlanOptions::default()).map_err(|errors| {
-        let diagnostics = errors.iter().map(|error| error.diagnostic(None)).collect();
-        let source = Source { name: "experiment".to_owned(), text: String::new() };
-        Box::new(SceneError { diagnostics, suppressed: 0, source })
-    })?;
+    let plan = planned(&scene)?;
     let frames = render(&plan, &RenderOptions::default());
     Ok(frames.surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default())
 }
@@ -118,57 +113,6 @@ pub(super) fn largest_error(
     ideal: impl Fn(f64) -> f64,
 ) -> Result<f64, Box<SceneError>> {
     Ok(largest(&errors(&pixels?, channel, ideal)))
-}
-
-/// The colour of a register through a mapping.
-pub(super) fn mapped(mapping: InputMapping, register: Register) -> CombinerInput {
-    CombinerInput { register, mapping, component: Component::Rgb }
-}
-
-/// The colour of a register as a vector.
-pub(super) fn expanded(register: Register) -> CombinerInput {
-    mapped(InputMapping::ExpandNormal, register)
-}
-
-/// The colour of a register as it is.
-pub(super) fn plain(register: Register) -> CombinerInput {
-    mapped(InputMapping::UnsignedIdentity, register)
-}
-
-/// The number 1.
-pub(super) fn one() -> CombinerInput {
-    mapped(InputMapping::UnsignedInvert, Register::Zero)
-}
-
-/// SPARE0 = A B.
-pub(super) fn product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
-    let mut stage = GeneralStage::default();
-    stage.rgb.inputs[..2].copy_from_slice(&[a, b]);
-    stage.rgb.ab_output = Register::Spare0;
-    stage
-}
-
-/// SPARE0 = A . B.
-pub(super) fn dot_product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
-    let mut stage = product(a, b);
-    stage.rgb.ab_dot_product = true;
-    stage
-}
-
-/// SPARE0 = A + C.
-pub(super) fn sum(a: CombinerInput, c: CombinerInput) -> GeneralStage {
-    let mut stage = GeneralStage::default();
-    stage.rgb.inputs = [a, one(), c, one()];
-    stage.rgb.sum_output = Register::Spare0;
-    stage
-}
-
-/// A program that shows SPARE0 and has one constant colour in all its stages.
-pub(super) fn program([r, g, b]: [u8; 3], stages: Vec<GeneralStage>) -> Combiners {
-    let mut combiners = Combiners { stages, ..Combiners::showing(FinalRegister::Spare0) };
-    combiners.final_combiner.constants[0] = [r, g, b, 255];
-    combiners.stages.iter_mut().for_each(|stage| stage.constants[0] = [r, g, b, 255]);
-    combiners
 }
 
 /// So many squarings of SPARE0.
