@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::Column;
 use super::exhaustive::Digesting;
 use ninebit::state::{POLICIES, Policies, Policy, Profile};
+use ninebit::trace::Recorder;
 
 /// What holds besides a row's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,9 @@ pub trait Unit: Sync {
 
     /// Computes the results of one row; both slices are as long as their columns.
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
+
+    /// Records the steps of one row, with the ideal beside the integers; none where the unit is a function without reports.
+    fn trace(&self, _inputs: &[i64], _conditions: &Conditions, _recorder: &mut Recorder) {}
 
     /// Computes rows that follow each other at once, in block lanes, where the unit has a form of them: the same inputs but one, `varying`, which counts up
     /// from where it is. All of them go together. `out` has room for exactly those rows: the numbers of the `out.` columns, each in as many whole bytes

@@ -101,20 +101,22 @@ pub fn product<A: Algebra>(e: A::Register, f: A::Register, a: &mut A) -> A::Regi
 #[derive(Clone, Copy, Debug)]
 pub struct FinalValues<R> {
     /// SPARE0 + SECONDARY and E times F, whose alpha is 0 (FIN-1).
-    specials: Specials<R>,
+    pub specials: Specials<R>,
     /// A to F, in R, G and B.
-    inputs: [[R; 3]; 6],
+    pub inputs: [[R; 3]; 6],
     /// A B + (1 - A) C + D.
-    raw: [R; 3],
+    pub raw: [R; 3],
     /// R, G, B, A bytes.
     pub fragment: [R; 4],
 }
 
 /// The two registers that exist only here.
 #[derive(Clone, Copy, Debug)]
-struct Specials<R> {
-    sum: [R; 4],
-    product: [R; 4],
+pub struct Specials<R> {
+    /// SPARE0 + SECONDARY.
+    pub sum: [R; 4],
+    /// E times F.
+    pub product: [R; 4],
 }
 
 /// FIN-1 to FIN-4 on values of any kind; the constants are loaded.

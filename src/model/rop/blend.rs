@@ -104,7 +104,7 @@ pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 
 #[derive(Clone, Copy, Debug)]
 pub struct BlendValues<R> {
     /// Of source and destination (ROP-4).
-    factors: [R; 2],
+    pub factors: [R; 2],
     /// By the equation, not yet clamped (ROP-2, ROP-3).
     raw: R,
     /// Limited to a byte.

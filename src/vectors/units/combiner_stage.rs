@@ -1,12 +1,13 @@
 //! Whole general stages: everything is read before anything is written.
 
 use super::block::{self, Sixteen};
-use super::{Column, Conditions, Kind, Reach, Unit, channels, named, put, scale_takes_bias};
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use super::{Column, Conditions, Kind, Reach, Unit, channels, named, paired, put, scale_takes_bias};
+use ninebit::combiner::direct::Direct;
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage, StageOf};
 use ninebit::combiner::registers::Registers;
-use ninebit::number::Lane;
+use ninebit::number::{Lane, Lanes16};
 use ninebit::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Portion, Profile, Register, Scale};
-use ninebit::trace::Silent;
+use ninebit::trace::{Observer, Recorder, Silent};
 
 const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 const FACTORS: [&str; 4] = ["mid.A", "mid.B", "mid.C", "mid.D"];
@@ -54,16 +55,27 @@ fn general_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// R, G, B of AB, CD and the third output.
-fn general_stage<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &Conditions) -> [L; 9] {
-    let outputs = [Register::Spare0, Register::Spare1, Register::Texture2];
+/// What a stage computes for tables and sweeps.
+type Computed<L> = StageOf<Direct<'static, L, Silent>>;
+
+/// What a stage computes of these registers.
+#[inline(always)]
+fn computed<L: Lane>(stage: &PlannedStage, mux: i64, file: &Registers<L>, conditions: &Conditions) -> Computed<L> {
+    general::evaluate(stage, named(mux), file, &mut Direct::new(&conditions.policies, &mut Silent))
+}
+
+/// A factor as tables write it: in halves.
+fn halves(factor: <i32 as Lane>::Mapped) -> i64 {
+    <i32 as Lane>::observe_factor(factor).0
+}
+
+/// The stage of a row.
+fn general_stage(inputs: &[i64]) -> PlannedStage {
     let mut rgb = portion(Component::Rgb, &inputs[..4]);
     (rgb.scale, rgb.bias, rgb.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
     (rgb.ab_dot_product, rgb.cd_dot_product) = (inputs[8] != 0, inputs[9] != 0);
-    [rgb.ab_output, rgb.cd_output, rgb.sum_output] = outputs;
-    let stage = stage(rgb, Portion::idle(Component::Alpha));
-    general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut Silent);
-    std::array::from_fn(|n| file.read(outputs[n / 3], n % 3))
+    [rgb.ab_output, rgb.cd_output, rgb.sum_output] = [Register::Spare0, Register::Spare1, Register::Texture2];
+    stage(rgb, Portion::idle(Component::Alpha))
 }
 
 impl Unit for GeneralStage {
@@ -90,23 +102,23 @@ impl Unit for GeneralStage {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let file = general_file(|n| inputs[n] as i32);
-        let takes_cd =
-            ninebit::combiner::output::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
-        // The factors by themselves: a trace of each row would be far slower.
-        for (n, input) in portion(Component::Rgb, &inputs[..4]).inputs.iter().enumerate() {
-            let x: [i32; 3] = std::array::from_fn(|channel| file.read(input.register, channel));
-            let factors = ninebit::combiner::mapping::map(x, input.mapping, &conditions.policies);
-            for (channel, factor) in factors.into_iter().enumerate() {
-                results[3 * n + channel] = <i32 as Lane>::observe_factor(factor).0;
-            }
-        }
-        results[12] = takes_cd.into();
-        put(&mut results[13..], general_stage(inputs, file, conditions));
+        let values = computed(&general_stage(inputs), inputs[7], &general_file(|n| inputs[n] as i32), conditions);
+        put(results, values.rgb.factors.as_flattened().iter().map(|factor| halves(*factor)));
+        results[12] = values.takes_cd.into();
+        put(&mut results[13..], values.rgb.outputs.as_flattened().iter().copied());
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        let mut file = general_file(|n| paired(inputs[n]));
+        general::run(&general_stage(inputs), named(inputs[7]), &conditions.policies, &mut file, recorder);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let rows = |rows: &Sixteen| general_stage(inputs, general_file(|n| rows.at(n)), conditions);
+        let stage = general_stage(inputs);
+        let rows = |rows: &Sixteen| -> [Lanes16<i32>; 9] {
+            let values = computed(&stage, inputs[7], &general_file(|n| rows.at(n)), conditions);
+            std::array::from_fn(|n| values.rgb.outputs[n / 3][n % 3])
+        };
         // The mux decides by the last.
         let has = varying >= 10 && !(varying == 22 && inputs[6] != 0);
         has.then(|| block::registers(inputs, varying, out, rows))
@@ -126,24 +138,15 @@ fn alpha_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// The portion, each input with its component.
-fn alpha_inputs(inputs: &[i64]) -> Portion {
+/// The stage of a row, each input with its component.
+fn alpha_stage(inputs: &[i64]) -> PlannedStage {
     let mut alpha = portion(Component::Alpha, &inputs[..4]);
     for (input, component) in alpha.inputs.iter_mut().zip(&inputs[8..12]) {
         input.component = if *component == 0 { Component::Blue } else { Component::Alpha };
     }
-    alpha
-}
-
-/// AB, CD and the third output.
-fn alpha_portion<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &Conditions) -> [L; 3] {
-    let outputs = [Register::Spare1, Register::Texture2, Register::Texture3];
-    let mut alpha = alpha_inputs(inputs);
     (alpha.scale, alpha.bias, alpha.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
-    [alpha.ab_output, alpha.cd_output, alpha.sum_output] = outputs;
-    let stage = stage(Portion::idle(Component::Rgb), alpha);
-    general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut Silent);
-    outputs.map(|register| file.read(register, 3))
+    [alpha.ab_output, alpha.cd_output, alpha.sum_output] = [Register::Spare1, Register::Texture2, Register::Texture3];
+    stage(Portion::idle(Component::Rgb), alpha)
 }
 
 impl Unit for AlphaPortion {
@@ -166,17 +169,21 @@ impl Unit for AlphaPortion {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let file = alpha_file(|n| inputs[n] as i32);
-        for (n, input) in alpha_inputs(inputs).inputs.iter().enumerate() {
-            let x = file.read(input.register, general::source_channel(input, 3));
-            let [factor] = ninebit::combiner::mapping::map([x], input.mapping, &conditions.policies);
-            results[n] = <i32 as Lane>::observe_factor(factor).0;
-        }
-        put(&mut results[4..], alpha_portion(inputs, file, conditions));
+        let values = computed(&alpha_stage(inputs), inputs[7], &alpha_file(|n| inputs[n] as i32), conditions);
+        put(results, values.alpha.factors.map(|[factor]| halves(factor)));
+        put(&mut results[4..], values.alpha.outputs.map(|[output]| output));
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        let mut file = alpha_file(|n| paired(inputs[n]));
+        general::run(&alpha_stage(inputs), named(inputs[7]), &conditions.policies, &mut file, recorder);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let rows = |rows: &Sixteen| alpha_portion(inputs, alpha_file(|n| rows.at(n)), conditions);
+        let stage = alpha_stage(inputs);
+        let rows = |rows: &Sixteen| {
+            computed(&stage, inputs[7], &alpha_file(|n| rows.at(n)), conditions).alpha.outputs.map(|[output]| output)
+        };
         let has = varying >= 12 && !(varying == 20 && inputs[6] != 0);
         has.then(|| block::registers(inputs, varying, out, rows))
     }
@@ -186,7 +193,12 @@ impl Unit for AlphaPortion {
 pub(super) struct BlueToAlpha;
 
 /// Blue of AB and CD, then alpha of SPARE0 and SPARE1.
-fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &Conditions) -> [L; 4] {
+fn blue_to_alpha<L: Lane>(
+    inputs: &[i64],
+    at: impl Fn(usize) -> L,
+    conditions: &Conditions,
+    observer: &mut impl Observer,
+) -> [L; 4] {
     let mut rgb = portion(Component::Rgb, &[InputMapping::SignedIdentity as i64; 4]);
     (rgb.ab_output, rgb.cd_output, rgb.ab_dot_product) = (Register::Spare0, Register::Spare1, inputs[0] != 0);
     (rgb.ab_blue_to_alpha, rgb.cd_blue_to_alpha) = (inputs[1] != 0, inputs[2] != 0);
@@ -198,7 +210,7 @@ fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &
     file.write(Register::Spare0, 3, at(11));
     file.write(Register::Spare1, 3, at(12));
     let stage = stage(rgb, Portion::idle(Component::Alpha));
-    general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut Silent);
+    general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, observer);
     [(Register::Spare0, 2), (Register::Spare1, 2), (Register::Spare0, 3), (Register::Spare1, 3)]
         .map(|(register, channel)| file.read(register, channel))
 }
@@ -217,12 +229,16 @@ impl Unit for BlueToAlpha {
     );
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        put(results, blue_to_alpha(inputs, |n| inputs[n] as i32, conditions));
+        put(results, blue_to_alpha(inputs, |n| inputs[n] as i32, conditions, &mut Silent));
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        blue_to_alpha(inputs, |n| paired(inputs[n]), conditions, recorder);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let rows = |rows: &Sixteen| {
-            let [_, _, spare0, spare1] = blue_to_alpha(inputs, |n| rows.at(n), conditions);
+            let [_, _, spare0, spare1] = blue_to_alpha(inputs, |n| rows.at(n), conditions, &mut Silent);
             [spare0, spare1]
         };
         (varying >= 3).then(|| block::registers(inputs, varying, out, rows))
@@ -232,8 +248,8 @@ impl Unit for BlueToAlpha {
 /// A register value handed from one stage to the next.
 pub(super) struct TwoStages;
 
-/// Red of SPARE0 after each.
-fn two_stages<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &Conditions) -> [L; 2] {
+/// The stages of a row.
+fn two_stages(inputs: &[i64]) -> [PlannedStage; 2] {
     let signed = [InputMapping::SignedIdentity as i64; 4];
     let mut first = portion(Component::Rgb, &signed);
     (first.scale, first.bias, first.sum_output) = (named(inputs[0]), named(inputs[1]), Register::Spare0);
@@ -242,17 +258,28 @@ fn two_stages<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &Con
     second.inputs[0] = spare0;
     second.inputs[1].mapping = named(inputs[3]);
     second.sum_output = Register::Spare0;
+    let alpha = Portion::idle(Component::Alpha);
+    [stage(first, alpha), PlannedStage { index: 1, ..stage(second, alpha) }]
+}
+
+/// The registers of a row.
+fn two_stages_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (n, register) in SOURCES.into_iter().enumerate() {
         file.load(register, [at(4 + n); 4]);
     }
-    let alpha = Portion::idle(Component::Alpha);
-    let mut after = stage(second, alpha);
-    after.index = 1;
-    [stage(first, alpha), after].map(|stage| {
-        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut Silent);
-        file.read(Register::Spare0, 0)
-    })
+    file
+}
+
+/// What each of them computes.
+fn two_computed<L: Lane>(
+    [first, second]: &[PlannedStage; 2],
+    mut file: Registers<L>,
+    conditions: &Conditions,
+) -> [Computed<L>; 2] {
+    let before = computed(first, 0, &file, conditions);
+    general::write(first, &before, &mut file, &mut Direct::plain(&mut Silent));
+    [before, computed(second, 0, &file, conditions)]
 }
 
 impl Unit for TwoStages {
@@ -278,17 +305,24 @@ impl Unit for TwoStages {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let [between, after] = two_stages(inputs, |n| inputs[n] as i32, conditions);
-        let [mapped] = ninebit::combiner::mapping::map([between], named(inputs[2]), &conditions.policies);
-        results[0] = between.into();
-        results[1] = <i32 as Lane>::observe_factor(mapped).0;
-        results[2] = after.into();
+        let file = two_stages_file(|n| inputs[n] as i32);
+        let [before, after] = two_computed(&two_stages(inputs), file, conditions).map(|values| values.rgb);
+        let (between, out) = (before.outputs[2][0], after.outputs[2][0]);
+        results.copy_from_slice(&[between.into(), halves(after.factors[0][0]), out.into()]);
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        let mut file = two_stages_file(|n| paired(inputs[n]));
+        for stage in two_stages(inputs) {
+            general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, recorder);
+        }
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let stages = two_stages(inputs);
         let rows = |rows: &Sixteen| {
-            let [_, after] = two_stages(inputs, |n| rows.at(n), conditions);
-            [after]
+            let [_, after] = two_computed(&stages, two_stages_file(|n| rows.at(n)), conditions);
+            [after.rgb.outputs[2][0]]
         };
         (varying >= 4).then(|| block::registers(inputs, varying, out, rows))
     }

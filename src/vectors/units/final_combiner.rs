@@ -1,6 +1,7 @@
 //! The final combiner, one colour channel and alpha.
 
-use super::{Column, Conditions, Kind, Reach, Unit, block, named, put, step};
+use super::{Column, Conditions, Kind, Reach, Unit, block, named, paired, put};
+use ninebit::combiner::direct::Direct;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::registers::Registers;
 use ninebit::number::{Lane, Lanes16};
@@ -55,8 +56,17 @@ fn load<L: Lane>(file: &mut Registers<L>, input: usize, value: L) {
     }
 }
 
-/// The combiner of a row. `all`: the colour sum and E F are computed even if nothing reads them.
-fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
+/// The registers of a row.
+fn file<L: Lane>(inputs: &[i64], value: impl Fn(i64) -> L) -> Registers<L> {
+    let mut file = Registers::new();
+    for (n, input) in inputs[CONFIGURATION..].iter().enumerate() {
+        load(&mut file, n, value(*input));
+    }
+    file
+}
+
+/// The combiner of a row.
+fn planned(inputs: &[i64]) -> PlannedFinal {
     let flag = |n: usize| inputs[n] != 0;
     let mut sources: [FinalInput; 6] = [FinalInput::zero(Component::Rgb); 6];
     for (n, (own, source)) in OWN.into_iter().zip(&mut sources).enumerate() {
@@ -67,7 +77,7 @@ fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
         };
         source.invert = flag(4 + n);
     }
-    let needs = |register| u8::from(all || sources.iter().any(|source| source.register == register));
+    let needs = |register| u8::from(sources.iter().any(|source| source.register == register));
     let state = state::FinalCombiner {
         inputs: sources,
         g: FinalInput { register: FinalRegister::Spare1, component: Component::Alpha, invert: flag(10) },
@@ -101,24 +111,21 @@ impl Unit for FinalCombiner {
     );
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut recorder = Recorder::default();
-        let mut file = Registers::new();
-        for (n, value) in inputs[CONFIGURATION..].iter().enumerate() {
-            load(&mut file, n, *value as i32);
-        }
-        let Conditions { profile, policies } = conditions;
-        let out = final_combiner::run(&planned(inputs, true), *profile, policies, &mut file, &mut recorder);
-        let names = ["final.sum.r", "final.EF.r", "final.A.r", "final.B.r", "final.C.r", "final.D.r", "final.rgb.r"];
-        put(results, names.map(|name| step(&recorder.steps, name)));
-        (results[7], results[8]) = (out[0].into(), out[3].into());
+        let (mut silent, file) = (Silent, file(inputs, |value| value as i32));
+        let mut direct = Direct::new(&conditions.policies, &mut silent);
+        let values = final_combiner::evaluate(&planned(inputs).state, &file, &mut direct);
+        let [a, b, c, d, ..] = values.inputs.map(|channels| channels[0]);
+        let [sum, product] = [values.specials.sum, values.specials.product].map(|channels| channels[0]);
+        put(results, [sum, product, a, b, c, d, values.raw[0], values.fragment[0], values.fragment[3]]);
+    }
+
+    fn trace(&self, inputs: &[i64], Conditions { profile, policies }: &Conditions, recorder: &mut Recorder) {
+        final_combiner::run(&planned(inputs), *profile, policies, &mut file(inputs, paired), recorder);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let own = varying.checked_sub(CONFIGURATION)?;
-        let (planned, mut file) = (planned(inputs, false), Registers::new());
-        for (n, value) in inputs[CONFIGURATION..].iter().enumerate() {
-            load(&mut file, n, Lanes16::all(*value as i32));
-        }
+        let (planned, mut file) = (planned(inputs), file(inputs, |value| Lanes16::all(value as i32)));
         Some(block::bytes(inputs, varying, out, |rows| {
             load(&mut file, own, rows.numbers());
             let Conditions { profile, policies } = conditions;

@@ -65,8 +65,8 @@ pub use texture::planned;
 
 use super::column::{Column, Kind};
 use super::unit::{Conditions, Reach, Unit};
+use ninebit::number::Paired;
 use ninebit::state::{Bias, Named, Scale};
-use ninebit::trace::Step;
 
 /// All units.
 pub fn all() -> Vec<&'static dyn Unit> {
@@ -179,7 +179,7 @@ fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
     }
 }
 
-/// The value of a step, 0 if nobody reported it.
-fn step(steps: &[Step], name: &str) -> i64 {
-    steps.iter().find(|step| step.name == name).map_or(0, |step| step.value)
+/// A register's integer, and the real number that the ideal has for it.
+pub fn paired(value: i64) -> Paired {
+    Paired { fixed: value as i32, ideal: value as f64 }
 }

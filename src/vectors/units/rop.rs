@@ -1,16 +1,21 @@
 //! Alpha test, blending, surfaces.
 
 use super::{
-    CHANNELS, Column, Conditions, Kind, Reach, Unit, block, bytes, channels, color_results, colors, named, put,
+    CHANNELS, Column, Conditions, Kind, Reach, Unit, block, bytes, channels, color_results, colors, named, paired, put,
 };
 use ninebit::combiner::direct::Direct;
-use ninebit::number::Lanes16;
+use ninebit::number::{Lane, Lanes16};
 use ninebit::rop::{blend, surface};
 use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
-use ninebit::trace::Silent;
+use ninebit::trace::{Recorder, Silent};
 
-fn color(values: &[i64]) -> [i32; 4] {
-    std::array::from_fn(|n| values[n] as i32)
+/// Source, destination and constant of a row of blending.
+fn blended_colors<L: Lane>(at: impl Fn(usize) -> L) -> [[L; 4]; 3] {
+    [3, 7, 11].map(|first| [at(first), at(first + 1), at(first + 2), at(first + 3)])
+}
+
+fn alpha_test(inputs: &[i64]) -> state::AlphaTest {
+    state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 }
 }
 
 /// Whether a fragment passes the alpha test.
@@ -24,8 +29,11 @@ impl Unit for AlphaTest {
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
-        results[0] = blend::alpha_test(&test, inputs[2] as i32, &mut Silent).into();
+        results[0] = blend::alpha_test(&alpha_test(inputs), inputs[2] as i32, &mut Silent).into();
+    }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        blend::alpha_test(&alpha_test(inputs), paired(inputs[2]), recorder);
     }
 }
 
@@ -50,18 +58,17 @@ impl Unit for Blend {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let state = blend_state(inputs);
-        let [source, destination, constant] = [3, 7, 11].map(|first| color(&inputs[first..first + 4]));
-        for channel in 0..4 {
-            let factor = |f: BlendFactor| {
-                let mut silent = Silent;
-                let mut direct = Direct::plain(&mut silent);
-                i64::from(blend::factor(f, channel, &source, &destination, &constant, &mut direct))
-            };
-            results[channel] = factor(state.source);
-            results[4 + channel] = factor(state.destination);
-        }
-        let out = blend::run(&state, 15, bytes(&inputs[11..15]), &source, &destination, &mut Silent);
-        put(&mut results[8..], out);
+        let [source, destination, constant] = blended_colors(|n| inputs[n] as i32);
+        let (mut silent, mut results) = (Silent, results.chunks_exact_mut(4));
+        let mut direct = Direct::plain(&mut silent);
+        let values = [0, 1, 2, 3].map(|c| blend::evaluate(&state, c, &source, &destination, &constant, &mut direct));
+        let columns = [values.map(|v| v.factors[0]), values.map(|v| v.factors[1]), values.map(|v| v.blended)];
+        columns.into_iter().zip(&mut results).for_each(|(column, results)| put(results, column));
+    }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        let [source, destination, _] = blended_colors(|n| paired(inputs[n]));
+        blend::run(&blend_state(inputs), 15, bytes(&inputs[11..15]), &source, &destination, recorder);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {

@@ -6,6 +6,7 @@ use clap::Args;
 use ninebit::combiner::registers::{self, Registers, channel_name};
 use ninebit::number::Paired;
 use ninebit::state::{Named, Policies, Profile, Register};
+use ninebit_vectors::units;
 
 use super::{Column, Common, Failure, Input, Operation, PolicyArguments, ProfileArgument, Setup, set, words};
 
@@ -179,7 +180,7 @@ pub(super) fn load(values: &[i64]) -> Registers<Paired> {
     let mut registers = Registers::new();
     for (register, values) in Register::ALL.iter().zip(values.chunks(4)) {
         for (channel, value) in values.iter().enumerate() {
-            registers.write(*register, channel, Paired { fixed: *value as i32, ideal: *value as f64 });
+            registers.write(*register, channel, units::paired(*value));
         }
     }
     registers

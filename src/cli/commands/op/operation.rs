@@ -11,6 +11,7 @@ use ninebit::number::{Lane, Paired};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit::trace::{Observer, Recorder, Step};
 use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
+use ninebit_vectors::column::{Column as Input, Domain, Kind};
 use serde_json::{Map, Value, json};
 
 use super::{Failure, Format, number, table};
@@ -32,14 +33,10 @@ pub(super) struct Common {
 /// An integer that an operation takes.
 #[derive(Clone, Debug)]
 pub(super) struct Column {
-    /// Its name in traces.
-    pub(super) name: String,
+    /// Its name in traces, and what it takes.
+    pub(super) input: Input,
     /// Another name.
     pub(super) short: String,
-    /// What it may be.
-    pub(super) range: RangeInclusive<i64>,
-    /// The same in words.
-    pub(super) wants: String,
     /// How many make 1.0; of a signed texel, in the ideal, 128 do (TEX-18).
     pub(super) per_one: i64,
     /// A signed texel.
@@ -51,32 +48,67 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// A column that must be given yet.
+    /// A column of whole numbers that must be given yet.
     pub(super) fn new(
         (name, short): (&str, &str),
         range: RangeInclusive<i64>,
         per_one: i64,
         how_to_give: impl Into<String>,
     ) -> Column {
-        Column {
-            name: name.to_owned(),
-            short: short.to_owned(),
-            wants: format!("a whole number from {} to {}", range.start(), range.end()),
-            range,
-            per_one,
-            signed_texel: false,
-            how_to_give: how_to_give.into(),
-            value: None,
+        let input = Input::signed(name, 64, *range.start(), *range.end());
+        Column { per_one, ..Column::of(input, short, how_to_give) }
+    }
+
+    /// A column that must be given yet.
+    pub(super) fn of(input: Input, short: &str, how_to_give: impl Into<String>) -> Column {
+        let (short, how_to_give) = (short.to_owned(), how_to_give.into());
+        Column { input, short, per_one: 1, signed_texel: false, how_to_give, value: None }
+    }
+
+    /// Whether it takes a number.
+    fn takes(&self, value: i64) -> bool {
+        self.input.narrowed(value, value).is_some()
+    }
+
+    /// The number that a text means, if the column takes it.
+    pub(super) fn read(&self, text: &str) -> Option<i64> {
+        let value = match &self.input.kind {
+            Kind::Name(names) => {
+                names.iter().position(|name| name.eq_ignore_ascii_case(text)).map(|place| place as i64)
+            }
+            kind => kind.read(text).or_else(|| number(text)),
+        };
+        value.filter(|value| self.takes(*value))
+    }
+
+    /// What it takes, in words.
+    pub(super) fn wants(&self) -> String {
+        let input = &self.input;
+        match (&input.domain, &input.kind) {
+            (Some(Domain::Listed(values)), kind) => {
+                let values: Vec<String> = values.iter().map(|value| kind.write(*value)).collect();
+                format!("one of {}", values.join(", "))
+            }
+            (Some(Domain::Word(bits)), _) => format!("a word of {bits} bits, such as 0x{:x}", (1_u64 << bits) - 1),
+            (Some(Domain::Float(negative, limit)), _) => {
+                let sign = if *negative { "" } else { ", not negative" };
+                format!("the bits of a float below 2^{limit}{sign}, such as 3f800000")
+            }
+            _ => format!("a whole number from {} to {}", input.nth(0), input.nth(input.size() - 1)),
         }
+    }
+
+    /// An error that says what it takes.
+    pub(super) fn refuses(&self, value: impl std::fmt::Display) -> Failure {
+        Failure::usage(format!("{value} is out of range for `{}`", self.input.name), format!("write {}", self.wants()))
     }
 }
 
 /// Gives columns, from the first, their values.
 pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>) -> Result<(), Failure> {
     for (column, value) in columns.iter_mut().zip(values) {
-        if !column.range.contains(&value) {
-            let message = format!("{value} is out of range for `{}`", column.name);
-            return Err(Failure::usage(message, format!("write {}", column.wants)));
+        if !column.takes(value) {
+            return Err(column.refuses(value));
         }
         column.value = Some(value);
     }
@@ -91,11 +123,6 @@ pub(super) type Results = Vec<(String, Value)>;
 
 /// What is done with the integers.
 pub(super) trait Operation {
-    /// The value of the column at this place that a text means, if the column takes it.
-    fn read(&self, _place: usize, column: &Column, text: &str) -> Option<i64> {
-        number(text).filter(|value| column.range.contains(value))
-    }
-
     /// Whether values of all columns go together; if not, what is wrong.
     fn check(&self, _values: &[i64]) -> Result<(), String> {
         Ok(())
@@ -124,7 +151,8 @@ pub(super) struct Setup<T> {
 impl<T: Operation> Setup<T> {
     /// An operation for which the chip does not matter, and whose columns have the names that stand in them.
     pub(super) fn new(name: &'static str, columns: Vec<Column>, known: impl Into<String>, operation: T) -> Setup<T> {
-        let find = |columns: &[Column], name: &str| columns.iter().position(|c| c.name == name || c.short == name);
+        let find =
+            |columns: &[Column], name: &str| columns.iter().position(|c| c.input.name == name || c.short == name);
         Setup { name, columns, find, known: known.into(), chip: None, operation }
     }
 
@@ -134,7 +162,8 @@ impl<T: Operation> Setup<T> {
             return table::run(self, path, common.output.as_deref());
         }
         let value = |column: &Column| {
-            let missing = || Failure::usage(format!("`{}` is not given", column.name), column.how_to_give.as_str());
+            let missing =
+                || Failure::usage(format!("`{}` is not given", column.input.name), column.how_to_give.as_str());
             column.value.ok_or_else(missing)
         };
         let values = self.columns.iter().map(value).collect::<Result<Vec<i64>, Failure>>()?;
@@ -186,10 +215,10 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
         read.extend(step.inputs.iter().map(|operand| operand.name.as_str()).filter(|name| !made.contains(name)));
         made.insert(&step.name);
     }
-    let pairs = columns.iter().zip(values).filter(|(column, _)| read.contains(column.name.as_str()));
+    let pairs = columns.iter().zip(values).filter(|(column, _)| read.contains(column.input.name.as_str()));
     pairs
         .map(|(column, value)| {
-            let step = Step::given("given", "", column.name.clone(), *value).per(column.per_one);
+            let step = Step::given("given", "", column.input.name.clone(), *value).per(column.per_one);
             match column.per_one {
                 1 => step,
                 _ if column.signed_texel => step.ideal(<Paired>::texel(0, *value as i32, 128).observe().1),

@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     inputs::assign(&mut columns, &arguments.registers)?;
     let own = |n: usize| OWN.iter().any(|register| n / 4 == *register as usize);
     if let Some((_, column)) = columns.iter().enumerate().find(|(n, column)| own(*n) && column.value != Some(0)) {
-        let message = format!("`{}` is no input of a program", column.name);
+        let message = format!("`{}` is no input of a program", column.input.name);
         let help = "constants stand in the program; give tex0 to tex3, primary, secondary and fog";
         return Err(Failure::usage(message, help));
     }

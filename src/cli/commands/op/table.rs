@@ -116,7 +116,7 @@ fn header_columns<T>(setup: &Setup<T>, path: &Path, line: usize, names: &[&str])
     }
     let missing = (0..).zip(&setup.columns).find(|(n, column)| column.value.is_none() && !columns.contains(n));
     if let Some((_, column)) = missing {
-        let message = format!("table `{}` has no column `{}`", shown::path(path), column.name);
+        let message = format!("table `{}` has no column `{}`", shown::path(path), column.input.name);
         return Err(Failure::invalid("NB0532", message, column.how_to_give.as_str()));
     }
     Ok(columns)
@@ -140,9 +140,9 @@ fn row(
     }
     for (index, (field, place)) in fields.iter().zip(columns).enumerate() {
         let column = &setup.columns[*place];
-        values[*place] = setup.operation.read(*place, column, field).ok_or_else(|| {
+        values[*place] = column.read(field).ok_or_else(|| {
             let field = shown::name(&field.chars().take(40).collect::<String>()).to_string();
-            format!("column {} (`{}`): `{field}` is not {}", index + 1, names[index], column.wants)
+            format!("column {} (`{}`): `{field}` is not {}", index + 1, names[index], column.wants())
         })?;
     }
     setup.operation.check(values)

@@ -2,13 +2,13 @@
 
 use clap::Args;
 use ninebit::state::Profile;
-use ninebit::trace::Observer;
+use ninebit::trace::{Observer, Recorder};
 use ninebit_vectors::Unit;
-use ninebit_vectors::column::{Column as UnitColumn, Domain, Kind};
+use ninebit_vectors::column::{Column as UnitColumn, Kind};
 use ninebit_vectors::unit::Conditions;
 use serde_json::{Value, json};
 
-use super::{Column, Common, Failure, Operation, PolicyArguments, Results, Setup, number, vectors, words};
+use super::{Column, Common, Failure, Operation, PolicyArguments, Results, Setup, vectors, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -32,11 +32,10 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// A unit and its inputs.
+/// A unit under conditions.
 struct Asked {
     unit: &'static dyn Unit,
     conditions: Conditions,
-    inputs: Vec<UnitColumn>,
 }
 
 /// Runs a unit.
@@ -45,19 +44,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !unit.profiles().contains(&profile) {
         return Err(vectors::lacks(unit, profile));
     }
-    let inputs = unit.inputs();
-    let column = |input: &UnitColumn| {
-        let (first, last) = input.kind.range();
-        let (name, wants) = (input.name.as_str(), wants(input));
+    let column = |input: UnitColumn| {
         // The name without what kind of column it is.
-        let short = name.split_once('.').map_or(name, |(_, own)| own);
-        let how = format!("write `--in {short}=VALUE`: {wants}");
-        Column { wants, ..Column::new((name, short), first..=last, 1, how) }
+        let short = input.name.split_once('.').map_or(input.name.as_str(), |(_, own)| own).to_owned();
+        let column = Column::of(input, &short, "");
+        Column { how_to_give: format!("write `--in {short}=VALUE`: {}", column.wants()), ..column }
     };
-    let columns: Vec<Column> = inputs.iter().map(column).collect();
-    let known = columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+    let columns: Vec<Column> = unit.inputs().into_iter().map(column).collect();
+    let known = columns.iter().map(|column| column.input.name.as_str()).collect::<Vec<_>>().join(", ");
     let policies = arguments.policies.policies()?;
-    let asked = Asked { unit, conditions: Conditions { profile, policies }, inputs };
+    let asked = Asked { unit, conditions: Conditions { profile, policies } };
     let mut setup = Setup { chip: Some((profile, policies)), ..Setup::new(unit.name(), columns, known, asked) };
     for (name, text) in &arguments.given {
         let Some(place) = (setup.find)(&setup.columns, name) else {
@@ -65,49 +61,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             return Err(Failure::usage(message, format!("its inputs are {}", setup.known)));
         };
         let column = &mut setup.columns[place];
-        column.value = Some(setup.operation.read(place, column, text).ok_or_else(|| {
-            let message = format!("`{text}` is out of range for `{}`", column.name);
-            Failure::usage(message, format!("write {}", column.wants))
-        })?);
+        column.value = Some(column.read(text).ok_or_else(|| column.refuses(format!("`{text}`")))?);
     }
     setup.drive(&arguments.common)
 }
 
-/// What a column takes.
-fn wants(input: &UnitColumn) -> String {
-    match (&input.domain, &input.kind) {
-        (Some(Domain::Listed(values)), kind) => {
-            let values: Vec<String> = values.iter().map(|value| kind.write(*value)).collect();
-            format!("one of {}", values.join(", "))
-        }
-        (Some(Domain::Word(bits)), _) => format!("a word of {bits} bits, such as 0x{:x}", (1_u64 << bits) - 1),
-        (Some(Domain::Float(negative, limit)), _) => {
-            let sign = if *negative { "" } else { ", not negative" };
-            format!("the bits of a float below 2^{limit}{sign}, such as 3f800000")
-        }
-        _ => format!("a whole number from {} to {}", input.nth(0), input.nth(input.size() - 1)),
-    }
-}
-
 impl Operation for Asked {
-    fn read(&self, place: usize, _: &Column, text: &str) -> Option<i64> {
-        let input = &self.inputs[place];
-        let value = match &input.kind {
-            Kind::Name(names) => {
-                names.iter().position(|name| name.eq_ignore_ascii_case(text)).map(|place| place as i64)
-            }
-            kind => kind.read(text).or_else(|| number(text)),
-        };
-        // A column of one number is narrowed to what it takes.
-        value.filter(|value| input.narrowed(*value, *value).is_some())
-    }
-
     fn check(&self, values: &[i64]) -> Result<(), String> {
         let fits = self.unit.accepts(values, self.conditions.profile);
         if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.unit.name())) }
     }
 
-    fn run<O: Observer>(&self, values: &[i64], _: &mut O) -> Results {
+    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        if O::ON {
+            let mut recorder = Recorder::default();
+            self.unit.trace(values, &self.conditions, &mut recorder);
+            recorder.steps.into_iter().for_each(|step| observer.step(step));
+        }
         let columns = self.unit.results();
         let mut results = vec![0; columns.len()];
         self.unit.evaluate(values, &self.conditions, &mut results);
