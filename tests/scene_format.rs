@@ -73,6 +73,164 @@ fn the_tables_of_fields_are_those_of_the_declarations() {
     assert_eq!(structures, declared, "each structure has its place in the page, once");
 }
 
+/// Scenes with a place, `@`, for a field of a structure.
+const PLACES: &[(&str, &str)] = &[
+    ("Target", "top: targets: [(@ name: \"t\")],"),
+    ("Clear", "top: targets: [(clear: (@), depth: Z24S8)],"),
+    ("Texture", "top: textures: { \"t\": (@ source: Solid(width: 4, height: 4, color: (1, 2, 3))) },"),
+    ("CheckerImage", "top: textures: { \"t\": (source: Checker(@ width: 4, height: 4)) },"),
+    ("RampImage", "top: textures: { \"t\": (source: Ramp(@ width: 4, height: 4, from: (1, 2, 3), to: (9, 9, 9))) },"),
+    ("Draw", "draw: @"),
+    ("Draw", "true: @"),
+    ("Rectangle", "draw: scissor: (@ width: 3, height: 3)"),
+    ("WindowClip", "draw: window_clip: (@ rectangles: [(width: 3, height: 3)])"),
+    ("ClearDraw", "draws: [(clear: (@ color: (1, 2, 3)))]"),
+    ("MatrixVertices", "vertices: Matrix(@ matrix: Identity, mesh: Grid(columns: 1, rows: 1))"),
+    ("Viewport", "vertices: Matrix(matrix: Identity, viewport: (@), mesh: Grid(columns: 1, rows: 1))"),
+    (
+        "ProgramVertices",
+        "vertices: Program(@ text: \"vs.1.1\\nmov oPos, v0\", vertices: [(position: (0, 0)), (position: (0, 9)), (position: (9, 9))])",
+    ),
+    ("Vertex", "vertices: Window([(@ position: (0, 0)), (position: (0, 9)), (position: (9, 9))])"),
+    ("Fog", "draw: fog: (@ mode: Linear)"),
+    ("Fog", "draw: fog: (@ mode: Exp)"),
+    ("Grid", "vertices: Matrix(matrix: Identity, mesh: Grid(@ columns: 1, rows: 1))"),
+    ("Sphere", "vertices: Matrix(matrix: Identity, mesh: Sphere(@ slices: 8, stacks: 4))"),
+    ("Torus", "vertices: Matrix(matrix: Identity, mesh: Torus(@ slices: 8, sides: 4))"),
+    ("Cylinder", "vertices: Matrix(matrix: Identity, mesh: Cylinder(@ slices: 8, stacks: 1))"),
+    (
+        "LightVector",
+        "vertices: Matrix(matrix: Identity, mesh: Grid(columns: 1, rows: 1), t1: LightVector(@ position: (1, 2, 3)))",
+    ),
+    (
+        "HalfVector",
+        "vertices: Matrix(matrix: Identity, mesh: Grid(columns: 1, rows: 1), t1: HalfVector(@ position: (1, 2, 3), viewer: (1, 1, 9)))",
+    ),
+    (
+        "LookAt",
+        "vertices: Matrix(matrix: LookAt(@ eye: (1, 2, 3), center: (0, 0, 0)), mesh: Grid(columns: 1, rows: 1))",
+    ),
+    ("UnitState", "unit: (@ texture: \"t\")"),
+    ("ColorKey", "unit: (texture: \"t\", color_key: (@ mode: Kill, color: (255, 0, 255)))"),
+    ("ShadowComparison", "shadow: (@ function: Less)"),
+    ("StageState", "draw: textures: [\"t\"], texture_shader: [(@ operation: Sample)]"),
+    (
+        "StageState",
+        "draw: textures: [\"t\", Unbound, \"t\"], texture_shader: [Sample, (@ operation: DotProduct), DotProduct2D]",
+    ),
+    ("CullFragment", "draw: texture_shader: [CullFragment(@)]"),
+    ("Combiners", "draw: program: Combiners(@ stages: [()])"),
+    ("Portion", "draw: program: Combiners(stages: [(rgb: (@), alpha: (b: PrimaryColor))])"),
+    ("FinalCombiner", "draw: program: Combiners(stages: [()], final_combiner: (@))"),
+    (
+        "TextureStage",
+        "draw: textures: [\"t\"], program: TextureStages(stages: [(@ color_op: MultiplyAdd, alpha_op: Lerp)])",
+    ),
+    ("EnvironmentUnit", "environment: (@)"),
+    ("EnvironmentUnit", "environment: (@ mode: Combine)"),
+    ("EnvironmentUnit", "environment: (@ mode: Combine4, combine_rgb: Add, combine_alpha: Add)"),
+    ("AlphaTest", "draw: alpha_test: (@ function: Less)"),
+    ("StencilTest", "target: Z24S8, stencil_test: (@)"),
+    ("DepthTest", "target: Z24S8, depth_test: (@)"),
+    ("DepthRange", "target: Z24S8, depth_test: (range: (@ lowest: 0, highest: 9))"),
+    ("PolygonOffset", "target: Z24S8, depth_test: (offset: (@))"),
+    ("Blend", "draw: blend: (@)"),
+    ("Truth", "truth: @ lights: [(direction: (0, 0, 1))]"),
+    ("TruthLight", "truth: lights: [(@ direction: (0, 0, 1))]"),
+    ("TruthMaterial", "truth: lights: [(direction: (0, 0, 1))], material: (@)"),
+    ("TruthHemisphere", "truth: hemisphere: (@)"),
+    ("ShadingNormal", "truth: lights: [(direction: (0, 0, 1))], shading_normal: (@ register: Texture0)"),
+    ("RadialNormals", "truth: normal: Radial(@), lights: [(direction: (0, 0, 1))]"),
+    (
+        "HeightFile",
+        "truth: normal: Height(@ file: \"vectors/scenes/clipping/stone.png\"), lights: [(direction: (0, 0, 1))]",
+    ),
+    ("HemisphereNormals", "truth: normal: Hemisphere(@), lights: [(direction: (0, 0, 1))]"),
+];
+
+/// A scene with the place filled.
+fn with_field(place: &str, field: &str) -> String {
+    const WINDOW: &str = "vertices: Window([(position: (0, 0)), (position: (0, 9)), (position: (9, 9))])";
+    const MESH: &str = "Matrix(matrix: Identity, mesh: Grid(columns: 1, rows: 1))";
+    const TEXTURE: &str = "textures: { \"t\": (source: Solid(width: 4, height: 4, color: (1, 2, 3))) },";
+    let (kind, place) = place.split_once(": ").unwrap();
+    let place = place.replace('@', field);
+    let inside = match kind {
+        "top" => format!("{place} draws: [({WINDOW})]"),
+        "draws" => format!("draws: {place}"),
+        "draw" => format!("{TEXTURE} draws: [({WINDOW}, {place})]"),
+        "unit" => format!("{TEXTURE} draws: [({WINDOW}, textures: [{place}])]"),
+        "environment" => {
+            format!("{TEXTURE} draws: [({WINDOW}, textures: [\"t\"], program: TextureEnvironment(units: [{place}]))]")
+        }
+        "shadow" => format!(
+            "textures: {{ \"t\": (format: Z16, source: Texels(width: 1, height: 1, rows: [\"0000\"])) }}, draws: [({WINDOW}, \
+             textures: [(texture: \"t\", min_filter: Nearest, shadow: {place})])]"
+        ),
+        "vertices" => format!("draws: [(vertices: {place})]"),
+        "target" => {
+            let (format, state) = place.split_once(", ").unwrap();
+            format!("targets: [(depth: {format})], draws: [({WINDOW}, {state})]")
+        }
+        "true" => format!("truth: (lights: [(direction: (0, 0, 1))]), draws: [({place} vertices: {MESH})]"),
+        "truth" => format!("{TEXTURE} truth: ({place}), draws: [(vertices: {MESH})]"),
+        _ => panic!("no kind {kind}"),
+    };
+    format!("(version: 1, profile: Nv2a, {inside})")
+}
+
+/// What the page says of a field that is not written is what the reader does then: written in full it makes the same scene.
+#[test]
+fn the_defaults_of_the_tables_are_those_of_the_reader() {
+    let made = |text: &str| {
+        let loaded = scene::parse(text, Path::new("x.ron"), &Limits::default());
+        loaded.map(|loaded| format!("{:?} {:?}", loaded.scene, loaded.truth)).map_err(|error| error.to_string())
+    };
+    let (mut held, mut wrong) = (0, Vec::new());
+    for structure in fields::structures() {
+        let table = fields::table(&[(structure, structure)]).unwrap();
+        let cells =
+            |line: &str| line.trim_matches('|').split(" | ").map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+        let mut rows = table.lines().map(cells);
+        let header = rows.next().unwrap();
+        let column = |name: &str| header.iter().position(|cell| cell == name);
+        let Some(default) = column("default") else { continue };
+        for row in rows.skip(1) {
+            let quoted = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+            let (names, values) = (quoted(&row[column("field").unwrap()]), quoted(&row[default]));
+            // Nothing but values: no words around them, no name of another field.
+            let list = values.iter().map(|value| format!("`{value}`")).collect::<Vec<_>>().join(", ");
+            let is_value =
+                |value: &String| !value.starts_with(char::is_lowercase) || ["true", "false"].contains(&value.as_str());
+            if values.is_empty()
+                || list != row[default]
+                || !values.iter().all(is_value)
+                || names.len() % values.len() != 0
+            {
+                continue;
+            }
+            let places = PLACES.iter().filter(|(known, _)| *known == structure);
+            for (name, value) in names.iter().zip(values.iter().cycle()) {
+                let mut findings = vec!["no scene has a place for it".to_owned()];
+                for (_, place) in places.clone() {
+                    match (made(&with_field(place, "")), made(&with_field(place, &format!("{name}: {value}, ")))) {
+                        (Ok(absent), Ok(written)) if absent == written => findings.clear(),
+                        (Ok(_), Ok(_)) => wrong.push(format!("{structure}: `{name}: {value}` changes the scene")),
+                        // Another place may take it.
+                        (Err(error), _) | (_, Err(error)) => {
+                            findings.iter_mut().for_each(|last| last.clone_from(&error))
+                        }
+                    }
+                }
+                held += usize::from(findings.is_empty());
+                wrong.extend(findings.iter().map(|finding| format!("{structure}: `{name}: {value}`: {finding}")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}\n{held} hold", wrong.join("\n"));
+    assert!(held > 150, "{held}");
+}
+
 /// The words that the help of a wrong one, in a scene that is wrong there alone, says are known.
 fn known_words(place: &str) -> Vec<String> {
     let error = scene::parse(place, Path::new("x.ron"), &Limits::default()).unwrap_err();

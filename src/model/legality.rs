@@ -11,6 +11,7 @@ use super::place::{Part, Place, Places};
 use crate::diagnostic::{Diagnostic, only_nv2a};
 use crate::state::{
     Bias, Combiners, Component, FinalRegister, GeneralStage, InputMapping, Named, Portion, Profile, Register, Scale,
+    named,
 };
 
 /// What a language calls things.
@@ -31,57 +32,37 @@ pub trait Notation {
     }
 }
 
-/// Advice that each language words for itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Help {
-    /// There is no stage: how to write one that does nothing.
-    EmptyStage,
-    /// Constants of single stages on nv10: how to write those of the whole program.
-    SharedConstants,
-    /// Two results for one register.
-    OtherRegister,
-    /// A bias with a scale of 4 or 1/2.
-    BiasScale,
-    /// The fog factor in an RGB portion.
-    FogColor,
-    /// The fog factor in an alpha portion.
-    FogBlue,
-    /// The secondary colour's alpha on nv10.
-    SecondaryAlpha,
-    /// Blue in an RGB portion.
-    RgbComponents,
-    /// RGB in an alpha portion.
-    AlphaComponents,
-    /// Blue in A to F.
-    FinalComponents,
-    /// RGB in G.
-    FinalAlphaComponents,
-    /// A destination that is read only.
-    Writable,
-    /// A register of the final combiner where it cannot be read.
-    OtherInput,
-}
-
-impl Help {
+named! {
+    /// Advice that each language words for itself.
+    pub enum Help =>
     /// In the words of the state.
-    pub fn text(self) -> &'static str {
-        match self {
-            Help::EmptyStage => "one whose portions are `Portion::idle` changes nothing",
-            Help::SharedConstants => {
-                "give all stages and the final combiner the same constants; the profile Nv2a allows own ones"
-            }
-            Help::OtherRegister => "send one of them to another register, or to Zero, which discards it",
-            Help::BiasScale => "with this bias the scale is One or Two",
-            Help::FogColor => "read Rgb here",
-            Help::FogBlue => "read Blue here, the fog colour's",
-            Help::SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
-            Help::RgbComponents => "take Rgb or Alpha",
-            Help::AlphaComponents => "take Alpha or Blue",
-            Help::FinalComponents => "inputs A to F read Rgb or Alpha",
-            Help::FinalAlphaComponents => "G reads Alpha or Blue",
-            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
-            Help::OtherInput => "read Spare0 or another register",
-        }
+    text: &'static str {
+        /// There is no stage: how to write one that does nothing.
+        EmptyStage => "one whose portions are `Portion::idle` changes nothing",
+        /// Constants of single stages on nv10: how to write those of the whole program.
+        SharedConstants => "give all stages and the final combiner the same constants; the profile Nv2a allows own ones",
+        /// Two results for one register.
+        OtherRegister => "send one of them to another register, or to Zero, which discards it",
+        /// A bias with a scale of 4 or 1/2.
+        BiasScale => "with this bias the scale is One or Two",
+        /// The fog factor in an RGB portion.
+        FogColor => "read Rgb here",
+        /// The fog factor in an alpha portion.
+        FogBlue => "read Blue here, the fog colour's",
+        /// The secondary colour's alpha on nv10.
+        SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
+        /// Blue in an RGB portion.
+        RgbComponents => "take Rgb or Alpha",
+        /// RGB in an alpha portion.
+        AlphaComponents => "take Alpha or Blue",
+        /// Blue in A to F.
+        FinalComponents => "inputs A to F read Rgb or Alpha",
+        /// RGB in G.
+        FinalAlphaComponents => "G reads Alpha or Blue",
+        /// A destination that is read only.
+        Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
+        /// A register of the final combiner where it cannot be read.
+        OtherInput => "read Spare0 or another register",
     }
 }
 

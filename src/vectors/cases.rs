@@ -29,28 +29,19 @@ impl Level {
     }
 }
 
-/// Why a row is there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// An example, or something that was once wrong.
-    Regression,
-    /// The table has every row that there is.
-    Exhaustive,
-    /// Every input is at a boundary of its column.
-    Boundary,
-    /// Drawn.
-    Random,
-}
-
-impl Origin {
+named! {
+    /// Why a row is there.
+    pub enum Origin =>
     /// The word in the table.
-    pub fn word(self) -> &'static str {
-        match self {
-            Origin::Regression => "regression",
-            Origin::Exhaustive => "exhaustive",
-            Origin::Boundary => "boundary",
-            Origin::Random => "random",
-        }
+    word: &'static str {
+        /// An example, or something that was once wrong.
+        Regression => "regression",
+        /// The table has every row that there is.
+        Exhaustive => "exhaustive",
+        /// Every input is at a boundary of its column.
+        Boundary => "boundary",
+        /// Drawn.
+        Random => "random",
     }
 }
 

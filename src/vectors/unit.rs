@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Column;
 use super::exhaustive::Digesting;
-use ninebit::state::{POLICIES, Policies, Policy, Profile};
+use ninebit::state::{POLICIES, Policies, Policy, Profile, named};
 use ninebit::trace::Recorder;
 
 /// What holds besides a row's own numbers.
@@ -102,21 +102,24 @@ impl std::fmt::Debug for dyn Unit {
     }
 }
 
-/// How a draw can show what a row says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// Operands as texels, constants or vertex colours, the result as it is stored.
-    Direct,
-    /// An operand is negative or above 255: a general stage before makes it.
-    StageBefore,
-    /// The result is negative: two draws, as it is and negated.
-    TwoDraws,
-    /// Both.
-    StageBeforeTwoDraws,
-    /// Geometry shows it: which pixels are covered, or which texel is met.
-    Geometry,
-    /// Nothing shows it by itself; units that use it do.
-    Inside,
+named! {
+    /// How a draw can show what a row says.
+    pub enum Reach =>
+    /// The word in the table.
+    word: &'static str {
+        /// Operands as texels, constants or vertex colours, the result as it is stored.
+        Direct => "direct",
+        /// An operand is negative or above 255: a general stage before makes it.
+        StageBefore => "stage-before",
+        /// The result is negative: two draws, as it is and negated.
+        TwoDraws => "two-draws",
+        /// Both.
+        StageBeforeTwoDraws => "stage-before+two-draws",
+        /// Geometry shows it: which pixels are covered, or which texel is met.
+        Geometry => "geometry",
+        /// Nothing shows it by itself; units that use it do.
+        Inside => "inside",
+    }
 }
 
 impl Reach {
@@ -128,18 +131,6 @@ impl Reach {
             (false, true) => Reach::StageBefore,
             (true, false) => Reach::TwoDraws,
             (false, false) => Reach::StageBeforeTwoDraws,
-        }
-    }
-
-    /// The word in the table.
-    pub fn word(self) -> &'static str {
-        match self {
-            Reach::Direct => "direct",
-            Reach::StageBefore => "stage-before",
-            Reach::TwoDraws => "two-draws",
-            Reach::StageBeforeTwoDraws => "stage-before+two-draws",
-            Reach::Geometry => "geometry",
-            Reach::Inside => "inside",
         }
     }
 }

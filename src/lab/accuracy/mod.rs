@@ -99,7 +99,9 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     }
     let drawn = technique.errors.iter().filter(|errors| errors[0].is_finite()).count();
     let read = truth.shading_normal.map(|register| normals::read(scene, plan, truth, register, &measured));
-    let quantised = read.as_ref().map(|read| evaluate_with_normals(plan, truth, TARGET, &read.ideal, read.space));
+    let quantised = read
+        .as_ref()
+        .map(|read| evaluate_with_normals(plan, truth, TARGET, |at| Some(((*read.ideal.get(at)?)?, read.space))));
     let mut errors = [Statistics::default(); 3];
     let (mut inputs, mut method) = (Statistics::default(), Statistics::default());
     for at in &measured {

@@ -44,7 +44,7 @@ source! {
     }
     struct Combiners "program" {
         /// `(c0, c1)`: constant colours of all stages and the final combiner
-        constants: Tuple<'a, Color> [or "zero"],
+        constants: Tuple<'a, Color> [or "`((0, 0, 0, 0), (0, 0, 0, 0))`"],
         /// the bit of SPARE0's alpha that steers `mux` (CMB-10)
         mux_select: Name<state::MuxSelect> = MuxSelect::Msb,
         /// one to eight general stages, two on Nv10 (CMB-12)
@@ -84,9 +84,9 @@ source! {
         /// `texture_matrices`: see [there](programs.md#direct3d-texture-stages). Where no stage has them the matrices apply as in any draw
         texture_transform_flags: TransformFlags [or "`Disable`"],
         /// `(m00, m01, m10, m11)` of `BumpEnvMap` and `BumpEnvMapLuminance` (Nv2a)
-        bump_matrix: Numbers [or "zero" numbers 4..=4, "a bump matrix"],
+        bump_matrix: Numbers [or "`(0, 0, 0, 0)`" numbers 4..=4, "a bump matrix"],
         /// `(scale, offset)`
-        bump_luminance: Numbers [or "zero" numbers 2..=2, "a bump luminance"],
+        bump_luminance: Numbers [or "`(0, 0)`" numbers 2..=2, "a bump luminance"],
     }
     struct PixelShader "pixel shader" {
         /// the shader
@@ -125,7 +125,7 @@ source! {
         operands_alpha: List<'a, Name<environment::Operand>>
             [or "`[SourceAlpha, SourceAlpha, SourceAlpha, OneMinusSourceAlpha]`"],
         /// 1, 2 or 4
-        scale_rgb: u32 [or "1"], scale_alpha: u32 [or "1"],
+        scale_rgb: u32 [or "`1`"], scale_alpha: u32 [or "`1`"],
         /// the environment colour, `Constant`
         color: Color [color] = environment::Unit::initial().color,
         /// what the texture counts as
@@ -139,7 +139,7 @@ source! {
     }
     struct Portion {
         /// inputs
-        a: Input [or "zero"], b: Input [or "zero"], c: Input [or "zero"], d: Input [or "zero"],
+        a: Input [or "`Zero`"], b: Input [or "`Zero`"], c: Input [or "`Zero`"], d: Input [or "`Zero`"],
         /// register for A B, for C D, for A B + C D
         ab: Output [or "`Discard`"], cd: Output [or "`Discard`"], sum: Output [or "`Discard`"],
         /// the product is a dot product (RGB only)
@@ -155,10 +155,10 @@ source! {
     }
     struct FinalCombiner {
         /// inputs, `Rgb` (default) or `Alpha`; A to D also read `Spare0PlusSecondary` and `ETimesF`
-        a: FinalInput [or "zero"], b: FinalInput [or "zero"], c: FinalInput [or "zero"], d: FinalInput [or "zero"], e: FinalInput [or "zero"],
-        f: FinalInput [or "zero"],
+        a: FinalInput [or "`Zero`"], b: FinalInput [or "`Zero`"], c: FinalInput [or "`Zero`"], d: FinalInput [or "`Zero`"], e: FinalInput [or "`Zero`"],
+        f: FinalInput [or "`Zero`"],
         /// `Alpha` (default) or `Blue` of a register
-        g: FinalInput [or "`Spare0`, alpha"],
+        g: FinalInput [or "`Spare0`"],
         /// SPARE0 + SECONDARY is limited to 1 (FIN-3)
         color_sum_clamp: bool = true,
         /// 1 - x enters that sum

@@ -168,7 +168,7 @@ source! {
         /// the depths, 0 to 1, of a float buffer 0 or more
         depth: f32 [or "all ones"],
         /// the stencils
-        stencil: u8 [or "0"],
+        stencil: u8 [or "`0`"],
     }
     /// A clear among the draws.
     struct ClearDraw {
@@ -204,7 +204,7 @@ source! {
     }
     struct Draw "draw" {
         /// for messages and traces; no two alike
-        name: String [or "`\"draw N\"`"],
+        name: String [or "`draw` and its number"],
         /// name of the render target
         target: String [or "the first"],
         /// [where they come from](#vertex-sources)
@@ -291,7 +291,7 @@ source! {
         /// a [mesh](#meshes), or the name of one
         mesh: MeshSource [or "one of the two"],
         /// for a mesh: a colour for all vertices, or an attribute: a vector v becomes the colour 0.5 + 0.5 v
-        diffuse: Attribute [or "white"], specular: Attribute [or "zero"],
+        diffuse: Attribute [or "`(255, 255, 255, 255)`"], specular: Attribute [or "`(0, 0, 0, 0)`"],
         /// for a mesh: `(s, t, r, q)` for all vertices, or an attribute
         t0: Attribute [or "`TextureCoordinates`"], t1: Attribute [or "`TextureCoordinates`"], t2: Attribute [or "`TextureCoordinates`"],
         t3: Attribute [or "`TextureCoordinates`"],

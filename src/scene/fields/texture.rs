@@ -32,7 +32,7 @@ source! {
         /// uncompressed
         border: bool = false,
         /// the level to begin with: those before it are left out, and its sides are the texture's
-        first_level: u32 [or "0"],
+        first_level: u32 [or "`0`"],
     }
     struct RawFile "texture" {
         /// a file of texels or blocks as they lie in memory
@@ -65,7 +65,7 @@ source! {
         /// the side of a square in texels
         cell: u32 [in 1..=4096, "the side of a cell"] = 1,
         /// two colours, the first top left
-        colors: Tuple<'a, Color> [or "white and black"],
+        colors: Tuple<'a, Color> [or "`((255, 255, 255), (0, 0, 0))`"],
     }
     struct RampImage "texture" {
         /// columns and rows

@@ -49,21 +49,16 @@ pub struct TruthFrame {
 
 /// The truth of a target's pixels: of each, that of the last draw with a truth that stored a fragment there.
 pub fn evaluate(plan: &Plan, truth: &Truth, target: usize) -> TruthFrame {
-    frame(plan, truth, target, |_| None)
+    evaluate_with_normals(plan, truth, target, |_| None)
 }
 
-/// The same, the surface's normals being given: R, G, B of -1..1 by pixel, of any length; `None` keeps the truth's own.
+/// The same with normals of any length that are given by pixel, and the space that they stand in; where there is none the truth's own holds.
 pub fn evaluate_with_normals(
     plan: &Plan,
     truth: &Truth,
     target: usize,
-    normals: &[Option<[f64; 3]>],
-    space: Space,
+    given: impl Fn(usize) -> Option<(Vector, Space)>,
 ) -> TruthFrame {
-    frame(plan, truth, target, |at| normals.get(at).copied().flatten().map(|normal| (normal, space)))
-}
-
-fn frame(plan: &Plan, truth: &Truth, target: usize, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
     let (width, height) = (plan.targets[target].width, plan.targets[target].height);
     let pixels = seen(plan, truth, target).into_iter().enumerate().map(|(at, place)| {
         let (draw, triangle) = place?;

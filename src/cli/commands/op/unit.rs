@@ -32,12 +32,6 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// A unit under conditions.
-struct Asked {
-    unit: &'static dyn Unit,
-    conditions: Conditions,
-}
-
 /// Runs a unit.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (unit, profile) = (arguments.unit, arguments.profile);
@@ -53,8 +47,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let columns: Vec<Column> = unit.inputs().into_iter().map(column).collect();
     let known = columns.iter().map(|column| column.input.name.as_str()).collect::<Vec<_>>().join(", ");
     let policies = arguments.policies.policies()?;
-    let asked = Asked { unit, conditions: Conditions { profile, policies } };
-    let mut setup = Setup { chip: Some((profile, policies)), ..Setup::new(unit.name(), columns, known, asked) };
+    let mut setup = Setup {
+        chip: Some((profile, policies)),
+        ..Setup::new(unit.name(), columns, known, (unit, Conditions { profile, policies }))
+    };
     for (name, text) in &arguments.given {
         let Some(place) = (setup.find)(&setup.columns, name) else {
             let message = format!("`{}` has no input `{name}`", unit.name());
@@ -66,21 +62,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     setup.drive(&arguments.common)
 }
 
-impl Operation for Asked {
+impl Operation for (&'static dyn Unit, Conditions) {
     fn check(&self, values: &[i64]) -> Result<(), String> {
-        let fits = self.unit.accepts(values, self.conditions.profile);
-        if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.unit.name())) }
+        let fits = self.0.accepts(values, self.1.profile);
+        if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.0.name())) }
     }
 
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         if O::ON {
             let mut recorder = Recorder::default();
-            self.unit.trace(values, &self.conditions, &mut recorder);
+            self.0.trace(values, &self.1, &mut recorder);
             recorder.steps.into_iter().for_each(|step| observer.step(step));
         }
-        let columns = self.unit.results();
+        let columns = self.0.results();
         let mut results = vec![0; columns.len()];
-        self.unit.evaluate(values, &self.conditions, &mut results);
+        self.0.evaluate(values, &self.1, &mut results);
         let written = |column: &UnitColumn, value: i64| -> Value {
             match column.kind {
                 Kind::Unsigned(_) | Kind::Signed(_) => json!(value),
