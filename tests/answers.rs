@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench::Bench;
+use crate::repository::at;
 use crate::settings::bless;
-use std::path::Path;
 
 fn read(path: &str) -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+    std::fs::read_to_string(at(path)).unwrap()
 }
 
 /// The grade of a rule in the handbook.
@@ -61,7 +61,7 @@ fn vectors_exist() {
     for line in page.lines().filter_map(|line| line.strip_prefix("- Vectors: ")) {
         for name in line.split('`').skip(1).step_by(2) {
             let is_unit = known.lines().any(|line| line.split_whitespace().next() == Some(name));
-            let is_file = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors").join(name).exists();
+            let is_file = at("vectors").join(name).exists();
             assert!(is_unit || is_file, "{name}");
         }
     }

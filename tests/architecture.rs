@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::pages;
+use crate::repository::{at, name};
 use std::path::{Path, PathBuf};
 
 /// Modules that use one another and the standard library, nothing else.
@@ -22,14 +23,14 @@ pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// The sources of a folder without comments and tests: file and text.
 fn sources(folder: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
-    files(Path::new(folder), &mut found);
+    files(&at(folder), &mut found);
     found
         .into_iter()
         .map(|path| {
             let text = std::fs::read_to_string(&path).unwrap();
             let code = text.split("#[cfg(test)]").next().unwrap().lines();
             let code: Vec<&str> = code.filter(|line| !line.trim_start().starts_with("//")).collect();
-            (path.display().to_string(), code.join("\n"))
+            (name(&path), code.join("\n"))
         })
         .collect()
 }
@@ -44,7 +45,7 @@ fn names_after<'a>(text: &'a str, prefix: &str) -> Vec<&'a str> {
 
 /// The crates that `Cargo.toml` names, but for the model.
 fn crates() -> Vec<String> {
-    let manifest = std::fs::read_to_string("Cargo.toml").unwrap();
+    let manifest = std::fs::read_to_string(at("Cargo.toml")).unwrap();
     let dependencies = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
     dependencies
         .lines()
@@ -123,13 +124,14 @@ fn names_are_shown_in_one_place() {
 /// Files in `tests` are no test binaries by themselves here: one that nobody names would never run.
 #[test]
 fn every_test_file_runs() {
-    let (suite, manifest) = ["tests/suite.rs", "Cargo.toml"].map(|file| std::fs::read_to_string(file).unwrap()).into();
-    for entry in std::fs::read_dir("tests").unwrap() {
+    let (suite, manifest) =
+        ["tests/suite.rs", "src/cli/Cargo.toml"].map(|file| std::fs::read_to_string(at(file)).unwrap()).into();
+    for entry in std::fs::read_dir(at("tests")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         if path.extension().is_some_and(|extension| extension == "rs") {
-            let named = suite.contains(&format!("mod {name};")) || manifest.contains(&format!("\"tests/{name}.rs\""));
-            assert!(named, "neither tests/suite.rs nor Cargo.toml names {}", path.display());
+            let named = suite.contains(&format!("mod {name};")) || manifest.contains(&format!("/tests/{name}.rs\""));
+            assert!(named, "neither tests/suite.rs nor src/cli/Cargo.toml names {}", path.display());
         }
     }
 }
@@ -144,13 +146,13 @@ fn files_are_read_in_one_place() {
     }
 }
 
-/// The crates: the folder of the manifest, which of the program's is the top level, and its text.
+/// The crates: the folder of the manifest, and its text.
 fn manifests() -> Vec<(PathBuf, String)> {
-    let folders = std::fs::read_dir("src").unwrap().map(|entry| entry.unwrap().path());
+    let folders = std::fs::read_dir(at("src")).unwrap().map(|entry| entry.unwrap().path());
     let mut folders: Vec<PathBuf> = folders.filter(|folder| folder.join("Cargo.toml").exists()).collect();
     folders.sort();
-    let all = folders.into_iter().chain([PathBuf::from(".")]);
-    all.map(|folder| (folder.clone(), std::fs::read_to_string(folder.join("Cargo.toml")).unwrap())).collect()
+    let text = |folder: &PathBuf| std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+    folders.into_iter().map(|folder| (folder.clone(), text(&folder))).collect()
 }
 
 /// The page's table of crates is made of their manifests.
@@ -166,13 +168,8 @@ fn crates_are_listed() {
         let dependencies = package.split("\n[dependencies]\n").nth(1).unwrap_or("").split("\n[").next().unwrap();
         let own = dependencies.lines().filter(|line| line.starts_with("ninebit"));
         let named = own.map(|line| format!("`{}`", line.split([' ', '.', '=']).next().unwrap()));
-        let folder = if folder == Path::new(".") {
-            "top level, `src/cli`".to_owned()
-        } else {
-            format!("`{}`", folder.display())
-        };
         let uses = named.collect::<Vec<_>>().join(", ");
-        table += &format!("| {folder} | `{}` | {} | {uses} |\n", field("name"), field("description"));
+        table += &format!("| `{}` | `{}` | {} | {uses} |\n", name(&folder), field("name"), field("description"));
     }
     pages::hold("docs/architecture.md", "tests/architecture.rs", &table);
 }
@@ -182,7 +179,6 @@ fn crates_are_listed() {
 fn crates_without_tests_of_documentation_have_no_examples() {
     let mut silent = 0;
     for (folder, _) in manifests().into_iter().filter(|(_, manifest)| manifest.contains("doctest = false")) {
-        let folder = if folder == Path::new(".") { PathBuf::from("src/cli") } else { folder };
         silent += 1;
         let mut found = Vec::new();
         files(&folder, &mut found);
@@ -207,7 +203,7 @@ fn crates_without_tests_of_documentation_have_no_examples() {
 #[test]
 fn the_pinned_compiler_is_the_promised_one() {
     let value = |path: &str, key: &str| {
-        let text = std::fs::read_to_string(path).unwrap();
+        let text = std::fs::read_to_string(at(path)).unwrap();
         let line = text.lines().find_map(|line| line.strip_prefix(key)).unwrap();
         line.trim_matches(['=', ' ', '"']).to_owned()
     };
@@ -218,12 +214,12 @@ fn the_pinned_compiler_is_the_promised_one() {
 /// A recipe runs Cargo or a script of the repository.
 #[test]
 fn recipes_run_what_there_is() {
-    let text = std::fs::read_to_string("justfile").unwrap();
+    let text = std::fs::read_to_string(at("justfile")).unwrap();
     let commands = text.lines().filter_map(|line| line.strip_prefix("    "));
     let programs: Vec<&str> =
         commands.map(|line| line.trim_start_matches("BLESS=1 ").split(' ').next().unwrap()).collect();
     assert!(programs.len() >= 10, "{programs:?}");
     for program in programs.into_iter().filter(|program| !["cargo", "@just"].contains(program)) {
-        assert!(Path::new(program).is_file(), "the justfile runs {program}");
+        assert!(at(program).is_file(), "the justfile runs {program}");
     }
 }

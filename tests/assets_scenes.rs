@@ -1,13 +1,14 @@
 //! The generated textures of the scenes under `vectors/scenes` are what the generators make. What the scenes show: `tests/cases`.
 #![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
-use std::path::{Path, PathBuf};
+use crate::repository::at;
+use std::path::PathBuf;
 
 use ninebit_scene::generate::{height_field, hemisphere, normal_map};
 use ninebit_scene::image::{ImageLimits, load};
 
 fn scenes_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes")
+    at("vectors/scenes")
 }
 
 #[test]

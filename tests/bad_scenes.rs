@@ -4,8 +4,8 @@
 //! difference before you keep it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::{at, seen};
 use std::fs;
-use std::path::Path;
 
 use ninebit::limits::Limits;
 use ninebit_scene::{self as scene, ErrorKind};
@@ -13,7 +13,7 @@ use ninebit_scene::{self as scene, ErrorKind};
 #[test]
 fn every_broken_scene_says_what_is_wrong() {
     let bless = crate::settings::bless();
-    let mut names: Vec<String> = fs::read_dir("tests/bad")
+    let mut names: Vec<String> = fs::read_dir(at("tests/bad"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .filter_map(|name| name.strip_suffix(".ron").map(str::to_owned))
@@ -23,11 +23,12 @@ fn every_broken_scene_says_what_is_wrong() {
     let mut wrong = Vec::new();
     for name in names {
         let path = format!("tests/bad/{name}.ron");
-        let said = match scene::load(Path::new(&path), &Limits::default()) {
+        let said = match scene::load(&at(&path), &Limits::default()) {
             Ok(loaded) => format!("accepted\n\n{}", loaded.render_warnings(false)),
             Err(error) => format!("exit code {}\n\n{}", error.exit_code(), error.render(false)),
         };
-        let pinned = format!("tests/bad/{name}.txt");
+        let said = seen(&said);
+        let pinned = at(format!("tests/bad/{name}.txt"));
         if bless {
             fs::write(&pinned, &said).unwrap();
         } else if fs::read_to_string(&pinned).unwrap_or_default() != said {
@@ -40,7 +41,7 @@ fn every_broken_scene_says_what_is_wrong() {
 #[test]
 fn codes_are_listed() {
     let listed = crate::error_codes::rows();
-    for entry in fs::read_dir("tests/bad").unwrap() {
+    for entry in fs::read_dir(at("tests/bad")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "txt") {
             let text = fs::read_to_string(&path).unwrap();
@@ -55,10 +56,10 @@ fn codes_are_listed() {
 
 #[test]
 fn a_missing_scene_is_missing() {
-    let error = scene::load(Path::new("tests/bad/there-is-none.ron"), &Limits::default()).unwrap_err();
+    let error = scene::load(&at("tests/bad/there-is-none.ron"), &Limits::default()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Missing);
     assert_eq!(
-        error.render(false),
+        seen(&error.render(false)),
         "error[NB0111]: there is no such scene file\n--> tests/bad/there-is-none.ron\n = help: check the spelling and \
          the folder; upper and lower case count\n"
     );
@@ -66,7 +67,7 @@ fn a_missing_scene_is_missing() {
 
 #[test]
 fn a_folder_is_no_scene() {
-    let error = scene::load(Path::new("tests/bad"), &Limits::default()).unwrap_err();
+    let error = scene::load(&at("tests/bad"), &Limits::default()).unwrap_err();
     assert_eq!((error.exit_code(), error.diagnostics[0].code), (3, "NB0112"));
 }
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
+use crate::repository::at;
 
 use std::fs;
 use std::path::Path;
@@ -111,7 +112,7 @@ fn a_wrong_command_line_is_status_2() {
 #[test]
 fn programs_are_printed_in_other_forms() {
     let bench = Bench::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    let folder = at("vectors/scenes/programs");
     for name in ["lit-combiners.ron", "lit-text-file.ron", "lit.rc", "hemisphere-normal.png"] {
         fs::copy(folder.join(name), bench.path(name)).unwrap();
     }
@@ -137,13 +138,13 @@ fn programs_are_printed_in_other_forms() {
 #[test]
 fn programs_are_printed_as_functions() {
     let bench = Bench::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    let folder = at("vectors/scenes/programs");
     for name in ["lit-words-file.ron", "lit.words", "lit.rc", "dot3.txt", "hemisphere-normal.png"] {
         fs::copy(folder.join(name), bench.path(name)).unwrap();
     }
     for form in ["c99", "glsl", "wgsl", "verilog"] {
         let printed = bench.run(&format!("lower lit-words-file.ron --to {form} --textures words")).text();
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/cli/lower-{form}.txt"));
+        let path = at(format!("tests/cli/lower-{form}.txt"));
         assert_data_eq!(printed, snapbox::Data::read_from(&path, None));
     }
     // The words, the program that they are, and the scene with them are one function.
@@ -179,7 +180,7 @@ fn programs_are_printed_as_functions() {
 #[test]
 fn whole_programs_run_without_a_scene() {
     let bench = Bench::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    let folder = at("vectors/scenes/programs");
     fs::copy(folder.join("lit.words"), bench.path("lit.words")).unwrap();
     let one =
         bench.run("op program --words lit.words --profile nv10 --in tex0=166,115,248 --in primary=0xff,190,120").text();
@@ -195,7 +196,7 @@ fn whole_programs_run_without_a_scene() {
 #[test]
 fn scenes_come_from_standard_input() {
     let bench = Bench::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    let folder = at("vectors/scenes/programs");
     for name in ["lit.words", "lit-words-file.ron", "hemisphere-normal.png"] {
         fs::copy(folder.join(name), bench.path(name)).unwrap();
     }

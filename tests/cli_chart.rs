@@ -1,6 +1,7 @@
 //! `ninebit chart`: everything is written from measurements, and again after it was deleted.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -181,7 +182,7 @@ fn data_frame(text: &str) -> BTreeMap<String, Vec<Option<String>>> {
 
 #[test]
 fn the_table_is_what_pandas_reads_and_what_the_page_describes() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = at("docs");
     let frame = data_frame(&fs::read_to_string(docs.join("speed-accuracy/techniques.csv")).unwrap());
     let page = fs::read_to_string(docs.join("speed-accuracy.md")).unwrap();
     let described: BTreeSet<&str> =
@@ -251,7 +252,7 @@ fn labels(svg: &str) -> Vec<Label> {
 /// Of every chart of the documents, computed from the boxes of its texts.
 #[test]
 fn no_label_of_a_chart_covers_another() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = at("docs");
     let (mut charts, mut covered) = (0, Vec::new());
     for folder in ["speed-accuracy", "stability"] {
         for name in files(&docs.join(folder)).iter().filter(|name| name.ends_with(".svg")) {

@@ -1,6 +1,7 @@
 //! What the program writes, where, and what it leaves alone.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -315,13 +316,13 @@ fn charts_keep_what_is_under_version_control() {
 #[test]
 fn the_picture_of_the_readme_is_what_its_command_writes() {
     let bench = Bench::new();
-    let readme = fs::read_to_string("README.md").unwrap();
+    let readme = fs::read_to_string(at("README.md")).unwrap();
     let command = readme.split("$ cargo run -- ").nth(1).unwrap().lines().next().unwrap();
     let shown = readme.split("](docs/images/").nth(1).unwrap().split(')').next().unwrap();
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes");
+    let scene = at("vectors/scenes");
     let command = command.replace("vectors/scenes", scene.to_str().unwrap());
     bench.run(&command).data();
-    let committed = fs::read(Path::new("docs/images").join(shown)).unwrap();
+    let committed = fs::read(at("docs/images").join(shown)).unwrap();
     let written = fs::read(bench.path(command.rsplit(' ').next().unwrap())).unwrap();
     assert!(written == committed, "{command}: write it to docs/images/{shown} again");
 }

@@ -1,5 +1,6 @@
 //! RAS-6 and RAS-7 in whole scenes: what is cut off is missing, what is left is where it was, and what was cut is told of.
 use super::bench::Bench;
+use crate::repository::at;
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
@@ -142,7 +143,7 @@ fn pieces_of_random_scenes_are_in_order() {
 
 #[test]
 fn the_corridor_is_cut_on_all_sides() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/clipping/corridor.ron");
+    let path = at("vectors/scenes/clipping/corridor.ron");
     let plan = scene::load(&path, &Limits::default()).unwrap().plan;
     let planes = plan.draws.iter().fold(0, |set, draw| set | draw.assembly.clipping.planes);
     for plane in [ClipPlane::Near, ClipPlane::Far] {

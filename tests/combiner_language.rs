@@ -1,10 +1,9 @@
 //! The combiner language: what is printed reads back, what is read prints in one form, garbage is refused.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::repository::at;
 use ninebit_test_support::random_program;
 use ninebit_test_support::random_scene;
-
-use std::path::Path;
 
 use ninebit::combiner::registers::Registers;
 use ninebit::diagnostic::Diagnostic;
@@ -293,7 +292,7 @@ fn legality_is_that_of_every_language() {
 #[test]
 fn the_same_program_in_every_language_draws_the_same_bytes() {
     let frame = |name: &str| {
-        let path = Path::new("vectors/scenes/programs").join(name);
+        let path = at("vectors/scenes/programs").join(name);
         let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(loaded.render_warnings(false), "");
         (loaded.scene.draws[0].combiners.clone(), render(&loaded.plan, &RenderOptions::default()))

@@ -1,6 +1,7 @@
 //! The comparison with the ideal: what it says agrees with the trace, adds up, and stays within the stated bounds.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::repository::at;
 use ninebit_test_support::random_scene;
 
 use ninebit::engine::{RenderOptions, render, trace};
@@ -20,7 +21,7 @@ fn options(mode: Mode) -> CompareOptions {
 
 /// Scenes of the repository, by path.
 fn repository() -> Vec<(PathBuf, Plan)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/dot3");
+    let folder = at("vectors/scenes/dot3");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| {
         let name = path.to_string_lossy();
@@ -67,7 +68,7 @@ fn single_rules_stay_within_their_bounds_on_random_scenes() {
         seen.extend(comparison.rules.iter().map(|rule| rule.rule.name()));
     });
     // Anisotropy comes with scenes that are made for it.
-    let floor = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/sampling/anisotropy.ron");
+    let floor = at("vectors/scenes/sampling/anisotropy.ron");
     let floor = compare(&scene::load(&floor, &Limits::default()).unwrap().plan, &options(Mode::PerOp));
     check_bounds("anisotropy.ron", &floor);
     seen.extend(floor.rules.iter().map(|rule| rule.rule.name()));

@@ -1,6 +1,7 @@
 //! The scenes of `vectors/scenes/deciding`: each tells the values of one policy apart at a glance, and no other policy changes it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::path::{Path, PathBuf};
 
 use ninebit::engine::{RenderOptions, render, trace};
@@ -18,7 +19,7 @@ const LEVELS: u8 = 32;
 const PIXELS: u64 = 4096;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/deciding")
+    at("vectors/scenes/deciding")
 }
 
 /// The scene that decides a policy.

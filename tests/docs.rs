@@ -3,6 +3,7 @@
 
 use crate::bench;
 use crate::pages;
+use crate::repository::{at, name};
 
 use bench::Bench;
 use std::collections::BTreeSet;
@@ -13,8 +14,8 @@ use std::path::Path;
 /// dots stands for any lines.
 fn commands_print_what_is_shown(page: &str) {
     let bench = Bench::new();
-    copy(Path::new("vectors/scenes"), &bench.path("vectors/scenes"));
-    let text = fs::read_to_string(page).unwrap();
+    copy(&at("vectors/scenes"), &bench.path("vectors/scenes"));
+    let text = fs::read_to_string(at(page)).unwrap();
     for block in text.split("```console\n").skip(1) {
         let block = block.split("```").next().unwrap();
         for part in block.split("$ ").skip(1) {
@@ -65,12 +66,12 @@ fn op() {
 /// The variables that tests and the program's own unit tests read are those that the page lists.
 #[test]
 fn variables_of_tests_are_listed() {
-    let page = fs::read_to_string("docs/testing.md").unwrap();
+    let page = fs::read_to_string(at("docs/testing.md")).unwrap();
     let listed =
         page.lines().filter_map(|line| line.strip_prefix("| `")).filter_map(|line| line.split(['`', '=']).next());
     let listed: BTreeSet<String> = listed.filter(|name| name.starts_with("NINEBIT_")).map(str::to_owned).collect();
     let mut read = BTreeSet::new();
-    let mut folders = vec![Path::new("tests").to_path_buf(), Path::new("src").to_path_buf()];
+    let mut folders = vec![at("tests"), at("src")];
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
@@ -99,13 +100,13 @@ const TEMPLATES: [&str; 2] = ["src/lab/chart/page.md", "src/lab/experiments/page
 
 /// The pages in a folder and below it.
 fn pages_below(folder: &str) -> Vec<String> {
-    let (mut found, mut folders) = (Vec::new(), vec![Path::new(folder).to_path_buf()]);
+    let (mut found, mut folders) = (Vec::new(), vec![at(folder)]);
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "md") {
-                found.push(path.to_str().unwrap().replace('\\', "/"));
+                found.push(name(&path));
             }
         }
     }
@@ -129,7 +130,7 @@ struct Words {
 
 impl Words {
     fn of(page: &str) -> Words {
-        let text = fs::read_to_string(page).unwrap();
+        let text = fs::read_to_string(at(page)).unwrap();
         let (mut words, mut inside, mut console) = (Words::default(), None, false);
         for line in text.lines() {
             if TEMPLATES.contains(&page) {
@@ -209,8 +210,8 @@ fn links_lead_somewhere() {
     let mut broken = Vec::new();
     let others = ["vectors", "fuzz", "benches"].into_iter().flat_map(pages_below);
     for page in documents().into_iter().chain(others).filter(|page| !page.contains("/target/")) {
-        let text = fs::read_to_string(&page).unwrap();
-        let folder = Path::new(&page).parent().unwrap();
+        let text = fs::read_to_string(at(&page)).unwrap();
+        let folder = at(&page).parent().unwrap().to_path_buf();
         let mut code = false;
         for line in text.lines() {
             code ^= line.trim_start().starts_with("```");
@@ -220,7 +221,7 @@ fn links_lead_somewhere() {
             let targets = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
             for target in targets.filter(|target| !target.contains("://")) {
                 let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-                let path = if file.is_empty() { Path::new(&page).to_path_buf() } else { folder.join(file) };
+                let path = if file.is_empty() { at(&page) } else { folder.join(file) };
                 let known = if anchor.is_empty() {
                     path.exists()
                 } else {
@@ -238,7 +239,7 @@ fn links_lead_somewhere() {
 /// The list of decisions is made of their titles.
 #[test]
 fn decisions_are_listed() {
-    let mut files: Vec<_> = fs::read_dir("docs/decisions").unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> = fs::read_dir(at("docs/decisions")).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let mut table = "| number | decision |\n|---|---|\n".to_owned();
     for file in files.iter().filter(|file| !file.ends_with("README.md")) {

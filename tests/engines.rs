@@ -4,6 +4,7 @@
 //! The normal run draws the first 2,000 of two sequences of random scenes, plain ones and wider ones. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
 //! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
 //! instruction set with 1, 2, 3 and 8 threads and bands of all sizes, and `NINEBIT_ENGINE_SEED` chooses another sequence.
+use crate::repository::at;
 use crate::scene_files;
 use crate::settings::number;
 use ninebit_test_support::random_scene;
@@ -61,7 +62,7 @@ fn fast(isa: Isa, threads: usize) -> RenderOptions {
 #[test]
 fn engines_agree_on_every_scene_of_the_repository() {
     let mut complaints = Vec::new();
-    for path in scene_files::below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes")) {
+    for path in scene_files::below(&at("vectors/scenes")) {
         let loaded = scene::load(&path, &Limits::default()).unwrap();
         if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1), fast(Isa::Baseline, 3)]) {
             complaints.push(format!("{}: {difference}", path.display()));

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::architecture;
+use crate::repository::at;
 use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,7 +25,7 @@ pub struct Row {
 /// The rows of the page, from the top.
 pub fn rows() -> Vec<Row> {
     let (mut rows, mut chapter) = (Vec::new(), String::new());
-    for line in std::fs::read_to_string("docs/errors.md").unwrap().lines() {
+    for line in std::fs::read_to_string(at("docs/errors.md")).unwrap().lines() {
         if let Some(heading) = line.strip_prefix("## ") {
             chapter = heading.rsplit_once('(').map_or(String::new(), |(_, digits)| digits.replace(')', ""));
         } else if line.starts_with("| NB") {
@@ -54,7 +55,7 @@ fn used(folder: &Path) -> BTreeSet<String> {
 
 #[test]
 fn the_page_has_every_code_and_no_other() {
-    let sources = used(Path::new("src"));
+    let sources = used(&at("src"));
     let rows = rows();
     assert_eq!(rows.iter().map(|row| row.code.clone()).collect::<BTreeSet<_>>(), sources);
     assert!(

@@ -1,6 +1,7 @@
 //! The plan in words: what it predicts is what a run counts, and what it leaves out cannot be seen.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::repository::at;
 use ninebit_test_support::random_scene;
 
 use ninebit::engine::{RenderOptions, count, render};
@@ -45,7 +46,7 @@ fn check(what: &str, scene: &Scene, plan: &Plan) -> (u64, u64) {
 #[test]
 fn predictions_are_counted_on_every_scene_of_the_repository() {
     let mut scenes = 0;
-    for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/dot3")).unwrap() {
+    for entry in std::fs::read_dir(at("vectors/scenes/dot3")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.to_string_lossy().into_owned();
         if name.ends_with(".ron") && !name.ends_with(".expect.ron") {

@@ -1,15 +1,15 @@
 //! What the README shows is what the program does: its picture and its excerpt of a trace.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test")]
 
+use crate::repository::at;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit_report::trace_text;
 use ninebit_scene as scene;
-use std::path::Path;
 
 fn plan(name: &str) -> Plan {
-    let path = Path::new("vectors/scenes/dot3").join(name);
+    let path = at("vectors/scenes/dot3").join(name);
     let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|e| panic!("{}", e.render(false)));
     Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap()
 }
@@ -17,7 +17,7 @@ fn plan(name: &str) -> Plan {
 #[test]
 fn the_picture_is_the_scene() {
     let frames = engine::render(&plan("lit-stone.ron"), &RenderOptions::default());
-    let shown = image::open("docs/images/lit-stone.png").unwrap().to_rgba8();
+    let shown = image::open(at("docs/images/lit-stone.png")).unwrap().to_rgba8();
     let surface = &frames.surfaces[0];
     assert_eq!(shown.dimensions(), (surface.width, surface.height));
     assert_eq!(shown.into_raw(), surface.rgba8().concat(), "render the scene again into docs/images/lit-stone.png");
@@ -25,7 +25,7 @@ fn the_picture_is_the_scene() {
 
 #[test]
 fn the_excerpt_is_in_the_trace() {
-    let readme = std::fs::read_to_string("README.md").unwrap();
+    let readme = std::fs::read_to_string(at("README.md")).unwrap();
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let excerpt = readme.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
     let plan = plan("lit-stone.ron");

@@ -1,6 +1,7 @@
 //! Results of cards: held to their pack, refused where they are not whole, adopted where they are silicon.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -388,7 +389,7 @@ fn cards_are_adopted_and_the_model_owes_what_they_contradict() {
     fs::write(adopted.join("geforce-256-agp/product.tsv"), "").unwrap();
     assert_eq!(owed(&adopted).len(), 2);
     assert_eq!(
-        owed(Path::new("vectors/results")),
+        owed(&at("vectors/results")),
         [""; 0],
         "what cards said is in the repository, the model does not follow"
     );

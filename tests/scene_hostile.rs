@@ -1,6 +1,7 @@
 //! No text makes the scene reader panic, hang or take memory without end.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::fs;
 use std::path::Path;
 
@@ -91,13 +92,13 @@ fn a_large_valid_scene_loads() {
 }
 
 fn examples() -> Vec<String> {
-    let mut texts: Vec<String> = fs::read_dir("tests/bad")
+    let mut texts: Vec<String> = fs::read_dir(at("tests/bad"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "ron"))
         .filter_map(|path| fs::read_to_string(path).ok())
         .collect();
-    let document = fs::read_to_string("docs/scene-format.md").unwrap();
+    let document = fs::read_to_string(at("docs/scene-format.md")).unwrap();
     texts.extend(document.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).map(str::to_owned));
     texts
 }

@@ -19,6 +19,8 @@ mod dds;
 mod operations;
 #[path = "common/pages.rs"]
 mod pages;
+#[path = "common/repository.rs"]
+mod repository;
 #[path = "common/scene_files.rs"]
 mod scene_files;
 #[path = "common/settings.rs"]

@@ -16,6 +16,7 @@ pub(crate) mod raster_operations;
 mod shading;
 #[path = "third_party_pipeline/texture_units.rs"]
 pub(crate) mod texture_units;
+use crate::repository::at;
 use crate::third_party;
 
 use serde_json::Value;
@@ -46,9 +47,9 @@ fn numbers(value: &Value) -> Vec<f64> {
 /// At most one case in twenty of all that can be asked of the chips may differ.
 #[test]
 fn few_cases_are_listed_as_different() {
-    let document = std::fs::read_to_string("docs/known-differences.md").unwrap();
+    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
     let (mut cases, mut listed) = (0, 0);
-    for entry in std::fs::read_dir("vectors/third-party").unwrap() {
+    for entry in std::fs::read_dir(at("vectors/third-party")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "json") {
             continue;

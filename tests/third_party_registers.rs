@@ -1,6 +1,7 @@
 //! Register words of `vectors/third-party`, every one: what the chip takes, what it makes of older interfaces' states, what comes out.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ use ninebit_scene as scene;
 
 /// The rows of a table, by column.
 fn rows(name: &str) -> Vec<Vec<String>> {
-    let text = std::fs::read_to_string(Path::new("vectors/third-party").join(name)).unwrap();
+    let text = std::fs::read_to_string(at("vectors/third-party").join(name)).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines.map(|line| line.split('\t').map(str::to_owned).collect()).collect()
 }
@@ -48,7 +49,7 @@ fn one_stage() -> RegisterWords {
 
 #[test]
 fn words_are_taken_and_kept_as_the_chip_does() {
-    let document = std::fs::read_to_string("docs/known-differences.md").unwrap();
+    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
     let section = document.split("## Register words").nth(1).unwrap().split("\n## ").next().unwrap();
     let listed: BTreeSet<(String, String)> = section
         .lines()
@@ -281,7 +282,7 @@ const SHADER_OPERATIONS: [(u32, &str, &str); 19] = [
 
 #[test]
 fn texture_shaders_are_taken_as_the_chip_does() {
-    let document = std::fs::read_to_string("docs/known-differences.md").unwrap();
+    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
     let rows = rows("texture-shader-words.tsv");
     assert_eq!(rows.len(), 14);
     for row in rows {

@@ -4,6 +4,7 @@
 
 use crate::architecture;
 use crate::pages;
+use crate::repository::at;
 use crate::scene_files;
 use ninebit_test_support::random_scene;
 use ninebit_test_support::recompute;
@@ -48,7 +49,7 @@ fn quoted(cell: &str) -> Vec<String> {
 
 impl Page {
     fn read() -> Page {
-        let text = std::fs::read_to_string("docs/trace-format.md").unwrap();
+        let text = std::fs::read_to_string(at("docs/trace-format.md")).unwrap();
         // The words in backticks of the first two cells of each row.
         let rows = |name: &str| -> Vec<[Vec<String>; 2]> {
             let tables = vocabulary::tables().into_iter().filter(|table| table.name.starts_with(name));
@@ -244,7 +245,7 @@ fn random_traces(page: &Page) -> Seen {
 /// Traces of the scenes of the repository, held against the page.
 fn repository_traces(page: &Page) -> Seen {
     let mut seen = Seen::default();
-    let files = scene_files::below(Path::new("vectors/scenes"));
+    let files = scene_files::below(&at("vectors/scenes"));
     assert!(!files.is_empty());
     for path in files {
         let plan = plan_of(&path);
@@ -290,7 +291,7 @@ fn the_example_is_a_step_of_its_trace() {
     let page = Page::read();
     let example: Value =
         serde_json::from_str(page.text.split("```json\n").nth(1).unwrap().split("```").next().unwrap()).unwrap();
-    let document = trace_of_text(&plan_of(Path::new("vectors/scenes/dot3/constant-light.ron")), 0, (200, 300));
+    let document = trace_of_text(&plan_of(&at("vectors/scenes/dot3/constant-light.ron")), 0, (200, 300));
     assert!(document["draws"][0]["steps"].as_array().unwrap().contains(&example), "{example:#}");
 }
 
@@ -299,12 +300,12 @@ fn the_example_is_a_step_of_its_trace() {
 fn the_page_lists_what_the_sources_have() {
     let page = Page::read();
     let mut files = Vec::new();
-    architecture::files(Path::new("src"), &mut files);
+    architecture::files(&at("src"), &mut files);
     let sources: String = files.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
     for operation in &page.operations {
         assert!(sources.contains(&format!("\"{operation}\"")), "{operation} is not in the sources");
     }
-    let recompute = std::fs::read_to_string("tests/common/recompute.rs").unwrap();
+    let recompute = std::fs::read_to_string(at("tests/common/recompute.rs")).unwrap();
     let arms = recompute.split("Some(match operation {").nth(1).unwrap().split("_ => return None,").next().unwrap();
     // The arms of the outermost match: eight spaces, then the names before the arrow.
     let mut known: Words = arms

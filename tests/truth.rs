@@ -1,5 +1,6 @@
 //! What pictures ought to show, and how far they are from it.
 
+use crate::repository::at;
 use std::path::{Path, PathBuf};
 
 use ninebit::limits::Limits;
@@ -107,7 +108,7 @@ fn other_equations() {
 
 #[test]
 fn errors_are_split_and_add_up() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/dot3");
+    let folder = at("vectors/scenes/dot3");
     let text = std::fs::read_to_string(folder.join("hemisphere.ron")).unwrap();
     assert!(text.contains("profile"), "the scene is there");
     let program = "textures: [(texture: \"ball\", address: ClampToEdge)], program: Combiners(constants: (Vector((0.48, 0.6, 0.64))), \

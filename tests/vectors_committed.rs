@@ -1,6 +1,7 @@
 //! What is committed under `vectors` beside scenes: packs, schemas, the list of mutations.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use ninebit_vectors::{exhaustive::Exhaustive, tree, units};
 use serde_json::Value;
 
 fn json(path: impl AsRef<Path>) -> Value {
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    serde_json::from_str(&std::fs::read_to_string(at(path)).unwrap()).unwrap()
 }
 
 /// The packs are, byte for byte, what an export writes: all units of nv2a, and of nv10 those in which it differs.
@@ -22,7 +23,7 @@ fn committed_packs_are_what_the_model_says() {
     let folder = tempfile::tempdir().unwrap();
     for profile in Profile::ALL {
         let name = profile.name().to_lowercase();
-        let committed = Path::new("vectors/packs").join(&name);
+        let committed = at("vectors/packs").join(&name);
         let manifest = pack::manifest(&committed).unwrap();
         let mut chosen: Vec<_> = manifest.files.iter().filter_map(|file| units::by_name(&file.unit)).collect();
         chosen.dedup_by_key(|unit| unit.name());
@@ -58,7 +59,7 @@ fn rows(profile: Profile, unit: &'static dyn ninebit_vectors::Unit) -> Vec<Vec<i
 
 #[test]
 fn the_pack_of_nv10_has_the_units_that_differ() {
-    let manifest = pack::manifest(Path::new("vectors/packs/nv10")).unwrap();
+    let manifest = pack::manifest(&at("vectors/packs/nv10")).unwrap();
     let committed: BTreeSet<&str> =
         manifest.files.iter().map(|file| file.unit.as_str()).filter(|unit| !unit.is_empty()).collect();
     let both = units::all().into_iter().filter(|unit| unit.profiles().len() == 2);
@@ -125,7 +126,7 @@ fn documents_have_the_properties_of_their_schemas() {
     tree::work(place, &Exhaustive::new(units::by_name("mux").unwrap(), Profile::Nv2a).unwrap(), 0).unwrap();
     fits(&schema("leaf"), &json(place.join("leaf-0000.json")), "leaf");
     let list = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    for path in list(Path::new("vectors/digests")) {
+    for path in list(&at("vectors/digests")) {
         let paths: Vec<_> = if path.is_dir() { list(&path).collect() } else { vec![path] };
         paths.iter().for_each(|path| fits(&schema("sweep"), &json(path), "sweep"));
     }
@@ -135,13 +136,13 @@ fn documents_have_the_properties_of_their_schemas() {
 #[test]
 fn mutations_are_of_texts_that_occur_once() {
     let mutants = json("vectors/mutation/mutants.json");
-    let (mutants, page) = (mutants.as_array().unwrap(), std::fs::read_to_string("docs/mutations.md").unwrap());
+    let (mutants, page) = (mutants.as_array().unwrap(), std::fs::read_to_string(at("docs/mutations.md")).unwrap());
     assert!(mutants.len() > 150);
-    let numerics = std::fs::read_to_string("docs/numerics.md").unwrap();
+    let numerics = std::fs::read_to_string(at("docs/numerics.md")).unwrap();
     for mutant in mutants {
         let [rule, what, file, old, new] =
             ["rule", "what", "file", "old", "new"].map(|key| mutant[key].as_str().unwrap());
-        let text = std::fs::read_to_string(file).unwrap();
+        let text = std::fs::read_to_string(at(file)).unwrap();
         assert_eq!(text.matches(old).count(), 1, "{file}: {old}");
         assert!(old != new && numerics.contains(&format!("### {rule} ")), "{what}");
         let row = format!("| {rule} | `{}` | {what} | ", file.strip_prefix("src/model/").unwrap());

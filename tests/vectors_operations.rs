@@ -4,6 +4,7 @@
 
 use crate::operations::OPERATIONS;
 use crate::pages;
+use crate::repository::at;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -26,7 +27,7 @@ struct Row {
 
 /// All trees under `vectors/digests`, by their name: the path without the ending.
 fn trees() -> BTreeMap<String, Exhaustive> {
-    let folder = Path::new("vectors/digests");
+    let folder = &at("vectors/digests");
     let list = |folder: &Path| -> Vec<PathBuf> {
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
     };

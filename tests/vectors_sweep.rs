@@ -2,6 +2,7 @@
 //! what the model says.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use crate::repository::at;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -26,7 +27,7 @@ fn part(unit: &str, only: &[&str]) -> Exhaustive {
 }
 
 fn ninebit(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_ninebit")).arg("vectors").args(arguments).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_ninebit")).current_dir(at("")).arg("vectors").args(arguments).output().unwrap()
 }
 
 /// All leaves of one unit, computed once for all tests.
@@ -204,7 +205,10 @@ fn a_part_is_swept_merged_and_digested_by_name() {
     assert_eq!((exit, text.lines().next()), (Some(0), Some(format!("{name}: 65536 rows in 1 leaves").as_str())));
     let (exit, text) = run(&["digest", &tree]);
     assert_eq!((exit, text), (Some(0), format!("{name}: 1 of 1 leaves computed, all as the tree has them\n")));
-    assert_eq!(std::fs::read(&tree).unwrap(), std::fs::read("vectors/digests/texel-expansion/R5G6B5.json").unwrap());
+    assert_eq!(
+        std::fs::read(&tree).unwrap(),
+        std::fs::read(at("vectors/digests/texel-expansion/R5G6B5.json")).unwrap()
+    );
 
     for only in [&["cfg.select=Msb"], &["cfg.format=r5g6b5"], &["in.word=ffff"], &["cfg.format"], &["out.r=1"]] {
         let arguments = only.iter().flat_map(|only| ["--only", *only]);
@@ -223,7 +227,7 @@ fn trees() -> Vec<PathBuf> {
     let list = |folder: &Path| -> Vec<PathBuf> {
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
     };
-    let top = list(Path::new("vectors/digests")).into_iter();
+    let top = list(&at("vectors/digests")).into_iter();
     let mut paths: Vec<PathBuf> = top.flat_map(|path| if path.is_dir() { list(&path) } else { vec![path] }).collect();
     paths.sort();
     paths
@@ -283,7 +287,7 @@ fn parts_by_configuration_are_whole() {
         assert_eq!(values.name, configuration);
         for place in 0..values.size() {
             let (value, text) = (values.nth(place), values.kind.write(values.nth(place)));
-            let (tree, sweep) = Tree::read(Path::new(&format!("vectors/digests/{name}/{text}.json"))).unwrap();
+            let (tree, sweep) = Tree::read(&at(format!("vectors/digests/{name}/{text}.json"))).unwrap();
             assert_eq!(tree.of.only[0], format!("{configuration}={text}"));
             let mut random = Random::new(17, &tree.of.name());
             for _ in 0..500 {
@@ -339,7 +343,7 @@ fn committed_trees_are_what_the_model_says() {
 fn trees_that_were_changed_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tree.json");
-    let text = std::fs::read_to_string("vectors/digests/mux.json").unwrap();
+    let text = std::fs::read_to_string(at("vectors/digests/mux.json")).unwrap();
     let code = |text: &str| {
         std::fs::write(&path, text).unwrap();
         Tree::read(&path).unwrap_err().code()
@@ -356,7 +360,7 @@ fn trees_that_were_changed_are_refused() {
         assert!(text.contains(from), "{from}");
         assert_eq!(code(&text.replacen(from, to, 1)), expected, "{from}");
     }
-    let text = std::fs::read_to_string("vectors/digests/texel-expansion/L8.json").unwrap();
+    let text = std::fs::read_to_string(at("vectors/digests/texel-expansion/L8.json")).unwrap();
     for (from, to) in [
         ("cfg.format=L8", "cfg.format=L9"),
         ("cfg.format=L8", "cfg.format=L8..L8"),
@@ -367,7 +371,7 @@ fn trees_that_were_changed_are_refused() {
         assert!(text.contains(from), "{from}");
         assert_eq!(code(&text.replacen(from, to, 1)), "NB1005", "{from} {to}");
     }
-    let text = std::fs::read_to_string("vectors/digests/mux.json").unwrap();
+    let text = std::fs::read_to_string(at("vectors/digests/mux.json")).unwrap();
     // A wrong digest with a fitting root is what `digest` finds.
     let mut tree: Tree = serde_json::from_str(&text).unwrap();
     tree.leaf[0].sha256 = tree.leaf[0].sha256.replace(|c: char| c.is_ascii_digit(), "a");

@@ -2,6 +2,7 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::pages;
+use crate::repository::at;
 use ninebit_test_support::random_vertex_program::{instruction, shader};
 
 use ninebit::diagnostic::Diagnostic;
@@ -341,7 +342,7 @@ fn doubtful_programs_are_warned_of() {
 /// What the comments on the instructions say, as the table of the page.
 #[test]
 fn the_document_lists_the_instructions() {
-    let source = std::fs::read_to_string("src/model/vertex/shader/mod.rs").unwrap();
+    let source = std::fs::read_to_string(at("src/model/vertex/shader/mod.rs")).unwrap();
     let list = source.split("opcodes! {").nth(1).unwrap().split("\n}").next().unwrap();
     let comments: Vec<&str> = list.lines().filter_map(|line| line.trim().strip_prefix("/// ")).collect();
     assert_eq!(comments.len(), Opcode::ALL.len());
@@ -360,7 +361,7 @@ fn the_document_lists_the_instructions() {
 /// The program of `docs/vertex-shader.md` is one.
 #[test]
 fn the_document_is_about_this_language() {
-    let document = std::fs::read_to_string("docs/vertex-shader.md").unwrap();
+    let document = std::fs::read_to_string(at("docs/vertex-shader.md")).unwrap();
     let program = document.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
     accepted(program);
 }

@@ -171,7 +171,7 @@ fn random(options: &Options, run: u64) -> Random {
 }
 
 fn prepared(folder: &Path) -> Corpus {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder).unwrap();
     std::env::set_current_dir(folder).unwrap();

@@ -1,6 +1,7 @@
 //! The tables of `docs/programs.md`, `docs/pixel-shader.md` and `docs/registers.md`: what becomes of each operation, as the lowering itself gives it, and
 //! the words of the chips.
 
+use crate::repository::at;
 use std::fs;
 
 use crate::pages::hold;
@@ -25,7 +26,7 @@ fn portion(combiners: &Combiners, stage: usize) -> String {
 
 /// The comments on the variants of an enumeration, in their order, without the full stop.
 fn comments(file: &str, enumeration: &str) -> Vec<String> {
-    let source = fs::read_to_string(file).unwrap();
+    let source = fs::read_to_string(at(file)).unwrap();
     // What may stand between is a value of each variant, with a comment of its own.
     let (_, rest) = source.split_once(&format!("pub enum {enumeration} ")).unwrap();
     let body = rest.split_once("{\n").unwrap().1.split("\n    }").next().unwrap();

@@ -1,5 +1,6 @@
 //! Scenes with programs of APIs.
 
+use crate::repository::at;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::state::TextureImage;
@@ -10,7 +11,7 @@ use std::path::Path;
 
 fn load(name: &str) -> Loaded {
     let path = format!("vectors/scenes/programs/{name}.ron");
-    scene::load(Path::new(&path), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+    scene::load(&at(&path), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]

@@ -5,9 +5,12 @@
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]
 
 mod machine;
+#[path = "../common/repository.rs"]
+mod repository;
 mod scenes;
 
 fn main() {
+    repository::enter();
     let arguments = libtest_mimic::Arguments::from_args();
     let trials = scenes::trials().into_iter().chain(machine::trials()).collect();
     libtest_mimic::run(&arguments, trials).exit();

@@ -1,6 +1,7 @@
 //! What the environment asks of the tests; `docs/testing.md` lists the variables.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
+use super::repository::at;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,5 +24,5 @@ pub fn number<T: FromStr>(name: &str, otherwise: T) -> T {
 
 /// The folder of captured frames, which are no part of the repository.
 pub fn captures() -> Option<PathBuf> {
-    is_set("NINEBIT_CAPTURES").then(|| std::env::var_os("NINEBIT_CAPTURES").unwrap_or_default().into())
+    is_set("NINEBIT_CAPTURES").then(|| at(std::env::var_os("NINEBIT_CAPTURES").unwrap_or_default()))
 }

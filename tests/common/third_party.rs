@@ -11,6 +11,7 @@
     reason = "each test uses a part; a test fails by panicking; tolerances are floats"
 )]
 
+use super::repository::at;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::state::Named;
@@ -31,7 +32,7 @@ fn cases(kind: &Kind) -> (Vec<Value>, bool) {
     let other = std::env::var("NINEBIT_CASES").ok();
     let own = format!("vectors/third-party/{}.json", kind.file);
     let file = other.as_deref().unwrap_or(&own);
-    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let text = fs::read_to_string(at(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
     let mut document: Value = serde_json::from_str(&text).unwrap();
     let Value::Array(mut cases) = document["cases"].take() else { panic!("{file} has no cases") };
     cases.retain(|case| case["kind"].as_str().is_none_or(|named| named == kind.name));
@@ -50,7 +51,7 @@ pub struct Outcome {
 
 /// Runs every case of a kind: `problem` says what is wrong with it, given the case and the profile it names.
 pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
-    let kept = fs::read_to_string("docs/known-differences.md").unwrap();
+    let kept = fs::read_to_string(at("docs/known-differences.md")).unwrap();
     let (cases, own) = cases(kind);
     let Outcome { wrong, excepted, applicable } = judge(&cases, &kept, problem);
     println!("{}: {} cases, {applicable} applicable, {excepted} listed as different", kind.file, cases.len());

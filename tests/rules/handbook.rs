@@ -147,7 +147,7 @@ pub fn policy(assignment: &str) -> Policies {
 }
 
 pub fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    crate::repository::at("")
 }
 
 /// A text file of the repository.

@@ -8,6 +8,8 @@ mod handbook;
 #[path = "../common/pages.rs"]
 mod pages;
 mod pixel;
+#[path = "../common/repository.rs"]
+mod repository;
 #[path = "../common/settings.rs"]
 mod settings;
 

@@ -17,6 +17,8 @@ mod frames;
 mod picture;
 mod probes;
 mod raster_probes;
+#[path = "../common/repository.rs"]
+mod repository;
 #[path = "../common/settings.rs"]
 mod settings;
 mod sheet;

@@ -36,7 +36,7 @@ pub type Values = Vec<((u32, u32), u32)>;
 impl Expectation {
     /// The expectation's file.
     pub fn path(name: &str) -> PathBuf {
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/vectors/silicon/frames")).join(format!("{name}.ron"))
+        crate::repository::at("vectors/silicon/frames").join(format!("{name}.ron"))
     }
 
     /// Reads the committed text.

@@ -13,8 +13,8 @@ pub struct Row {
 
 /// Reads a file: `#` lines with the version, the count and the names of the columns, then rows.
 pub fn read(file: &str) -> Vec<Row> {
-    let path = format!("{}/vectors/silicon/{file}.tsv", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let path = format!("vectors/silicon/{file}.tsv");
+    let text = std::fs::read_to_string(crate::repository::at(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
     assert!(text.starts_with("# ninebit silicon probes, format 1\n"), "{path}: not a file of probes");
     let header = |key: &str| {
         let line = text.lines().find_map(|line| line.strip_prefix("# ")?.strip_prefix(key)?.strip_prefix(": "));

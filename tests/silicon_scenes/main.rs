@@ -15,6 +15,8 @@
 
 mod cases;
 mod geometry;
+#[path = "../common/repository.rs"]
+mod repository;
 #[path = "../common/scene_files.rs"]
 mod scene_files;
 mod scenes;
@@ -44,7 +46,7 @@ const TEXT: [u8; 4] = [255, 255, 255, 0];
 const LISTED: usize = 20;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/silicon")
+    repository::at("vectors/scenes/silicon")
 }
 
 /// A scene as it was drawn.
@@ -155,6 +157,7 @@ fn check(case: &Case) -> Result<(), Failed> {
 }
 
 fn main() {
+    repository::enter();
     let arguments = Arguments::from_args();
     if bless() && !arguments.list {
         write_generated();

@@ -3,10 +3,10 @@
 use super::blocks;
 use super::view::FOLDER;
 use crate::dds;
+use crate::repository::at;
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene::generate::{height_field, normal_map};
 use ninebit_scene::image::Rgba;
-use std::path::Path;
 use std::sync::Once;
 
 /// Rows of `angle-pairs.png`.
@@ -105,7 +105,7 @@ pub fn bless() {
     if crate::settings::bless() {
         MADE.call_once(|| {
             for (name, bytes) in files() {
-                std::fs::write(Path::new(FOLDER).join(name), bytes).unwrap();
+                std::fs::write(at(FOLDER).join(name), bytes).unwrap();
             }
         });
     }
@@ -115,7 +115,7 @@ pub fn bless() {
 pub fn check() {
     bless();
     for (name, bytes) in files() {
-        let stored = std::fs::read(Path::new(FOLDER).join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let stored = std::fs::read(at(FOLDER).join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
         let same = if name.ends_with(".png") {
             image::load_from_memory(&stored).unwrap() == image::load_from_memory(&bytes).unwrap()
         } else {

@@ -1,5 +1,6 @@
 //! Where methods fail: each threshold is held from both sides, and the page is what the experiments yield.
 
+use crate::repository::at;
 use ninebit_lab::chart::page::{plain, replace_section};
 use ninebit_lab::experiments::{self, Experiment, Threshold, experiments};
 use std::fs;
@@ -78,11 +79,11 @@ pub fn page() {
     }
     let (section, files) = experiments::page::files(&measured);
     assert!(!section.contains("{{"), "a place of the template was not filled");
-    let page = fs::read_to_string("docs/stability.md").unwrap();
+    let page = fs::read_to_string(at("docs/stability.md")).unwrap();
     let made = replace_section(&page, "sweeps", &section).unwrap();
     assert!(made == page, "docs/stability.md is another; `ninebit chart --only stability` makes it");
     for file in files {
-        let stored = fs::read(format!("docs/{}", file.path)).unwrap_or_default();
+        let stored = fs::read(at("docs").join(&file.path)).unwrap_or_default();
         assert!(stored == file.bytes, "docs/{} is another; `ninebit chart --only stability` makes it", file.path);
     }
 }

@@ -4,6 +4,7 @@ use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
 use super::content::{BALL, PAIRS, dot, length, pair, pair_angle, unit};
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene};
+use crate::repository::at;
 use ninebit::texture::filter::lerp;
 
 pub fn section() -> Section {
@@ -90,7 +91,7 @@ fn exact_length(row: usize, weight: i32) -> f64 {
 
 /// The highlight of `seams.ron` with the filtered normals brought back to length in float64, in 255ths.
 fn renormalised() -> Vec<f64> {
-    let map = image::open("vectors/scenes/stability/ball-normal.png").unwrap().to_rgb8();
+    let map = image::open(at("vectors/scenes/stability/ball-normal.png")).unwrap().to_rgb8();
     let last = i64::from(BALL) - 1;
     let normal = |x: i64, y: i64| {
         let pixel = map.get_pixel(x.clamp(0, last) as u32, y.clamp(0, last) as u32);

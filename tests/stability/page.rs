@@ -1,10 +1,11 @@
 //! The page: its tables, pictures and charts are those that were measured.
 
 use super::view::Picture;
+use crate::repository::at;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 use crate::settings::bless;
@@ -48,7 +49,7 @@ pub fn check(section: &Section) {
         check_picture(name, picture);
     }
     for (name, chart) in &section.charts {
-        let path = Path::new(PICTURES).join(name);
+        let path = at(PICTURES).join(name);
         if bless() {
             fs::write(&path, chart).unwrap();
         }
@@ -56,7 +57,7 @@ pub fn check(section: &Section) {
         assert!(stored == *chart, "{} is another; BLESS=1 writes it", path.display());
     }
     let _writing = WRITING.lock();
-    let mut page = fs::read_to_string(PAGE).unwrap();
+    let mut page = fs::read_to_string(at(PAGE)).unwrap();
     for (n, rows) in section.tables.iter().enumerate() {
         let open = marker(section, n + 1);
         let start = page.find(&open).unwrap_or_else(|| panic!("{PAGE} has no {open}")) + open.len();
@@ -64,7 +65,7 @@ pub fn check(section: &Section) {
         let measured = table(rows);
         if bless() {
             page.replace_range(start..end, &measured);
-            fs::write(PAGE, &page).unwrap();
+            fs::write(at(PAGE), &page).unwrap();
         } else {
             assert_eq!(page[start..end], measured, "{PAGE}, {open}BLESS=1 writes the table");
         }
@@ -112,9 +113,9 @@ fn png(picture: &Picture) -> Vec<u8> {
 }
 
 fn check_picture(name: &str, picture: &Picture) {
-    let path = Path::new(PICTURES).join(name);
+    let path = at(PICTURES).join(name);
     if bless() {
-        fs::create_dir_all(PICTURES).unwrap();
+        fs::create_dir_all(at(PICTURES)).unwrap();
         fs::write(&path, png(picture)).unwrap();
     }
     let bytes = fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -127,8 +128,8 @@ fn check_picture(name: &str, picture: &Picture) {
 
 /// Every stored picture is shown.
 pub fn check_files() {
-    let page = fs::read_to_string(PAGE).unwrap();
-    let files: Vec<PathBuf> = fs::read_dir(PICTURES).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let page = fs::read_to_string(at(PAGE)).unwrap();
+    let files: Vec<PathBuf> = fs::read_dir(at(PICTURES)).unwrap().map(|entry| entry.unwrap().path()).collect();
     for file in files {
         let name = file.file_name().unwrap().to_string_lossy().into_owned();
         assert!(page.contains(&format!("(pictures/stability/{name})")), "nothing shows {name}");

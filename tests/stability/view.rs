@@ -1,5 +1,6 @@
 //! Scenes drawn, and pictures put together.
 
+use crate::repository::at;
 use ninebit::engine::{RenderOptions, render, walk};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
@@ -10,7 +11,6 @@ use ninebit::texture::lod;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
 use ninebit::texture::unit::PlannedUnit;
 use ninebit_scene as scene;
-use std::path::Path;
 
 /// Where the scenes are.
 pub const FOLDER: &str = "vectors/scenes/stability";
@@ -75,7 +75,7 @@ impl Picture {
 
 pub fn scene(name: &str) -> Scene {
     super::content::bless();
-    let loaded = scene::load(&Path::new(FOLDER).join(name), &Limits::default());
+    let loaded = scene::load(&at(FOLDER).join(name), &Limits::default());
     loaded.unwrap_or_else(|error| panic!("{}", error.render(false))).scene
 }
 

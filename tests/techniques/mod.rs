@@ -7,6 +7,7 @@ mod listings;
 mod passes;
 mod per_pixel_lighting;
 
+use crate::repository::at;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ use crate::bench::Bench;
 use crate::scene_files;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/techniques")
+    at("vectors/scenes/techniques")
 }
 
 /// The folders of the families, sorted.
@@ -93,7 +94,7 @@ fn techniques_are_as_exact_as_they_were() {
         "scene\trms\tmax\tbias\tdegrees\tlevels\ttruth levels\tflat run\tpasses\tleft after pruning\tframe-buffer bytes\n".to_owned();
     let lines: Vec<String> = files.par_iter().map(|file| figures(file)).collect();
     lines.iter().for_each(|line| writeln!(text, "{line}").unwrap());
-    let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/techniques/figures.tsv");
+    let pinned = at("tests/techniques/figures.tsv");
     if crate::settings::bless() {
         std::fs::write(&pinned, &text).unwrap();
     }

@@ -3,6 +3,9 @@
 //! Without node, Chromium (`CHROMIUM` names it) or Firefox, what needs them is *ignored*. Of the scenes forty are drawn; `NINEBIT_WEB_SCENES=0` draws all.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]
 
+#[path = "../common/repository.rs"]
+mod repository;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -24,6 +27,7 @@ use std::process::{Command, Output, Stdio};
 const WASM: &str = "src/web/module.wasm.gz";
 
 fn main() {
+    repository::enter();
     let arguments = Arguments::from_args();
     let node = runs("node", "--version");
     let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
