@@ -44,7 +44,7 @@ fn drawn(bench: &Bench, name: &str, policies: &[&str]) -> (Expectation, Vec<u8>)
     policies.iter().for_each(|policy| chosen.set(policy).unwrap());
     let surface = render(&Plan { policies: chosen, ..loaded.plan }, &RenderOptions::default()).surfaces.swap_remove(0);
     let png = encode_png(surface.width, surface.height, &surface.rgba8(), Compression::Small).unwrap();
-    (Expectation::of("frame", &surface), png)
+    (Expectation::from_surface("frame", &surface), png)
 }
 
 /// A bench with three scenes: `a/one` is as expected, `a/two` was drawn under a policy, `b` has only a digest of something else.

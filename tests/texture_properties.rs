@@ -18,7 +18,7 @@ fn lattice() -> impl Iterator<Item = [i32; 3]> {
 
 /// The face that a direction meets, with sc, tc and ma.
 fn meets(d: [i32; 3]) -> (Face, [i32; 3]) {
-    let face = Face::of(d, d.map(i32::abs), 0);
+    let face = Face::from_direction(d, d.map(i32::abs), 0);
     (face, face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] }))
 }
 
@@ -241,7 +241,7 @@ proptest! {
             prop_assert_eq!(sample.ratio(&a, &q, size), sample.ratio(&a2, &q2, size));
         }
         let sums = |x: [[i64; 3]; 3]| x.map(|g| sample.sum(&g));
-        let face = |sums: [i128; 3]| Face::of(sums, sums.map(i128::abs), 0);
+        let face = |sums: [i128; 3]| Face::from_direction(sums, sums.map(i128::abs), 0);
         let (a, b) = (sums([s, t, q]), sums([s2, t2, q2]));
         prop_assert_eq!(face(a), face(b));
         let on_face = |x: [[i64; 3]; 3], face: Face| {

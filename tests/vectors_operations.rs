@@ -141,7 +141,7 @@ fn both_chips_have_the_same_trees() {
         if sweep.unit.profiles().len() == 1 || sweep.unit.name() == "compressed-block" {
             continue;
         }
-        let other = Exhaustive::of(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
+        let other = Exhaustive::from_part(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
         let rows = sweep.size.min(500);
         for _ in 0..3 {
             let start = random.below(u128::from(sweep.size - rows + 1)) as u64;

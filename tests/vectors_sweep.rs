@@ -23,7 +23,7 @@ fn sweep(unit: &str) -> Exhaustive {
 
 fn part(unit: &str, only: &[&str]) -> Exhaustive {
     let unit = units::by_name(unit).unwrap();
-    Exhaustive::of(unit, Profile::Nv2a, Part::new(unit, only).unwrap()).unwrap()
+    Exhaustive::from_part(unit, Profile::Nv2a, Part::new(unit, only).unwrap()).unwrap()
 }
 
 fn ninebit(arguments: &[&str]) -> Output {

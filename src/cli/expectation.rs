@@ -173,7 +173,7 @@ impl ExpectationError {
 
 impl Expectation {
     /// The strict expectation that `surface` meets.
-    pub fn of(target: &str, surface: &Surface) -> Self {
+    pub fn from_surface(target: &str, surface: &Surface) -> Self {
         Expectation {
             version: VERSION,
             target: target.to_owned(),
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn text_and_back() {
-        let mut expectation = Expectation::of("frame", &surface(&[1, 2]));
+        let mut expectation = Expectation::from_surface("frame", &surface(&[1, 2]));
         assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
         expectation.mask = Some("mask.png".to_owned());
         (expectation.capture, expectation.pixels) = (Some("Suite/Frame.png".to_owned()), Some(1));
@@ -345,7 +345,7 @@ mod tests {
         write_file(&folder.path().join("here.png"), b"").expect("writes");
         let needs = |names: &[&str]| Expectation {
             needs: names.iter().map(|name| (*name).to_owned()).collect(),
-            ..Expectation::of("frame", &surface(&[1, 2]))
+            ..Expectation::from_surface("frame", &surface(&[1, 2]))
         };
         let expectation = needs(&["here.png", "captured/a.png", "b.png"]);
         assert_eq!(expectation.missing(folder.path()).expect("plain names"), ["captured/a.png", "b.png"]);
@@ -355,7 +355,7 @@ mod tests {
 
     #[test]
     fn equality_is_the_rule() {
-        let expectation = Expectation::of("frame", &surface(&[1, 2]));
+        let expectation = Expectation::from_surface("frame", &surface(&[1, 2]));
         let folder = Path::new(".");
         assert_eq!(expectation.compare(&surface(&[1, 2]), folder).expect("compares"), None);
         let other = expectation.compare(&surface(&[1, 3]), folder).expect("compares");
@@ -374,7 +374,8 @@ mod tests {
         store("mask.png", &[[255; 4], [0, 255, 255, 255]]);
         store("picture.png", &surface(&[1, 2]).rgba8());
 
-        let masked = Expectation { mask: Some("mask.png".to_owned()), ..Expectation::of("frame", &surface(&[1, 0])) };
+        let masked =
+            Expectation { mask: Some("mask.png".to_owned()), ..Expectation::from_surface("frame", &surface(&[1, 0])) };
         assert_eq!(masked.compare(&surface(&[1, 99]), folder.path()).expect("compares"), None);
         assert!(masked.compare(&surface(&[2, 0]), folder.path()).expect("compares").is_some());
         let counted = |pixels| Expectation { pixels: Some(pixels), ..masked.clone() };
@@ -385,7 +386,7 @@ mod tests {
         let allowance = |pixels, difference| {
             Some(Allowance { picture: "picture.png".to_owned(), pixels, difference, reason: "a test".to_owned() })
         };
-        let expected = |allowance| Expectation { allowance, ..Expectation::of("frame", &surface(&[1, 2])) };
+        let expected = |allowance| Expectation { allowance, ..Expectation::from_surface("frame", &surface(&[1, 2])) };
         let compare = |allowance| expected(allowance).compare(&surface(&[1, 5]), folder.path()).expect("compares");
         assert_eq!(compare(allowance(1, 3)), None);
         assert_eq!(compare(allowance(1, 2)), Some(Mismatch::Pixels { pixels: 1, difference: 3, first: [1, 0] }));

@@ -5,7 +5,7 @@ use ninebit::number::Register as _;
 use ninebit::plan::PlannedDraw;
 use ninebit::rop::{blend, surface};
 use ninebit::state::*;
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 
 use crate::code::{Code, Line, Operand, Operation, Range, Test};
 use crate::input::Input;
@@ -94,7 +94,7 @@ impl<'a> Builder<'a> {
     /// The registers with all inputs that a pixel can bring; units are `texture`'s.
     fn registers(&self, fog: [Number<'a>; 4], texture: impl FnMut(usize) -> [Number<'a>; 4]) -> Registers<Number<'a>> {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        let mut registers = Registers::of(Number::ZERO);
+        let mut registers = Registers::from_value(Number::ZERO);
         registers.load(Register::PrimaryColor, self.channels(Input::Primary));
         registers.load(Register::SecondaryColor, self.channels(Input::Secondary));
         registers.load(Register::Fog, fog);

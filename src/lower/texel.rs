@@ -4,7 +4,7 @@ use ninebit::number::Register as _;
 use ninebit::state::{AddressMode, Filter, MipFilter, TextureFormat, TextureKind};
 use ninebit::texture::filter::{bilinear, lerp};
 use ninebit::texture::format;
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 
 use crate::code::Code;
 use crate::input::{Input, Weight};

@@ -18,21 +18,17 @@ pub enum Severity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The scene, or a file that it names, makes no sense.
-    Invalid,
+    Invalid = 3,
     /// The scene, or a file that it names, does not exist.
-    Missing,
+    Missing = 4,
     /// Sound as far as looked at, but more than is allowed.
-    Limit,
+    Limit = 5,
 }
 
 impl ErrorKind {
     /// Exit code of the command line.
     pub fn exit_code(self) -> u8 {
-        match self {
-            ErrorKind::Invalid => 3,
-            ErrorKind::Missing => 4,
-            ErrorKind::Limit => 5,
-        }
+        self as u8
     }
 }
 

@@ -108,7 +108,7 @@ enum Form {
 }
 
 impl Equation {
-    const fn of(ab: [Argument; 2], cd: Option<[Argument; 2]>, form: Form) -> Equation {
+    const fn from_products(ab: [Argument; 2], cd: Option<[Argument; 2]>, form: Form) -> Equation {
         Equation { ab, cd, form, bias: Bias::None, scale: Scale::One }
     }
 
@@ -119,12 +119,12 @@ impl Equation {
 
     /// a b.
     pub const fn product(a: Argument, b: Argument) -> Equation {
-        Equation::of([a, b], None, Form::Sum)
+        Equation::from_products([a, b], None, Form::Sum)
     }
 
     /// a b + c d.
     pub const fn products(ab: [Argument; 2], cd: [Argument; 2]) -> Equation {
-        Equation::of(ab, Some(cd), Form::Sum)
+        Equation::from_products(ab, Some(cd), Form::Sum)
     }
 
     /// a + b.
@@ -139,20 +139,21 @@ impl Equation {
 
     /// a - b.
     pub const fn difference(a: Argument, b: Argument) -> Equation {
-        Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::Difference)
+        Equation::from_products([a, Argument::ONE], Some([b, Argument::ONE]), Form::Difference)
     }
 
     /// The sum over R, G, B of (2a - 1)(2b - 1).
     pub const fn dot(a: Argument, b: Argument) -> Equation {
-        Equation::of([a, b], None, Form::Dot)
+        Equation::from_products([a, b], None, Form::Dot)
     }
 
     /// (a + b - 1/2) times 1, 2 or 4.
     pub fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
         match scale {
-            Scale::Four | Scale::Half => {
-                Equation { scale, ..Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::HalfBiased) }
-            }
+            Scale::Four | Scale::Half => Equation {
+                scale,
+                ..Equation::from_products([a, Argument::ONE], Some([b, Argument::ONE]), Form::HalfBiased)
+            },
             _ => Equation { bias: Bias::NegativeHalf, scale, ..Equation::sum(a, b) },
         }
     }

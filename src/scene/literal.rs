@@ -13,7 +13,7 @@ pub(super) struct Literal<'a> {
 
 impl<'a> Literal<'a> {
     /// `None` if the value is something else.
-    pub(super) fn of(value: &'a str) -> Option<Self> {
+    pub(super) fn from_text(value: &'a str) -> Option<Self> {
         let signs = value.strip_prefix('r').map(|rest| rest.bytes().take_while(|byte| *byte == b'#').count());
         let start = signs.map_or(1, |signs| signs + 2);
         let end = value.len().checked_sub(signs.map_or(1, |signs| signs + 1))?;
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn texts_say_what_is_in_quotes() {
         let read = |value| {
-            let literal = Literal::of(value)?;
+            let literal = Literal::from_text(value)?;
             let (said, places): (String, Vec<usize>) = literal.characters().unzip();
             Some((said, places, literal.end()))
         };

@@ -43,7 +43,7 @@ macro_rules! expected {
 }
 expected! {
     <'a> String: "a text in double quotes", |_, text| {
-        let literal = Literal::of(text).ok_or(Mismatch::Kind)?;
+        let literal = Literal::from_text(text).ok_or(Mismatch::Kind)?;
         Ok(literal.characters().map(|(character, _)| character).collect())
     };
     <'a> u8: "a whole number from 0 to 255", |_, text| number(text);

@@ -8,24 +8,15 @@ use ninebit::state::{Profile, named};
 
 named! {
     /// How many rows a table has.
-    pub enum Level {
-        /// At most 1,000: committed, checked in a second.
-        L0,
-        /// 60,000: boundaries crossed, and random rows.
-        L1,
-        /// 5,000,000.
-        L2,
-    }
-}
-
-impl Level {
+    pub enum Level =>
     /// The most rows of a table.
-    pub fn rows(self) -> usize {
-        match self {
-            Level::L0 => 1_000,
-            Level::L1 => 60_000,
-            Level::L2 => 5_000_000,
-        }
+    rows: usize {
+        /// Committed, checked in a second.
+        L0 => 1_000,
+        /// Boundaries crossed, and random rows.
+        L1 => 60_000,
+        /// More of these.
+        L2 => 5_000_000,
     }
 }
 

@@ -71,7 +71,7 @@ pub(super) struct Output {
 
 impl Output {
     /// Those of a unit with these results.
-    pub(super) fn of(results: &[Column]) -> Vec<Output> {
+    pub(super) fn from_columns(results: &[Column]) -> Vec<Output> {
         let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
         let output = |(index, column): (usize, &Column)| {
             let (least, greatest) = column.kind.range();
@@ -90,15 +90,23 @@ impl Output {
 impl Exhaustive {
     /// Of a whole unit; `None` if it has more than [`MAX_ROWS`] rows.
     pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Exhaustive> {
-        Exhaustive::of(unit, profile, Part::whole(unit))
+        Exhaustive::from_part(unit, profile, Part::whole(unit))
     }
 
     /// Of a part of a unit; `None` if that has more than [`MAX_ROWS`] rows.
-    pub fn of(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Exhaustive> {
+    pub fn from_part(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Exhaustive> {
         let results = unit.results();
         let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MAX_ROWS)?;
         let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MAX_LEAVES);
-        Some(Exhaustive { unit, profile, part, size, leaves, outputs: Output::of(&results), results: results.len() })
+        Some(Exhaustive {
+            unit,
+            profile,
+            part,
+            size,
+            leaves,
+            outputs: Output::from_columns(&results),
+            results: results.len(),
+        })
     }
 
     /// The rows of a leaf, by their places among all.
@@ -281,7 +289,7 @@ mod tests {
         {
             let unit = units::by_name(unit).expect("a unit");
             let part = Part::new(unit, only).expect("a part");
-            compare(&Exhaustive::of(unit, Profile::Nv2a, part).expect("not too large"), 20);
+            compare(&Exhaustive::from_part(unit, Profile::Nv2a, part).expect("not too large"), 20);
         }
     }
 

@@ -16,7 +16,7 @@ pub fn outputs(
     turn: usize,
     conditions: &Conditions,
 ) -> Option<Vec<(usize, i64)>> {
-    let outputs = Output::of(results);
+    let outputs = Output::from_columns(results);
     let width: usize = outputs.iter().map(|output| output.bytes).sum();
     let mut inputs = row.to_vec();
     let along = (0..columns.len()).rev().filter(|index| columns[*index].counts());

@@ -21,6 +21,7 @@ pub mod unit;
 pub mod units;
 pub mod view;
 
+pub use table::BEHAVIOUR;
 pub use unit::Unit;
 
 use cases::{Level, Origin};
@@ -31,6 +32,3 @@ use part::Part;
 use read::Table;
 use table::{Contents, Row, Writer};
 use unit::Conditions;
-
-/// What the model computes: goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
-pub const BEHAVIOUR: u32 = 1;

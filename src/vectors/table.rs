@@ -17,7 +17,10 @@
 
 use sha2::{Digest, Sha256};
 
-use super::{BEHAVIOUR, Column, Conditions, Level, Origin, Unit, cases, handbook, unit};
+/// What the model computes: goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
+pub const BEHAVIOUR: u32 = 1;
+
+use super::{Column, Conditions, Level, Origin, Unit, cases, handbook, unit};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 

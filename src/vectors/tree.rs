@@ -249,7 +249,7 @@ impl Tree {
         let sweep = sweep.filter(|(unit, profile)| unit.profiles().contains(profile));
         let sweep = sweep.and_then(|(unit, profile)| {
             let part = Part::new(unit, &tree.of.only).ok().filter(|part| part.texts() == tree.of.only)?;
-            Exhaustive::of(unit, profile, part)
+            Exhaustive::from_part(unit, profile, part)
         });
         match sweep {
             Some(sweep) if (sweep.size, sweep.leaves) == (tree.of.size, tree.of.leaves) => Ok((tree, sweep)),

@@ -124,7 +124,7 @@ named! {
 
 impl Reach {
     /// Whether operands and result fit a frame buffer.
-    pub fn of(operands: &[i64], results: &[i64]) -> Reach {
+    pub fn from_values(operands: &[i64], results: &[i64]) -> Reach {
         let bytes = |values: &[i64]| values.iter().all(|v| (0..=255).contains(v));
         match (bytes(operands), bytes(results)) {
             (true, true) => Reach::Direct,

@@ -91,7 +91,7 @@ fn texture_environment(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
     let textures = &scene.textures;
     let draw = &mut scene.draws[index];
-    let formats = draw.textures.map(|unit| unit.map(|unit| BaseFormat::of(textures[unit.texture].format)));
+    let formats = draw.textures.map(|unit| unit.map(|unit| BaseFormat::from_format(textures[unit.texture].format)));
     let context =
         environment::Context { profile: scene.profile, textures: formats, signed: signed(draw), fog: draw.fog.enabled };
     if let Ok(lowered) = environment::lower(&program, &context) {

@@ -131,7 +131,7 @@ fn check(case: &Case) -> Result<(), Failed> {
             pixels: Some(pixels),
             mask: Some(format!("masks/{}.png", case.name)),
             needs: scene_files::captured(&drawn.text),
-            ..Expectation::of("frame", &drawn.surface)
+            ..Expectation::from_surface("frame", &drawn.surface)
         };
         if bless() {
             let mask: Vec<[u8; 4]> =

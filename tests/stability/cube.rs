@@ -59,7 +59,7 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
             };
             let at = covered.sample();
             let sums = g.map(|g| at.sum(&g));
-            let face = Face::of(sums, sums.map(i128::abs), 0);
+            let face = Face::from_direction(sums, sums.map(i128::abs), 0);
             let (i, j) = covered.pixel;
             map[256 * j as usize + i as usize - 256] = (face, sums.map(|n| n as f64));
         }

@@ -9,7 +9,7 @@ use ninebit::raster::setup::Triangle;
 use ninebit::state::{Scene, TriangleVertices};
 use ninebit::texture::lod;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 use ninebit_scene as scene;
 
 /// Where the scenes are.

@@ -73,15 +73,10 @@ struct Spread {
 }
 
 impl Spread {
-    /// Of times in ascending order, at least one.
-    fn of(times: &[f64]) -> Spread {
-        let at = |tenths: usize| times[(times.len() - 1) * tenths / 10];
-        Spread { least: times[0], p10: at(1), median: at(5), p90: at(9) }
-    }
-
-    /// Everything times a factor.
-    fn times(self, by: f64) -> Spread {
-        Spread { least: self.least * by, p10: self.p10 * by, median: self.median * by, p90: self.p90 * by }
+    /// Of times in ascending order, at least one, each times a factor.
+    fn from_times(times: &[f64], factor: f64) -> Spread {
+        let at = |tenths: usize| factor * times[(times.len() - 1) * tenths / 10];
+        Spread { least: at(0), p10: at(1), median: at(5), p90: at(9) }
     }
 }
 
@@ -133,7 +128,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             })
             .collect();
         times.sort_by(f64::total_cmp);
-        let frame_microseconds = Spread::of(&times);
         let share = |(reason, count): &(Reason, u64)| Defined {
             reason: reason.name(),
             share: *count as f64 / (shaded_pixels.max(1) as f64),
@@ -145,8 +139,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             frames: arguments.frames,
             load_microseconds,
             prepare_microseconds,
-            frame_microseconds,
-            ns_per_shaded_pixel: frame_microseconds.times(1e3 / (shaded_pixels.max(1) as f64)),
+            frame_microseconds: Spread::from_times(&times, 1.0),
+            ns_per_shaded_pixel: Spread::from_times(&times, 1e3 / (shaded_pixels.max(1) as f64)),
             defined_share: statistics.defined_pixels.iter().map(share).collect(),
             peak_memory_bytes: peak_memory(),
         })

@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 /// Checks and plans a scene and prints its cost.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, _) = arguments.scene.load(context)?;
-    let cost = Cost::of(&scene);
+    let cost = Cost::from_scene(&scene);
     let value = || json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
     arguments.format.print(|| text(&scene, &cost), || format!("{:#}", value()))
 }

@@ -22,7 +22,7 @@ pub(crate) struct Cost {
 
 impl Cost {
     /// Adds up a scene.
-    pub(crate) fn of(scene: &Scene) -> Cost {
+    pub(crate) fn from_scene(scene: &Scene) -> Cost {
         let (mut texels, mut texture_bytes) = (0, 0);
         for texture in &scene.textures {
             if let TextureImage::Texels(image) = &texture.image {

@@ -111,7 +111,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             "format": "ninebit-stats-1",
             "version": env!("CARGO_PKG_VERSION"),
             "profile": scene.profile.name(),
-            "cost": Cost::of(&scene),
+            "cost": Cost::from_scene(&scene),
             "shaded_pixels": statistics.shaded_pixels.iter().sum::<u64>(),
             "draws": draws,
             "targets": targets,

@@ -25,7 +25,7 @@ pub(super) fn write(
     surface: &Surface,
     before: Option<&Expectation>,
 ) -> Result<Outcome, Problem> {
-    let mut expectation = before.cloned().unwrap_or_else(|| Expectation::of(target, surface));
+    let mut expectation = before.cloned().unwrap_or_else(|| Expectation::from_surface(target, surface));
     (expectation.width, expectation.height) = (surface.width, surface.height);
     let compared = expectation.compared(folder).map_err(|error| refused(path, &error))?;
     let pixels = surface.rgba8();

@@ -304,7 +304,7 @@ pub struct Summary {
 
 impl Summary {
     /// Counts.
-    pub fn of(all: &[Replayed]) -> Self {
+    pub fn from_replays(all: &[Replayed]) -> Self {
         let mut summary = Summary { scenes: all.len(), ..Summary::default() };
         for one in all {
             *match &one.outcome {

@@ -22,7 +22,7 @@ pub struct Banding {
 
 impl Banding {
     /// Over the measured pixels, given in ascending order.
-    pub(super) fn of(truth: &TruthFrame, shown: &[[u8; 4]], measured: &[usize]) -> Banding {
+    pub(super) fn from_pixels(truth: &TruthFrame, shown: &[[u8; 4]], measured: &[usize]) -> Banding {
         let value = |at: usize, channel: usize| truth.pixels[at].as_ref().map_or(0.0, |pixel| pixel.color[channel]);
         let brightest = |channel: usize| measured.iter().map(|at| value(*at, channel)).fold(0.0, f64::max);
         let channel = (0..3).rev().max_by(|a, b| brightest(*a).total_cmp(&brightest(*b))).unwrap_or(0);

@@ -43,18 +43,18 @@ pub struct FrameCost {
 
 impl HardwareCost {
     /// Of a frame with so many final pixels, which are at least 1.
-    pub(super) fn of(scene: &Scene, plan: &Plan, pixels: u64) -> HardwareCost {
+    pub(super) fn from_scene(scene: &Scene, plan: &Plan, pixels: u64) -> HardwareCost {
         let explained = explain(scene, plan);
         let vertices = || scene.draws.iter().map(|draw| draw.vertices.len() as u64);
         let asked: Vec<(&Cost, u64)> = explained.iter().map(|draw| &draw.asked).zip(vertices()).collect();
         let pruned: Vec<(&Cost, u64)> = explained.iter().map(|draw| &draw.cost).zip(vertices()).collect();
-        HardwareCost { asked: FrameCost::of(&asked, pixels), pruned: FrameCost::of(&pruned, pixels) }
+        HardwareCost { asked: FrameCost::from_draws(&asked, pixels), pruned: FrameCost::from_draws(&pruned, pixels) }
     }
 }
 
 impl FrameCost {
     /// Of draws, each with its vertices.
-    fn of(draws: &[(&Cost, u64)], pixels: u64) -> FrameCost {
+    fn from_draws(draws: &[(&Cost, u64)], pixels: u64) -> FrameCost {
         let seen = || draws.iter().filter(|(cost, _)| cost.seen);
         let per_pixel =
             |of: &dyn Fn(&Cost) -> u64| seen().map(|(cost, _)| of(cost)).sum::<u64>() as f64 / pixels as f64;

@@ -122,7 +122,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     for at in &measured {
         wanted[*at] = ideal.pixels[*at].as_ref().map(|pixel| pixel.color);
     }
-    let banding = Banding::of(&ideal, &shown, &measured);
+    let banding = Banding::from_pixels(&ideal, &shown, &measured);
     Some(Accuracy {
         width: ideal.width,
         height: ideal.height,
@@ -132,8 +132,8 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
         channels: errors,
         causes: causes(read.is_some().then_some(inputs), method, &technique),
         banding,
-        normals: read.map(|read| NormalError::of(&ideal, &read, &measured)),
-        cost: HardwareCost::of(scene, plan, pixels),
+        normals: read.map(|read| NormalError::from_normals(&ideal, &read, &measured)),
+        cost: HardwareCost::from_scene(scene, plan, pixels),
         pictures: Pictures { width: ideal.width, height: ideal.height, shown, truth: wanted },
     })
 }

@@ -109,7 +109,7 @@ fn showing(register: FinalRegister) -> Combiners {
 
 impl NormalError {
     /// Over the measured pixels; where the surface has no normal there is no angle.
-    pub(super) fn of(truth: &TruthFrame, normals: &Normals, measured: &[usize]) -> NormalError {
+    pub(super) fn from_normals(truth: &TruthFrame, normals: &Normals, measured: &[usize]) -> NormalError {
         let (mut degrees, mut lengths) = (Statistics::default(), Statistics::default());
         for at in measured {
             let (Some(pixel), Some(Some(stored))) = (&truth.pixels[*at], normals.stored.get(*at)) else { continue };

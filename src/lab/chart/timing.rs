@@ -22,7 +22,7 @@ pub struct Spread {
 
 impl Spread {
     /// Of some times; zeros of none.
-    pub fn of(times: &mut [f64]) -> Spread {
+    pub fn from_times(times: &mut [f64]) -> Spread {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| {
             let index = ((times.len().saturating_sub(1)) as f64 * share).round() as usize;
@@ -57,7 +57,7 @@ impl Effort {
             work();
             times.push(start.elapsed().as_secs_f64() * 1e9 / pixels.max(1) as f64);
         }
-        Spread::of(&mut times)
+        Spread::from_times(&mut times)
     }
 }
 
@@ -83,8 +83,8 @@ mod tests {
     #[test]
     fn the_spread_is_the_middle_half() {
         let mut times: Vec<f64> = (0..101).rev().map(f64::from).collect();
-        assert_eq!(Spread::of(&mut times), Spread { median: 50.0, lower: 25.0, upper: 75.0 });
-        assert_eq!(Spread::of(&mut []), Spread::default());
+        assert_eq!(Spread::from_times(&mut times), Spread { median: 50.0, lower: 25.0, upper: 75.0 });
+        assert_eq!(Spread::from_times(&mut []), Spread::default());
     }
 
     #[test]

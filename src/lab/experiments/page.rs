@@ -63,7 +63,7 @@ pub fn files(all: &[Measured]) -> (String, Vec<File>) {
         }
     }
     files.push(File::text(format!("{FOLDER}/curves.csv"), comma_separated(&curve_rows(all))));
-    let document: Vec<Record> = all.iter().map(Record::of).collect();
+    let document: Vec<Record> = all.iter().map(Record::from_measured).collect();
     files.push(File::text(
         format!("{FOLDER}/thresholds.json"),
         serde_json::to_string_pretty(&document).unwrap_or_default() + "\n",
@@ -158,7 +158,7 @@ struct MethodRecord {
 }
 
 impl Record {
-    fn of(measured: &Measured) -> Record {
+    fn from_measured(measured: &Measured) -> Record {
         let Experiment { name, parameter, error, limit, ref methods, .. } = measured.experiment;
         let methods = methods.iter().zip(&measured.thresholds).map(|(method, threshold)| {
             let (works, fails) = threshold.ends(method);

@@ -15,9 +15,3 @@ fn main() {
     let named = Named { name: "shade".to_string(), about: "texture times colour".to_string(), function: &function };
     println!("{}", Language::Glsl.print(&[named]));
 }
-
-#[cfg(test)]
-#[test]
-fn runs() {
-    main();
-}

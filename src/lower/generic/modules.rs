@@ -49,7 +49,7 @@ fn module(piece: &Piece) -> String {
     ports.extend((0..results).map(|n| format!("output {wide} {}", result(n))));
     let mut out = format!("// {}\nmodule {} (\n    {}\n);\n", piece.about, piece.name, ports.join(",\n    "));
     for case in &piece.cases {
-        let body = Body::of(syntax, &case.lines, &case.results, &[]);
+        let body = Body::from_lines(syntax, &case.lines, &case.results, &[]);
         let name = if case.name.is_empty() { String::new() } else { format!(" // {}", case.name) };
         let _ = writeln!(out, "    generate if (1) begin : case_{:x}{name}", case.value);
         body.declarations.iter().for_each(|line| _ = writeln!(out, "        {line}"));

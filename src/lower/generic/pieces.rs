@@ -250,7 +250,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
     let rgb = maker.case(0, "", |reader| {
         let from = [FinalRegister::Fog, FinalRegister::PrimaryColor, FinalRegister::Texture0, FinalRegister::Texture1];
         let mut state = FinalCombiner::default();
-        let mut registers = Registers::of(Number::ZERO);
+        let mut registers = Registers::from_value(Number::ZERO);
         for (n, value) in reader.all(["a", "b", "c", "d"], FINAL).into_iter().enumerate() {
             state.inputs[n] = FinalInput { register: from[n], component: Component::Rgb, invert: false };
             registers.load(final_combiner::general(from[n]), [value; 4]);
@@ -381,7 +381,7 @@ pub(super) fn writes() -> Vec<Write> {
         constants: [[0; 4]; 2],
         reads_constants: false,
     };
-    let mut registers = Registers::of(Number::ZERO);
+    let mut registers = Registers::from_value(Number::ZERO);
     let values = general::evaluate(&stage, MuxSelect::Lsb, &registers, &mut listing);
     listing.take_sites();
     general::write(&stage, &values, &mut registers, &mut listing);
@@ -409,7 +409,7 @@ pub(super) fn initial_spare0() -> [Option<usize>; 4] {
     let code = Code::default();
     let mut listing = Listing::new(&code, Policies::DEFAULT);
     listing.enter(Block::Piece);
-    let mut registers = Registers::of(Number::ZERO);
+    let mut registers = Registers::from_value(Number::ZERO);
     let texture = [0, 1, 2, 3].map(|c| Number::new(&code, code.input(Input::Texture(0, c), BYTE)));
     registers.load(Register::Texture0, texture);
     let fragment = program.evaluate(registers, |_, _, _| [[Number::ZERO; 4]; 2], &mut listing);

@@ -281,7 +281,7 @@ impl Printer<'_> {
             rows.len()
         );
         for (case, row) in piece.cases.iter().zip(rows) {
-            let body = Body::of(self.syntax, &case.lines, &case.results, &[]);
+            let body = Body::from_lines(self.syntax, &case.lines, &case.results, &[]);
             let (_, rules) = body.result(self.syntax, case.results[0], piece.kind);
             let _ = writeln!(out, "    {{ /* {}{}{rules} */", case.name, if rules.is_empty() { "" } else { ": " });
             for line in row.chunks(32) {
@@ -295,7 +295,7 @@ impl Printer<'_> {
 
     /// What a case does.
     fn statements(&self, piece: &Piece, case: &Case, place: &impl Fn(usize) -> String) -> Vec<String> {
-        let body = Body::of(self.syntax, &case.lines, &case.results, &[]);
+        let body = Body::from_lines(self.syntax, &case.lines, &case.results, &[]);
         let declares = !body.declarations.is_empty() && piece.chooses.is_some();
         let mut inner: Vec<String> = body.declarations.clone();
         for (n, result) in case.results.iter().enumerate() {

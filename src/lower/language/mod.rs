@@ -161,11 +161,11 @@ impl<'f> Body<'f> {
             Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
             _ => Vec::new(),
         };
-        Body::of(syntax, &function.lines, &function.result.operands(), &test)
+        Body::from_lines(syntax, &function.lines, &function.result.operands(), &test)
     }
 
     /// Lines of which these values are the results, and of these some are compared.
-    pub(crate) fn of(
+    pub(crate) fn from_lines(
         syntax: &(impl Syntax + ?Sized),
         lines: &'f [Line],
         results: &[Operand],

@@ -22,7 +22,7 @@ fn programs() -> impl Iterator<Item = Combiners> {
 
 /// Numbers that a register can hold: colours are bytes, textures may be signed. Ends occur more often than others.
 fn registers(random: &mut Random) -> Registers<i32> {
-    let mut registers = Registers::of(0);
+    let mut registers = Registers::from_value(0);
     for register in GIVEN {
         let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
         let channel = |_: usize| match random.below(8) {

@@ -27,14 +27,14 @@ impl<L: Lane> Registers<L> {
     /// CMB-13: zeros; the caller loads what the pixel brings, SPARE0's alpha included.
     #[inline]
     pub fn new() -> Self {
-        Registers::of(L::ZERO)
+        Registers::from_value(L::ZERO)
     }
 }
 
 impl<V: Copy> Registers<V> {
     /// The same everywhere.
     #[inline]
-    pub fn of(value: V) -> Self {
+    pub fn from_value(value: V) -> Self {
         Registers { values: [[value; 4]; REGISTERS] }
     }
 

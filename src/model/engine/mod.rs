@@ -23,7 +23,7 @@ use crate::frame::{Frames, Surface};
 use crate::plan::Plan;
 use crate::rop::surface;
 use crate::state::{Named, Target, named};
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use crate::threads::Team;
 use crate::trace::Silent;
 use bins::Bins;

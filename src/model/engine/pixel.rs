@@ -18,8 +18,9 @@ use crate::state::{
 };
 use crate::texture::chain::Chain;
 use crate::texture::place::{self, Coordinates, Interpolated};
+use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::stage::ShaderSetup;
-use crate::texture::unit::{self, Image, PlannedUnit};
+use crate::texture::unit;
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 use std::cell::OnceCell;
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Texture, TextureImage};
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 
 use super::Surface;
 
@@ -17,11 +17,11 @@ impl<'a> TextureWords<'a> {
     /// Those of `surfaces`, as these draws find them: a target that one of them reads in texels of another size is written anew. Without
     /// surfaces no draw may read those that are targets.
     pub fn new(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface]) -> TextureWords<'a> {
-        TextureWords::of(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
+        TextureWords::from_surfaces(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
     }
 
     /// Those of surfaces of whatever kind: `surface` gives the words of a target and of its depth buffer, if there are any.
-    pub fn of(
+    pub fn from_surfaces(
         plan: &'a Plan,
         draws: &[PlannedDraw],
         surface: impl Fn(usize) -> Option<(&'a [u32], &'a [u32])>,

@@ -10,7 +10,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
 use crate::rop::surface;
 use crate::state::{Rectangle, StageOrigin, Target};
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use crate::trace::{Observer, Recorder, Silent, Step};
 
 /// Everything that happened to one pixel of a render target.

@@ -2,7 +2,7 @@
 
 use super::pixel::{DepthStencil, Fragment, TriangleContext};
 use crate::plan::{Plan, PlannedDraw};
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use crate::trace::Observer;
 
 /// Some rows of a surface.

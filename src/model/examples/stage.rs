@@ -26,9 +26,3 @@ fn main() {
     }
     println!("{exact} of 65,536 products are the nearest of 255 steps; the worst is {worst}/65,025 off");
 }
-
-#[cfg(test)]
-#[test]
-fn runs() {
-    main();
-}

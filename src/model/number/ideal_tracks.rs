@@ -46,7 +46,7 @@ impl IdealTracks<IDEAL_TRACKS> {
 
 impl<const N: usize> Ideal for IdealTracks<N> {
     #[inline(always)]
-    fn of(real: f64) -> Self {
+    fn from_real(real: f64) -> Self {
         IdealTracks([real; N])
     }
     #[inline(always)]
@@ -142,11 +142,11 @@ impl<const N: usize> Lane for IdealTracks<N> {
     const STEP: Self = IdealTracks([f64::STEP; N]);
     #[inline(always)]
     fn byte(value: u8) -> Self {
-        Self::of(f64::from(value))
+        Self::from_real(f64::from(value))
     }
     #[inline(always)]
     fn texel(value: i32, numerator: i32, denominator: i32) -> Self {
-        Self::of(f64::texel(value, numerator, denominator))
+        Self::from_real(f64::texel(value, numerator, denominator))
     }
     #[inline(always)]
     fn signed_texel(self) -> Self {
@@ -154,11 +154,11 @@ impl<const N: usize> Lane for IdealTracks<N> {
     }
     #[inline(always)]
     fn weight(_fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Self::of(ideal())
+        Self::from_real(ideal())
     }
     #[inline(always)]
     fn value(_fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Self::of(ideal())
+        Self::from_real(ideal())
     }
     #[inline(always)]
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {

@@ -219,7 +219,7 @@ pub trait Ideal:
     + Sum<Register = Self>
 {
     /// A real number of this lane's unit.
-    fn of(real: f64) -> Self;
+    fn from_real(real: f64) -> Self;
     /// The ideal.
     fn real(self) -> f64;
     /// A rule of `part` has yielded this where the definition has `fixed`: the error of that rule alone, if the lane knows it.

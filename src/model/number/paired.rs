@@ -94,10 +94,10 @@ impl<I: Ideal> Lane for Paired<I> {
         Paired { fixed: i32::texel(value, numerator, denominator), ideal: I::texel(value, numerator, denominator) }
     }
     fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Paired { fixed, ideal: I::of(ideal()) }
+        Paired { fixed, ideal: I::from_real(ideal()) }
     }
     fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Paired { fixed, ideal: I::of(ideal()) }
+        Paired { fixed, ideal: I::from_real(ideal()) }
     }
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
         Paired { fixed, ideal: self.ideal.multiplied(fixed, factor) }

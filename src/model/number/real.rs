@@ -157,7 +157,7 @@ macro_rules! real_lane {
 
         impl Ideal for $real {
             #[inline(always)]
-            fn of(real: f64) -> $real {
+            fn from_real(real: f64) -> $real {
                 real as $real
             }
             #[inline(always)]

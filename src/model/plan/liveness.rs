@@ -60,7 +60,7 @@ impl<'d> Computed<'d> {
     /// `zero`: registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
     pub(super) fn new(combiners: &'d Combiners, zero: u64) -> Computed<'d> {
         let mut trail = Trail::default();
-        let mut initial = Registers::of(trail.input(Some(0)));
+        let mut initial = Registers::from_value(trail.input(Some(0)));
         for register in Register::ALL.iter().skip(1) {
             for channel in 0..4 {
                 let known = (zero & bit(*register, channel) != 0).then_some(0);

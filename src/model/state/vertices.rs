@@ -31,8 +31,8 @@ impl Vertices {
         Vertices {
             count: 0,
             position: position.map(Column::Same),
-            diffuse: Colors::of(diffuse),
-            specular: Colors::of(specular),
+            diffuse: Colors::from_color(diffuse),
+            specular: Colors::from_color(specular),
             fog: Column::Same(fog),
             fog_coordinate: Column::Same(fog_coordinate),
             coordinates: texture_coordinates.map(|set| set.map(Column::Same)),
@@ -328,7 +328,7 @@ enum Colors {
 
 impl Colors {
     /// All of them this one.
-    fn of(color: VertexColor) -> Self {
+    fn from_color(color: VertexColor) -> Self {
         match color {
             VertexColor::Bytes(bytes) => Colors::Bytes(Column::Same(bytes)),
             VertexColor::Floats(floats) => Colors::Floats(floats.map(Column::Same)),
@@ -346,7 +346,7 @@ impl Colors {
     /// Appends colours to `count`.
     fn extend(&mut self, count: usize, capacity: usize, colors: impl Iterator<Item = VertexColor> + Clone) {
         if let (0, Some(first)) = (count, colors.clone().next()) {
-            *self = Colors::of(first);
+            *self = Colors::from_color(first);
         }
         let fits = |color: VertexColor| match self {
             Colors::Bytes(_) => matches!(color, VertexColor::Bytes(_)),

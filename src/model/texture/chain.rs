@@ -4,11 +4,12 @@ use super::dependent::{Dependent, Moved, QuadTargets, Target};
 use super::dot;
 use super::filter::nearest;
 use super::place::{Coordinates, Interpolated, quad_samples, real_coordinate};
+use super::planned::{Image, PlannedUnit};
 use super::real::{self, RealColor, RealTarget};
 use super::shader;
 use super::shader_report as report;
-use super::stage::{PlannedShader, ShaderSetup, StageSetup};
-use super::unit::{self, Image, PlannedUnit};
+use super::stage::{Color, Dot, PlannedShader, ShaderSetup, StageSetup};
+use super::unit;
 use crate::number::{Lane, convert};
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
@@ -34,29 +35,10 @@ pub struct Chain<'a, L> {
     pub scale: DependentScale,
 }
 
-/// A dot product, and what the ideal has in its place.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Dot {
-    pub(super) fixed: f32,
-    pub(super) real: f64,
-}
-
 /// What the stages have yielded so far.
 struct State<L> {
     registers: [[L; 4]; TEXTURE_UNITS],
     dots: [Option<Dot>; TEXTURE_UNITS],
-}
-
-/// The colour of an earlier unit as a stage reads it: bytes, whatever their sign flags.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Color {
-    pub(super) unit: usize,
-    pub(super) bytes: [u8; 4],
-    /// The registers that they were taken from.
-    pub(super) held: [i64; 4],
-    /// Channels whose registers hold twice their two's complement value (TEX-18).
-    pub(super) doubled: [bool; 4],
-    pub(super) real: RealColor,
 }
 
 /// A pixel, as the stages see it.

@@ -1,7 +1,7 @@
 //! KEY-1: texels of one colour made transparent, black, or left out.
 
+use super::planned::PlannedUnit;
 use super::report::Report;
-use super::unit::PlannedUnit;
 use crate::number::Lane;
 use crate::state::{ColorKey, ColorKeyMode};
 use crate::trace::Observer;

@@ -37,12 +37,12 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
             if index == 3 && !four_colors {
                 return NOTHING;
             }
-            let mix = Mix::of(colors, index, four_colors);
+            let mix = Mix::from_index(colors, index, four_colors);
             mix.opaque(if dithered { dither(mix.at_eight_bits(), x, y) } else { mix.at_own_width() })
         }
         (TextureFormat::Dxt3 | TextureFormat::Dxt5, &[low, high, colors, indices]) => {
             // Always four colours, whichever of the two is larger.
-            let mix = Mix::of(colors, indices >> (2 * texel) & 3, true);
+            let mix = Mix::from_index(colors, indices >> (2 * texel) & 3, true);
             let mut decoded = mix.opaque(mix.at_eight_bits());
             let explicit = format == TextureFormat::Dxt3;
             (decoded.bytes[3], decoded.ideal[3]) =
@@ -68,7 +68,7 @@ struct Mix {
 impl Mix {
     /// By an index 0..=3; of three colours 0..=2.
     #[inline]
-    fn of(colors: u32, index: u32, four_colors: bool) -> Mix {
+    fn from_index(colors: u32, index: u32, four_colors: bool) -> Mix {
         let channels = |c: u32| [c >> 11 & 31, c >> 5 & 63, c & 31].map(|v| v as i32);
         let (a, b) = match (index, four_colors) {
             (0, _) => (1, 0),

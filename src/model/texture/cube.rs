@@ -32,7 +32,7 @@ pub struct Signed {
 impl Face {
     /// The face that a direction meets: that of its largest component; ties X over Y over Z. The zero vector, and one that cannot be compared,
     /// meets +X. `zero` is the number 0.
-    pub fn of<T: PartialOrd + Copy>(direction: [T; 3], magnitudes: [T; 3], zero: T) -> Face {
+    pub fn from_direction<T: PartialOrd + Copy>(direction: [T; 3], magnitudes: [T; 3], zero: T) -> Face {
         let [x, y, z] = magnitudes;
         let axis = if x >= y && x >= z {
             0
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     fn of([x, y, z]: [i32; 3]) -> Face {
-        Face::of([x, y, z], [x.abs(), y.abs(), z.abs()], 0)
+        Face::from_direction([x, y, z], [x.abs(), y.abs(), z.abs()], 0)
     }
 
     #[test]

@@ -3,11 +3,11 @@
 use super::cube::Face;
 use super::lod::Quad;
 use super::place::{Place, Real};
+use super::planned::PlannedUnit;
 use super::real::RealTarget;
 use super::report::Report;
 use super::shader::{self, OFFSET_BITS};
 use super::shader_report;
-use super::unit::PlannedUnit;
 use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, Sample, Settled};
 use crate::state::{DependentScale, Level};
 use crate::trace::{Observer, Rule};
@@ -89,7 +89,7 @@ impl Target<'_> {
         match self {
             Target::Vector(vector) => {
                 let direction = shader::direction(*vector);
-                Face::of(direction, direction.map(i64::abs), 0)
+                Face::from_direction(direction, direction.map(i64::abs), 0)
             }
             Target::Moved(_) | Target::Bytes(..) | Target::Floats(_) => Face::PositiveX,
         }
@@ -145,7 +145,7 @@ impl Target<'_> {
         match self {
             Target::Moved(moved) => {
                 let [blue, green] = moved.blue_green.map(f64::from);
-                let color = super::real::RealColor::of([0.0, green, blue, 0.0]);
+                let color = super::real::RealColor::from_bytes([0.0, green, blue, 0.0]);
                 RealTarget::moved(interpolated(), super::real::offset(moved.matrix, &color))
             }
             Target::Bytes(bytes, scale) => {

@@ -5,7 +5,7 @@
 use super::address::address;
 use super::compressed;
 use super::format;
-use super::unit::{Image, PlannedUnit};
+use super::planned::{Image, PlannedUnit};
 use crate::number::Lane;
 use crate::state::{AddressMode, BORDER_TEXELS, Level, Named, TextureFormat, TextureKind};
 use crate::trace::{Observer, Rule, Work};

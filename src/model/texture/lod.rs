@@ -1,6 +1,6 @@
 //! TEX-9 to TEX-11: how small a texture appears, and which levels are read for it.
 
-use super::unit::PlannedUnit;
+use super::planned::PlannedUnit;
 use crate::state::{Filter, MipFilter};
 
 /// The lod where nothing is known, or a texture has no extent on the screen: the magnification side of everything.
@@ -83,7 +83,7 @@ impl Choice {
 
 /// TEX-9: bias, then the limits.
 pub fn biased(unit: &PlannedUnit, log2_ratio: i32) -> i32 {
-    Selection::of(unit).biased(log2_ratio)
+    Selection::from_unit(unit).biased(log2_ratio)
 }
 
 /// TEX-9: filter and levels for a lod in 1/256.
@@ -99,7 +99,7 @@ pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
 
 /// TEX-9: the level, the one that is mixed in, which may be the same, and its weight, 0..=255, for a lod that is not negative.
 pub fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
-    Selection::of(unit).levels(lod)
+    Selection::from_unit(unit).levels(lod)
 }
 
 /// What of a unit selects levels, as numbers: a loop over lanes that compares or branches by a filter would not become one over vectors.
@@ -119,7 +119,7 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    pub(crate) fn of(unit: &PlannedUnit) -> Selection {
+    pub(crate) fn from_unit(unit: &PlannedUnit) -> Selection {
         let (state, last) = (&unit.state, unit.levels.len() as i32 - 1);
         let (last, rounding, step, fraction) = match state.mip_filter {
             MipFilter::None => (0, 0, 0, 0),

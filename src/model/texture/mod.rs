@@ -13,6 +13,7 @@ pub mod filter;
 pub mod format;
 pub mod lod;
 pub mod place;
+pub mod planned;
 pub mod real;
 pub mod report;
 pub mod shader;

@@ -2,9 +2,8 @@
 
 use super::cube::{Face, Signed};
 use super::lod::Quad;
-use super::report::{Report, shortfall};
-use super::shader_report;
-use super::unit::PlannedUnit;
+use super::planned::PlannedUnit;
+use super::report::{Report, linear, shortfall};
 use crate::raster::attribute::Attribute;
 use crate::raster::depth::Binary;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
@@ -173,7 +172,7 @@ pub fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] 
 impl Interpolated<'_> {
     fn face_at(direction: &[[i64; 3]; 3], at: &Sample<'_>) -> Face {
         let sums = direction.map(|g| at.sum(&g));
-        Face::of(sums, sums.map(i128::abs), 0)
+        Face::from_direction(sums, sums.map(i128::abs), 0)
     }
 
     /// One pixel of the quad, on a face, in 1/65536 texel of level 0. `None`: behind the viewer.
@@ -237,7 +236,7 @@ impl Interpolated<'_> {
 
 /// TEX-12 of real numbers.
 pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
-    let face = face.unwrap_or_else(|| Face::of(direction, direction.map(f64::abs), 0.0));
+    let face = face.unwrap_or_else(|| Face::from_direction(direction, direction.map(f64::abs), 0.0));
     #[allow(clippy::float_arithmetic, reason = "the ideal's direction")]
     let [s, t, m] = face.components().map(|c| {
         let component = direction[c.axis];
@@ -391,9 +390,9 @@ impl Place for Interpolated<'_> {
     fn describe_reference<O: Observer>(&self, report: &Report<'_>, format: DepthFormat, word: u32, observer: &mut O) {
         let (r, q) = self.reference_parts();
         let index = self.unit.index;
-        let mut inputs = shader_report::linear(index, 2, &r, self.at, observer);
+        let mut inputs = linear(index, 2, &r, self.at, observer);
         let operation = if q.is_some() { "depth_word_of_ratio" } else { "depth_word" };
-        inputs.extend(q.map(|q| shader_report::linear(index, 3, &q, self.at, observer)).into_iter().flatten());
+        inputs.extend(q.map(|q| linear(index, 3, &q, self.at, observer)).into_iter().flatten());
         inputs.push(plain(format.name(), 0));
         let real = ideal::in_words(format, self.real_r());
         observer.step(

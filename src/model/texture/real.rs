@@ -17,7 +17,7 @@ pub struct RealColor {
 
 impl RealColor {
     /// The colour of these bytes.
-    pub fn of(bytes: [f64; 4]) -> RealColor {
+    pub fn from_bytes(bytes: [f64; 4]) -> RealColor {
         let [r, g, b, a] = bytes;
         RealColor { bytes, halves: [256.0 * a + r, 256.0 * g + b] }
     }
@@ -29,7 +29,7 @@ impl RealColor {
             let value = registers[n] / 255.0 * if doubled[n] { signed } else { unsigned };
             if value < 0.0 { value + 2.0 * signed } else { value }
         };
-        let mut color = RealColor::of([0, 1, 2, 3].map(|n| part(n, 128.0, 255.0)));
+        let mut color = RealColor::from_bytes([0, 1, 2, 3].map(|n| part(n, 128.0, 255.0)));
         if wide {
             color.halves = [3, 1].map(|n| part(n, 32768.0, 65535.0));
         }
@@ -118,7 +118,7 @@ mod tests {
             let [high, low] = half.to_be_bytes();
             let bytes = [low, 0x12, 0x34, high];
             for mapping in DotMapping::ALL {
-                let real = RealColor::of(bytes.map(f64::from)).remap(*mapping);
+                let real = RealColor::from_bytes(bytes.map(f64::from)).remap(*mapping);
                 for (n, (fixed, real)) in dot::remap(*mapping, bytes).into_iter().zip(real).enumerate() {
                     // The root is floored to 14 bits.
                     let root = *mapping == DotMapping::HiloHemisphere && n == 2;
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn offsets_luminance_and_vectors() {
-        let color = RealColor::of([51.0, 192.0, 64.0, 0.0]);
+        let color = RealColor::from_bytes([51.0, 192.0, 64.0, 0.0]);
         assert_eq!(offset([1.0, 0.0, 0.5, -1.0], &color), [1.0, -0.25]);
         assert_eq!((luminance(51.0, [2.0, 0.5]), luminance(51.0, [-9.0, 0.5])), (0.9, 0.0));
         assert_eq!(RealTarget::Vector([f64::NAN, 1.0, 2.0]).real(None).face, Face::PositiveX);

@@ -4,9 +4,10 @@ use super::color_key;
 use super::fetch::{self, Slice, Texel};
 use super::filter::{lerp, nearest};
 use super::lod::{Choice, Quad};
-use super::unit::PlannedUnit;
+use super::planned::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
+use crate::raster::attribute::Attribute;
 use crate::raster::interpolate::{Sample, Settled};
 use crate::rop::blend::compare_operation;
 use crate::state::{
@@ -17,6 +18,9 @@ use crate::trace::{Observer, Operand, Place, Step, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.
 const QUAD_PART: i64 = 65536;
+
+/// The components of a set of coordinates.
+pub(super) const COORDINATES: [&str; 4] = ["s", "t", "r", "q"];
 
 /// Names for the steps of one unit, or of its second level.
 #[derive(Clone, Copy, Debug)]
@@ -563,4 +567,21 @@ fn address_operation(mode: AddressMode, border_texels: bool) -> &'static str {
         AddressMode::ClampToBorder => "clamp_to_border",
         AddressMode::Clamp => "clamp",
     }
+}
+
+/// The numbers of a coordinate at the vertices and the edge functions, as operands: the value is their sum of products over D, times 2^exponent.
+pub(super) fn linear<O: Observer>(
+    index: usize,
+    n: usize,
+    attribute: &Attribute,
+    at: &Sample<'_>,
+    observer: &mut O,
+) -> Vec<Operand> {
+    let (g, exponent) = attribute.numbers();
+    let named = |k: usize| format!("unit{index}.G_{}{k}", COORDINATES[n]);
+    let planes = [0, 1, 2]
+        .map(|k| observer.tell(Step::given(&format!("texture unit {index}"), "INT-4", named(k), g[k])))
+        .into_iter();
+    let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
+    planes.chain(edges).chain([plain("D", at.d), plain("exponent", exponent)]).collect()
 }

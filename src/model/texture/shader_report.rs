@@ -1,10 +1,10 @@
 //! What the texture shader tells an observer. Nothing here computes a value that is used.
 
-use super::chain::{Color, Dot};
 use super::dependent::{Dependent, Target};
 use super::dot::Reflection;
-use super::report::{Report, shortfall};
+use super::report::{COORDINATES, Report, linear, shortfall};
 use super::shader::OFFSET_BITS;
+use super::stage::{Color, Dot};
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::attribute::Attribute;
@@ -12,7 +12,6 @@ use crate::raster::interpolate::{Sample, Settled};
 use crate::state::{DependentScale, DotMapping, Level, Named};
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, plain, report};
 
-const COORDINATES: [&str; 4] = ["s", "t", "r", "q"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn block(index: usize) -> String {
@@ -44,21 +43,6 @@ pub(super) fn constant<L: Lane, O: Observer>(
         let name = format!("texture{index}.{}", channel_name(n));
         observer.step(report::register_step(&block(index), rule, name, register[n]));
     }
-}
-
-/// The numbers of a coordinate at the vertices and the edge functions, as operands: the value is their sum of products over D, times 2^exponent.
-pub(super) fn linear<O: Observer>(
-    index: usize,
-    n: usize,
-    attribute: &Attribute,
-    at: &Sample<'_>,
-    observer: &mut O,
-) -> Vec<Operand> {
-    let (g, exponent) = attribute.numbers();
-    let named = |k: usize| name(index, &format!("G_{}{k}", COORDINATES[n]));
-    let planes = [0, 1, 2].map(|k| observer.tell(Step::given(&block(index), "INT-4", named(k), g[k]))).into_iter();
-    let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
-    planes.chain(edges).chain([plain("D", at.d), plain("exponent", exponent)]).collect()
 }
 
 /// TSH-9: one channel.

@@ -2,8 +2,8 @@
 
 use super::fetch::Texel;
 use super::place::Place;
+use super::planned::PlannedUnit;
 use super::report::Report;
-use super::unit::PlannedUnit;
 use crate::number::Lane;
 use crate::raster::depth::{Binary, word};
 use crate::raster::ideal;

@@ -1,7 +1,8 @@
 //! The stages of a texture shader as they are planned for a draw, and their coordinates as they are set up for a triangle.
 
 use super::place::Coordinates;
-use super::unit::PlannedUnit;
+use super::planned::PlannedUnit;
+use super::real::RealColor;
 use crate::raster::attribute::Attribute;
 use crate::raster::setup::Triangle;
 use crate::state::{ShaderOperation, ShaderStage, TEXTURE_UNITS, TriangleVertices};
@@ -98,4 +99,23 @@ impl ShaderSetup {
             }
         }))
     }
+}
+
+/// A dot product, and what the ideal has in its place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Dot {
+    pub(super) fixed: f32,
+    pub(super) real: f64,
+}
+
+/// The colour of an earlier unit as a stage reads it: bytes, whatever their sign flags.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Color {
+    pub(super) unit: usize,
+    pub(super) bytes: [u8; 4],
+    /// The registers that they were taken from.
+    pub(super) held: [i64; 4],
+    /// Channels whose registers hold twice their two's complement value (TEX-18).
+    pub(super) doubled: [bool; 4],
+    pub(super) real: RealColor,
 }

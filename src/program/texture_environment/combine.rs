@@ -58,11 +58,11 @@ pub(super) fn unit(
     // The EXT functions leave ALPHA_SCALE to a separate alpha.
     let alpha_scale = if function == Function::Dot3RgbaExt { Scale::One } else { unit.alpha.scale };
     let origin = StageOrigin { rgb: origin(index, unit, false), alpha: origin(index, unit, true) };
-    let mut rgb = Combined::of(unit.mode, function, walk.all(&unit.rgb, false), rgb_scale);
+    let mut rgb = Combined::from_mode(unit.mode, function, walk.all(&unit.rgb, false), rgb_scale);
     let mut alpha = if function.writes_alpha() {
         Combined { first: Equation::copy(Argument::ZERO), then: None }
     } else {
-        Combined::of(unit.mode, unit.alpha.function.value, walk.all(&unit.alpha, true), alpha_scale)
+        Combined::from_mode(unit.mode, unit.alpha.function.value, walk.all(&unit.alpha, true), alpha_scale)
     };
     let separate = function.writes_alpha() && rgb_scale != alpha_scale;
     if separate {
@@ -89,7 +89,7 @@ struct Combined {
 }
 
 impl Combined {
-    fn of(mode: Mode, function: Function, [a0, a1, a2, a3]: [Argument; 4], scale: Scale) -> Combined {
+    fn from_mode(mode: Mode, function: Function, [a0, a1, a2, a3]: [Argument; 4], scale: Scale) -> Combined {
         let one = |first| Combined { first, then: None };
         if mode == Mode::Combine4 {
             let sum = Equation::products([a0, a1], [a2, a3]);

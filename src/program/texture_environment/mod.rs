@@ -114,7 +114,7 @@ named! {
 
 impl BaseFormat {
     /// What a texel format is to OpenGL.
-    pub fn of(format: TextureFormat) -> BaseFormat {
+    pub fn from_format(format: TextureFormat) -> BaseFormat {
         match format {
             TextureFormat::A8 => BaseFormat::Alpha,
             TextureFormat::L8 => BaseFormat::Luminance,

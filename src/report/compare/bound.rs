@@ -5,7 +5,7 @@ use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal;
 use ninebit::raster::interpolate::SHORT_BITS;
 use ninebit::state::*;
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 use ninebit::trace::Rule;
 
 /// Half a step, less what a quotient by 255 cannot reach.

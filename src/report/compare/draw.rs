@@ -11,7 +11,7 @@ use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
 use ninebit::state::{Named, Texture, TextureImage};
-use ninebit::texture::unit::Image;
+use ninebit::texture::planned::Image;
 use ninebit::threads::on_threads;
 use ninebit::trace::{Decision, Part, Rule};
 #[cfg(feature = "threads")]
@@ -281,7 +281,7 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
 
 /// The words of the textures now, as these draws find them. Without surfaces nothing reads those that are targets.
 fn texture_words<'a, L>(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface<L>]) -> TextureWords<'a> {
-    TextureWords::of(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
+    TextureWords::from_surfaces(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
 }
 
 /// The textures of these words.

@@ -26,9 +26,3 @@ fn main() {
         Err(errors) => errors.iter().for_each(|error| eprintln!("{error}")),
     }
 }
-
-#[cfg(test)]
-#[test]
-fn runs() {
-    main();
-}

@@ -4,8 +4,8 @@ use ninebit::combiner::general::{BLUE, PlannedPortion};
 use ninebit::plan::PlannedDraw;
 use ninebit::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
 use ninebit::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
+use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::stage::PlannedShaderStage;
-use ninebit::texture::unit::PlannedUnit;
 use ninebit::trace::Work;
 
 /// Work by kind, in the order of `Work::ALL`.
@@ -44,7 +44,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    pub(super) fn of(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
+    pub(super) fn from_draw(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
         let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
         let seen = planned.folded.invisible.is_none();
         let if_seen = |count: usize| if seen { count as u64 } else { 0 };

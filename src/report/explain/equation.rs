@@ -81,7 +81,7 @@ impl Printed {
     /// The registers, each under its name: colour, blue and alpha as the component that an input reads.
     fn registers(&mut self) -> Registers<Text> {
         let zero = self.of(Term::Zero);
-        let mut registers = Registers::of(zero);
+        let mut registers = Registers::from_value(zero);
         for of in Register::ALL.iter().filter(|of| **of != Register::Zero) {
             for (channel, suffix) in ["", "", ".b", ".a"].into_iter().enumerate() {
                 let name = self.of(Term::Plain(format!("{}{suffix}", register(*of))));

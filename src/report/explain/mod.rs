@@ -17,7 +17,7 @@ use ninebit::engine;
 use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::rop::{self, surface};
 use ninebit::state::*;
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 use ninebit_program::text::print;
 use ninebit_program::text::words::register;
 
@@ -51,7 +51,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
     // A scene that has a plan has this one too: leaving things out is not what makes scenes legal.
     let whole = Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false });
     let whole = whole.as_ref().unwrap_or(plan);
-    let cost = |plan: &Plan, planned| Cost::of(planned, &plan.policies, engine::fragments(plan, planned));
+    let cost = |plan: &Plan, planned| Cost::from_draw(planned, &plan.policies, engine::fragments(plan, planned));
     let draws = scene.draws.iter().zip(&plan.draws).zip(&whole.draws);
     draws
         .map(|((draw, planned), asked)| DrawExplanation {

@@ -91,7 +91,7 @@ mod tests {
             for (column, row) in [(0, 0), (3, 0), (1, 2), (3, 3)] {
                 let d = direction(*face, column, row, 4);
                 assert!((dot(d, d) - 1.0).abs() < 1e-12);
-                assert_eq!(Face::of(d, d.map(f64::abs), 0.0), *face);
+                assert_eq!(Face::from_direction(d, d.map(f64::abs), 0.0), *face);
                 let [s, t, m] = face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
                 let place = [s, t].map(|c| (c / m + 1.0) / 2.0 * 4.0);
                 assert!((place[0] - f64::from(column) - 0.5).abs() < 1e-12, "{place:?}");

@@ -80,7 +80,7 @@ impl ApiProgram {
                 let format = |unit: TextureUnit| reader.textures.list.get(unit.texture).map(|texture| texture.format);
                 let formats = std::array::from_fn(|index| match units.shader[index].operation {
                     ShaderOperation::None => None,
-                    _ => Some(units.bound[index].and_then(format).map_or(BaseFormat::Rgba, BaseFormat::of)),
+                    _ => Some(units.bound[index].and_then(format).map_or(BaseFormat::Rgba, BaseFormat::from_format)),
                 });
                 let context = environment::Context { profile, textures: formats, signed, fog: around.fog };
                 let lowered = environment::lower(program, &context).map_err(|findings| placed(text.as_ref(), findings));

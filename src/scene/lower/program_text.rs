@@ -143,7 +143,7 @@ fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
 }
 
 fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
-    let Some(literal) = Literal::of(raw.text) else {
+    let Some(literal) = Literal::from_text(raw.text) else {
         // This says what is wrong.
         reader.read(raw)?;
         return None;

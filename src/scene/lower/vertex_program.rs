@@ -92,7 +92,7 @@ fn run(
     sources: &[Input],
     given: &Given,
 ) -> Option<(Vertices, Vec<f32>)> {
-    let written = Registers::of(shader);
+    let written = Registers::from_shader(shader);
     let mut fog_coordinates = Vec::with_capacity(given.count());
     let vertices = (0..given.count()).map(|index| {
         let mut registers: Inputs = [[0.0; 4]; ninebit::vertex::shader::INPUTS];
@@ -121,7 +121,7 @@ struct Registers {
 }
 
 impl Registers {
-    fn of(shader: &VertexShader) -> Registers {
+    fn from_shader(shader: &VertexShader) -> Registers {
         let written = |register| shader.written(register) != 0;
         Registers {
             colors: [0, 1].map(|n| written(DestinationRegister::Color(n))),

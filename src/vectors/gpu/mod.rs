@@ -13,7 +13,7 @@ mod fixed;
 mod stages;
 pub mod write;
 
-use ninebit::state::{Combiners, Named, Profile, Scale};
+use ninebit::state::{Combiners, Named, Profile, Scale, named};
 
 use super::column::Column;
 use super::table::Row;
@@ -62,25 +62,18 @@ impl Read {
     }
 }
 
-/// Which part of OpenGL a batch asks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Path {
-    /// `NV_register_combiners`.
-    Combiners,
-    /// The texture environment, asked where there are no combiners.
-    Environment,
-    /// What every path has: texels, coordinates, colours, blending.
-    Common,
-}
-
-impl Path {
+named! {
+    /// Which part of OpenGL a batch asks.
+    #[derive(PartialOrd, Ord)]
+    pub enum Path =>
     /// The word in a batch.
-    pub fn word(self) -> &'static str {
-        match self {
-            Path::Combiners => "combiners",
-            Path::Environment => "environment",
-            Path::Common => "common",
-        }
+    word: &'static str {
+        /// `NV_register_combiners`.
+        Combiners => "combiners",
+        /// The texture environment, asked where there are no combiners.
+        Environment => "environment",
+        /// What every path has: texels, coordinates, colours, blending.
+        Common => "common",
     }
 }
 

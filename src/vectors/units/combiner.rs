@@ -44,7 +44,7 @@ impl Unit for InputMapping {
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[1..], &[results[0] / 2])
+        Reach::from_values(&inputs[1..], &[results[0] / 2])
     }
 }
 

@@ -24,7 +24,7 @@ $(
         }
 )?$(
         fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-            Reach::of(&inputs[$operands], &results[$shown])
+            Reach::from_values(&inputs[$operands], &results[$shown])
         }
 )?$(
         fn profiles(&self) -> &'static [Profile] {

@@ -13,7 +13,8 @@ use ninebit::state::{
 };
 use ninebit::texture::fetch::Texel;
 use ninebit::texture::place::{Coordinates, Interpolated, Place, wrapped};
-use ninebit::texture::unit::{PlannedUnit, layer};
+use ninebit::texture::planned::PlannedUnit;
+use ninebit::texture::unit::layer;
 use ninebit::texture::{anisotropy, color_key, shadow};
 use ninebit::trace::Silent;
 

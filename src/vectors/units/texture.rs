@@ -3,7 +3,7 @@
 use super::{Column, Conditions, Kind, Reach, Unit, named};
 use ninebit::state::*;
 use ninebit::texture::cube::Face;
-use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::{address, filter, lod, shader};
 
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
@@ -191,7 +191,7 @@ impl Unit for CubeFace {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let d = shader::direction([1, 2, 3].map(|n| f32::from_bits(inputs[n] as u32)));
-        let face = Face::of(d, d.map(i64::abs), 0);
+        let face = Face::from_direction(d, d.map(i64::abs), 0);
         let [s, t, m] = face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
         results[0] = face as i64;
         for (result, minor) in results[1..].iter_mut().zip([s, t]) {

@@ -3,8 +3,9 @@
 use clap::Args;
 use ninebit::number::{Lane, Paired};
 use ninebit::state::{TextureFormat, TextureUnit};
+use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::report::Report;
-use ninebit::texture::unit::{self, PlannedUnit};
+use ninebit::texture::unit;
 use ninebit::trace::{Observer, Rule};
 use ninebit_vectors::units;
 use serde_json::json;
@@ -87,7 +88,7 @@ impl Operation for Mix {
 }
 
 fn numbers(text: &str) -> Option<Vec<i64>> {
-    text.split(',').map(|text| super::inputs::number(text.trim())).collect()
+    text.split(',').map(|text| super::words::number(text.trim())).collect()
 }
 
 fn texels(text: &str) -> Result<[i64; 4], String> {

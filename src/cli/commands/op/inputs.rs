@@ -103,21 +103,10 @@ pub(super) fn color(text: &str) -> Result<[i64; 4], String> {
 }
 
 fn numbers(text: &str) -> Result<Vec<i64>, String> {
-    let parsed: Option<Vec<i64>> = text.split(',').map(|text| number(text.trim())).collect();
+    let parsed: Option<Vec<i64>> = text.split(',').map(|text| words::number(text.trim())).collect();
     parsed
         .filter(|numbers| matches!(numbers.len(), 1 | 3 | 4))
         .ok_or_else(|| "not one, three or four whole numbers, such as 128 or 0x80, with commas between".to_owned())
-}
-
-/// A whole number, decimal or hexadecimal: `-128`, `0x80`, `-0x80`.
-pub(super) fn number(text: &str) -> Option<i64> {
-    let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
-    match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
-        // Two signs are no number.
-        Some(digits) if digits.starts_with(['+', '-']) => None,
-        Some(digits) => i64::from_str_radix(&format!("{sign}{digits}"), 16).ok(),
-        None => text.parse().ok(),
-    }
 }
 
 fn four(numbers: &[i64]) -> [i64; 4] {

@@ -16,16 +16,15 @@ mod table;
 mod unit;
 pub(crate) mod words;
 
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
-use ninebit::state::Profile;
 
 use super::program_file::ProgramArguments;
 use super::{Context, Exit, Failure, Format, PolicyArguments, Report, vectors};
 use command_line::CommandLine;
-use inputs::{Assignment, Contents, FourInputs, number};
-use operation::{COORDINATES, Column, Common, Operation, Results, Setup, set};
+use inputs::{Assignment, Contents, FourInputs};
+use operation::{COORDINATES, Column, Common, Operation, ProfileArgument, Results, Setup, set};
 use words::Input;
 
 #[derive(Debug, Subcommand)]
@@ -62,14 +61,6 @@ pub(crate) enum Command {
     Cube(cube::Arguments),
     /// Any unit of the conformance vectors: stencil test, depth words, interpolation and so on
     Unit(unit::Arguments),
-}
-
-/// The chip.
-#[derive(Debug, Args)]
-struct ProfileArgument {
-    /// The chip: nv10 or nv2a
-    #[arg(long, value_name = "PROFILE", default_value = "nv10", value_parser = words::profile)]
-    profile: Profile,
 }
 
 /// What the chip takes of textures.

@@ -14,7 +14,16 @@ use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
 use ninebit_vectors::column::{Column as Input, Domain, Kind};
 use serde_json::{Map, Value, json};
 
-use super::{Failure, Format, number, table};
+use super::words::{self, number};
+use super::{Failure, Format, table};
+
+/// The chip.
+#[derive(Debug, Args)]
+pub(super) struct ProfileArgument {
+    /// The chip: nv10 or nv2a
+    #[arg(long, value_name = "PROFILE", default_value = "nv10", value_parser = words::profile)]
+    pub(super) profile: Profile,
+}
 
 /// Options of every operation.
 #[derive(Debug, Args)]
@@ -56,11 +65,11 @@ impl Column {
         how_to_give: impl Into<String>,
     ) -> Column {
         let input = Input::signed(name, 64, *range.start(), *range.end());
-        Column { per_one, ..Column::of(input, short, how_to_give) }
+        Column { per_one, ..Column::from_input(input, short, how_to_give) }
     }
 
     /// A column that must be given yet.
-    pub(super) fn of(input: Input, short: &str, how_to_give: impl Into<String>) -> Column {
+    pub(super) fn from_input(input: Input, short: &str, how_to_give: impl Into<String>) -> Column {
         let (short, how_to_give) = (short.to_owned(), how_to_give.into());
         Column { input, short, per_one: 1, signed_texel: false, how_to_give, value: None }
     }

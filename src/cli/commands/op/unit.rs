@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let column = |input: UnitColumn| {
         // The name without what kind of column it is.
         let short = input.name.split_once('.').map_or(input.name.as_str(), |(_, own)| own).to_owned();
-        let column = Column::of(input, &short, "");
+        let column = Column::from_input(input, &short, "");
         Column { how_to_give: format!("write `--in {short}=VALUE`: {}", column.wants()), ..column }
     };
     let columns: Vec<Column> = unit.inputs().into_iter().map(column).collect();

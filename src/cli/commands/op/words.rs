@@ -185,6 +185,17 @@ pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
     named("address mode", word, &short)
 }
 
+/// A whole number, decimal or hexadecimal: `-128`, `0x80`, `-0x80`.
+pub(super) fn number(text: &str) -> Option<i64> {
+    let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
+    match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+        // Two signs are no number.
+        Some(digits) if digits.starts_with(['+', '-']) => None,
+        Some(digits) => i64::from_str_radix(&format!("{sign}{digits}"), 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -51,7 +51,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         let help = "`ninebit vectors list --format json` has the columns of every unit";
         Failure::usage(format!("--only: {message}"), help)
     })?;
-    let sweep = Exhaustive::of(*unit, *profile, part).ok_or_else(|| {
+    let sweep = Exhaustive::from_part(*unit, *profile, part).ok_or_else(|| {
         let name = [&[unit.name().to_owned()], &only[..]].concat().join(" ");
         let help = "a sweep has every row; `--only COLUMN=NUMBERS` takes a part, `ninebit vectors export` boundaries and random ones";
         Failure::usage(format!("`{name}` has more than {MAX_ROWS} rows"), help)

@@ -47,7 +47,7 @@ fn property(text: &str) -> String {
 
 /// What a step's summary shows, as Markdown: the counts, and a table of the scenes that are not as expected.
 pub fn step_summary(all: &[Replayed]) -> String {
-    let mut out = format!("### ninebit replay\n\n{}\n", Summary::of(all));
+    let mut out = format!("### ninebit replay\n\n{}\n", Summary::from_replays(all));
     let mut rows = all.iter().filter(|one| one.exit_code() != 0).peekable();
     if rows.peek().is_some() {
         out += "\n| scene | | what |\n|---|---|---|\n";

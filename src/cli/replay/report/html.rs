@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// A page with everything that is known of the scenes that are not as expected, and a list of all; pictures stand in it.
 pub fn html(all: &[Replayed]) -> String {
-    let summary = Summary::of(all);
+    let summary = Summary::from_replays(all);
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
     let page = html! {
         (DOCTYPE)

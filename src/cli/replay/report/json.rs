@@ -8,7 +8,7 @@ use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
 /// One JSON document; `docs/replay.md` describes it.
 pub fn json(all: &[Replayed]) -> String {
-    let summary = Summary::of(all);
+    let summary = Summary::from_replays(all);
     let document = json!({
         "format": "ninebit-replay-1",
         "version": env!("CARGO_PKG_VERSION"),

@@ -17,7 +17,7 @@ pub fn junit(all: &[Replayed]) -> String {
 }
 
 fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
-    let summary = Summary::of(all);
+    let summary = Summary::from_replays(all);
     let errors = all.iter().filter(|one| matches!(one.outcome, Outcome::Failed(_))).count();
     let counts =
         [("tests", summary.scenes), ("failures", summary.differing), ("errors", errors), ("skipped", summary.skipped)]

@@ -29,5 +29,5 @@ fn write(out: &mut String, all: &[Replayed]) -> std::fmt::Result {
             writeln!(out, "{:8} {}", "", shown::name(&problem.message))?;
         }
     }
-    writeln!(out, "{}", Summary::of(all))
+    writeln!(out, "{}", Summary::from_replays(all))
 }

@@ -16,7 +16,7 @@ use crate::engine::walk::{self, Band, Window};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::setup::Triangle;
 use crate::state::MipFilter;
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 
 /// Some lanes of a block that lie side by side on the surface.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +90,7 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     if walk::windows(draw, band.rows()).next().is_none() {
         return shaded;
     }
-    block.rows.resize(compiled.rows.len(), Lanes256::of(0));
+    block.rows.resize(compiled.rows.len(), Lanes256::from_value(0));
     for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
         row.fill(*constant);
     }

@@ -12,7 +12,7 @@ use crate::plan::PlannedDraw;
 use crate::raster::assemble::Corner;
 use crate::rop::{blend, surface};
 use crate::state::{AddressMode, Policies, Register, TextureFormat, TextureKind};
-use crate::texture::unit::PlannedUnit;
+use crate::texture::planned::PlannedUnit;
 
 /// What a draw's pixels come to.
 pub(super) struct Built {
@@ -61,7 +61,7 @@ fn destination(draw: &PlannedDraw, graph: &mut Graph) -> [Value; 4] {
 /// The registers as a pixel brings them (CMB-13).
 fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -> Registers<Value> {
     let zero = graph.constant(0);
-    let mut file = Registers::of(zero);
+    let mut file = Registers::from_value(zero);
     let registers = &mut file.values;
     registers[Register::PrimaryColor as usize] = color(draw, |v| v.primary, Input::Primary, graph);
     registers[Register::SecondaryColor as usize] = color(draw, |v| v.secondary, Input::Secondary, graph);

@@ -21,19 +21,19 @@ const BITS: u32 = 29;
 /// A number that quotients are written as.
 pub(super) trait Written: Copy {
     /// Of a quotient that it holds.
-    fn of(quotient: i32) -> Self;
+    fn from_quotient(quotient: i32) -> Self;
 }
 
 impl Written for i32 {
     #[inline(always)]
-    fn of(quotient: i32) -> i32 {
+    fn from_quotient(quotient: i32) -> i32 {
         quotient
     }
 }
 
 impl Written for u16 {
     #[inline(always)]
-    fn of(quotient: i32) -> u16 {
+    fn from_quotient(quotient: i32) -> u16 {
         quotient as u16
     }
 }
@@ -143,7 +143,7 @@ impl Dda {
     #[inline(always)]
     pub(super) fn run<T: Written + Default>(&mut self, count: usize, out: &mut [T]) -> bool {
         if self.slope == 0 {
-            let floor = T::of(self.here.quotient);
+            let floor = T::from_quotient(self.here.quotient);
             for out in out {
                 *out = floor;
             }
@@ -212,7 +212,7 @@ fn floors<T: Written + Default>(
             sums[k] = remainder + remainders[k];
         }
         for k in 0..STEP {
-            step[k] = T::of(quotient + quotients[k] + (sums[k] >> 31));
+            step[k] = T::from_quotient(quotient + quotients[k] + (sums[k] >> 31));
         }
         for k in 0..STEP {
             least[k] = least[k].min(sums[k] as u32).min((sums[k] + divisor) as u32);

@@ -10,7 +10,7 @@ use crate::combiner::registers::Registers;
 use crate::raster::interpolate::Sample;
 use crate::state::{Register, TEXTURE_UNITS};
 use crate::texture::place::Place;
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use crate::trace::Silent;
 
 impl Setup<'_> {

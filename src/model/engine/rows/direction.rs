@@ -19,7 +19,7 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     let look = |k: usize| {
         let direction = [g[0][k], g[1][k], g[2][k]];
         let magnitudes = direction.map(i64::abs);
-        let face = Face::of(direction, magnitudes, 0);
+        let face = Face::from_direction(direction, magnitudes, 0);
         let axis = face.components()[2].axis;
         (0..3).all(|n| n == axis || magnitudes[n] < magnitudes[axis]).then_some(face)
     };
@@ -120,7 +120,7 @@ impl Looking {
         let [a, b, c] = &self.lines;
         let direction = [a.at::<FMA, true>(x, 0.0), b.at::<FMA, true>(x, 0.0), c.at::<FMA, true>(x, 0.0)];
         let magnitudes = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
-        let face = Face::of(direction, magnitudes, 0.0);
+        let face = Face::from_direction(direction, magnitudes, 0.0);
         let [s, t, m] = face.components();
         let least = magnitudes[m.axis] - 2.0 * self.error;
         (magnitudes[s.axis] < least && magnitudes[t.axis] < least).then_some(face)

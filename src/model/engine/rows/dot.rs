@@ -174,7 +174,7 @@ pub(super) fn on_faces(
         let (x, y, z) = (x[n], y[n], z[n]);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let finite = (ax <= f32::MAX) & (ay <= f32::MAX) & (az <= f32::MAX);
-        // X over Y over Z, as `Face::of` has it; one choice at a time: nested ones would become branches.
+        // X over Y over Z, as `Face::from_direction` has it; one choice at a time: nested ones would become branches.
         let on_x = (ax >= ay) & (ax >= az);
         let on_y = ay >= az;
         let major = if on_y { y } else { z };
@@ -274,7 +274,7 @@ mod tests {
             coordinate(&vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
             for n in 0..BLOCK {
                 let direction = shader::direction([vector[0][n], vector[1][n], vector[2][n]]);
-                let face = Face::of(direction, direction.map(i64::abs), 0);
+                let face = Face::from_direction(direction, direction.map(i64::abs), 0);
                 let [s, t, m] =
                     face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
                 let at = [s, t].map(|s| shader::face_coordinate(s, m, size, 8) as i32 - bias);

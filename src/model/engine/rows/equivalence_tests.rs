@@ -435,7 +435,7 @@ fn rows_interpolate(seed: u64) {
         let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
         let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
-        let (mut varying, mut rows) = (Varying::default(), vec![Lanes256::of(0); compiled.rows.len()]);
+        let (mut varying, mut rows) = (Varying::default(), vec![Lanes256::from_value(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), Reads::default());
         varying.footprints.resize(compiled.samplers.len(), Footprints::default());
         varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));

@@ -22,7 +22,7 @@ pub(super) const LANES: usize = BLOCK + 2 * STEP;
 pub(super) struct Lanes256(pub(super) [i16; LANES]);
 
 impl Lanes256 {
-    pub(super) fn of(value: i16) -> Lanes256 {
+    pub(super) fn from_value(value: i16) -> Lanes256 {
         Lanes256([value; LANES])
     }
 
@@ -290,18 +290,18 @@ mod tests {
     #[test]
     fn sums_have_as_many_products_as_they_say() {
         for count in 1..=MAX_PRODUCTS {
-            let mut rows = vec![Lanes256::of(99); 4];
+            let mut rows = vec![Lanes256::from_value(99); 4];
             let mut values = [Value(0); 2 * MAX_PRODUCTS];
             let mut wanted = 0;
             for (n, value) in values[..2 * count].iter_mut().enumerate() {
                 *value = Value(rows.len() as u16);
-                rows.push(Lanes256::of(17 * n as i16 - 40));
+                rows.push(Lanes256::from_value(17 * n as i16 - 40));
             }
             for pair in 0..count as i32 {
                 wanted += (34 * pair - 40) * (34 * pair - 23);
             }
             let at = rows.len();
-            rows.push(Lanes256::of(0));
+            rows.push(Lanes256::from_value(0));
             run(&Node::Sum(Pairs { count, values }), at, &mut rows);
             assert_eq!(rows[at].block(), &[wanted.rounded(); BLOCK], "{count}");
         }

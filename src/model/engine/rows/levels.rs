@@ -12,7 +12,7 @@ use super::{Reason, Sampler};
 use crate::state::Filter;
 use crate::texture::lod::{self, Quad};
 use crate::texture::place::Place;
-use crate::texture::unit::PlannedUnit;
+use crate::texture::planned::PlannedUnit;
 
 /// What the lanes of a block read of a texture whose levels count.
 #[derive(Clone, Debug)]
@@ -277,7 +277,7 @@ fn choose(
     [levels, nexts]: &mut [PerLane<i32>; 2],
     weights: &mut [i32],
 ) -> [[i32; 2]; 2] {
-    let selection = lod::Selection::of(unit);
+    let selection = lod::Selection::from_unit(unit);
     let (lods, weights) = (&mut lods[..lanes], &mut weights[..lanes]);
     let (levels, nexts) = (&mut levels[..lanes], &mut nexts[..lanes]);
     let mut ends = [i32::MAX, i32::MIN];

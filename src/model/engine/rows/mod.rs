@@ -60,7 +60,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
 use crate::state::{Filter, Named, TEXTURE_UNITS, TextureImage, TextureKind, named};
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use node::{Input, Node, Value};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -225,7 +225,7 @@ impl Rows {
             let mut compiled = compiled.clone();
             for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
                 let unit = &plan.draws[index].units[sampler.index];
-                let key = Key::of(unit, false);
+                let key = Key::from_unit(unit, false);
                 sampler.table = made.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
                 if let (None, Some(axes)) = (&sampler.table, table::axes(unit)) {
                     let image = Image { words: words.words(unit.state.texture), memory: None };
@@ -265,7 +265,7 @@ impl Tables {
     fn want(&mut self, draw: &PlannedDraw) {
         let pixels = pixels(draw);
         for unit in &draw.units {
-            let key = Key::of(unit, draw.shader.is_none());
+            let key = Key::from_unit(unit, draw.shader.is_none());
             match self.wanted.iter_mut().find(|(other, _)| *other == key) {
                 Some((_, all)) => *all += pixels,
                 None => self.wanted.push((key, pixels)),
@@ -380,7 +380,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             return None;
         }
         let folds = draw.shader.is_none();
-        let table_key = Key::of(unit, folds);
+        let table_key = Key::from_unit(unit, folds);
         let texture = &plan.textures[unit.state.texture];
         let known = tables.made.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
         if known.is_none() && !tables.pays(&table_key, table::size(unit, &axes)) {
@@ -411,7 +411,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             shares: None,
             table,
         };
-        sampler.third = Third::of(unit, &sampler);
+        sampler.third = Third::from_unit(unit, &sampler);
         // Nobody gives it an r.
         if sampler.depends && sampler.third.is_some() || draw.shader.is_some() && sampler.pairs > 0 {
             return None;

@@ -12,7 +12,7 @@ use super::{BLOCK, Reason, Sampler};
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
 use crate::texture::place::{Coordinates, Place};
-use crate::texture::unit::PlannedUnit;
+use crate::texture::planned::PlannedUnit;
 use std::ops::Range;
 
 /// Coordinates of the three pixels of quads: u and v of each, 1/65536 texel, whole numbers.

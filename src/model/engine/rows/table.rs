@@ -8,8 +8,8 @@ use crate::state::{
 use crate::texture::address::address;
 use crate::texture::color_key;
 use crate::texture::fetch::{Slice, lanes};
+use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::shadow;
-use crate::texture::unit::{Image, PlannedUnit};
 use crate::trace::Silent;
 
 /// How coordinates along one axis become entries of a table.
@@ -179,7 +179,7 @@ pub(super) struct Key {
 }
 
 impl Key {
-    pub(super) fn of(unit: &PlannedUnit, folds: bool) -> Key {
+    pub(super) fn from_unit(unit: &PlannedUnit, folds: bool) -> Key {
         let state = &unit.state;
         Key {
             texture: state.texture,

@@ -8,7 +8,7 @@ use super::quotient::Line;
 use super::triangle::{Bounds, PixelBatch, Planes, Setup};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
-use crate::texture::unit::PlannedUnit;
+use crate::texture::planned::PlannedUnit;
 
 /// The taps of a quad's footprint.
 pub(super) type Taps = anisotropy::Taps<i64, i32>;

@@ -15,7 +15,7 @@ use crate::raster::depth;
 use crate::raster::interpolate::Sample;
 use crate::state::DepthFormat;
 use crate::texture::place::{Place, layer_planes};
-use crate::texture::unit::PlannedUnit;
+use crate::texture::planned::PlannedUnit;
 
 /// What a sampler takes r for.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub(crate) enum Third {
 
 impl Third {
     /// That of a unit, whose sampler is otherwise complete.
-    pub(super) fn of(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
+    pub(super) fn from_unit(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
         if let Some(axis) = table::layers(unit) {
             let sides = [unit.layers; 2];
             let counts = Sampler { sides, filters: false, table: None, third: Some(Third::Counts), ..sampler.clone() };

@@ -26,7 +26,7 @@ use crate::raster::setup::Triangle;
 use crate::state::{Named, TEXTURE_UNITS};
 use crate::texture::cube::Face;
 use crate::texture::place::Coordinates;
-use crate::texture::unit::Image;
+use crate::texture::planned::Image;
 use std::cell::Cell;
 
 /// How many reasons there are.

@@ -1,0 +1,12 @@
+//! Scenes of a folder, held against what is expected of them, as a program's own tests may do it.
+//!
+//! `cargo run -p ninebit-cli --example replay`
+
+use ninebit_cli::replay::{Options, find, replay, report};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../vectors/scenes/fog");
+    let replayed = replay(&find(&[folder.into()])?, &Options::default(), &|_| {});
+    println!("{}", report::text(&replayed));
+    if replayed.iter().any(|scene| scene.exit_code() != 0) { Err("not as expected".into()) } else { Ok(()) }
+}
