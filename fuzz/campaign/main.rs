@@ -16,6 +16,8 @@
 
 mod cases;
 mod mutate;
+#[path = "../../tests/common/repository.rs"]
+mod repository;
 
 use std::ffi::OsString;
 use std::fs;
@@ -171,11 +173,11 @@ fn random(options: &Options, run: u64) -> Random {
 }
 
 fn prepared(folder: &Path) -> Corpus {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
+    let repository = repository::at("");
     let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder).unwrap();
     std::env::set_current_dir(folder).unwrap();
-    Corpus::new(repository, folder, &|arguments| {
+    Corpus::new(&repository, folder, &|arguments| {
         let outcome = inside(arguments);
         assert_eq!(outcome.exit, Some(0), "{arguments:?}: {:?}", outcome.panic);
     })

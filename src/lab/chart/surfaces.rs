@@ -131,7 +131,7 @@ impl Surface {
         let mut mix = FinalCombiner::default();
         if self.fog {
             draw.fog = Fog { enabled: true, color: [90, 100, 110], function: None };
-            mix.inputs[0] = FinalInput { component: Component::Alpha, ..FinalInput::zero(Component::Alpha) };
+            mix.inputs[0] = FinalInput::zero(Component::Alpha);
             (mix.inputs[0].register, mix.inputs[1].register) = (FinalRegister::Fog, shown);
             mix.inputs[2].register = FinalRegister::Fog;
         } else {
