@@ -7,26 +7,15 @@ use super::isa::Text;
 use super::kernels::{self, LANES, Lanes256};
 use super::levels::Reads;
 use super::quotient::{FEW, IOTA, Positions};
+use super::setup::{PixelBatch, Planes, Run, whole_steps};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
-use super::triangle::{PixelBatch, Planes, Setup, Varying, whole_steps};
-use super::{BLOCK, CompiledDraw, Reasons, small, store};
+use super::triangle::{Interpolators, Varying};
+use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
-use crate::plan::{Plan, PlannedDraw};
 use crate::raster::setup::Triangle;
 use crate::state::MipFilter;
-use crate::texture::planned::Image;
-
-/// Some lanes of a block that lie side by side on the surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
-    /// First lane.
-    pub(super) lane: usize,
-    /// Index of the first pixel in the band.
-    pub(super) at: usize,
-    pub(super) count: usize,
-}
 
 /// What a thread works in, draw after draw.
 #[derive(Debug)]
@@ -69,17 +58,6 @@ impl Default for Block {
             defined: Reasons::default(),
         }
     }
-}
-
-/// Everything of a draw that is the same for all of its blocks.
-#[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
-    pub(crate) plan: &'a Plan,
-    pub(crate) draw: &'a PlannedDraw,
-    pub(crate) compiled: &'a CompiledDraw,
-    pub(crate) textures: &'a [Image<'a, i32>],
-    /// The numbers of the triangles to look at, in order; `None`: all.
-    pub(crate) triangles: Option<&'a [u32]>,
 }
 
 /// Draws what of a draw falls into a band; covered pixels.
@@ -158,7 +136,7 @@ fn draw_window<T: Text>(
                 context.complete();
                 let triangle = &context.triangle;
                 let (rows, columns) = common(triangle, (rows, columns));
-                let setup = Setup::new(context, compiled, std::mem::take(&mut block.planes));
+                let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
                 for j in rows.0..rows.1 {
                     let (mut i, end) = triangle.span(j, columns);
                     if i == end {
@@ -166,7 +144,7 @@ fn draw_window<T: Text>(
                     }
                     // Where rows of lanes begin, so that no step lies across two cache lines.
                     block.used = whole_steps(block.used);
-                    setup.begin_row((i, j), end - i, compiled, &mut block.varying);
+                    interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
                     while i < end {
                         let wanted = ((end - i) as usize).min(BLOCK);
                         if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
@@ -177,7 +155,7 @@ fn draw_window<T: Text>(
                         let last = count as i32 - 1;
                         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
                         let batch = PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
-                        T::row(&setup, batch, job, block);
+                        T::row(&interpolators, batch, job, block);
                         if compiled.shader.is_some() {
                             T::row_attributes(context, batch, job, block);
                         }
@@ -189,7 +167,7 @@ fn draw_window<T: Text>(
                         i += count as i64;
                     }
                 }
-                block.planes = setup.given_back(&mut block.defined);
+                block.planes = interpolators.given_back(&mut block.defined);
             }
         }
     }
@@ -300,9 +278,9 @@ pub(super) fn plain<const FMA: bool>(
 #[inline(always)]
 pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
     let Block { varying, rows, coverage, used, planes, defined, .. } = block;
-    let setup = Setup::new(context, job.compiled, std::mem::take(planes));
-    setup.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
-    *planes = setup.given_back(defined);
+    let interpolators = Interpolators::new(context, job.compiled, std::mem::take(planes));
+    interpolators.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
+    *planes = interpolators.given_back(defined);
 }
 
 /// The pixels of a box.
@@ -323,9 +301,14 @@ pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
 
 /// What varies along a batch of a row.
 #[inline(always)]
-pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn row<const FMA: bool>(
+    interpolators: &Interpolators<'_>,
+    batch: PixelBatch<'_>,
+    job: Job<'_>,
+    block: &mut Block,
+) {
     let Block { varying, rows, .. } = block;
-    setup.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
+    interpolators.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
 }
 
 /// What the vertices give a texture shader along a batch of a row.
@@ -352,19 +335,21 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
 /// Depths along a batch of a row.
 #[inline(always)]
 pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block) {
-    depths::<FMA, true>(context, batch, &mut block.varying);
+    depths::<FMA, true>(context, batch, block.varying.depths());
 }
 
 /// The same in the box that the block has.
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block) {
-    depths::<FMA, false>(context, few(&block.coverage, block.used), &mut block.varying);
+    depths::<FMA, false>(context, few(&block.coverage, block.used), block.varying.depths());
 }
 
 /// The stages of a texture shader.
 #[inline(always)]
 pub(super) fn shade<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-    stages::run(job, block, band);
+    let Block { rows, varying, work, workshop, runs, defined, .. } = block;
+    let open = stages::run(job, runs, varying, workshop, (work, rows), band);
+    defined[Reason::Shader as usize] += open;
 }
 
 impl Block {

@@ -1,9 +1,9 @@
 //! INT-2 on rows: weights in 16 bits, and the colours that they make.
 
 use super::CompiledDraw;
-use super::kernels::Lanes256;
+use super::kernels::{Lanes256, PerLane};
 use super::quotient::FEW;
-use super::triangle::{PixelBatch, Varying};
+use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
 
@@ -23,9 +23,12 @@ pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
 
 /// Settled weights in 16 bits.
 #[inline(always)]
-pub(super) fn narrow_weights(batch: PixelBatch<'_>, varying: &mut Varying) {
+pub(super) fn narrow_weights(
+    batch: PixelBatch<'_>,
+    [w0, w2]: &[PerLane<i32>; 2],
+    [narrow0, narrow2]: &mut [PerLane<u16>; 2],
+) {
     // Not a loop over both: it is not always taken apart.
-    let ([w0, w2], [narrow0, narrow2]) = (&varying.weights, &mut varying.narrow);
     narrow(&w0[batch.lanes()], &mut narrow0[batch.lanes()]);
     narrow(&w2[batch.lanes()], &mut narrow2[batch.lanes()]);
 }
@@ -36,10 +39,9 @@ pub(super) fn colors(
     context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
     batch: PixelBatch<'_>,
-    varying: &Varying,
+    [w0, w2]: &[PerLane<u16>; 2],
     rows: &mut [Lanes256],
 ) {
-    let [w0, w2] = &varying.narrow;
     for (slots, colors) in [(&compiled.primary, &context.primary), (&compiled.secondary, &context.secondary)] {
         for channel in 0..4 {
             let Some(slot) = slots[channel] else { continue };

@@ -2,13 +2,13 @@
 //! remainders. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
 
+use super::BLOCK;
 use super::color::narrow;
-use super::fetch::PerLane;
+use super::kernels::PerLane;
 use super::kernels::STEP;
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, break_ties, nearest};
-use super::triangle::{PixelBatch, Planes, Setup, Varying};
-use super::{BLOCK, CompiledDraw};
+use super::setup::{PixelBatch, Setup};
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
@@ -247,79 +247,12 @@ pub(super) struct DdaRow {
 }
 
 impl Setup<'_> {
-    /// What is known of a row before its batches, from its first pixel on. Batches use the DDAs only after this has been called.
-    #[inline(always)]
-    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &CompiledDraw, varying: &mut Varying) {
-        let DdaRow { samplers, weights, complete, undivided } = &mut varying.dda;
-        (*complete, *undivided) = (false, false);
-        weights.1 = false;
-        for sampler in samplers.iter_mut() {
-            sampler.1 = false;
-        }
-        if self.denominator.x() != 0 {
-            return;
-        }
-        let triangle = &self.context.triangle;
-        let e = triangle.edges(i, j);
-        let d = self.denominator.exact(&e).c;
-        *undivided = compiled.fog.is_none() && !compiled.estimates;
-        *complete = *undivided;
-        for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
-            if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
-                let bias = sampler.bias();
-                *is = u.begin(&planes[0], triangle, &e, d, columns, bias)
-                    && v.begin(&planes[1], triangle, &e, d, columns, bias);
-            }
-            *complete &= *is || matches!(planes, Planes::Shared);
-            *undivided &= *is || !(sampler.mixes || matches!(planes, Planes::Plane(_)));
-        }
-        if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
-            *is =
-                w0.begin(&planes[0], triangle, &e, d, columns, 0) && w2.begin(&planes[1], triangle, &e, d, columns, 0);
-            *complete &= *is;
-            *undivided &= *is;
-        }
-    }
-
-    /// What of a row is known before its batches, for one of them.
-    #[inline(always)]
-    pub(super) fn dda(&self, batch: PixelBatch<'_>, compiled: &CompiledDraw, varying: &mut Varying) {
-        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, dda, .. } = &mut *varying;
-        let (lanes, triangle) = (batch.lanes(), &self.context.triangle);
-        for (n, planes) in self.samplers.iter().enumerate() {
-            let (([along, down], true), Planes::Plane(planes)) = (&mut dda.samplers[n], planes) else { continue };
-            let [u, v] = &mut coordinates[n];
-            let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
-            let found = [along.run(batch.count, u), down.run(batch.count, v)];
-            if found[0] | found[1] {
-                let bias = compiled.samplers[n].bias();
-                let exact = [along.is_exact(), down.is_exact()];
-                self.correct_dda(batch, planes, bias, found, exact, u, v, &mut whole[0]);
-            }
-        }
-        if let (([first, third], true), Some(planes)) = (&mut dda.weights, &self.weights) {
-            let (narrow0, narrow2) = (&mut narrow0[lanes.clone()], &mut narrow2[lanes.clone()]);
-            let found = first.run(batch.count, narrow0) | third.run(batch.count, narrow2);
-            if found && !first.is_exact() {
-                let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
-                widen(narrow0, w0);
-                widen(narrow2, w2);
-                let e = triangle.edges(batch.first.0, batch.first.1);
-                self.correct_weights::<true>(batch, planes, &e, w0, w2, whole);
-                narrow(w0, narrow0);
-                narrow(w2, narrow2);
-            } else if found && !triangle.exact_reciprocal {
-                break_dda_ties([first, third], batch.count, narrow0, narrow2);
-            }
-        }
-    }
-
     /// INT-4, INT-4t of coordinates on a row of which they are known, where some may be exact.
     #[allow(
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
     )]
-    fn correct_dda(
+    pub(super) fn correct_dda(
         &self,
         batch: PixelBatch<'_>,
         planes: &[Plane; 2],
@@ -339,7 +272,7 @@ impl Setup<'_> {
 
 /// INT-3 of weights that are exact where something is tied.
 #[inline(always)]
-fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
+pub(super) fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
     let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
     for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
         let (whole0, whole2) = (first.whole(step), third.whole(step));
@@ -362,7 +295,7 @@ fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &
 
 /// The same in 32 bits.
 #[inline(always)]
-fn widen(narrow: &[u16], out: &mut [i32]) {
+pub(super) fn widen(narrow: &[u16], out: &mut [i32]) {
     for (out, narrow) in out.iter_mut().zip(narrow) {
         *out = i32::from(*narrow);
     }

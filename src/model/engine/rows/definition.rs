@@ -1,24 +1,14 @@
 //! What the definition computes of a batch where estimates prove nothing, or where rows lack what textures ask for.
 
-use super::fetch::PerLane;
-use super::kernels::Lanes256;
-use super::planes::Plane;
-use super::third::Third;
-use super::triangle::{PixelBatch, Setup, Varying};
-use super::{CompiledDraw, Reason, Sampler};
+use super::compiled::{CompiledDraw, Reason, Sampler, Third};
+use super::kernels::{Lanes256, PerLane};
+use super::setup::{PixelBatch, Setup};
 use crate::combiner::registers::Registers;
-use crate::raster::interpolate::Sample;
-use crate::state::{Register, TEXTURE_UNITS};
 use crate::texture::place::Place;
 use crate::texture::planned::Image;
 use crate::trace::Silent;
 
 impl Setup<'_> {
-    /// One of the batch's pixels as a sample of the triangle.
-    pub(super) fn sample(&self, batch: PixelBatch<'_>, n: usize) -> Sample<'_> {
-        batch.sample(n, &self.context.triangle)
-    }
-
     /// Coordinates by the definition, pixel by pixel.
     pub(super) fn defined(
         &self,
@@ -60,7 +50,7 @@ impl Setup<'_> {
         batch: PixelBatch<'_>,
         compiled: &CompiledDraw,
         textures: &[Image<'_, i32>],
-        varying: &mut Varying,
+        alive: &mut PerLane<bool>,
         rows: &mut [Lanes256],
     ) {
         self.tell(Reason::Textures, batch.count);
@@ -68,28 +58,8 @@ impl Setup<'_> {
             let (sample, lane) = (self.sample(batch, n), batch.lane + n);
             let mut registers = Registers::<i32>::new();
             let lives = self.context.sample_textures(&sample, batch.pixel(n), &mut registers, textures, &mut Silent);
-            varying.alive[lane] = lives.is_some();
+            alive[lane] = lives.is_some();
             compiled.put_textures(&registers, lane, rows);
         }
     }
-}
-
-impl CompiledDraw {
-    /// Puts the texture registers of a pixel into the rows that want them.
-    pub(super) fn put_textures(&self, registers: &Registers<i32>, lane: usize, rows: &mut [Lanes256]) {
-        const UNITS: [Register; TEXTURE_UNITS] =
-            [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        for (slots, register) in self.textures.iter().zip(UNITS) {
-            for (channel, slot) in slots.iter().enumerate() {
-                if let Some(slot) = slot {
-                    rows[usize::from(*slot)].0[lane] = registers.read(register, channel) as i16;
-                }
-            }
-        }
-    }
-}
-
-/// INT-4 of a plane, less a bias.
-pub(super) fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
-    sample.coordinate(&plane.g).value as i32 - bias
 }

@@ -4,8 +4,9 @@
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
 )]
 
+use super::kernels::PerLane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
-use super::triangle::{PixelBatch, Varying};
+use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::depth::{difference, w_ratio};
 use crate::raster::interpolate::most_dominant;
@@ -77,7 +78,7 @@ struct Depths<'a> {
 pub(super) fn depths<const FMA: bool, const ROW: bool>(
     context: &TriangleContext<'_>,
     batch: PixelBatch<'_>,
-    varying: &mut Varying,
+    (out, steps): (&mut PerLane<u32>, &mut Steps),
 ) {
     let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
     let Some(test) = &draw.depth_test else { return };
@@ -94,7 +95,6 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let from = |reference: usize, others: [usize; 2]| others.map(|k| f64::from(difference(z[k], z[reference])));
     let differences = [from(1, [0, 2]), from(0, [1, 2]), from(2, [0, 1])];
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
-    let Varying { depth: out, depth_steps: steps, .. } = varying;
     let out = &mut out[batch.lanes()];
     let edges = [edge(0), edge(1), edge(2)];
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;

@@ -2,12 +2,11 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::Sampler;
-use super::fetch::PerLane;
+use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quads::any_negative;
-use super::quotient::{Line, Positions, QuotientEstimate, SLACK, estimate_two, nearest, prove, whole};
+use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
+use super::setup::{BatchSetup, PixelBatch, Setup};
 use super::short::{Short, floors};
-use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
@@ -69,8 +68,8 @@ pub(super) struct Looking {
 
 impl Looking {
     #[inline(always)]
-    pub(super) fn new(planes: &[Plane; 3], e: &[f64; 3], bounds: &Bounds) -> Looking {
-        Looking::around(planes, e, bounds.columns, bounds.rows)
+    pub(super) fn new(planes: &[Plane; 3], local: &BatchSetup) -> Looking {
+        Looking::around(planes, &local.real, local.columns, local.rows)
     }
 
     /// That of so many columns and rows.
@@ -156,13 +155,13 @@ impl Setup<'_> {
         planes: &[Plane; 3],
         face: Face,
         looking: &Looking,
-        bounds: &Bounds,
+        local: &BatchSetup,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
         let [s, t, major] = face.components();
         let m = looking.component(major);
-        let least = self.least::<FMA, ROW>(m, &planes[major.axis], bounds);
+        let least = self.least::<FMA, ROW>(m, &planes[major.axis], local);
         let widest = 1.0 / least;
         let size = f64::from(sampler.sides[0]) * 128.0;
         // Twice the error of either component, once what is taken off, and as much again.
@@ -174,7 +173,7 @@ impl Setup<'_> {
         };
         let (along, down) = (line(s), line(t));
         faces[batch.lanes()].fill(face as u32);
-        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
+        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, numbers, faces)
     }
 
     /// TEX-15 of a batch, s, t and a positive q: two more quotients, of what weights that fall short leave. `reach` is more than their magnitudes, in images. `false`: nothing would
@@ -188,20 +187,20 @@ impl Setup<'_> {
         planes: &[Plane; 3],
         reach: f64,
         looking: &Looking,
-        bounds: &Bounds,
+        local: &BatchSetup,
         short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
         let [s, t, q] = looking.lines;
-        let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], bounds);
+        let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
         let most = if width > height { width } else { height };
         // The error of s or t, that of q as often as it is in the quotient, once more what is taken off, and as much again.
         let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
         if self.context.triangle.exact_reciprocal {
-            return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, bounds, numbers, faces);
+            return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
         }
         // Also refuses what is no number.
         let proves = margin < COARSEST;
@@ -222,9 +221,9 @@ impl Setup<'_> {
 
     /// What a linear function that is positive at all vertices is not below in a batch.
     #[inline(always)]
-    pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, bounds: &Bounds) -> f64 {
+    pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, local: &BatchSetup) -> f64 {
         if ROW {
-            let end = line.at::<FMA, true>(bounds.columns, 0.0);
+            let end = line.at::<FMA, true>(local.columns, 0.0);
             return if line.c < end { line.c } else { end };
         }
         let g = &plane.g;
@@ -243,11 +242,11 @@ impl Setup<'_> {
         [along, down, m]: [Line; 3],
         widest: f64,
         margin: f64,
-        bounds: &Bounds,
+        local: &BatchSetup,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
-        let (extent, reciprocals) = ((bounds.columns, bounds.rows), (1.0 / m.c, widest));
+        let (extent, reciprocals) = ((local.columns, local.rows), (1.0 / m.c, widest));
         let (Some(along), Some(down)) = (
             QuotientEstimate::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
             QuotientEstimate::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),

@@ -9,8 +9,9 @@ use super::boxes::{BoxCoverage, boxes, is_small};
 use super::kernels::Lanes256;
 use super::levels::Reads;
 use super::quotient::{self, IOTA};
+use super::setup::{PixelBatch, whole_steps};
 use super::taps::{Footprints, Pair};
-use super::triangle::{PixelBatch, Setup, Varying, whole_steps};
+use super::triangle::{Interpolators, Varying};
 use super::{BLOCK, Isa, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::{Engine, RenderOptions, Renderer, TextureWords};
@@ -288,7 +289,7 @@ fn compare_small<const FMA: bool>(
     rows: &mut [Lanes256],
 ) -> bool {
     let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Vec::new());
-    super::depth::depths::<FMA, false>(context, batch, varying);
+    super::depth::depths::<FMA, false>(context, batch, varying.depths());
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
@@ -311,7 +312,7 @@ fn compare_small<const FMA: bool>(
 
 /// Compares a batch with the definition, pixel by pixel.
 fn compare<const FMA: bool, const ROW: bool>(
-    setup: &Setup<'_>,
+    interpolators: &Interpolators<'_>,
     compiled: &super::CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
@@ -319,9 +320,9 @@ fn compare<const FMA: bool, const ROW: bool>(
 ) {
     // What an earlier batch left must not pass for this one's.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
-    setup.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
-    super::depth::depths::<FMA, ROW>(setup.context, batch, varying);
-    let (context, mut wanted, mut taps) = (&setup.context, Reads::default(), Footprints::default());
+    interpolators.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
+    super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
+    let (context, mut wanted, mut taps) = (&interpolators.setup.context, Reads::default(), Footprints::default());
     for n in 0..batch.count {
         let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
@@ -337,7 +338,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             let place = context.place(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
-                setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
+                interpolators.setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
                 let of = |reads: &Reads| {
                     let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
                     (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
@@ -363,13 +364,13 @@ fn compare<const FMA: bool, const ROW: bool>(
                 }
             }
             match &sampler.third {
-                Some(super::Third::Layer(_, axis)) => {
+                Some(super::compiled::Third::Layer(_, axis)) => {
                     let layer = |texel: i64| address(unit.state.address_r, texel, unit.layers, false);
                     let entry = i64::from(axis.first) + i64::from(varying.faces[index][lane]);
                     let wanted = layer(place.layer(unit.layers).value >> 8);
                     assert_eq!(layer(entry), wanted, "layers of unit {index} ({i}, {j}) of {:?}", context.vertices());
                 }
-                Some(super::Third::Reference(format)) => {
+                Some(super::compiled::Third::Reference(format)) => {
                     let wanted = crate::raster::depth::word(*format, place.reference());
                     let got = varying.references[index][lane];
                     assert_eq!(got, wanted, "reference of unit {index} ({i}, {j}) of {:?}", context.vertices());
@@ -443,8 +444,8 @@ fn rows_interpolate(seed: u64) {
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {
             let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
-            let setup = Setup::new(&context, compiled, planes);
-            let triangle = &setup.context.triangle;
+            let interpolators = Interpolators::new(&context, compiled, planes);
+            let triangle = &interpolators.setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {
                 let mut covered = 0;
@@ -463,9 +464,9 @@ fn rows_interpolate(seed: u64) {
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {
-                        compare::<true, false>(&setup, compiled, batch, &mut varying, &mut rows);
+                        compare::<true, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
                     } else {
-                        compare::<false, false>(&setup, compiled, batch, &mut varying, &mut rows);
+                        compare::<false, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
                     }
                     (covered, drawn) = (covered + coverage.count, drawn + 1);
                 }
@@ -478,7 +479,7 @@ fn rows_interpolate(seed: u64) {
                     if i == end {
                         continue;
                     }
-                    setup.begin_row((i, j), end - i, compiled, &mut varying);
+                    interpolators.begin_row((i, j), end - i, compiled, &mut varying);
                     while i < end {
                         let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
                         let lanes = whole_steps(count);
@@ -486,16 +487,16 @@ fn rows_interpolate(seed: u64) {
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
                         let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0) };
                         if round.is_multiple_of(4) {
-                            compare::<true, true>(&setup, compiled, batch, &mut varying, &mut rows);
+                            compare::<true, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
                         } else {
-                            compare::<false, true>(&setup, compiled, batch, &mut varying, &mut rows);
+                            compare::<false, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
                         }
                         i += count as i64;
                         pixels += count as u64;
                     }
                 }
             }
-            planes = setup.given_back(&mut reasons);
+            planes = interpolators.given_back(&mut reasons);
         }
     }
     assert!(fours > drawn / 2);

@@ -1,16 +1,13 @@
 //! TEX-5 to TEX-8 on rows: entries of a table, texels, the filter.
 
 use super::BLOCK;
-use super::kernels::{LANES, Lanes256};
+use super::kernels::{LANES, Lanes256, PerLane};
 use super::levels::Reads;
 use super::store;
 use super::table::{Axis, Table, Texels};
 use super::taps::Pair;
 use crate::number::{Lane, Swar2};
 use crate::texture::filter::{bilinear, lerp};
-
-/// One number for each pixel of a block.
-pub(super) type PerLane<T> = [T; LANES];
 
 /// What a fetch works in.
 #[derive(Clone, Debug)]
@@ -293,12 +290,6 @@ fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
     }
 }
 
-/// The entry of a coordinate within the limits along an axis.
-#[inline(always)]
-pub(super) fn entry(axis: &Axis, coordinate: i32) -> i32 {
-    ((coordinate >> 8) - axis.first) & axis.mask
-}
-
 /// The weight of the next entry.
 #[inline(always)]
 fn weight(coordinate: i32) -> u32 {
@@ -321,7 +312,7 @@ fn address<const LIMITS: bool>(
             u[n] = u[n].max(columns.low).min(columns.high);
             v[n] = v[n].max(rows.low).min(rows.high);
         }
-        entries[n] = (entry(&rows, v[n]) * pitch + entry(&columns, u[n])) as u32 + face(n);
+        entries[n] = (rows.entry(v[n]) * pitch + columns.entry(u[n])) as u32 + face(n);
     }
 }
 
@@ -479,9 +470,9 @@ mod tests {
         let axis = Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: 63, count: 64, period: None };
         for u in -40_000..40_000_i32 {
             let (texel, weight) = linear(i64::from(u));
-            let (at, w) = (entry(&axis, u - 128), super::weight(u - 128));
+            let (at, w) = (axis.entry(u - 128), super::weight(u - 128));
             assert_eq!((i64::from(at), w as i32), (texel & 63, weight));
-            assert_eq!(i64::from(entry(&axis, u)), nearest(i64::from(u)) & 63);
+            assert_eq!(i64::from(axis.entry(u)), nearest(i64::from(u)) & 63);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
-use super::triangle::{Bounds, PixelBatch, Setup};
+use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor;
 use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
@@ -109,44 +109,41 @@ impl Fog {
 impl Setup<'_> {
     /// The fog factor of the pixels of a batch. `values` and `spare` are places to work in.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn fog_factors<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
-        e: &[i64; 3],
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        fog: &Fog,
+        local: &BatchSetup,
         values: &mut [i32; LANES],
         spare: &mut [i32; LANES],
         row: &mut [i16; LANES],
     ) {
-        let Some(fog) = &self.fog else { return };
         let out = &mut row[batch.lanes()];
         let (values, spare) = (&mut values[..out.len()], &mut spare[..out.len()]);
-        match &**fog {
+        match fog {
             Fog::Same(factor) => out.fill(*factor),
             Fog::Factor(plane) => {
                 let planes = [*plane, *plane];
-                let Some(estimates) = self.estimates::<ROW>(&planes, 0, (real, denominator), bounds) else {
+                let Some(estimates) = self.estimates::<ROW>(&planes, 0, local) else {
                     return self.defined_factors(batch, |_| true, out);
                 };
-                if estimate_two::<FMA, ROW>(batch.at, denominator, &estimates, values, spare)[0] {
-                    let bottom = self.denominator.exact(e);
-                    correct::<ROW>(batch.at, plane.exact(e), bottom, plane.small(self.bits), values, spare);
+                if estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, values, spare)[0] {
+                    let bottom = self.denominator.exact(&local.e);
+                    correct::<ROW>(batch.at, plane.exact(&local.e), bottom, plane.small(self.bits), values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
                     *out = factor((*value).clamp(0, 4096)) as i16;
                 }
             }
             Fog::Function(curve) => {
-                let line = curve.coordinate.line(real).times(curve.scale);
-                let off = self.margin::<ROW>(&curve.coordinate, real, bounds) * curve.scale.abs();
+                let line = curve.coordinate.line(&local.real).times(curve.scale);
+                let off = self.margin::<ROW>(&curve.coordinate, local) * curve.scale.abs();
                 // Also refuses what is no number.
                 let proves = off < COARSEST;
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
-                let (at, lines) = (batch.at, (line, denominator));
+                let (at, lines) = (batch.at, (line, local.denominator));
                 let close = match curve.kind {
                     Kind::Linear { start, sign } => {
                         let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, spare);

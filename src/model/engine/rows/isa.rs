@@ -1,9 +1,10 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
-use super::CompiledDraw;
-use super::band::{self, Block, Entered, Job};
+use super::band::{self, Block, Entered};
 use super::boxes::BoxCoverage;
-use super::triangle::{PixelBatch, Setup};
+use super::compiled::{CompiledDraw, Job};
+use super::setup::PixelBatch;
+use super::triangle::Interpolators;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{Band, Window};
 use crate::raster::setup::Triangle;
@@ -115,7 +116,7 @@ text! {
         /// [`band::coverage`].
         fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row`].
-        fn row(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row(interpolators: &Interpolators<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row_attributes`].
         fn row_attributes(context: &TriangleContext<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::box_attributes`].

@@ -1,6 +1,5 @@
 //! The rules on rows: each kernel is a rule's text in a loop over the pixels of a block.
 
-use super::BLOCK;
 use super::node::{MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
@@ -9,6 +8,12 @@ use crate::number::{Factor, Lane, Narrow, Quarters, Sum, byte_product};
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
+
+/// Pixels of a block.
+pub(crate) const BLOCK: usize = 256;
+
+/// One number for each pixel of a block.
+pub(super) type PerLane<T> = [T; LANES];
 
 /// Lanes that a batch may write past its end: batches are handled in whole steps.
 pub(super) const STEP: usize = 16;

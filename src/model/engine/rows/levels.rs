@@ -1,13 +1,13 @@
 //! TEX-9 to TEX-11 on rows: the lod of each pixel, and where it is read on which levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::fetch::{PerLane, entry};
 use super::kernels::LANES;
-use super::quads::{AtQuads, Known, Measure, Quads, any_negative, floor, parted};
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
+use super::kernels::PerLane;
+use super::quads::{AtQuads, Known, Measure, Quads, floor, parted};
+use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, whole};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
-use super::triangle::{Bounds, PixelBatch, Planes, Setup};
 use super::{Reason, Sampler};
 use crate::state::Filter;
 use crate::texture::lod::{self, Quad};
@@ -75,28 +75,25 @@ const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
 impl Setup<'_> {
     /// Everything that a unit whose levels count reads in a batch.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn levels<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
-        e: &[i64; 3],
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
         short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut Reads,
     ) {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
-        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, (real, denominator), bounds) else {
+        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, local) else {
             for n in 0..batch.count {
                 self.defined_reads(batch, n, sampler, table, reads);
             }
             return;
         };
         let lanes = batch.at.x.len();
-        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &ground), e, quads, &mut reads.known);
+        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &ground), &local.e, quads, &mut reads.known);
         spread.hand_out(&reads.known.each, batch.count, &mut placing.lods[..lanes]);
         let (at, denominator) = (batch.at, ground.denominator);
         let [at_u, at_v] = &mut placing.at;
@@ -322,13 +319,13 @@ fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], 
         let kept = if lods[n] <= 0 { mag.kept } else { min.kept };
         u[n] = (u[n].wrapping_sub(less) & kept).max(columns.low).min(columns.high);
         v[n] = (v[n].wrapping_sub(less) & kept).max(rows.low).min(rows.high);
-        entries[n] = entry(&rows, v[n]).wrapping_mul(pitch).wrapping_add(entry(&columns, u[n])).wrapping_add(first);
+        entries[n] = rows.entry(v[n]).wrapping_mul(pitch).wrapping_add(columns.entry(u[n])).wrapping_add(first);
     }
     if periodic {
         columns.reduce(u);
         rows.reduce(v);
         for n in 0..lanes {
-            entries[n] = entry(&rows, v[n]) * pitch + entry(&columns, u[n]) + first;
+            entries[n] = rows.entry(v[n]) * pitch + columns.entry(u[n]) + first;
         }
     }
 }

@@ -3,8 +3,11 @@
 //! | file | knows |
 //! |---|---|
 //! | `node.rs`, `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
+//! | `compiled.rs` | a draw compiled to rows, and its samplers |
 //! | `kernels.rs` | the rules as loops over rows |
-//! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `color.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `planes.rs`, `quotient.rs`, `setup.rs` | linear functions across a triangle and a batch of its pixels, and their quotients: estimated, proved, corrected |
+//! | `direction.rs`, `depth.rs`, `fog.rs`, `color.rs` | interpolators of one kind of number each |
+//! | `triangle.rs` | everything that varies, for a batch |
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q or moved |
 //! | `third.rs` | layers of volumes, depths to compare with |
@@ -24,6 +27,7 @@ mod band;
 mod boxes;
 mod build;
 mod color;
+mod compiled;
 mod dda;
 mod definition;
 mod depth;
@@ -41,6 +45,7 @@ mod node;
 mod planes;
 mod quads;
 mod quotient;
+mod setup;
 mod shader;
 mod short;
 mod small;
@@ -51,48 +56,23 @@ mod taps;
 mod third;
 mod triangle;
 
-pub(crate) use band::{Block, Job};
+pub(crate) use band::Block;
+pub use compiled::Reason;
+pub(crate) use compiled::{CompiledDraw, Job, Reasons, Sampler};
 pub use isa::Isa;
+pub(crate) use kernels::BLOCK;
 
 use crate::engine::TextureWords;
-use crate::engine::pixel::TriangleContext;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
-use crate::state::{Filter, Named, TEXTURE_UNITS, TextureImage, TextureKind, named};
+use crate::state::{Filter, TextureImage, TextureKind};
 use crate::texture::planned::Image;
 use node::{Input, Node, Value};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use table::{Key, Table};
-use third::Third;
-
-named! {
-    /// Why the definition computed something of a pixel in the fast engine.
-    pub enum Reason {
-        /// Rows lack what its draw's textures ask for, or decoding them would not pay.
-        Textures = "textures that rows do not sample",
-        /// Something in its texture shader was a tie, or too close to one.
-        Shader = "texture shader not proved",
-        /// A level or a place on one was.
-        Levels = "levels not proved",
-        /// A coordinate of a cube map or divided by q was, or a plane's quotients were too coarse.
-        Coordinates = "coordinates not proved",
-        /// Weights of colours were too coarse.
-        Weights = "weights not proved",
-        /// A depth to compare with was.
-        References = "depths to compare with not proved",
-        /// A fog factor was.
-        Fog = "fog not proved",
-    }
-}
-
-/// Pixels of each [`Reason`].
-pub(crate) type Reasons = [u64; Reason::ALL.len()];
-
-/// Pixels of a block.
-pub(crate) const BLOCK: usize = 256;
 
 /// Rows that take what nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
@@ -102,96 +82,6 @@ const PAYS: u64 = 16;
 
 /// Most entries of all tables, of four bytes each.
 const MAX_ENTRIES: u64 = 1 << 25;
-
-/// A unit that rows sample.
-#[derive(Clone, Debug)]
-pub(crate) struct Sampler {
-    /// Its index among the draw's units.
-    index: usize,
-    /// Its number.
-    unit: usize,
-    /// Bilinear.
-    filters: bool,
-    cube: bool,
-    /// Texels of its sides; 1 where coordinates are texels.
-    sides: [u32; 2],
-    signed: [bool; 4],
-    /// The lod counts.
-    mixes: bool,
-    /// Texels that drop the fragment (KEY-1): what entries of its table are compared with, and in which bits.
-    key: Option<(u32, u32)>,
-    /// A stage of the texture shader makes its coordinates.
-    depends: bool,
-    /// Most taps of a pixel (TEX-17), two and two; 0: there is one.
-    pairs: usize,
-    /// What r is for.
-    third: Option<Third>,
-    /// An earlier sampler whose coordinates are this one's.
-    shares: Option<usize>,
-    /// `None`: of an image that is drawn by this scene, made anew for each draw.
-    table: Option<Arc<Table>>,
-}
-
-impl Sampler {
-    /// What is taken off coordinates, 1/256 texel: half a texel where it filters.
-    fn bias(&self) -> i32 {
-        if self.filters { 128 } else { 0 }
-    }
-
-    /// Faces or layers.
-    fn has_images(&self) -> bool {
-        self.cube || matches!(self.third, Some(Third::Layer(..)))
-    }
-}
-
-/// A draw compiled to rows.
-#[derive(Clone, Debug)]
-pub(crate) struct CompiledDraw {
-    /// What is computed, and into which row.
-    operations: Vec<(Node, usize)>,
-    /// Each row's constant; 0 where it is computed.
-    rows: Vec<i16>,
-    primary: [Option<u16>; 4],
-    secondary: [Option<u16>; 4],
-    fog: Option<u16>,
-    textures: [[Option<u16>; 4]; TEXTURE_UNITS],
-    destination: [Option<u16>; 4],
-    /// Rows of R, G, B, A as they are stored.
-    stored: [u16; 4],
-    /// Row of the alpha that is tested.
-    alpha: u16,
-    /// Channels of the primary and the secondary colour that are read: all bits of their bytes.
-    read: [u32; 2],
-    samplers: Vec<Sampler>,
-    /// The texture shader, if rows run it.
-    shader: Option<Arc<shader::Shader>>,
-    /// Something is estimated at every pixel besides coordinates: taps, layers, depths to compare with.
-    estimates: bool,
-    /// Nothing varies but colours, depth, what a texture shader's stages take, and coordinates of textures on planes, of one level.
-    plain: bool,
-    /// Texture units are the definition's, pixel by pixel.
-    samples_pixels: bool,
-    /// What the surface holds is read: by the blend, because not all bits are written, or because fragments can be dropped.
-    reads_surface: bool,
-    /// Fragments can be dropped.
-    drops: bool,
-    /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
-    merges: bool,
-    /// All bits of a pixel are written.
-    writes_whole: bool,
-}
-
-impl CompiledDraw {
-    /// Whether a colour that is read varies on a triangle.
-    #[inline(always)]
-    fn varies(&self, context: &TriangleContext<'_>) -> bool {
-        let [primary, secondary] = [&context.primary, &context.secondary].map(|colors| {
-            let [a, b, c] = colors.map(u32::from_le_bytes);
-            (a ^ b) | (b ^ c)
-        });
-        (primary & self.read[0]) | (secondary & self.read[1]) != 0
-    }
-}
 
 /// A plan compiled to rows.
 #[derive(Clone, Debug)]
@@ -287,27 +177,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     let built = build::build(draw, plan.policies, samplers.as_deref().filter(|_| draw.shader.is_none()));
     let mut samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
-    let mut compiled = CompiledDraw {
-        operations: Vec::new(),
-        rows: Vec::new(),
-        primary: [None; 4],
-        secondary: [None; 4],
-        fog: None,
-        textures: [[None; 4]; TEXTURE_UNITS],
-        destination: [None; 4],
-        stored: [0; 4],
-        alpha: 0,
-        read: [0; 2],
-        samplers,
-        shader: None,
-        estimates: false,
-        plain: false,
-        samples_pixels,
-        reads_surface: false,
-        drops: false,
-        merges: false,
-        writes_whole: false,
-    };
+    let mut compiled = CompiledDraw { samplers, ..CompiledDraw::default() };
     emit(&built, draw, &mut compiled);
     if let Some(planned) = &draw.shader {
         for (slots, stage) in compiled.textures.iter_mut().zip(&planned.stages) {
@@ -411,7 +281,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             shares: None,
             table,
         };
-        sampler.third = Third::from_unit(unit, &sampler);
+        sampler.third = third::purpose(unit, &sampler);
         // Nobody gives it an r.
         if sampler.depends && sampler.third.is_some() || draw.shader.is_some() && sampler.pairs > 0 {
             return None;

@@ -2,12 +2,12 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::Looking;
-use super::fetch::PerLane;
 use super::kernels::LANES;
+use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quotient::{Line, SLACK, whole};
+use super::quotient::{Line, SLACK, any_negative, whole};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
-use super::triangle::{Bounds, PixelBatch, Planes, Setup, whole_steps};
 use super::{BLOCK, Reason, Sampler};
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
@@ -135,29 +135,28 @@ impl Setup<'_> {
         &self,
         sampler: &Sampler,
         planes: &'p Planes,
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
     ) -> Option<Ground<'p>> {
         // Pixels of a quad lie up to one outside of the batch.
-        let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
+        let (columns, rows) = (local.columns + 1.0, local.rows + 1.0);
         // None of them lies further to the left of a row's first pixel, or above a batch's.
         let left = if ROW { 1.0 } else { columns };
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
-        let lowest = least(denominator);
+        let lowest = least(local.denominator);
         let (ground, range) = match planes {
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
-                let ratio = self.denominator.terms(real, columns, rows) * widest;
+                let ratio = self.denominator.terms(&local.real, columns, rows) * widest;
                 // What lies outside of the triangle may be larger than at the vertices.
-                let most = |plane: &Plane| plane.terms(real, columns, rows) * widest + 2.0 * plane.reach * ratio;
+                let most = |plane: &Plane| plane.terms(&local.real, columns, rows) * widest + 2.0 * plane.reach * ratio;
                 let (one, other) = (most(&planes[0]), most(&planes[1]));
                 let range = (if one > other { one } else { other }) * (1.0 + ratio);
                 let p = &self.context.triangle.p;
                 let ground = Ground {
-                    along: planes[0].line(real),
-                    down: planes[1].line(real),
-                    denominator,
+                    along: planes[0].line(&local.real),
+                    down: planes[1].line(&local.real),
+                    denominator: local.denominator,
                     off: range * SLACK,
                     floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
                     face: Face::PositiveX,
@@ -169,7 +168,7 @@ impl Setup<'_> {
                 (ground, range)
             }
             Planes::Ratio(planes, _) => {
-                let looking = Looking::around(planes, real, columns, rows);
+                let looking = Looking::around(planes, &local.real, columns, rows);
                 let [s, t, q] = looking.lines;
                 let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
                 let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
@@ -187,10 +186,10 @@ impl Setup<'_> {
                 (Ground { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Direction(planes, face) => {
-                let looking = Looking::around(planes, real, columns, rows);
+                let looking = Looking::around(planes, &local.real, columns, rows);
                 let face = match face {
                     Some(face) => *face,
-                    None if ROW => looking.face::<FMA>(bounds.columns)?,
+                    None if ROW => looking.face::<FMA>(local.columns)?,
                     None => return None,
                 };
                 let [s, t, m] = face.components();
@@ -323,16 +322,6 @@ impl Setup<'_> {
         let sample = self.sample(batch, 0);
         T::defined(unit, self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
     }
-}
-
-/// Whether the sign bit of some is set. Most often of none, and one lane after the other is a slow way to find that out.
-#[inline(always)]
-pub(super) fn any_negative(lanes: &[u64]) -> bool {
-    let mut all = 0;
-    for lane in lanes {
-        all |= lane;
-    }
-    all >> 63 != 0
 }
 
 /// What is added to estimates that are off by less than `off`, and how close to a whole number they then prove nothing. Where values are multiples of a

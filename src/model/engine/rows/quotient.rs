@@ -534,3 +534,13 @@ pub(super) fn break_ties(w0: &mut [i32], w2: &mut [i32], whole0: &[i32], whole2:
         *w2 = c - i32::from((*whole2 != 0) & (c > 0) & !third);
     }
 }
+
+/// Whether the sign bit of some is set. Most often of none, and one lane after the other is a slow way to find that out.
+#[inline(always)]
+pub(super) fn any_negative(lanes: &[u64]) -> bool {
+    let mut all = 0;
+    for lane in lanes {
+        all |= lane;
+    }
+    all >> 63 != 0
+}

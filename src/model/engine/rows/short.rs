@@ -2,12 +2,11 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::BLOCK;
-use super::fetch::PerLane;
+use super::kernels::PerLane;
 use super::kernels::{LANES, STEP};
 use super::planes::{Plane, inverse};
-use super::quads::any_negative;
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
-use super::triangle::{Bounds, PixelBatch, Setup};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, nearest, position, whole};
+use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::raster::interpolate::{SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
@@ -90,8 +89,7 @@ impl Dominance {
         &mut self,
         triangle: &Triangle,
         batch: PixelBatch<'_>,
-        (e, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
     ) {
         let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
@@ -103,11 +101,11 @@ impl Dominance {
         let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
         for k in 0..3 {
             let p = triangle.p[k] as f64;
-            lines[k] = Line { c: p * e[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
-            terms += lines[k].c.abs() + lines[k].x.abs() * bounds.columns + lines[k].y.abs() * bounds.rows;
+            lines[k] = Line { c: p * local.real[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
+            terms += lines[k].c.abs() + lines[k].x.abs() * local.columns + lines[k].y.abs() * local.rows;
         }
         self.functions = [lines[0], lines[2]];
-        let (functions, error) = ([lines[0], lines[2], denominator], 4.0 * SLACK * terms);
+        let (functions, error) = ([lines[0], lines[2], local.denominator], 4.0 * SLACK * terms);
         if !ROW {
             self.lanes::<FMA, false>(triangle, batch, functions, error, 0..lanes);
             return;

@@ -7,7 +7,8 @@ use super::color::{colors, narrow_weights};
 use super::kernels::Lanes256;
 use super::planes::inverse;
 use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
-use super::triangle::{PixelBatch, Planes, Setup, Varying};
+use super::setup::{PixelBatch, Planes};
+use super::triangle::{Interpolators, Varying};
 use super::{CompiledDraw, Reasons};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
@@ -170,9 +171,9 @@ pub(super) fn interpolate<const FMA: bool>(
         return false;
     }
     if weighted {
-        narrow_weights(batch, varying);
+        narrow_weights(batch, &varying.weights, &mut varying.narrow);
     }
-    colors(context, compiled, batch, varying, rows);
+    colors(context, compiled, batch, &varying.narrow, rows);
     true
 }
 
@@ -251,7 +252,8 @@ fn correct(
 ) {
     context.complete();
     let e = context.triangle.edges(batch.first.0, batch.first.1);
-    let setup = Setup::new(context, compiled, std::mem::take(planes));
+    let functions = Interpolators::new(context, compiled, std::mem::take(planes));
+    let setup = &functions.setup;
     for (pair, close) in pairs.iter().zip(close).filter(|(_, close)| close[0] | close[1]) {
         let Varying { coordinates, weights: [w0, w2], whole, .. } = &mut *varying;
         match *pair {
@@ -259,20 +261,20 @@ fn correct(
             Pair::Sampler(n) => {
                 let ([u, v], bias) = (&mut coordinates[n], compiled.samplers[n].bias());
                 let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
-                if let Planes::Plane(planes) = &setup.samplers[n] {
+                if let Planes::Plane(planes) = &functions.samplers[n] {
                     setup.correct_coordinates::<false>(batch, bias, planes, *close, &e, u, v, &mut whole[0]);
                 }
             }
             Pair::Weights => {
                 let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
-                if let Some(planes) = &setup.weights {
+                if let Some(planes) = &functions.weights {
                     setup.correct_weights::<false>(batch, planes, &e, w0, w2, whole);
                 }
             }
         }
     }
     // Settling is no definition.
-    *planes = setup.given_back(&mut Reasons::default());
+    *planes = functions.given_back(&mut Reasons::default());
 }
 
 #[inline(always)]

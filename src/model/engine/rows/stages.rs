@@ -4,17 +4,16 @@
 //! stage moves, which keep their fraction. A lane that is not proved is left open, and the definition runs its stages in the end.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::band::{Block, Run};
 use super::dot::{self, Floats};
-use super::fetch;
-use super::kernels::{LANES, Lanes256};
+use super::fetch::{self, Workspace};
+use super::kernels::{LANES, Lanes256, PerLane};
 use super::planes::{RealPlane, inverse};
-use super::quads::any_negative;
-use super::quotient::{Line, Reciprocals, floor_of_factor, nearest, nearest_32};
+use super::quotient::{Line, Reciprocals, any_negative, floor_of_factor, nearest, nearest_32};
+use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::{Dominance, Losses, losses};
-use super::triangle::{Bounds, PixelBatch};
-use super::{BLOCK, CompiledDraw, Job, Reason, Sampler};
+use super::triangle::Varying;
+use super::{BLOCK, CompiledDraw, Job, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
@@ -218,9 +217,9 @@ impl Workshop {
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = attributes.denominator.line(&real);
         let terms = |columns, rows| attributes.denominator.terms(&real, columns, rows);
-        let bounds = Bounds::new::<FMA, ROW>(batch, denominator, attributes.widest, terms);
+        let local = BatchSetup::new::<FMA, ROW>(batch, (e, real, denominator), attributes.widest, terms);
         let margin =
-            |plane: &RealPlane| bounds.margin::<ROW>(plane.reach, |columns, rows| plane.terms(&real, columns, rows));
+            |plane: &RealPlane| local.margin::<ROW>(plane.reach, |columns, rows| plane.terms(&real, columns, rows));
         if !attributes.numbers.is_empty() {
             reciprocals.set::<FMA, ROW>(batch.at, denominator);
         }
@@ -240,7 +239,7 @@ impl Workshop {
             }
         }
         if !attributes.moved.is_empty() {
-            dominance.set::<FMA, ROW>(triangle, batch, (&real, denominator), &bounds);
+            dominance.set::<FMA, ROW>(triangle, batch, &local);
         }
         for ((planes, losses), moved) in attributes.moved.iter().zip(&attributes.losses).zip(moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
@@ -285,11 +284,17 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     }
 }
 
-/// Runs the stages of a block's pixels, which leave their registers in their rows.
+/// Runs the stages of a block's pixels, which leave their registers in their rows; how many pixels were the definition's.
 #[inline(always)]
-pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
-    let Some(shader) = &job.compiled.shader else { return };
-    let Block { rows, varying, work, workshop, runs, defined, .. } = block;
+pub(super) fn run(
+    job: Job<'_>,
+    runs: &[Run],
+    varying: &mut Varying,
+    workshop: &mut Workshop,
+    (work, rows): (&mut Workspace, &mut [Lanes256]),
+    band: &Band<'_>,
+) -> u64 {
+    let Some(shader) = &job.compiled.shader else { return 0 };
     workshop.is_remapped.fill(false);
     let mut dotted = [false; TEXTURE_UNITS];
     let alive = &mut varying.alive;
@@ -411,7 +416,7 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
             }
         }
     }
-    defined[Reason::Shader as usize] += define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band);
+    define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band)
 }
 
 /// A number of the block's pixels, by what varies and what does not.
@@ -481,7 +486,7 @@ fn bump(
     green: (&[i16; BLOCK], bool),
     moved: &Moved,
     along: &mut Floats,
-    [u, v]: &mut [fetch::PerLane<i32>; 2],
+    [u, v]: &mut [PerLane<i32>; 2],
     open: &mut Open,
 ) {
     let (Some(u), Some(v)) = (u.first_chunk_mut(), v.first_chunk_mut()) else { return };

@@ -68,6 +68,12 @@ impl Axis {
             *c = c.rem_euclid(period);
         }
     }
+
+    /// The entry of a coordinate within its limits.
+    #[inline(always)]
+    pub(super) fn entry(&self, coordinate: i32) -> i32 {
+        ((coordinate >> 8) - self.first) & self.mask
+    }
 }
 
 /// Decoded texels: R, G, B, A from the lowest byte up. Signed channels have 128 added, so that they filter as unsigned ones do.

@@ -1,11 +1,10 @@
 //! TEX-17 on rows: the taps of each pixel, two and two to both sides of it.
 
 use super::Sampler;
-use super::fetch::PerLane;
 use super::kernels::LANES;
+use super::kernels::PerLane;
 use super::quads::{AtQuads, Known, Measure, Quads};
-use super::quotient::Line;
-use super::triangle::{Bounds, PixelBatch, Planes, Setup};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
@@ -86,28 +85,25 @@ impl Measure for Taps {
 impl Setup<'_> {
     /// The taps of a batch.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn taps<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
-        e: &[i64; 3],
-        lines: (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
         quads: &mut Quads,
         footprints: &mut Footprints,
     ) {
         let unit = &self.context.draw.units[sampler.index];
         let sides = [unit.levels[0].width, unit.levels[0].height];
         let Footprints { pairs, known } = footprints;
-        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, lines, bounds) else {
+        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, local) else {
             for n in 0..batch.count {
                 let taps = self.defined_quad::<Taps>(batch, unit, batch.pixel(n));
                 Footprints::set(pairs, batch.lane + n, &taps, sides);
             }
             return;
         };
-        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &ground), e, quads, known);
+        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &ground), &local.e, quads, known);
         for n in 0..batch.count {
             Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)], sides);
         }

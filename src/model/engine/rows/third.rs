@@ -1,15 +1,15 @@
 //! What becomes of r on rows: the layer of a volume (VOL-1), or the depth that a texture of depths is compared with (SHD-1).
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::depth::{UNKNOWN, floor, word};
 use super::direction::{Looking, positive};
-use super::fetch::{PerLane, entry};
+use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
-use super::table::{self, Axis};
-use super::triangle::{Bounds, PixelBatch, Planes, Setup, Varying};
-use super::{CompiledDraw, Reason, Sampler};
+use super::table;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::depth;
 use crate::raster::interpolate::Sample;
@@ -17,28 +17,15 @@ use crate::state::DepthFormat;
 use crate::texture::place::{Place, layer_planes};
 use crate::texture::planned::PlannedUnit;
 
-/// What a sampler takes r for.
-#[derive(Clone, Debug)]
-pub(crate) enum Third {
-    /// The layer of a volume: a sampler whose coordinates are both r, and where its layers lie.
-    Layer(Box<Sampler>, Axis),
-    /// Of that sampler: it counts layers.
-    Counts,
-    /// What depths in this format are compared with.
-    Reference(DepthFormat),
-}
-
-impl Third {
-    /// That of a unit, whose sampler is otherwise complete.
-    pub(super) fn from_unit(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
-        if let Some(axis) = table::layers(unit) {
-            let sides = [unit.layers; 2];
-            let counts = Sampler { sides, filters: false, table: None, third: Some(Third::Counts), ..sampler.clone() };
-            return Some(Third::Layer(Box::new(counts), axis));
-        }
-        let format = unit.format.depth().unwrap_or(DepthFormat::Z16);
-        table::compares_r(unit).map(|_| Third::Reference(format))
+/// What a sampler that is otherwise complete takes r for.
+pub(super) fn purpose(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
+    if let Some(axis) = table::layers(unit) {
+        let sides = [unit.layers; 2];
+        let counts = Sampler { sides, filters: false, table: None, third: Some(Third::Counts), ..sampler.clone() };
+        return Some(Third::Layer(Box::new(counts), axis));
     }
+    let format = unit.format.depth().unwrap_or(DepthFormat::Z16);
+    table::compares_r(unit).map(|_| Third::Reference(format))
 }
 
 /// The linear functions of r of a sampler.
@@ -128,30 +115,26 @@ impl Setup<'_> {
     pub(super) fn thirds<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
-        compiled: &CompiledDraw,
-        e: &[i64; 3],
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
-        varying: &mut Varying,
+        (compiled, planes): (&CompiledDraw, &[ThirdPlanes]),
+        local: &BatchSetup,
+        ([faces, references], layers): ([&mut [PerLane<u32>]; 2], &mut [PerLane<i32>; 2]),
+        (short, whole): (&mut Short, &mut PerLane<i32>),
     ) {
-        let Varying { faces, references, layers, whole, short, .. } = varying;
-        let all = compiled.samplers.iter().zip(&self.thirds).zip(faces).zip(references);
+        let all = compiled.samplers.iter().zip(planes).zip(faces).zip(references);
         for (((sampler, planes), faces), references) in all {
             match (&sampler.third, planes) {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
-                    let lines = (real, denominator);
-                    let work = (&mut **short, &mut whole[0]);
-                    self.layers::<FMA, ROW>(batch, counts, planes, e, lines, bounds, layers, faces, work);
+                    let work = (&mut *short, &mut *whole);
+                    self.layers::<FMA, ROW>(batch, counts, planes, local, layers, faces, work);
                     let (layers, faces) = (&mut layers[0][batch.lanes()], &mut faces[batch.lanes()]);
                     axis.reduce(layers);
                     for (face, layer) in faces.iter_mut().zip(layers) {
-                        *face = entry(axis, (*layer).max(axis.low).min(axis.high)) as u32;
+                        *face = axis.entry((*layer).max(axis.low).min(axis.high)) as u32;
                     }
                 }
                 (Some(Third::Reference(format)), ThirdPlanes::Reference(reference)) => {
                     let out = &mut references[batch.lanes()];
-                    let lines = (real, denominator);
-                    if self.references::<FMA, ROW>(batch.at, *format, reference, lines, bounds, out) {
+                    if self.references::<FMA, ROW>(batch.at, *format, reference, local, out) {
                         self.defined_references(batch, sampler, *format, out);
                     }
                 }
@@ -168,9 +151,7 @@ impl Setup<'_> {
         batch: PixelBatch<'_>,
         counts: &Sampler,
         planes: &Planes,
-        e: &[i64; 3],
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
         layers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
         (short, whole): (&mut Short, &mut PerLane<i32>),
@@ -179,13 +160,12 @@ impl Setup<'_> {
             Planes::Plane(planes) => {
                 let [first, second] = layers;
                 let (first, second) = (&mut first[batch.lanes()], &mut second[batch.lanes()]);
-                let lines = (real, denominator);
-                self.on_planes::<FMA, ROW>(batch, planes, 0, e, lines, bounds, first, second, whole);
+                self.on_planes::<FMA, ROW>(batch, planes, 0, local, first, second, whole);
                 true
             }
             Planes::Ratio(planes, reach) => {
-                let looking = Looking::new(planes, real, bounds);
-                self.projected::<FMA, ROW>(batch, counts, planes, *reach, &looking, bounds, short, layers, faces)
+                let looking = Looking::new(planes, local);
+                self.projected::<FMA, ROW>(batch, counts, planes, *reach, &looking, local, short, layers, faces)
             }
             _ => false,
         };
@@ -201,8 +181,7 @@ impl Setup<'_> {
         at: Positions<'_>,
         format: DepthFormat,
         reference: &Reference,
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
+        local: &BatchSetup,
         out: &mut [u32],
     ) -> bool {
         let (lines, off) = match reference {
@@ -211,13 +190,13 @@ impl Setup<'_> {
                 return false;
             }
             Reference::Plane(plane, scale) => {
-                let off = self.margin::<ROW>(plane, real, bounds) * scale;
-                ((plane.line(real).times(*scale), denominator), off)
+                let off = self.margin::<ROW>(plane, local) * scale;
+                ((plane.line(&local.real).times(*scale), local.denominator), off)
             }
             Reference::Ratio(planes, scale) => {
-                let looking = Looking::new(planes, real, bounds);
+                let looking = Looking::new(planes, local);
                 let [r, _, q] = looking.lines;
-                let (off, _) = looking.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], bounds), *scale);
+                let (off, _) = looking.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], local), *scale);
                 ((r.times(*scale), q), off)
             }
             Reference::Other => (Default::default(), f64::NAN),
