@@ -1,6 +1,7 @@
 //! What `docs/architecture.md` says of the modules' dependencies holds in the sources.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::circles::circles;
 use crate::pages;
 use crate::repository::{at, name};
 use std::path::{Path, PathBuf};
@@ -28,7 +29,7 @@ fn sources(folder: &str) -> Vec<(String, String)> {
         .into_iter()
         .map(|path| {
             let text = std::fs::read_to_string(&path).unwrap();
-            let code = text.split("#[cfg(test)]").next().unwrap().lines();
+            let code = text.split("\nmod tests {").next().unwrap().lines();
             let code: Vec<&str> = code.filter(|line| !line.trim_start().starts_with("//")).collect();
             (name(&path), code.join("\n"))
         })
@@ -222,4 +223,23 @@ fn recipes_run_what_there_is() {
     for program in programs.into_iter().filter(|program| !["cargo", "@just"].contains(program)) {
         assert!(at(program).is_file(), "the justfile runs {program}");
     }
+}
+
+#[test]
+fn no_circle_of_imports_spans_more_than_two_files() {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(at("src")).unwrap() {
+        let folder = name(&entry.unwrap().path());
+        let prefix = format!("{folder}/");
+        let files: Vec<(String, String)> = sources(&folder)
+            .into_iter()
+            .filter_map(|(file, text)| Some((file.strip_prefix(&prefix)?.to_owned(), text)))
+            .filter(|(file, _)| file.ends_with(".rs") && !file.starts_with("examples/") && !file.starts_with("tests/"))
+            .collect();
+        assert!(!files.is_empty(), "{folder} has no sources");
+        for circle in circles(&files).into_iter().filter(|circle| circle.len() > 2) {
+            found.extend(circle.iter().map(|(file, used)| format!("{prefix}{file} imports {}", used.join(", "))));
+        }
+    }
+    assert!(found.is_empty(), "files that import one another:\n{}", found.join("\n"));
 }

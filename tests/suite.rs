@@ -36,6 +36,7 @@ mod assets_output;
 mod assets_scenes;
 mod bad_scenes;
 mod captures;
+mod circles;
 mod cli;
 mod cli_chart;
 mod cli_compare;

@@ -2,43 +2,19 @@
 
 use std::ops::RangeInclusive;
 
-use super::lower::{alpha_reference, viewer};
-use super::outline::{Described, Form, Kind};
-use super::raw::Raw;
-use super::reader::{Name, Reader, quoted};
+use super::form::{Described, Form, Kind};
+use super::raw::{Numbers, Raw};
+use super::reader::{Name, Reader, Valued, quoted};
 use super::source::{AlphaReference, ViewerWord};
+use super::wording::shorten;
 use ninebit::limits::Limits;
+use ninebit::number::convert::constant;
 use ninebit::state::Named;
 use ninebit::vertex::Viewer;
-
-/// A structure has no field of this name.
-pub(super) const UNKNOWN: &str = "NB0201";
-/// A field is missing that has no default.
-pub(super) const MISSING: &str = "NB0202";
-/// A field is given twice.
-pub(super) const TWICE: &str = "NB0203";
-/// A value is none of the words.
-pub(super) const WORD: &str = "NB0204";
-/// A value is of another kind.
-pub(super) const KIND: &str = "NB0205";
-/// A value is out of range.
-pub(super) const RANGE: &str = "NB0206";
-/// A number is not finite.
-pub(super) const FINITE: &str = "NB0207";
-/// There are too few values or too many.
-pub(super) const COUNT: &str = "NB0211";
+use ninebit_program::{finding, warning};
 
 /// Words beyond so many stand in the text of the document.
 const MAX_WORDS: usize = 9;
-
-/// What a text stands for that needs nothing but itself.
-pub(super) trait Valued<'a>: Sized {
-    /// What is read of it.
-    type Value;
-
-    /// Reads it; `None` once the reason has been recorded.
-    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Value>;
-}
 
 /// A value that may be a default.
 pub(super) trait Shown<'a>: Valued<'a> {
@@ -67,6 +43,28 @@ valued!(
     AlphaReference => u8: alpha_reference
 );
 
+/// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
+fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, AlphaReference>) -> Option<u8> {
+    if let ("Float", rest) = raw.split() {
+        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1..=1, [0.0; 4])?;
+        return Some(constant(value));
+    }
+    let Some(word) = reader.attempt::<u32>(raw.text) else {
+        let place = reader.span(raw);
+        let message = format!("expected an alpha reference, found `{}`", shorten(raw.text));
+        let help = "write a byte, `128`, or a float, `Float(0.5)`";
+        return reader.refuse(finding("NB0205", place, message, "wrong kind of value", help));
+    };
+    let byte = word as u8;
+    if u32::from(byte) != word {
+        let place = reader.span(raw);
+        let message = format!("an alpha reference has eight bits: {word:#x} counts as {byte}");
+        let help = format!("write {byte} if that is what is meant");
+        reader.push(warning("NB0914", place, message, "more than eight bits", help).rule("ROP-1"));
+    }
+    Some(byte)
+}
+
 impl<'a, T: Named> Valued<'a> for Name<T> {
     type Value = T;
 
@@ -84,8 +82,17 @@ impl<'a, T: Named> Shown<'a> for Name<T> {
 impl<'a> Valued<'a> for ViewerWord {
     type Value = Viewer;
 
+    /// `Local`, `Infinite`, or `Infinite(x, y, z)`.
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Viewer> {
-        viewer(reader, raw)
+        const VIEWERS: &[&str] = &["Local", "Infinite"];
+        match reader.variant_of(raw, "viewer", VIEWERS, 1)? {
+            (0, _) => Some(Viewer::Local),
+            (_, "") => Some(Viewer::FAR),
+            (_, rest) => {
+                let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3..=3, [0.0; 4])?;
+                Some(Viewer::Infinite([x, y, z]))
+            }
+        }
     }
 }
 

@@ -1,68 +1,18 @@
 //! A scene's text as a tree of values with their places, so that a program can change one value and leave all other text as it is.
 //!
-//! What may stand where is read off the types of `source`: each says its `Form`. The text is taken apart at its brackets, as the reader
+//! What may stand where is read off the types of a scene: each says its `Form`. The text is taken apart at its brackets, as the reader
 //! does; what is written in an unusual way is one value without parts.
 
 use std::ops::Range;
 
 use super::fields as source;
+pub use super::form::Kind;
+use super::form::{Described, Entry, Form, described};
 use super::notation::Notation;
-use super::raw::{Entries, Few, Raw, Reserved, Tuple};
-use super::reader::Name;
-use ninebit::state::Named;
+use super::raw::Raw;
 
 /// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
 const MAX_VALUES: usize = 4000;
-
-/// A name, and what its value may be.
-type Entry = (&'static str, fn() -> Form);
-
-/// What a value may be.
-#[derive(Clone, Copy)]
-pub(super) enum Form {
-    /// Fields in parentheses: names, and the form of each.
-    Fields(fn() -> Vec<Entry>),
-    /// A list in square brackets.
-    List(fn() -> Form),
-    /// Values in parentheses without names.
-    Tuple(fn() -> Form),
-    /// A table in braces.
-    Table(fn() -> Form),
-    /// A word, and in parentheses what belongs to it.
-    Variant(&'static [Entry]),
-    /// This, or a text that names something: of a texture unit, its texture.
-    OrName(fn() -> Form, &'static str),
-    /// A value without parts.
-    Value(Kind),
-}
-
-/// What a value without parts is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// A colour: three or four bytes in parentheses, or `Float(...)`, or a name.
-    Color,
-    /// A whole number.
-    Whole {
-        /// The largest.
-        most: u32,
-    },
-    /// A number.
-    Number,
-    /// Up to four numbers in parentheses.
-    Numbers,
-    /// One of some words.
-    Choice(&'static [&'static str]),
-    /// A text in quotes.
-    Text,
-    /// Anything else.
-    Other,
-}
-
-/// A type of which it is known what its values look like.
-pub(super) trait Described {
-    /// What they look like.
-    fn form() -> Form;
-}
 
 /// A value in a scene's text.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,16 +146,7 @@ fn values(fields: impl Iterator<Item = Entry>) -> Vec<(&'static str, Kind)> {
     fields.filter_map(value).collect()
 }
 
-macro_rules! described {
-    ($($($type:ty),+ => $form:expr;)+) => { $($(impl Described for $type { fn form() -> Form { $form } })+)+ };
-}
 described! {
-    String => Form::Value(Kind::Text);
-    u8 => Form::Value(Kind::Whole { most: 255 });
-    u32 => Form::Value(Kind::Whole { most: u32::MAX });
-    f32 => Form::Value(Kind::Number);
-    bool => Form::Value(Kind::Choice(&["false", "true"]));
-    Few<f32> => Form::Value(Kind::Numbers);
     source::Color => Form::Value(Kind::Color);
     source::VertexSource => Form::Variant(&[
         ("Window", source::VertexList::form),
@@ -216,29 +157,9 @@ described! {
     source::Program => Form::Variant(&[("Combiners", source::Combiners::form)]);
     source::BlendSource => Form::OrName(source::Blend::form, "equation");
     source::Unit => Form::OrName(source::UnitState::form, "texture");
-    Vec<u32>, Reserved, source::Matrix, source::MeshSource, source::ImageSource, source::ShaderStage, source::ShaderOperation,
+    source::Matrix, source::MeshSource, source::ImageSource, source::ShaderStage, source::ShaderOperation,
     source::Attribute, source::ShaderConstant, source::CoordinateSource, source::Generator, source::Input, source::FinalInput,
     source::Output, source::NormalSource, source::StageArgument, source::TransformFlags, source::Word, source::ViewerWord, source::AlphaReference => Form::Value(Kind::Other);
-}
-impl<T: Named> Described for Name<T> {
-    fn form() -> Form {
-        Form::Value(Kind::Choice(T::NAMES))
-    }
-}
-impl<T: Described> Described for Vec<Raw<'_, T>> {
-    fn form() -> Form {
-        Form::List(T::form)
-    }
-}
-impl<T: Described> Described for Entries<'_, T> {
-    fn form() -> Form {
-        Form::Table(T::form)
-    }
-}
-impl<T: Described> Described for Tuple<'_, T> {
-    fn form() -> Form {
-        Form::Tuple(T::form)
-    }
 }
 
 #[cfg(test)]

@@ -7,8 +7,7 @@ use std::path::Path;
 
 use super::assets::Assets;
 use super::diagnostic::{Diagnostic, needs_nv2a};
-use super::field::{COUNT, FINITE, KIND, MISSING, RANGE, TWICE, UNKNOWN, Valued, WORD};
-use super::lower::{Names, Targets, Textures};
+use super::names::{Names, Targets, Textures};
 use super::notation::{Fault, FaultKind, Notation};
 use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
 use super::source::{Expected, Mismatch};
@@ -17,6 +16,32 @@ use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
 use ninebit_program::finding;
+
+/// A structure has no field of this name.
+pub(super) const UNKNOWN: &str = "NB0201";
+/// A field is missing that has no default.
+pub(super) const MISSING: &str = "NB0202";
+/// A field is given twice.
+pub(super) const TWICE: &str = "NB0203";
+/// A value is none of the words.
+pub(super) const WORD: &str = "NB0204";
+/// A value is of another kind.
+pub(super) const KIND: &str = "NB0205";
+/// A value is out of range.
+pub(super) const RANGE: &str = "NB0206";
+/// A number is not finite.
+pub(super) const FINITE: &str = "NB0207";
+/// There are too few values or too many.
+pub(super) const COUNT: &str = "NB0211";
+
+/// What a text stands for that needs nothing but itself.
+pub(super) trait Valued<'a>: Sized {
+    /// What is read of it.
+    type Value;
+
+    /// Reads it; `None` once the reason has been recorded.
+    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Value>;
+}
 
 /// Findings beyond this many are only counted.
 const MAX_DIAGNOSTICS: usize = 64;

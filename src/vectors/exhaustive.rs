@@ -7,9 +7,9 @@
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
-use super::{Column, Conditions, Part, Unit, cases};
+use super::digest::{BUFFER, Digesting, Output};
+use super::{Conditions, Part, Unit, cases};
 use ninebit::state::{Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
@@ -21,9 +21,6 @@ pub const MAX_LEAVES: u64 = 1024;
 
 /// The most rows that a sweep may have: beyond it nobody waits for the end.
 pub const MAX_ROWS: u64 = 1 << 40;
-
-/// Bytes that are hashed at once.
-const BUFFER: usize = 1 << 16;
 
 /// The digest of a range of rows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,35 +55,6 @@ pub struct Exhaustive {
     results: usize,
 }
 
-/// A result column that is hashed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Output {
-    /// Its place among the results.
-    pub(super) index: usize,
-    /// How many bytes a number takes.
-    pub(super) bytes: usize,
-    least: i64,
-    greatest: i64,
-}
-
-impl Output {
-    /// Those of a unit with these results.
-    pub(super) fn from_columns(results: &[Column]) -> Vec<Output> {
-        let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
-        let output = |(index, column): (usize, &Column)| {
-            let (least, greatest) = column.kind.range();
-            Output { index, bytes: column.kind.bits().div_ceil(8) as usize, least, greatest }
-        };
-        outputs.map(output).collect()
-    }
-
-    /// A number out of its bytes.
-    pub(super) fn read(&self, bytes: &[u8]) -> i64 {
-        let negative = self.least < 0 && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
-        bytes.iter().rev().fold(if negative { -1 } else { 0 }, |number, byte| number << 8 | i64::from(*byte))
-    }
-}
-
 impl Exhaustive {
     /// Of a whole unit; `None` if it has more than [`MAX_ROWS`] rows.
     pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Exhaustive> {
@@ -117,83 +85,57 @@ impl Exhaustive {
 
     /// Computes a leaf.
     pub fn leaf(&self, index: u64) -> Leaf {
-        let mut digest = Digesting::new(self);
-        digest.rows(self.range(index));
+        let mut digest = Digesting::new(&self.outputs);
+        self.digest_rows(self.range(index), &mut digest);
         let [low, high] = digest.ends;
         Leaf { index, rows: digest.rows, low, high, sha256: hexadecimal(&digest.finish()) }
     }
 
     /// The SHA-256 of a range of rows.
     pub fn digest(&self, range: Range<u64>) -> [u8; 32] {
-        let mut digest = Digesting::new(self);
-        digest.rows(range);
+        let mut digest = Digesting::new(&self.outputs);
+        self.digest_rows(range, &mut digest);
         digest.finish()
-    }
-}
-
-/// A digest under way.
-#[derive(Debug)]
-pub struct Digesting<'s> {
-    sweep: &'s Exhaustive,
-    hash: Sha256,
-    /// Longer than [`BUFFER`] by a row, each number of which is written as eight bytes.
-    buffer: Vec<u8>,
-    /// Bytes of it that wait for the hash.
-    filled: usize,
-    /// Bytes of a row.
-    width: usize,
-    /// Block lanes are used where the unit has them.
-    blocks: bool,
-    rows: u64,
-    /// Rows at the lower and at the upper end.
-    ends: [u64; 2],
-}
-
-impl<'s> Digesting<'s> {
-    fn new(sweep: &'s Exhaustive) -> Self {
-        Digesting {
-            sweep,
-            hash: Sha256::new(),
-            buffer: vec![0; BUFFER + 8 * sweep.outputs.len()],
-            filled: 0,
-            width: sweep.outputs.iter().map(|output| output.bytes).sum(),
-            blocks: true,
-            rows: 0,
-            ends: [0; 2],
-        }
     }
 
     /// Goes over a range in runs of which only one input varies: the last that has more than one number.
-    fn rows(&mut self, range: Range<u64>) {
-        let columns = self.sweep.part.columns();
+    fn digest_rows(&self, range: Range<u64>, digest: &mut Digesting<'_>) {
+        let columns = self.part.columns();
         let Some(varying) = columns.iter().rposition(|column| column.size() > 1).or(columns.len().checked_sub(1))
         else {
             return;
         };
         let column = &columns[varying];
-        let conditions = Conditions { profile: self.sweep.profile, policies: Policies::DEFAULT };
+        let conditions = Conditions { profile: self.profile, policies: Policies::DEFAULT };
         // A column that others follow is set together with them, row by row.
-        let most = if self.sweep.part.is_followed(varying) { 1 } else { (BUFFER / self.width) as u64 };
+        let most = if self.part.is_followed(varying) { 1 } else { (BUFFER / digest.width) as u64 };
         let length = column.size() as u64;
         let mut inputs = vec![0; columns.len()];
-        let mut results = vec![0; self.sweep.results];
+        let mut results = vec![0; self.results];
         let mut place = range.start;
         while place < range.end {
             let start = place % length;
             let run = (length - start).min(range.end - place).min(most);
             cases::nth(columns, u128::from(place), &mut inputs);
-            self.sweep.part.tie(&mut inputs);
-            if !self.block(&mut inputs, varying, run, &conditions) {
-                self.sweep.unit.run(&mut inputs, varying, column, start..start + run, &conditions, &mut results, self);
+            self.part.tie(&mut inputs);
+            if !self.block(&mut inputs, varying, run, &conditions, digest) {
+                self.unit.run(&mut inputs, varying, column, start..start + run, &conditions, &mut results, digest);
             }
             place += run;
         }
     }
 
     /// A run in block lanes, if the unit has them, and no row that has no results.
-    fn block(&mut self, inputs: &mut [i64], varying: usize, run: u64, conditions: &Conditions) -> bool {
-        let (unit, columns) = (self.sweep.unit, self.sweep.part.columns());
-        if !self.blocks || !columns[varying].counts() {
+    fn block(
+        &self,
+        inputs: &mut [i64],
+        varying: usize,
+        run: u64,
+        conditions: &Conditions,
+        digest: &mut Digesting<'_>,
+    ) -> bool {
+        let (unit, columns) = (self.unit, self.part.columns());
+        if !digest.blocks || !columns[varying].counts() {
             return false;
         }
         let first = inputs[varying];
@@ -203,48 +145,19 @@ impl<'s> Digesting<'s> {
         if !goes || !unit.accepts(inputs, conditions.profile) {
             return false;
         }
-        let bytes = self.width * run as usize;
-        if self.filled + bytes > BUFFER {
-            self.flush();
+        let bytes = digest.width * run as usize;
+        if digest.filled + bytes > BUFFER {
+            digest.flush();
         }
-        let Some(ends) = unit.block(inputs, varying, conditions, &mut self.buffer[self.filled..self.filled + bytes])
+        let Some(ends) =
+            unit.block(inputs, varying, conditions, &mut digest.buffer[digest.filled..digest.filled + bytes])
         else {
             return false;
         };
-        self.filled += bytes;
-        self.rows += run;
-        self.ends = [self.ends[0] + ends[0], self.ends[1] + ends[1]];
+        digest.filled += bytes;
+        digest.rows += run;
+        digest.ends = [digest.ends[0] + ends[0], digest.ends[1] + ends[1]];
         true
-    }
-
-    /// The results of the next row.
-    #[inline]
-    pub fn take(&mut self, results: &[i64]) {
-        let (mut low, mut high) = (false, false);
-        for output in &self.sweep.outputs {
-            let value = results[output.index];
-            low |= value == output.least;
-            high |= value == output.greatest;
-            // Eight bytes whatever the width: what is too much is written over by the next number.
-            self.buffer[self.filled..self.filled + 8].copy_from_slice(&value.to_le_bytes());
-            self.filled += output.bytes;
-        }
-        self.rows += 1;
-        self.ends[0] += u64::from(low);
-        self.ends[1] += u64::from(high);
-        if self.filled >= BUFFER {
-            self.flush();
-        }
-    }
-
-    fn flush(&mut self) {
-        self.hash.update(&self.buffer[..self.filled]);
-        self.filled = 0;
-    }
-
-    fn finish(mut self) -> [u8; 32] {
-        self.flush();
-        self.hash.finalize().into()
     }
 }
 
@@ -272,11 +185,11 @@ mod tests {
         let drawn = (0..starts).map(|_| random.below(u128::from(sweep.size - rows + 1)) as u64);
         for start in [0, sweep.size - rows].into_iter().chain(drawn) {
             let range = start..start + rows;
-            let mut plain = Digesting::new(sweep);
+            let mut plain = Digesting::new(&sweep.outputs);
             plain.blocks = false;
-            plain.rows(range.clone());
-            let mut blocks = Digesting::new(sweep);
-            blocks.rows(range);
+            sweep.digest_rows(range.clone(), &mut plain);
+            let mut blocks = Digesting::new(&sweep.outputs);
+            sweep.digest_rows(range, &mut blocks);
             let name = format!("{} {:?} from {start}", sweep.unit.name(), sweep.part.texts());
             assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name}");
             assert_eq!(blocks.finish(), plain.finish(), "{name}");

@@ -1,6 +1,6 @@
 //! Rows of a table in block lanes, where the unit has them: what sweeps are made of is held to the same rows.
 
-use super::exhaustive::Output;
+use super::digest::Output;
 use super::{Column, Conditions, Unit};
 
 /// Rows that are computed together, the wanted one among them: more than two groups of sixteen.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Column;
-use super::exhaustive::Digesting;
+use super::digest::Digesting;
 use ninebit::state::{POLICIES, Policies, Policy, Profile, named};
 use ninebit::trace::Recorder;
 

@@ -9,7 +9,7 @@ use ninebit_scene::diff::{self, Options};
 use ninebit_scene::image::Rgba;
 use serde_json::{Value, json};
 
-use crate::session::Refused;
+use crate::Refused;
 
 /// An answer and its picture.
 type Shown = (Value, Vec<[u8; 4]>);

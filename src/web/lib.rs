@@ -11,3 +11,6 @@ mod shader;
 mod tree;
 
 pub use session::Session;
+
+/// What a request needs and does not say, or what it says and is not so.
+pub(crate) type Refused = String;

@@ -8,7 +8,7 @@ use ninebit_program::text::print;
 use ninebit_scene::outline::{Content, Node, outline};
 use serde_json::{Value, json};
 
-use crate::session::Refused;
+use crate::Refused;
 
 /// A draw's program.
 pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {

@@ -13,7 +13,7 @@ use ninebit_scene::image::{ImageLimits, Rgba, decode};
 use ninebit_scene::{Loaded, SceneError, parse_with, render};
 use serde_json::{Value, json};
 
-use crate::{frame, program, shader, tree};
+use crate::{Refused, frame, program, shader, tree};
 
 /// A scene, the files that it names, and the latest picture.
 ///
@@ -47,9 +47,6 @@ pub struct Session {
     second: Option<Rgba>,
     picture: Vec<[u8; 4]>,
 }
-
-/// What a request needs and does not say, or what it says and is not so.
-pub(crate) type Refused = String;
 
 impl Session {
     /// Answers a request; `file` is what came with it.

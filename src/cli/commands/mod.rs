@@ -1,5 +1,6 @@
 //! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
 
+mod arguments;
 mod bench;
 mod captures;
 mod chart;
@@ -34,13 +35,13 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::shown;
-use ninebit::state::Named;
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
-use ninebit_files::output::{OutputError, write_json, write_text};
+use ninebit_files::output::OutputError;
 
+use arguments::{Context, Format, FormatArguments, named, one_of, up_to};
 use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
@@ -122,65 +123,6 @@ enum Command {
     /// Make textures: height fields, normal maps, cube maps of vectors, tables of powers
     #[command(subcommand)]
     Generate(generate::Command),
-}
-
-/// How a command prints its data.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs: one JSON document
-    Json,
-}
-
-impl Format {
-    /// Prints data in this form.
-    fn print(self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
-        let printed = match self {
-            Format::Text => write_text(&text()),
-            Format::Json => write_json(&json()),
-        };
-        Ok(printed?)
-    }
-}
-
-/// `--format`, where `--json` was once all that there was.
-#[derive(Debug, Args)]
-struct FormatArguments {
-    /// How to print the result
-    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
-    format: Format,
-    #[arg(long, hide = true)]
-    json: bool,
-}
-
-impl FormatArguments {
-    fn get(&self) -> Format {
-        if self.json { Format::Json } else { self.format }
-    }
-}
-
-/// The place of a text among names, upper and lower case alike.
-fn one_of(names: &[&str], text: &str) -> Result<usize, String> {
-    let found = names.iter().position(|name| name.eq_ignore_ascii_case(text));
-    found.ok_or_else(|| format!("not one of {}", names.join(", ")))
-}
-
-/// Reads one of an enumeration's names, upper and lower case alike.
-fn named<T: Named>(text: &str) -> Result<T, String> {
-    one_of(T::NAMES, text).map(|index| T::ALL[index])
-}
-
-/// Reads a whole number from 0 to `MOST`.
-fn up_to<const MOST: usize>(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|number| *number <= MOST).ok_or_else(|| format!("not a number from 0 to {MOST}"))
-}
-
-/// What every command may use.
-#[derive(Clone, Copy, Debug)]
-struct Context {
-    /// Messages on stderr are coloured.
-    color: bool,
 }
 
 /// Runs the program.

@@ -6,6 +6,7 @@ mod final_part;
 mod parser;
 mod portion;
 mod print;
+mod statements;
 pub mod words;
 
 use super::Places;

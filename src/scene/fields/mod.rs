@@ -24,10 +24,10 @@ mod texture;
 use std::fmt::Write;
 
 use super::field::*;
+use super::form::{Described, Form};
 use super::notation::Notation;
-use super::outline::{Described, Form};
 use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
-use super::reader::{Name, Reader};
+use super::reader::{COUNT, FINITE, KIND, MISSING, Name, RANGE, Reader, TWICE, UNKNOWN, Valued, WORD};
 pub(crate) use super::source::*;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{self, VertexColor};

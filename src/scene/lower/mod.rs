@@ -41,17 +41,12 @@ use super::raw::{Entries, Numbers, Raw, Tuple};
 use super::reader::{Reader, too_many};
 use super::wording::shorten;
 use crate::truth::Truth;
-pub(super) use names::Names;
 use ninebit::diagnostic::File;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit_program::{finding, warning};
 pub use program::ProgramLanguage;
 pub(super) use program_file::program_file;
-pub(super) use raster::alpha_reference;
-pub(super) use target::Targets;
-pub(super) use texgen::viewer;
-pub(super) use texture::Textures;
 
 /// Bytes of the text.
 type Span = std::ops::Range<usize>;

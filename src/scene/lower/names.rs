@@ -1,66 +1,20 @@
 //! The tables of values that are defined once and used by name.
 
-use std::collections::HashMap;
+use std::any::Any;
 use std::rc::Rc;
 
 use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
-use crate::field::Valued;
 use crate::mesh::Mesh;
-use crate::reader::Entry;
-use crate::wording::closest;
+use crate::names::{Index, Known, State, Table};
+use crate::reader::{Entry, Valued};
 use ninebit::vertex::Rows;
 
 /// Longest chain of names that stand for names.
 const LONGEST_CHAIN: usize = 32;
 
-/// Names of one kind, where each is defined, and whether something uses it.
-#[derive(Default)]
-pub(crate) struct Index {
-    what: &'static str,
-    /// How to define one.
-    define: String,
-    /// Numbers of those that are listed; of others nothing is known, and nothing said.
-    by_name: HashMap<String, Option<usize>>,
-    list: Vec<Known>,
-    /// There are more of which nothing is known, and nothing said.
-    pub(super) unread: bool,
-}
-
-struct Known {
-    name: String,
-    place: Span,
-    /// What is wrong keeps its name but has no index.
-    index: Option<usize>,
-    used: bool,
-}
-
 impl Index {
-    pub(super) fn new(what: &'static str, define: impl Into<String>) -> Self {
-        Index { what, define: define.into(), ..Index::default() }
-    }
-
-    pub(super) fn add(&mut self, name: String, place: Span, index: Option<usize>) {
-        self.by_name.insert(name.clone(), Some(self.list.len()));
-        self.list.push(Known { name, place, index, used: false });
-    }
-
-    /// Names of which nothing is known.
-    pub(super) fn without(&mut self, names: impl Iterator<Item = String>) {
-        self.by_name = names.map(|name| (name, None)).collect();
-    }
-
-    /// Where a name of the list is defined.
-    pub(super) fn place(&self, number: usize) -> Span {
-        self.list.get(number).map(|known| known.place.clone()).unwrap_or_default()
-    }
-
-    /// Where that name is defined.
-    pub(super) fn place_of(&self, name: &str) -> Option<Span> {
-        self.by_name.get(name)?.map(|number| self.place(number))
-    }
-
     /// The index of that name; `None` once the reason has been recorded. `of`: this, in the reader.
     pub(super) fn find<'a>(
         reader: &mut Reader<'a>,
@@ -83,20 +37,6 @@ impl Index {
         reader.refuse(unknown)
     }
 
-    /// The finding that a name is not defined.
-    fn unknown(&self, name: &str, place: Span) -> Diagnostic {
-        let known = self.list.iter().map(|known| known.name.as_str());
-        let help = match closest(name, known.clone()) {
-            Some(known) => format!("did you mean \"{}\"?", shorten(known)),
-            None => {
-                let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
-                let define = &self.define;
-                if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
-            }
-        };
-        finding("NB0208", place, format!("there is no {} \"{}\"", self.what, shorten(name)), "not defined", help)
-    }
-
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
         for Known { name, place, .. } in self.list.iter().filter(|known| !known.used) {
             let message = format!("the {} \"{}\" is not used", self.what, shorten(name));
@@ -106,35 +46,16 @@ impl Index {
     }
 }
 
-enum State<T> {
-    Waiting,
-    Active,
-    /// `None`: the definition is wrong, which has been recorded.
-    Done(Option<T>),
-}
-
-/// One table: definitions written as `S`.
-pub(crate) struct Table<'a, S: Tabled<'a>> {
-    index: Index,
-    definitions: Vec<(Raw<'a, S>, State<S::Meaning>)>,
-}
-
-impl<'a, S: Tabled<'a>> Default for Table<'a, S> {
-    fn default() -> Self {
-        Table { index: Index::default(), definitions: Vec::new() }
-    }
-}
-
 /// What is written in a table of definitions, and elsewhere as such or as the name of one.
 pub(crate) trait Tabled<'a>: Sized + 'static {
     /// What it means.
-    type Meaning: Clone;
+    type Meaning: Clone + 'static;
 
     /// Reads one that is no name.
     fn literal(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Meaning>;
 
     /// Where those with names are.
-    fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a, Self>;
+    fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a>;
 }
 
 impl<'a, S: Tabled<'a>> Valued<'a> for S {
@@ -155,9 +76,9 @@ fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_nam
     let Table { index, definitions } = S::table(reader);
     let place = index.place(number);
     let (raw, state) = &mut definitions[number];
-    let raw = *raw;
+    let raw = raw.as_other::<S>();
     match state {
-        State::Done(value) => return value.clone(),
+        State::Done(value) => return value.as_ref().and_then(|value| value.downcast_ref().cloned()),
         State::Active => {
             let message = format!("the {} \"{}\" is defined by itself", index.what, shorten(&index.list[number].name));
             let help = "give one of the names in the circle a value of its own";
@@ -176,7 +97,7 @@ fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_nam
         let (message, help) = ("a definition here is a value, not another name", "use that name directly in the draws");
         reader.refuse(finding("NB0205", reader.span(&raw), message, "a name", help))
     };
-    S::table(reader).definitions[number].1 = State::Done(value.clone());
+    S::table(reader).definitions[number].1 = State::Done(value.clone().map(|value| Box::new(value) as Box<dyn Any>));
     value
 }
 
@@ -189,7 +110,7 @@ fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries:
         table.index.add(entry.name, entry.place, Some(number));
         // Other scenes may use what is shared.
         table.index.list[number].used = entry.shared;
-        table.definitions.push((entry.value, State::Waiting));
+        table.definitions.push((entry.value.as_other(), State::Waiting));
     }
     for number in 0..count {
         defined::<S>(reader, number, chains);
@@ -200,14 +121,6 @@ fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries:
 /// is read that is no name.
 macro_rules! tables {
     ($($table:ident $chains:literal, $what:literal: $source:ty => $meaning:ty, |$reader:ident, $raw:ident| $read:expr;)+) => {
-        /// All tables.
-        #[derive(Default)]
-        pub(crate) struct Names<'a> {
-            /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.
-            pub(super) mesh_files: HashMap<String, Option<Arc<Mesh>>>,
-            $($table: Table<'a, $source>),+
-        }
-
         $(impl<'a> Tabled<'a> for $source {
             type Meaning = $meaning;
 
@@ -215,7 +128,7 @@ macro_rules! tables {
                 $read
             }
 
-            fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a, Self> {
+            fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a> {
                 &mut reader.names.$table
             }
         })+

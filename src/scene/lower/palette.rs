@@ -1,14 +1,7 @@
 //! Palettes: the colours that texels of P8 stand for.
 
-use super::names::Index;
 use super::*;
-
-/// The palettes, and where they were named.
-#[derive(Default)]
-pub(crate) struct Palettes {
-    pub(super) list: Vec<Palette>,
-    pub(super) index: Index,
-}
+use crate::names::{Index, Palettes};
 
 impl Palettes {
     /// Adds one that is not found by name.

@@ -2,7 +2,6 @@
 
 use super::*;
 use ninebit::legality;
-use ninebit::number::convert::constant;
 
 /// The most columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;
@@ -69,28 +68,6 @@ fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>)
     let function = fields.function(reader);
     let reference = fields.reference(reader);
     Some(AlphaTest { function: reader.name(&function?)?, reference })
-}
-
-/// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
-pub(crate) fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaReference>) -> Option<u8> {
-    if let ("Float", rest) = raw.split() {
-        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1..=1, [0.0; 4])?;
-        return Some(constant(value));
-    }
-    let Some(word) = reader.attempt::<u32>(raw.text) else {
-        let place = reader.span(raw);
-        let message = format!("expected an alpha reference, found `{}`", shorten(raw.text));
-        let help = "write a byte, `128`, or a float, `Float(0.5)`";
-        return reader.refuse(finding("NB0205", place, message, "wrong kind of value", help));
-    };
-    let byte = word as u8;
-    if u32::from(byte) != word {
-        let place = reader.span(raw);
-        let message = format!("an alpha reference has eight bits: {word:#x} counts as {byte}");
-        let help = format!("write {byte} if that is what is meant");
-        reader.push(warning("NB0914", place, message, "more than eight bits", help).rule("ROP-1"));
-    }
-    Some(byte)
 }
 
 fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>) -> Option<DepthTest> {

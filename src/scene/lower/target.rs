@@ -1,21 +1,12 @@
 //! Render targets.
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
-use super::names::Index;
 use super::*;
+use crate::names::{Index, Targets};
 pub(super) use ninebit::diagnostic::needs_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;
 use ninebit::raster::depth;
-
-/// The targets, and where they were named.
-#[derive(Default)]
-pub(crate) struct Targets<'a> {
-    pub(super) list: Vec<Target>,
-    index: Index,
-    /// Targets that begin as a texture, which are read later.
-    begins: Vec<(usize, Raw<'a, String>)>,
-}
 
 impl Targets<'_> {
     /// A finding with the target's place beside it.

@@ -1,7 +1,6 @@
 //! How the coordinate sets of a draw are made: generators and texture matrices.
 
 use super::*;
-use ninebit::vertex::Viewer;
 use ninebit::vertex::texgen::{CoordinateSet, Emboss, Generator};
 use ninebit_program::texture_stages::Generation;
 
@@ -73,19 +72,6 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
         }
     }
     Some(set)
-}
-
-/// `Local`, `Infinite`, or `Infinite(x, y, z)`.
-pub(crate) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ViewerWord>) -> Option<Viewer> {
-    const VIEWERS: &[&str] = &["Local", "Infinite"];
-    match reader.variant_of(raw, "viewer", VIEWERS, 1)? {
-        (0, _) => Some(Viewer::Local),
-        (_, "") => Some(Viewer::FAR),
-        (_, rest) => {
-            let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3..=3, [0.0; 4])?;
-            Some(Viewer::Infinite([x, y, z]))
-        }
-    }
 }
 
 /// Generators of a whole set.

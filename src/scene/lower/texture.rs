@@ -1,24 +1,11 @@
 //! Textures: kind, format, and how faces and levels are put together.
 
-use super::names::Index;
-use super::palette::Palettes;
 use super::texture_levels::{self, Wanted};
 use super::texture_source::{self, Given, Request, Variant, only};
 use super::*;
+use crate::names::{Index, Textures};
 use crate::reader::Entry;
 use ninebit::rop::surface;
-
-/// The textures, and where they were named.
-#[derive(Default)]
-pub(crate) struct Textures {
-    pub(super) list: Vec<Texture>,
-    /// Palette of each texture of the list, where it has one of its own.
-    pub(super) palette_of: Vec<Option<usize>>,
-    pub(super) palettes: Palettes,
-    index: Index,
-    /// Bytes that textures may still take.
-    pub(super) left: u64,
-}
 
 impl Textures {
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {

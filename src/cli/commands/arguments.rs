@@ -1,0 +1,66 @@
+//! Arguments that several commands take, and what every command may use.
+
+use clap::{Args, ValueEnum};
+use ninebit::state::Named;
+use ninebit_files::output::{write_json, write_text};
+
+use super::exit::Failure;
+
+/// How a command prints its data.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Format {
+    /// For people
+    Text,
+    /// For programs: one JSON document
+    Json,
+}
+
+impl Format {
+    /// Prints data in this form.
+    pub(super) fn print(self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
+        let printed = match self {
+            Format::Text => write_text(&text()),
+            Format::Json => write_json(&json()),
+        };
+        Ok(printed?)
+    }
+}
+
+/// `--format`, where `--json` was once all that there was.
+#[derive(Debug, Args)]
+pub(super) struct FormatArguments {
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
+    format: Format,
+    #[arg(long, hide = true)]
+    json: bool,
+}
+
+impl FormatArguments {
+    pub(super) fn get(&self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
+}
+
+/// The place of a text among names, upper and lower case alike.
+pub(super) fn one_of(names: &[&str], text: &str) -> Result<usize, String> {
+    let found = names.iter().position(|name| name.eq_ignore_ascii_case(text));
+    found.ok_or_else(|| format!("not one of {}", names.join(", ")))
+}
+
+/// Reads one of an enumeration's names, upper and lower case alike.
+pub(super) fn named<T: Named>(text: &str) -> Result<T, String> {
+    one_of(T::NAMES, text).map(|index| T::ALL[index])
+}
+
+/// Reads a whole number from 0 to `MOST`.
+pub(super) fn up_to<const MOST: usize>(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|number| *number <= MOST).ok_or_else(|| format!("not a number from 0 to {MOST}"))
+}
+
+/// What every command may use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Context {
+    /// Messages on stderr are coloured.
+    pub(super) color: bool,
+}

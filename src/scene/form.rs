@@ -1,0 +1,89 @@
+//! What the values of a type look like in a scene's text.
+
+use super::raw::{Entries, Few, Raw, Reserved, Tuple};
+use super::reader::Name;
+use ninebit::state::Named;
+
+/// A name, and what its value may be.
+pub(super) type Entry = (&'static str, fn() -> Form);
+
+/// What a value may be.
+#[derive(Clone, Copy)]
+pub(super) enum Form {
+    /// Fields in parentheses: names, and the form of each.
+    Fields(fn() -> Vec<Entry>),
+    /// A list in square brackets.
+    List(fn() -> Form),
+    /// Values in parentheses without names.
+    Tuple(fn() -> Form),
+    /// A table in braces.
+    Table(fn() -> Form),
+    /// A word, and in parentheses what belongs to it.
+    Variant(&'static [Entry]),
+    /// This, or a text that names something: of a texture unit, its texture.
+    OrName(fn() -> Form, &'static str),
+    /// A value without parts.
+    Value(Kind),
+}
+
+/// What a value without parts is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A colour: three or four bytes in parentheses, or `Float(...)`, or a name.
+    Color,
+    /// A whole number.
+    Whole {
+        /// The largest.
+        most: u32,
+    },
+    /// A number.
+    Number,
+    /// Up to four numbers in parentheses.
+    Numbers,
+    /// One of some words.
+    Choice(&'static [&'static str]),
+    /// A text in quotes.
+    Text,
+    /// Anything else.
+    Other,
+}
+
+/// A type of which it is known what its values look like.
+pub(super) trait Described {
+    /// What they look like.
+    fn form() -> Form;
+}
+
+macro_rules! described {
+    ($($($type:ty),+ => $form:expr;)+) => { $($(impl Described for $type { fn form() -> Form { $form } })+)+ };
+}
+pub(super) use described;
+described! {
+    String => Form::Value(Kind::Text);
+    u8 => Form::Value(Kind::Whole { most: 255 });
+    u32 => Form::Value(Kind::Whole { most: u32::MAX });
+    f32 => Form::Value(Kind::Number);
+    bool => Form::Value(Kind::Choice(&["false", "true"]));
+    Few<f32> => Form::Value(Kind::Numbers);
+    Vec<u32>, Reserved => Form::Value(Kind::Other);
+}
+impl<T: Named> Described for Name<T> {
+    fn form() -> Form {
+        Form::Value(Kind::Choice(T::NAMES))
+    }
+}
+impl<T: Described> Described for Vec<Raw<'_, T>> {
+    fn form() -> Form {
+        Form::List(T::form)
+    }
+}
+impl<T: Described> Described for Entries<'_, T> {
+    fn form() -> Form {
+        Form::Table(T::form)
+    }
+}
+impl<T: Described> Described for Tuple<'_, T> {
+    fn form() -> Form {
+        Form::Tuple(T::form)
+    }
+}

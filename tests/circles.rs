@@ -1,0 +1,278 @@
+//! Which files of a crate import one another, read off their sources.
+//!
+//! A file imports what `use` takes, and what its text reaches by `crate`, `super`, or a module that `use` took. Not counted is a module that calls
+//! its own children by their names, or hands on what they hold: that is the way down, and the children's imports say whether there is one up.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The path of a module, from the root of its crate.
+type Module = Vec<String>;
+
+/// A file of a crate.
+struct Source {
+    module: Module,
+    /// What `use` brings into its scope: the name there, and the path.
+    imports: BTreeMap<String, Vec<String>>,
+    /// The paths of what it imports.
+    paths: Vec<Vec<String>>,
+    /// The paths of modules all of whose names it imports.
+    globs: Vec<Vec<String>>,
+    /// The names that its text has.
+    names: BTreeSet<String>,
+    /// Those that stand where an item is defined.
+    items: BTreeSet<String>,
+}
+
+/// Groups of files that all reach one another by imports, each file with what it imports of its group; those of one file are left out. A name
+/// counts for the file that holds its item, however many modules hand it on.
+///
+/// `files`: the names of a crate's files from its folder on, and their texts.
+pub fn circles(files: &[(String, String)]) -> Vec<BTreeMap<&str, Vec<&str>>> {
+    let uses = edges(files);
+    let reached: Vec<BTreeSet<usize>> = (0..uses.len()).map(|n| reach(&uses, n)).collect();
+    let groups: BTreeSet<BTreeSet<usize>> = (0..uses.len())
+        .map(|n| reached[n].iter().copied().filter(|other| reached[*other].contains(&n)).collect())
+        .collect();
+    let name = |n: &usize| files[*n].0.as_str();
+    let within = |n: &usize, group: &BTreeSet<usize>| (name(n), uses[*n].intersection(group).map(name).collect());
+    groups
+        .iter()
+        .filter(|group| group.len() > 1)
+        .map(|group| group.iter().map(|n| within(n, group)).collect())
+        .collect()
+}
+
+/// Of each file, which others hold what it names.
+fn edges(files: &[(String, String)]) -> Vec<BTreeSet<usize>> {
+    let sources: Vec<Source> = files.iter().map(|(name, text)| source(name, text)).collect();
+    let modules: BTreeMap<&[String], usize> =
+        sources.iter().enumerate().map(|(n, source)| (source.module.as_slice(), n)).collect();
+    (0..sources.len())
+        .map(|n| {
+            let Source { paths, globs, names, imports, items, .. } = &sources[n];
+            let free = || names.iter().filter(|name| !imports.contains_key(*name) && !items.contains(*name));
+            let globbed = globs.iter().flat_map(|glob| {
+                let of = |name: &String| glob.iter().chain([name]).cloned().collect::<Vec<_>>();
+                free().map(of).filter(|path| {
+                    let held = module(&sources, &modules, n, glob);
+                    let name = &path[path.len() - 1];
+                    held.is_some_and(|m| sources[m].imports.contains_key(name) || sources[m].items.contains(name))
+                })
+            });
+            let all = globbed.chain(paths.iter().cloned());
+            all.filter_map(|path| holder(&sources, &modules, n, &path, 0)).collect()
+        })
+        .collect()
+}
+
+/// All that is used, and what that uses.
+fn reach(uses: &[BTreeSet<usize>], from: usize) -> BTreeSet<usize> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(next) = open.pop() {
+        open.extend(uses[next].iter().filter(|other| found.insert(**other)));
+    }
+    found
+}
+
+/// The file that holds what a path of a file names. `None`: another crate, or a module as such.
+fn holder(
+    sources: &[Source],
+    modules: &BTreeMap<&[String], usize>,
+    file: usize,
+    path: &[String],
+    depth: usize,
+) -> Option<usize> {
+    let source = &sources[file];
+    let (mut module, mut rest) = (source.module.clone(), path);
+    match path[0].as_str() {
+        "crate" => (module, rest) = (Module::new(), &path[1..]),
+        "self" => rest = &path[1..],
+        "super" => {
+            while rest.first().is_some_and(|part| part == "super") {
+                module.pop()?;
+                rest = &rest[1..];
+            }
+        }
+        first => {
+            module.push(first.to_owned());
+            if modules.contains_key(module.as_slice()) {
+                rest = &path[1..];
+            } else {
+                let import = source.imports.get(first).filter(|import| import[0] != first && depth < 9)?;
+                let whole: Vec<String> = import.iter().chain(&path[1..]).cloned().collect();
+                return holder(sources, modules, file, &whole, depth + 1);
+            }
+        }
+    }
+    while let [next, ..] = rest {
+        module.push(next.clone());
+        if !modules.contains_key(module.as_slice()) {
+            module.pop();
+            break;
+        }
+        rest = &rest[1..];
+    }
+    let held = *modules.get(module.as_slice())?;
+    let import = sources[held].imports.get(rest.first()?);
+    let handed_on = import.and_then(|import| {
+        let whole: Vec<String> = import.iter().chain(&rest[1..]).cloned().collect();
+        if depth < 9 { holder(sources, modules, held, &whole, depth + 1) } else { None }
+    });
+    handed_on.or(Some(held)).filter(|held| *held != file)
+}
+
+/// The file of the module that a path of a file names.
+fn module(sources: &[Source], modules: &BTreeMap<&[String], usize>, file: usize, path: &[String]) -> Option<usize> {
+    let mut module = sources[file].module.clone();
+    for part in path {
+        match part.as_str() {
+            "crate" => module.clear(),
+            "self" => {}
+            "super" => _ = module.pop(),
+            _ => module.push(part.clone()),
+        }
+    }
+    modules.get(module.as_slice()).copied().filter(|held| *held != file)
+}
+
+fn source(name: &str, text: &str) -> Source {
+    let mut module: Module = name.trim_end_matches(".rs").split('/').map(str::to_owned).collect();
+    if matches!(module.last().map(String::as_str), Some("lib" | "main" | "mod")) {
+        module.pop();
+    }
+    let words = words(text);
+    let define = |pair: &&[String]| {
+        matches!(pair[0].as_str(), "fn" | "struct" | "enum" | "trait" | "type" | "const" | "static" | "macro_rules")
+    };
+    let items = words.windows(2).filter(define).map(|pair| pair[1].clone()).collect();
+    let names = words.iter().filter(|word| is_name(word)).cloned().collect();
+    let (imports, paths, globs) = (BTreeMap::new(), Vec::new(), Vec::new());
+    let mut found = Source { module, imports, paths, globs, names, items };
+    let mut at = 0;
+    while at < words.len() {
+        if words[at] == "use" {
+            let kept = found.paths.len();
+            tree(&words, &mut (at + 1), &[], &mut found);
+            if at > 0 && matches!(words[at - 1].as_str(), "pub" | ")") {
+                found.paths.truncate(kept);
+            }
+            while words[at] != ";" {
+                at += 1;
+            }
+        } else if is_name(&words[at]) && (at == 0 || words[at - 1] != "::") {
+            let mut path = vec![words[at].clone()];
+            while words.get(at + 1).is_some_and(|word| word == "::")
+                && words.get(at + 2).is_some_and(|word| is_name(word))
+            {
+                path.push(words[at + 2].clone());
+                at += 2;
+            }
+            if path.len() > 1 {
+                found.paths.push(path);
+            }
+        }
+        at += 1;
+    }
+    let Source { imports, paths, .. } = &mut found;
+    paths.retain(|path| matches!(path[0].as_str(), "crate" | "super" | "self") || imports.contains_key(&path[0]));
+    found
+}
+
+/// Reads what `use` takes, from a word on.
+fn tree(words: &[String], at: &mut usize, before: &[String], found: &mut Source) {
+    let mut path = before.to_vec();
+    loop {
+        let word = words[*at].clone();
+        *at += 1;
+        match word.as_str() {
+            "{" => {
+                while words[*at] != "}" {
+                    tree(words, at, &path, found);
+                    if words[*at] == "," {
+                        *at += 1;
+                    }
+                }
+                *at += 1;
+                return;
+            }
+            "::" => continue,
+            "*" => return found.globs.push(path),
+            "self" if !path.is_empty() => break,
+            _ => path.push(word),
+        }
+        if words[*at] != "::" {
+            break;
+        }
+    }
+    let mut name = path.last().unwrap().clone();
+    if words[*at] == "as" {
+        name.clone_from(&words[*at + 1]);
+        *at += 2;
+    }
+    if !matches!(path[0].as_str(), "crate" | "super" | "self") {
+        // That of a child, or of another crate.
+        path.insert(0, "self".to_owned());
+    }
+    found.paths.push(path.clone());
+    found.imports.insert(name, path);
+}
+
+fn is_name(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_alphabetic() || c == '_')
+}
+
+/// The names and signs of a text without comments, literals and tests.
+fn words(text: &str) -> Vec<String> {
+    let text = text.split("\nmod tests {").next().unwrap();
+    let mut words = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let length = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if let Some(raw) = rest.strip_prefix("r#\"") {
+            raw.find("\"#").unwrap() + 5
+        } else if first == '"' {
+            let mut before = ' ';
+            let closes = |c| {
+                let escaped = before == '\\';
+                before = if escaped { ' ' } else { c };
+                !escaped && c == '"'
+            };
+            1 + rest[1..].find(closes).unwrap() + 1
+        } else if first == '\'' && rest.as_bytes().get(1) == Some(&b'\\') {
+            3 + rest[3..].find('\'').unwrap()
+        } else if first == '\'' && rest.chars().nth(2) == Some('\'') {
+            rest.char_indices().nth(3).unwrap().0
+        } else if first.is_alphanumeric() || first == '_' {
+            let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            words.push(rest[..length].to_owned());
+            length
+        } else {
+            let length = if rest.starts_with("::") { 2 } else { first.len_utf8() };
+            if !first.is_whitespace() {
+                words.push(rest[..length].to_owned());
+            }
+            length
+        };
+        rest = &rest[length..];
+    }
+    words
+}
+
+#[test]
+fn circles_are_found_through_modules_that_hand_items_on() {
+    let file = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    let files = [
+        file("lib.rs", "mod a;\nmod b;\nmod c;\npub use b::{Lower, Upper as Other};\nfn run() { c::run(); }"),
+        file("a.rs", "use crate::Other; // crate::c::Third\nfn a() -> &'static str { \"super::c::Third\" }"),
+        file("b/mod.rs", "mod inner;\npub use inner::Upper;\nstruct Lower;"),
+        file("b/inner.rs", "struct Upper(super::super::c::Third);"),
+        file("c.rs", "use crate::a;\nstruct Third(a::First);\n#[cfg(test)]\nmod tests { use super::super::b::Lower; }"),
+    ];
+    let circle = [("a.rs", vec!["b/inner.rs"]), ("b/inner.rs", vec!["c.rs"]), ("c.rs", vec!["a.rs"])];
+    assert_eq!(circles(&files), [BTreeMap::from(circle)]);
+    let straight =
+        [file("lib.rs", "mod a;\nmod b;"), file("a.rs", "use super::b::B;"), file("b.rs", "struct B('\\'');")];
+    assert!(circles(&straight).is_empty());
+}
