@@ -68,6 +68,16 @@ pub enum Operation {
     Up(Operand, u32),
 }
 
+/// The values that something names, which hands each on for another.
+pub(crate) fn collected(renamed: impl FnOnce(&mut dyn FnMut(Operand) -> Operand)) -> Vec<Operand> {
+    let mut operands = Vec::new();
+    renamed(&mut |operand| {
+        operands.push(operand);
+        operand
+    });
+    operands
+}
+
 impl Operation {
     /// What it yields.
     pub fn kind(&self) -> Kind {
@@ -94,12 +104,7 @@ impl Operation {
 
     /// The values that it is made of.
     pub fn operands(&self) -> Vec<Operand> {
-        let mut operands = Vec::new();
-        self.renamed(|operand| {
-            operands.push(operand);
-            operand
-        });
-        operands
+        collected(|name| _ = self.renamed(name))
     }
 
     /// The same of other values.

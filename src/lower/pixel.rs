@@ -7,7 +7,7 @@ use ninebit::rop::{blend, surface};
 use ninebit::state::*;
 use ninebit::texture::planned::PlannedUnit;
 
-use crate::code::{Code, Line, Operand, Operation, Range, Test};
+use crate::code::{Code, Line, Operand, Operation, Range, Test, collected};
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::order::{Block, Listing};
@@ -249,12 +249,7 @@ impl Function {
 impl Result {
     /// Every value in it.
     pub fn operands(&self) -> Vec<Operand> {
-        let mut operands = Vec::new();
-        self.renamed(|operand| {
-            operands.push(operand);
-            operand
-        });
-        operands
+        collected(|name| _ = self.renamed(name))
     }
 
     fn renamed(self, mut name: impl FnMut(Operand) -> Operand) -> Result {

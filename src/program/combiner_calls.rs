@@ -115,11 +115,7 @@ impl<'t> Parser<'t> {
             _ if function.contains("Parameter") => 2,
             _ => 1,
         };
-        if arguments.len() != wanted {
-            let message = format!("{function} has {wanted} arguments, not {}", arguments.len());
-            self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", "write them all"));
-            return None;
-        }
+        self.reader.takes(name, wanted, arguments.len())?;
         match arguments {
             [variable, input, mapping, usage] => self.final_input([variable, input, mapping, usage]),
             [stage, portion, variable, input, mapping, usage] => {

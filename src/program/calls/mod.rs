@@ -132,6 +132,15 @@ impl<'t> Reader<'t> {
         self.cursor.text(place)
     }
 
+    /// Whether a call has as many arguments as its function takes. `None` once it has been recorded that it has not.
+    pub(super) fn takes(&mut self, name: &Range<usize>, wanted: usize, written: usize) -> Option<()> {
+        if written != wanted {
+            let message = format!("{} has {wanted} arguments, not {written}", self.word(name));
+            self.findings.push(finding("NB0211", name.clone(), message, "this call", "write them all"));
+        }
+        (written == wanted).then_some(())
+    }
+
     /// Notes something that is no part of the program, once for each name.
     pub(super) fn pass(&mut self, place: Range<usize>, name: &'t str, message: &str, label: &str, help: &str) {
         if self.asides.len() >= MAX_FINDINGS || self.passed.contains(&name) {

@@ -86,11 +86,7 @@ impl<'t> Parser<'t> {
             _ if function.contains("LightModel") => 2,
             _ => 1,
         };
-        if arguments.len() != wanted {
-            let message = format!("{function} has {wanted} arguments, not {}", arguments.len());
-            self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", "write them all"));
-            return None;
-        }
+        self.reader.takes(name, wanted, arguments.len())?;
         match arguments {
             [target, parameter, value] => self.environment(function, target, parameter, value)?,
             [parameter, value] if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" => {

@@ -5,7 +5,7 @@ use super::Sampler;
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
-use super::setup::{BatchSetup, PixelBatch, Setup};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::{Short, floors};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
@@ -145,10 +145,47 @@ impl Looking {
 }
 
 impl Setup<'_> {
+    /// Coordinates of a batch, by whatever functions its sampler has; those that are not proved are the definition's.
+    #[inline(always)]
+    pub(super) fn coordinates<const FMA: bool, const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        (sampler, planes): (&Sampler, &Planes),
+        local: &BatchSetup,
+        (numbers, faces): (&mut [PerLane<i32>; 2], &mut PerLane<u32>),
+        (short, whole): (&mut Short, &mut PerLane<i32>),
+    ) {
+        let done = match planes {
+            Planes::Plane(planes) => {
+                let [u, v] = &mut *numbers;
+                let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
+                self.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), local, u, v, whole);
+                true
+            }
+            Planes::Direction(planes, face) => {
+                let looking = Looking::new(planes, local);
+                let face = if ROW && face.is_none() { looking.face::<FMA>(local.columns) } else { *face };
+                match face {
+                    Some(face) => {
+                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &looking, local, numbers, faces)
+                    }
+                    None => looking.directions::<FMA, ROW>(batch, sampler, numbers, faces),
+                }
+            }
+            Planes::Ratio(planes, reach) => {
+                self.projected::<FMA, ROW>(batch, sampler, planes, *reach, local, short, numbers, faces)
+            }
+            Planes::Other | Planes::Shared => false,
+        };
+        if !done {
+            self.defined(batch, sampler, numbers, faces);
+        }
+    }
+
     /// TEX-12 of a batch that looks at one face: two quotients like any others. `false`: nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    pub(super) fn on_face<const FMA: bool, const ROW: bool>(
+    fn on_face<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -180,18 +217,18 @@ impl Setup<'_> {
     /// be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    pub(super) fn projected<const FMA: bool, const ROW: bool>(
+    fn projected<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
         planes: &[Plane; 3],
         reach: f64,
-        looking: &Looking,
         local: &BatchSetup,
         short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
+        let looking = Looking::new(planes, local);
         let [s, t, q] = looking.lines;
         let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];

@@ -124,12 +124,8 @@ impl<'a> Setup<'a> {
 
     /// What is known of a batch of the triangle.
     #[inline(always)]
-    pub(super) fn local<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        e: [i64; 3],
-        divides: bool,
-    ) -> BatchSetup {
+    pub(super) fn local<const FMA: bool, const ROW: bool>(&self, batch: PixelBatch<'_>, divides: bool) -> BatchSetup {
+        let e = self.context.triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
         if !divides {

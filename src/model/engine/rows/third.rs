@@ -125,7 +125,7 @@ impl Setup<'_> {
             match (&sampler.third, planes) {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
                     let work = (&mut *short, &mut *whole);
-                    self.layers::<FMA, ROW>(batch, counts, planes, local, layers, faces, work);
+                    self.coordinates::<FMA, ROW>(batch, (counts, planes), local, (&mut *layers, &mut *faces), work);
                     let (layers, faces) = (&mut layers[0][batch.lanes()], &mut faces[batch.lanes()]);
                     axis.reduce(layers);
                     for (face, layer) in faces.iter_mut().zip(layers) {
@@ -140,37 +140,6 @@ impl Setup<'_> {
                 }
                 _ => {}
             }
-        }
-    }
-
-    /// VOL-1: places among layers, twice.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    fn layers<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        counts: &Sampler,
-        planes: &Planes,
-        local: &BatchSetup,
-        layers: &mut [PerLane<i32>; 2],
-        faces: &mut PerLane<u32>,
-        (short, whole): (&mut Short, &mut PerLane<i32>),
-    ) {
-        let done = match planes {
-            Planes::Plane(planes) => {
-                let [first, second] = layers;
-                let (first, second) = (&mut first[batch.lanes()], &mut second[batch.lanes()]);
-                self.on_planes::<FMA, ROW>(batch, planes, 0, local, first, second, whole);
-                true
-            }
-            Planes::Ratio(planes, reach) => {
-                let looking = Looking::new(planes, local);
-                self.projected::<FMA, ROW>(batch, counts, planes, *reach, &looking, local, short, layers, faces)
-            }
-            _ => false,
-        };
-        if !done {
-            self.defined(batch, counts, layers, faces);
         }
     }
 

@@ -5,7 +5,7 @@ use super::color::{colors, narrow, narrow_weights};
 use super::compiled::{CompiledDraw, Reason, Reasons};
 use super::dda::{DdaRow, break_dda_ties, widen};
 use super::depth::Steps;
-use super::direction::{Looking, only_face, positive};
+use super::direction::{only_face, positive};
 use super::fog::Fog;
 use super::kernels::{LANES, Lanes256, PerLane};
 use super::levels::{Placing, Reads};
@@ -239,8 +239,7 @@ impl<'a> Interpolators<'a> {
         rows: &mut [Lanes256],
     ) {
         let setup = &self.setup;
-        let e = setup.context.triangle.edges(batch.first.0, batch.first.1);
-        let local = &setup.local::<FMA, ROW>(batch, e, !(ROW && varying.dda.undivided));
+        let local = &setup.local::<FMA, ROW>(batch, !(ROW && varying.dda.undivided));
         let by_q = |planes: &Planes| matches!(planes, Planes::Ratio(..));
         if self.samplers.iter().any(by_q)
             || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
@@ -264,38 +263,10 @@ impl<'a> Interpolators<'a> {
             }
         }
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
-            if sampler.mixes {
-                continue;
-            }
-            match planes {
-                Planes::Plane(_) | Planes::Shared => {}
-                Planes::Direction(planes, face) => {
-                    let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
-                    let looking = Looking::new(planes, local);
-                    let face = if ROW && face.is_none() { looking.face::<FMA>(local.columns) } else { *face };
-                    let done = match face {
-                        Some(face) => {
-                            setup.on_face::<FMA, ROW>(batch, sampler, planes, face, &looking, local, numbers, faces)
-                        }
-                        None => looking.directions::<FMA, ROW>(batch, sampler, numbers, faces),
-                    };
-                    if !done {
-                        setup.defined(batch, sampler, numbers, faces);
-                    }
-                }
-                Planes::Ratio(planes, reach) => {
-                    let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
-                    let looking = Looking::new(planes, local);
-                    let short = &mut varying.short;
-                    let done = setup
-                        .projected::<FMA, ROW>(batch, sampler, planes, *reach, &looking, local, short, numbers, faces);
-                    if !done {
-                        setup.defined(batch, sampler, numbers, faces);
-                    }
-                }
-                Planes::Other => {
-                    setup.defined(batch, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
-                }
+            if !(sampler.mixes || matches!(planes, Planes::Plane(_) | Planes::Shared)) {
+                let Varying { coordinates, faces, whole, short, .. } = &mut *varying;
+                let (out, work) = ((&mut coordinates[n], &mut faces[n]), (&mut **short, &mut whole[0]));
+                setup.coordinates::<FMA, ROW>(batch, (sampler, planes), local, out, work);
             }
         }
         if compiled.estimates {
@@ -331,7 +302,7 @@ impl<'a> Interpolators<'a> {
                 false
             };
             if close {
-                setup.correct_weights::<ROW>(batch, planes, &e, w0, w2, whole);
+                setup.correct_weights::<ROW>(batch, planes, &local.e, w0, w2, whole);
             }
             narrow_weights(batch, &varying.weights, &mut varying.narrow);
         }
