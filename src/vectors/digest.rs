@@ -1,4 +1,4 @@
-//! A digest of rows: what of them is hashed, in which bytes.
+//! The digest of rows under way: which of their results are hashed, and as how many bytes.
 
 use sha2::{Digest, Sha256};
 
@@ -42,13 +42,11 @@ pub struct Digesting<'s> {
     outputs: &'s [Output],
     hash: Sha256,
     /// Longer than [`BUFFER`] by a row, each number of which is written as eight bytes.
-    pub(super) buffer: Vec<u8>,
+    buffer: Vec<u8>,
     /// Bytes of it that wait for the hash.
-    pub(super) filled: usize,
+    filled: usize,
     /// Bytes of a row.
     pub(super) width: usize,
-    /// Block lanes are used where the unit has them.
-    pub(super) blocks: bool,
     pub(super) rows: u64,
     /// Rows at the lower and at the upper end.
     pub(super) ends: [u64; 2],
@@ -62,10 +60,23 @@ impl<'s> Digesting<'s> {
             buffer: vec![0; BUFFER + 8 * outputs.len()],
             filled: 0,
             width: outputs.iter().map(|output| output.bytes).sum(),
-            blocks: true,
             rows: 0,
             ends: [0; 2],
         }
+    }
+
+    /// The results of the next rows, no more than [`BUFFER`] has room for, in the bytes that `write` fills; it says how many rows are at the lower and at
+    /// the upper end. `false`: it has written none.
+    pub(super) fn take_block(&mut self, rows: u64, write: impl FnOnce(&mut [u8]) -> Option<[u64; 2]>) -> bool {
+        let bytes = self.width * rows as usize;
+        if self.filled + bytes > BUFFER {
+            self.flush();
+        }
+        let Some(ends) = write(&mut self.buffer[self.filled..self.filled + bytes]) else { return false };
+        self.filled += bytes;
+        self.rows += rows;
+        self.ends = [self.ends[0] + ends[0], self.ends[1] + ends[1]];
+        true
     }
 
     /// The results of the next row.
@@ -88,7 +99,7 @@ impl<'s> Digesting<'s> {
         }
     }
 
-    pub(super) fn flush(&mut self) {
+    fn flush(&mut self) {
         self.hash.update(&self.buffer[..self.filled]);
         self.filled = 0;
     }

@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::digest::{BUFFER, Digesting, Output};
+pub use super::digest::Digesting;
+use super::digest::{BUFFER, Output};
 use super::{Conditions, Part, Unit, cases};
 use ninebit::state::{Policies, Profile};
 use ninebit_files::picture::hexadecimal;
@@ -85,25 +86,22 @@ impl Exhaustive {
 
     /// Computes a leaf.
     pub fn leaf(&self, index: u64) -> Leaf {
-        let mut digest = Digesting::new(&self.outputs);
-        self.digest_rows(self.range(index), &mut digest);
+        let digest = self.rows(self.range(index), true);
         let [low, high] = digest.ends;
         Leaf { index, rows: digest.rows, low, high, sha256: hexadecimal(&digest.finish()) }
     }
 
     /// The SHA-256 of a range of rows.
     pub fn digest(&self, range: Range<u64>) -> [u8; 32] {
-        let mut digest = Digesting::new(&self.outputs);
-        self.digest_rows(range, &mut digest);
-        digest.finish()
+        self.rows(range, true).finish()
     }
 
-    /// Goes over a range in runs of which only one input varies: the last that has more than one number.
-    fn digest_rows(&self, range: Range<u64>, digest: &mut Digesting<'_>) {
-        let columns = self.part.columns();
+    /// Goes over a range in runs of which only one input varies: the last that has more than one number. `blocks`: in block lanes where the unit has them.
+    fn rows(&self, range: Range<u64>, blocks: bool) -> Digesting<'_> {
+        let (mut digest, columns) = (Digesting::new(&self.outputs), self.part.columns());
         let Some(varying) = columns.iter().rposition(|column| column.size() > 1).or(columns.len().checked_sub(1))
         else {
-            return;
+            return digest;
         };
         let column = &columns[varying];
         let conditions = Conditions { profile: self.profile, policies: Policies::DEFAULT };
@@ -118,11 +116,12 @@ impl Exhaustive {
             let run = (length - start).min(range.end - place).min(most);
             cases::nth(columns, u128::from(place), &mut inputs);
             self.part.tie(&mut inputs);
-            if !self.block(&mut inputs, varying, run, &conditions, digest) {
-                self.unit.run(&mut inputs, varying, column, start..start + run, &conditions, &mut results, digest);
+            if !blocks || !self.block(&mut inputs, varying, run, &conditions, &mut digest) {
+                self.unit.run(&mut inputs, varying, column, start..start + run, &conditions, &mut results, &mut digest);
             }
             place += run;
         }
+        digest
     }
 
     /// A run in block lanes, if the unit has them, and no row that has no results.
@@ -132,32 +131,17 @@ impl Exhaustive {
         varying: usize,
         run: u64,
         conditions: &Conditions,
-        digest: &mut Digesting<'_>,
+        digest: &mut Digesting,
     ) -> bool {
-        let (unit, columns) = (self.unit, self.part.columns());
-        if !digest.blocks || !columns[varying].counts() {
+        if !self.part.columns()[varying].counts() {
             return false;
         }
         let first = inputs[varying];
         inputs[varying] = first + run as i64 - 1;
-        let goes = unit.accepts(inputs, conditions.profile);
+        let goes = self.unit.accepts(inputs, conditions.profile);
         inputs[varying] = first;
-        if !goes || !unit.accepts(inputs, conditions.profile) {
-            return false;
-        }
-        let bytes = digest.width * run as usize;
-        if digest.filled + bytes > BUFFER {
-            digest.flush();
-        }
-        let Some(ends) =
-            unit.block(inputs, varying, conditions, &mut digest.buffer[digest.filled..digest.filled + bytes])
-        else {
-            return false;
-        };
-        digest.filled += bytes;
-        digest.rows += run;
-        digest.ends = [digest.ends[0] + ends[0], digest.ends[1] + ends[1]];
-        true
+        goes && self.unit.accepts(inputs, conditions.profile)
+            && digest.take_block(run, |out| self.unit.block(inputs, varying, conditions, out))
     }
 }
 
@@ -185,11 +169,8 @@ mod tests {
         let drawn = (0..starts).map(|_| random.below(u128::from(sweep.size - rows + 1)) as u64);
         for start in [0, sweep.size - rows].into_iter().chain(drawn) {
             let range = start..start + rows;
-            let mut plain = Digesting::new(&sweep.outputs);
-            plain.blocks = false;
-            sweep.digest_rows(range.clone(), &mut plain);
-            let mut blocks = Digesting::new(&sweep.outputs);
-            sweep.digest_rows(range, &mut blocks);
+            let plain = sweep.rows(range.clone(), false);
+            let blocks = sweep.rows(range, true);
             let name = format!("{} {:?} from {start}", sweep.unit.name(), sweep.part.texts());
             assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name}");
             assert_eq!(blocks.finish(), plain.finish(), "{name}");

@@ -6,7 +6,7 @@
 pub mod captures;
 pub mod cases;
 pub mod column;
-pub mod digest;
+mod digest;
 pub mod error;
 pub mod exhaustive;
 pub mod gpu;

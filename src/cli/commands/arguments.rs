@@ -53,9 +53,9 @@ pub(super) fn named<T: Named>(text: &str) -> Result<T, String> {
     one_of(T::NAMES, text).map(|index| T::ALL[index])
 }
 
-/// Reads a whole number from 0 to `MOST`.
-pub(super) fn up_to<const MOST: usize>(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|number| *number <= MOST).ok_or_else(|| format!("not a number from 0 to {MOST}"))
+/// Reads a whole number from 0 to `MAX`.
+pub(super) fn up_to<const MAX: usize>(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|number| *number <= MAX).ok_or_else(|| format!("not a number from 0 to {MAX}"))
 }
 
 /// What every command may use.

@@ -38,10 +38,15 @@ pub fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
     weights.chain([plain("short0", first), plain("short2", third)]).collect()
 }
 
+/// The block of the chip.
+pub fn block(index: usize) -> String {
+    format!("texture unit {index}")
+}
+
 impl Report<'_> {
-    /// The block of the chip.
+    /// The block of this unit.
     pub fn block(&self) -> String {
-        format!("texture unit {}", self.unit.index)
+        block(self.unit.index)
     }
 
     /// The name of something of this unit.
@@ -579,9 +584,7 @@ pub(super) fn linear<O: Observer>(
 ) -> Vec<Operand> {
     let (g, exponent) = attribute.numbers();
     let named = |k: usize| format!("unit{index}.G_{}{k}", COORDINATES[n]);
-    let planes = [0, 1, 2]
-        .map(|k| observer.tell(Step::given(&format!("texture unit {index}"), "INT-4", named(k), g[k])))
-        .into_iter();
+    let planes = [0, 1, 2].map(|k| observer.tell(Step::given(&block(index), "INT-4", named(k), g[k]))).into_iter();
     let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
     planes.chain(edges).chain([plain("D", at.d), plain("exponent", exponent)]).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::dependent::{Dependent, Target};
 use super::dot::Reflection;
-use super::report::{COORDINATES, Report, linear, shortfall};
+use super::report::{COORDINATES, Report, block, linear, shortfall};
 use super::shader::OFFSET_BITS;
 use super::stage::{Color, Dot};
 use crate::combiner::registers::channel_name;
@@ -13,10 +13,6 @@ use crate::state::{DependentScale, DotMapping, Level, Named};
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, plain, report};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-fn block(index: usize) -> String {
-    format!("texture unit {index}")
-}
 
 fn name(index: usize, suffix: &str) -> String {
     format!("unit{index}.{suffix}")

@@ -204,7 +204,7 @@ source! {
     }
     struct Draw "draw" {
         /// for messages and traces; no two alike
-        name: String [or "`draw` and its number"],
+        name: String [or "`\"draw N\"`, N from 0"],
         /// name of the render target
         target: String [or "the first"],
         /// [where they come from](#vertex-sources)

@@ -3,7 +3,7 @@
 use super::boxes::{BoxCoverage, SIDE, boxes, is_box, is_small};
 use super::depth::depths;
 use super::fetch::{self, Workspace};
-use super::isa::Text;
+use super::isa::Kernels;
 use super::kernels::{self, LANES, Lanes256};
 use super::levels::Reads;
 use super::quotient::{FEW, IOTA, Positions};
@@ -62,7 +62,7 @@ impl Default for Block {
 
 /// Draws what of a draw falls into a band; covered pixels.
 #[inline(always)]
-pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let Job { plan, draw, compiled, .. } = job;
     let mut shaded = 0;
     if walk::windows(draw, band.rows()).next().is_none() {
@@ -109,7 +109,7 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
 
 /// Draws what of a draw falls into some rows and columns of a band; covered pixels.
 #[inline(always)]
-fn draw_window<T: Text>(
+fn draw_window<T: Kernels>(
     job: Job<'_>,
     (rows, columns): Window,
     context: &mut TriangleContext<'_>,
@@ -123,12 +123,12 @@ fn draw_window<T: Text>(
         let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
         match T::enter(context, number, (rows, columns), &mut block.coverage) {
             Entered::Nothing => {}
-            Entered::Box => shaded += draw_patch::<T>(job, context, band, block),
+            Entered::Box => shaded += draw_box::<T>(job, context, band, block),
             Entered::Boxes => {
                 for window in boxes(common(&context.triangle, (rows, columns))) {
                     T::cover(&context.triangle, window, &mut block.coverage);
                     if block.coverage.count > 0 {
-                        shaded += draw_patch::<T>(job, context, band, block);
+                        shaded += draw_box::<T>(job, context, band, block);
                     }
                 }
             }
@@ -176,7 +176,7 @@ fn draw_window<T: Text>(
 
 /// Computes and stores a block.
 #[inline(always)]
-fn finish<T: Text>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+fn finish<T: Kernels>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     if job.compiled.shader.is_some() && block.used > 0 {
         T::shade(job, block, band);
     }
@@ -185,10 +185,15 @@ fn finish<T: Text>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
 
 /// Draws the pixels that the coverage has, one at least; how many they are.
 #[inline(always)]
-fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+fn draw_box<T: Kernels>(
+    job: Job<'_>,
+    context: &mut TriangleContext<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
     let compiled = job.compiled;
     let count = block.coverage.count;
-    if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
+    if count > BLOCK - block.used || (compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
     if !(compiled.plain && T::plain(context, compiled, block)) {
@@ -372,7 +377,7 @@ impl Block {
     }
 
     #[inline(always)]
-    fn is_patch_taken(&self, band: &Band<'_>) -> bool {
+    fn is_box_taken(&self, band: &Band<'_>) -> bool {
         let runs = &self.coverage.runs[..self.coverage.filled];
         runs.iter().any(|(j, i, count)| self.is_taken(band, (*i, *j), *count))
     }

@@ -54,14 +54,14 @@ macro_rules! text {
         $(text!(@version $version, $target, $wide, $parts);)*
     };
     (@parts { $($(#[$meta:meta])* fn $part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
-        pub(super) trait Text {
+        pub(super) trait Kernels {
             $($(#[$meta])* fn $part($($name: $type),*) $(-> $out)?;)*
         }
 
         /// What the program was compiled for.
         struct Baseline;
 
-        impl Text for Baseline {
+        impl Kernels for Baseline {
             $(fn $part($($name: $type),*) $(-> $out)? {
                 band::$part::<false>($($name),*)
             })*
@@ -75,7 +75,7 @@ macro_rules! text {
 
             struct Version;
 
-            impl Text for Version {
+            impl Kernels for Version {
                 $(fn $part($($name: $type),*) $(-> $out)? {
                     $part($($name),*)
                 })*
