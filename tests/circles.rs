@@ -53,12 +53,12 @@ fn edges(files: &[(String, String)]) -> Vec<BTreeSet<usize>> {
             let Source { paths, globs, names, imports, items, .. } = &sources[n];
             let free = || names.iter().filter(|name| !imports.contains_key(*name) && !items.contains(*name));
             let globbed = globs.iter().flat_map(|glob| {
-                let of = |name: &String| glob.iter().chain([name]).cloned().collect::<Vec<_>>();
-                free().map(of).filter(|path| {
-                    let held = module(&sources, &modules, n, glob);
-                    let name = &path[path.len() - 1];
-                    held.is_some_and(|m| sources[m].imports.contains_key(name) || sources[m].items.contains(name))
-                })
+                let held = reached(&sources, &modules, n, glob).filter(|(held, _)| *held != n);
+                let held = held.map(|(held, _)| &sources[held]);
+                let known = move |name: &&String| {
+                    held.is_some_and(|held| held.imports.contains_key(*name) || held.items.contains(*name))
+                };
+                free().filter(known).map(|name| glob.iter().chain([name]).cloned().collect())
             });
             let all = globbed.chain(paths.iter().cloned());
             all.filter_map(|path| holder(&sources, &modules, n, &path, 0)).collect()
@@ -83,37 +83,11 @@ fn holder(
     path: &[String],
     depth: usize,
 ) -> Option<usize> {
-    let source = &sources[file];
-    let (mut module, mut rest) = (source.module.clone(), path);
-    match path[0].as_str() {
-        "crate" => (module, rest) = (Module::new(), &path[1..]),
-        "self" => rest = &path[1..],
-        "super" => {
-            while rest.first().is_some_and(|part| part == "super") {
-                module.pop()?;
-                rest = &rest[1..];
-            }
-        }
-        first => {
-            module.push(first.to_owned());
-            if modules.contains_key(module.as_slice()) {
-                rest = &path[1..];
-            } else {
-                let import = source.imports.get(first).filter(|import| import[0] != first && depth < 9)?;
-                let whole: Vec<String> = import.iter().chain(&path[1..]).cloned().collect();
-                return holder(sources, modules, file, &whole, depth + 1);
-            }
-        }
-    }
-    while let [next, ..] = rest {
-        module.push(next.clone());
-        if !modules.contains_key(module.as_slice()) {
-            module.pop();
-            break;
-        }
-        rest = &rest[1..];
-    }
-    let held = *modules.get(module.as_slice())?;
+    let Some((held, rest)) = reached(sources, modules, file, path) else {
+        let import = sources[file].imports.get(&path[0]).filter(|import| import[0] != path[0] && depth < 9)?;
+        let whole: Vec<String> = import.iter().chain(&path[1..]).cloned().collect();
+        return holder(sources, modules, file, &whole, depth + 1);
+    };
     let import = sources[held].imports.get(rest.first()?);
     let handed_on = import.and_then(|import| {
         let whole: Vec<String> = import.iter().chain(&rest[1..]).cloned().collect();
@@ -122,18 +96,31 @@ fn holder(
     handed_on.or(Some(held)).filter(|held| *held != file)
 }
 
-/// The file of the module that a path of a file names.
-fn module(sources: &[Source], modules: &BTreeMap<&[String], usize>, file: usize, path: &[String]) -> Option<usize> {
+/// The file of the module that a path of a file leads to, and what of the path is left there. `None`: it starts with the name of no module.
+fn reached<'p>(
+    sources: &[Source],
+    modules: &BTreeMap<&[String], usize>,
+    file: usize,
+    path: &'p [String],
+) -> Option<(usize, &'p [String])> {
     let mut module = sources[file].module.clone();
-    for part in path {
-        match part.as_str() {
+    let mut rest = path;
+    while let [first, left @ ..] = rest {
+        match first.as_str() {
             "crate" => module.clear(),
             "self" => {}
-            "super" => _ = module.pop(),
-            _ => module.push(part.clone()),
+            "super" => _ = module.pop()?,
+            _ => {
+                module.push(first.clone());
+                if !modules.contains_key(module.as_slice()) {
+                    module.pop();
+                    break;
+                }
+            }
         }
+        rest = left;
     }
-    modules.get(module.as_slice()).copied().filter(|held| *held != file)
+    if rest.len() == path.len() { None } else { Some((*modules.get(module.as_slice())?, rest)) }
 }
 
 fn source(name: &str, text: &str) -> Source {
