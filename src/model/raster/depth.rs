@@ -270,13 +270,19 @@ fn reciprocal(edges: [i64; 3]) -> (i64, i32) {
     let dropped = (top - DEPTH_BITS).max(0);
     // Outside the triangle, where nothing is stored, numbers may be negative.
     let sum: i64 = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
+    let (mantissa, exponent) = reciprocal_of(sum);
+    (mantissa, exponent + dropped)
+}
+
+/// That of a sum of 31 bits at most.
+pub fn reciprocal_of(sum: i64) -> (i64, i32) {
     let length = 63 - sum.leading_zeros() as i32;
     if sum & (sum - 1) == 0 {
-        return (1 << 28, 28 + length + dropped);
+        return (1 << 28, 28 + length);
     }
-    // floor(2^s / sum - 3/16). The sum has 31 bits at most.
+    // floor(2^s / sum - 3/16).
     let numerator = (1_u64 << (29 + length + 4)) - 3 * sum as u64;
-    ((numerator / (16 * sum as u64)) as i64, 29 + length + dropped)
+    ((numerator / (16 * sum as u64)) as i64, 29 + length)
 }
 
 #[cfg(test)]

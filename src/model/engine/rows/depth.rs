@@ -5,10 +5,10 @@
 )]
 
 use super::kernels::PerLane;
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
-use super::setup::PixelBatch;
+use super::quotient::{IOTA_REAL, Line, Positions, multiply_add, nearest, position, whole};
+use super::setup::{PixelBatch, whole_steps};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::depth::{difference, w_ratio};
+use crate::raster::depth::{difference, largest_edge, reciprocal_of, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
@@ -49,20 +49,84 @@ pub(super) struct Steps {
     terms: [[f64; CHUNK]; 2],
     /// 1 where the definition has to decide.
     close: [u64; CHUNK],
+    /// Of the triangle whose batches come.
+    series: ReciprocalSeries,
 }
 
 impl Default for Steps {
     fn default() -> Self {
         let zeros = [0.0; CHUNK];
-        Steps { edges: [zeros; 3], sums: zeros, references: zeros, terms: [zeros; 2], close: [0; CHUNK] }
+        Steps {
+            edges: [zeros; 3],
+            sums: zeros,
+            references: zeros,
+            terms: [zeros; 2],
+            close: [0; CHUNK],
+            series: ReciprocalSeries::default(),
+        }
     }
 }
+
+/// DEP-1's reciprocals of a triangle as a series. The three edge numbers add up to its doubled area, less what each loses where it is cut to 24 bits: a
+/// few of its last bits. So the reciprocal is a function of one small number, and three terms tell it.
+#[derive(Clone, Copy, Debug, Default)]
+struct ReciprocalSeries {
+    area: i64,
+    /// The largest sum of what edge numbers lose. `None`: some reciprocal is not what the series tells.
+    largest_loss: Option<i64>,
+    /// Coefficients, less 3/16 and one half, so that the nearest whole number is the reciprocal. The reciprocal itself, where nothing is lost.
+    terms: [f64; 3],
+    /// What makes weights of edge numbers times reciprocals.
+    unit: f64,
+}
+
+impl ReciprocalSeries {
+    fn new<const FMA: bool>(area: i64) -> ReciprocalSeries {
+        let bits = 64 - area.leading_zeros();
+        let mut series = ReciprocalSeries { area, ..ReciprocalSeries::default() };
+        // Of more bits, edge numbers would be cut again where they are aligned.
+        if bits > 29 {
+            return series;
+        }
+        let largest_loss = 3 * ((1_i64 << bits.saturating_sub(24)) - 1);
+        series.unit = power_of_two(-28 - bits as i32);
+        let of = |sum: i64| {
+            // As many bits as those that are not exact.
+            if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal_of(sum).0 as f64 }
+        };
+        if largest_loss == 0 {
+            series.terms[0] = of(area);
+            series.largest_loss = Some(0);
+            return series;
+        }
+        let real = area as f64;
+        let first = (1_u64 << (28 + bits)) as f64 / real;
+        series.terms = [first - 0.6875, first / real, first / (real * real)];
+        // Each is compared with the definition's.
+        let tells = |lost: i64| {
+            let sum = area - lost;
+            64 - sum.leading_zeros() == bits && series.at::<FMA>(lost as f64) == of(sum)
+        };
+        series.largest_loss = (0..=largest_loss).all(tells).then_some(largest_loss);
+        series
+    }
+
+    /// The reciprocal where so much is lost.
+    #[inline(always)]
+    fn at<const FMA: bool>(&self, lost: f64) -> f64 {
+        let [first, second, third] = self.terms;
+        whole(multiply_add::<FMA>(lost, multiply_add::<FMA>(lost, third, second), first))
+    }
+}
+
+/// The vertices that are not the reference.
+const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
 /// Depths at the vertices of a triangle, the largest depth, and what happens to depths that are not just floored.
 #[derive(Clone, Copy, Debug)]
 struct Depths<'a> {
     z: [f64; 3],
-    /// Differences: of vertex 0 and 2 from 1, of 1 and 2 from 0, of 0 and 1 from 2.
+    /// Of the [two others](OTHERS) from each vertex.
     differences: [[f64; 2]; 3],
     /// In a w buffer, what edge numbers are multiplied by (DEP-6); `z` holds w there.
     ratios: [f64; 3],
@@ -92,11 +156,15 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let full = f64::from(format.largest());
     let range = test.range.as_ref();
     let z = plane.w.unwrap_or(plane.z);
-    let from = |reference: usize, others: [usize; 2]| others.map(|k| f64::from(difference(z[k], z[reference])));
-    let differences = [from(1, [0, 2]), from(0, [1, 2]), from(2, [0, 1])];
+    let differences = [0, 1, 2].map(|reference| OTHERS[reference].map(|k| f64::from(difference(z[k], z[reference]))));
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
-    let out = &mut out[batch.lanes()];
     let edges = [edge(0), edge(1), edge(2)];
+    // What nobody reads yet may follow a row's lanes.
+    let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
+    let along_row = (e, triangle.a, batch.count);
+    if ROW && steps.series.area != triangle.doubled_area {
+        steps.series = ReciprocalSeries::new::<FMA>(triangle.doubled_area);
+    }
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
@@ -109,27 +177,47 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { ratios, ..depths };
             if is_plain {
-                depths.along::<FMA, ROW, false, true>(batch.at, edges, steps, out)
+                depths.along::<FMA, ROW, false, true>(batch.at, edges, along_row, steps, out)
             } else {
-                depths.along::<FMA, ROW, true, true>(batch.at, edges, steps, out)
+                depths.along::<FMA, ROW, true, true>(batch.at, edges, along_row, steps, out)
             }
         } else {
             out.fill(UNKNOWN);
             true
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
-        depths.along::<FMA, ROW, false, false>(batch.at, edges, steps, out)
+        depths.along::<FMA, ROW, false, false>(batch.at, edges, along_row, steps, out)
     } else if moderate_offset && plane.z.iter().all(moderate) {
-        depths.along::<FMA, ROW, true, false>(batch.at, edges, steps, out)
+        depths.along::<FMA, ROW, true, false>(batch.at, edges, along_row, steps, out)
     } else {
         out.fill(UNKNOWN);
         true
     };
     if unknown {
-        for (n, depth) in out.iter_mut().enumerate().filter(|(_, depth)| **depth == UNKNOWN) {
+        for (n, depth) in out[..batch.count].iter_mut().enumerate().filter(|(_, depth)| **depth == UNKNOWN) {
             *depth = context.depth_word(&batch.sample(n, triangle)).unwrap_or(OUTSIDE);
         }
     }
+}
+
+/// The reference of a pixel of a row, and up to which pixel all have it, with an edge number of the same exponent.
+fn same_reference((e, slopes, count): ([i64; 3], [i64; 3], usize), first: usize) -> (usize, usize) {
+    let key = |x: usize| {
+        let e = [0, 1, 2].map(|k| e[k] + slopes[k] * x as i64);
+        let reference = largest_edge(e);
+        (reference, e[reference].leading_zeros())
+    };
+    let wanted = key(first);
+    // Edge numbers are linear: where both ends have the same, all between have it.
+    if key(count - 1) == wanted {
+        return (wanted.0, count);
+    }
+    let (mut inside, mut outside) = (first, count - 1);
+    while outside - inside > 1 {
+        let middle = (inside + outside) / 2;
+        if key(middle) == wanted { inside = middle } else { outside = middle }
+    }
+    (wanted.0, outside)
 }
 
 /// 2^exponent; 0 or infinite where a double has no such power.
@@ -142,32 +230,119 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 impl Depths<'_> {
-    /// Whether some are unknown. `GENERAL`: depths are not just floored. `W`: in a w buffer.
+    /// Whether some are unknown. `GENERAL`: depths are not just floored. `W`: in a w buffer. `row`: of a row, the edge functions at its first pixel, how
+    /// they change, and its pixels.
     #[inline(always)]
     fn along<const FMA: bool, const ROW: bool, const GENERAL: bool, const W: bool>(
         &self,
         at: Positions<'_>,
         edges: [Line; 3],
+        row: ([i64; 3], [i64; 3], usize),
         steps: &mut Steps,
         out: &mut [u32],
     ) -> bool {
         let mut unknown = false;
-        for (n, out) in out.chunks_mut(CHUNK).enumerate() {
-            let lanes = n * CHUNK..n * CHUNK + out.len();
-            let last = f64::from(at.last);
-            let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
-            self.sums::<FMA, ROW, W>(last, positions, edges, steps);
-            let close = self.terms::<FMA, W>(out.len(), steps);
-            self.words::<FMA, GENERAL>(steps, out);
-            if close {
-                for (out, close) in out.iter_mut().zip(&steps.close) {
-                    // All bits of UNKNOWN are set.
-                    *out |= (*close as u32).wrapping_neg();
+        let (mut first, count) = (0, if ROW { row.2 } else { out.len() });
+        let (mut reference, mut until) = (0, 0);
+        while first < count {
+            let mut pixels = (count - first).min(CHUNK);
+            if ROW && !GENERAL && !W && steps.series.largest_loss.is_some() {
+                if first == until {
+                    (reference, until) = same_reference(row, first);
                 }
+                pixels = pixels.min(until - first);
+                let lanes = first..first + whole_steps(pixels);
+                self.segment::<FMA>(edges, (reference, f64::from(at.last)), &IOTA_REAL[lanes.clone()], steps);
+                let out = &mut out[lanes];
+                if !self.floored_words::<FMA>(steps, out) {
+                    self.words::<FMA, false>(steps, out);
+                }
+            } else {
+                let lanes = if ROW { first..first + whole_steps(pixels) } else { first..first + pixels };
+                let out = &mut out[lanes.clone()];
+                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
+                self.sums::<FMA, ROW, W>(f64::from(at.last), positions, edges, steps);
+                let close = self.terms::<FMA, W>(out.len(), steps);
+                self.words::<FMA, GENERAL>(steps, out);
+                if close {
+                    for (out, close) in out.iter_mut().zip(&steps.close) {
+                        // All bits of UNKNOWN are set.
+                        *out |= (*close as u32).wrapping_neg();
+                    }
+                }
+                unknown |= close;
             }
-            unknown |= close;
+            first += pixels;
         }
         unknown
+    }
+
+    /// Terms of pixels of a row that have one reference.
+    #[inline(always)]
+    fn segment<const FMA: bool>(
+        &self,
+        edges: [Line; 3],
+        (reference, last): (usize, f64),
+        iota: &[f64],
+        steps: &mut Steps,
+    ) {
+        let lanes = iota.len();
+        let [one, other] = OTHERS[reference];
+        let Steps { references, terms: [of_one, of_other], series, .. } = steps;
+        // A copy: what is stored is known not to overlap it.
+        let series = *series;
+        let by = self.differences[reference].map(|difference| difference * series.unit);
+        let (one, other, largest) = (edges[one], edges[other], edges[reference]);
+        let area = series.area as f64;
+        let (of_one, of_other) = (&mut of_one[..lanes], &mut of_other[..lanes]);
+        references[..lanes].fill(self.z[reference]);
+        let term = |edge: f64, reciprocal: f64, by: f64| cut24(edge * reciprocal) * by;
+        if series.largest_loss == Some(0) {
+            let reciprocal = series.terms[0];
+            for n in 0..lanes {
+                let x = if iota[n] < last { iota[n] } else { last };
+                let (one, other) = (one.at::<FMA, true>(x, 0.0), other.at::<FMA, true>(x, 0.0));
+                (of_one[n], of_other[n]) = (term(one, reciprocal, by[0]), term(other, reciprocal, by[1]));
+            }
+            return;
+        }
+        for n in 0..lanes {
+            let x = if iota[n] < last { iota[n] } else { last };
+            let one = cut24(one.at::<FMA, true>(x, 0.0));
+            let other = cut24(other.at::<FMA, true>(x, 0.0));
+            let largest = cut24(largest.at::<FMA, true>(x, 0.0));
+            let reciprocal = series.at::<FMA>(area - one - other - largest);
+            (of_one[n], of_other[n]) = (term(one, reciprocal, by[0]), term(other, reciprocal, by[1]));
+        }
+    }
+
+    /// The words of a segment, depths floored and nothing else, if the largest terms of all its pixels have one exponent. `false`: they have not.
+    #[inline(always)]
+    fn floored_words<const FMA: bool>(&self, steps: &Steps, out: &mut [u32]) -> bool {
+        let lanes = out.len();
+        let Steps { references, terms: [one, other], .. } = steps;
+        let (z, one, other) = (references[0], &one[..lanes], &other[..lanes]);
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let top = power(larger(larger(one[0].abs(), other[0].abs()), z.abs()));
+        // Above, a sum has no fraction. Terms that are smaller make no depth.
+        let has_fraction = top < (1 << 27) as f64 && top > 1e-200;
+        if !has_fraction {
+            return false;
+        }
+        let (scale, step) = ((1 << 28) as f64 / top, top * STEP);
+        let (z, full) = (z * scale, self.full as i32);
+        let (least, cut_z) = (z.abs(), cut::<FMA>(z));
+        // Half of one less half a step: no sum lies half way between two numbers then.
+        let start = 0.5 * step - 0.5;
+        let mut differing = 0;
+        for n in 0..lanes {
+            let (a, b) = (one[n] * scale, other[n] * scale);
+            let largest = larger(larger(a.abs(), b.abs()), least);
+            differing |= largest.to_bits() ^ (ONE + (28 << 52));
+            let sum = cut::<FMA>(a) + cut::<FMA>(b) + cut_z;
+            out[n] = nearest(multiply_add::<FMA>(sum, step, start)).max(0).min(full) as u32;
+        }
+        differing & EXPONENT == 0
     }
 
     /// Edge numbers, their sum, and what depends on the reference.
@@ -181,7 +356,7 @@ impl Depths<'_> {
     ) {
         let lanes = xs.len();
         let ([z0, z1, z2], [r0, r1, r2]) = (self.z, self.ratios);
-        let [[a1, b1], [a0, b0], [a2, b2]] = self.differences;
+        let [[a0, b0], [a1, b1], [a2, b2]] = self.differences;
         let (xs, ys, iota) = (&xs[..lanes], &ys[..lanes], &iota[..lanes]);
         let Steps { edges: [one, other, middle], sums, references, terms: [of_one, of_other], .. } = steps;
         let (one, other, middle) = (&mut one[..lanes], &mut other[..lanes], &mut middle[..lanes]);

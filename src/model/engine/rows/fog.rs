@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use super::Reason;
-use super::kernels::LANES;
+use super::kernels::{LANES, STEP};
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
@@ -143,32 +143,18 @@ impl Setup<'_> {
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
+                let is_same = ROW && line.x == 0.0 && local.denominator.x == 0.0;
+                // Of a coordinate that does not vary along the row, one step suffices.
+                let lanes = if is_same { STEP } else { out.len() };
+                let (first, values, spare) = (&mut out[..lanes], &mut values[..lanes], &mut spare[..lanes]);
                 let (at, lines) = (batch.at, (line, local.denominator));
-                let close = match curve.kind {
-                    Kind::Linear { start, sign } => {
-                        let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, spare);
-                        for (out, value) in out.iter_mut().zip(&*values) {
-                            *out = *value as i16;
-                        }
-                        close
-                    }
-                    Kind::Table(table) => {
-                        let close = steps::<FMA, ROW>(at, lines, off, values, spare);
-                        for (out, value) in out.iter_mut().zip(&*values) {
-                            *out = i16::from(byte(table, *value));
-                        }
-                        if close {
-                            // Where its neighbours' bytes are its own, a step need not be known.
-                            for (value, spare) in values.iter().zip(&mut *spare) {
-                                let bytes = [byte(table, *value - 1), byte(table, *value), byte(table, *value + 1)];
-                                *spare = i32::from(*spare < 0 && bytes != [bytes[1]; 3]);
-                            }
-                        }
-                        close
-                    }
-                };
+                let close = curve.look_up::<FMA, ROW>(at, lines, off, first, values, spare);
+                if is_same {
+                    let same = out[0];
+                    out.fill(same);
+                }
                 if close {
-                    self.defined_factors(batch, |n| spare[n] != 0, out);
+                    self.defined_factors(batch, |n| spare[if is_same { 0 } else { n }] != 0, out);
                 }
             }
         }
@@ -181,6 +167,44 @@ impl Setup<'_> {
         for n in (0..batch.count).filter(|n| wanted(*n)) {
             self.tell(Reason::Fog, 1);
             out[n] = i16::from(fog.at(&self.sample(batch, n)).byte);
+        }
+    }
+}
+
+impl Curve {
+    /// Bytes, and as numbers other than 0 which are not proved. Says whether some are not. `lines` make up the 4096ths, which are off by `off`.
+    #[inline(always)]
+    fn look_up<const FMA: bool, const ROW: bool>(
+        &self,
+        at: Positions<'_>,
+        lines: (Line, Line),
+        off: f64,
+        out: &mut [i16],
+        values: &mut [i32],
+        unknown: &mut [i32],
+    ) -> bool {
+        match self.kind {
+            Kind::Linear { start, sign } => {
+                let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, unknown);
+                for (out, value) in out.iter_mut().zip(&*values) {
+                    *out = *value as i16;
+                }
+                close
+            }
+            Kind::Table(table) => {
+                let close = steps::<FMA, ROW>(at, lines, off, values, unknown);
+                for (out, value) in out.iter_mut().zip(&*values) {
+                    *out = i16::from(byte(table, *value));
+                }
+                if close {
+                    // Where its neighbours' bytes are its own, a step need not be known.
+                    for (value, unknown) in values.iter().zip(unknown) {
+                        let bytes = [byte(table, *value - 1), byte(table, *value), byte(table, *value + 1)];
+                        *unknown = i32::from(*unknown < 0 && bytes != [bytes[1]; 3]);
+                    }
+                }
+                close
+            }
         }
     }
 }

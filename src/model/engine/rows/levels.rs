@@ -4,7 +4,7 @@
 use super::kernels::LANES;
 use super::kernels::PerLane;
 use super::quads::{AtQuads, Known, Measure, Quads, floor, parted};
-use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, undivided, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
@@ -47,7 +47,7 @@ pub(super) struct Placing {
     levels: [PerLane<i32>; 2],
     /// What is read of one level.
     read: [PerLane<i32>; 3],
-    /// Negative, as the bits of doubles: the lane's coordinate on one level is not proved.
+    /// Negative, as the bits of doubles: a coordinate of the lane is not proved on some level.
     close: [PerLane<u64>; 2],
     /// The lane is the definition's.
     open: PerLane<bool>,
@@ -105,18 +105,28 @@ impl Setup<'_> {
         placing.open[..lanes].fill(false);
         let ranges = choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[batch.lanes()]);
         let mut opens = false;
-        for level in ranges[0][0]..=ranges[1][1] {
-            let shifts = unit.plane_shifts(&unit.levels[level as usize]);
+        let read_levels = ranges[0][0]..=ranges[1][1];
+        let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
+        let mut raised = [0.0; 2];
+        for axis in 0..2 {
+            let (gap, shared) = ground.gaps[axis];
+            // In steps of level 0: what is whole on a smaller level is whole there.
+            let floors = read_levels.clone().map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
+            let off = ground.off + floors.max().map_or(0.0, |shift| ground.floors * f64::from(1 << shift));
+            let (up, off) = parted(gap, off);
+            raised[axis] = up;
+            whole_on_none(&placing.at[axis][..lanes], up, off, &mut placing.close[axis][..lanes]);
+        }
+        let some = any_negative(&placing.close[0][..lanes]) | any_negative(&placing.close[1][..lanes]);
+        let close_lanes = if some { batch.count } else { 0 };
+        for level in read_levels {
+            let shifts = shifts(level);
             let Placing { at, lods, levels, read, close, open } = &mut *placing;
             for axis in 0..2 {
                 let scale = f64::from_bits(u64::from(1023 - shifts[axis]) << 52);
-                let (gap, shared) = ground.gaps[axis];
-                let off = ground.off * scale + if shifts[axis] > shared { ground.floors } else { 0.0 };
-                on_level(&at[axis][..lanes], scale, parted(gap * scale, off), &mut read[axis], &mut close[axis]);
+                on_level(&at[axis][..lanes], scale, raised[axis], &mut read[axis]);
             }
-            let some = any_negative(&close[0][..lanes]) | any_negative(&close[1][..lanes]);
-            let count = if some { batch.count } else { 0 };
-            for n in (0..count).filter(|n| (close[0][*n] | close[1][*n]) >> 63 != 0) {
+            for n in (0..close_lanes).filter(|n| (close[0][*n] | close[1][*n]) >> 63 != 0) {
                 if levels[0][n] != level && levels[1][n] != level {
                     continue;
                 }
@@ -239,13 +249,21 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
 #[inline(always)]
 pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
-    [along, down, denominator]: [Line; 3],
+    lines: [Line; 3],
     u: &mut [f64],
     v: &mut [f64],
 ) {
     let lanes = u.len();
     let last = f64::from(at.last);
     let (v, xs, ys, iota) = (&mut v[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    if let (true, Some([along, down])) = (ROW, undivided(lines, 0.0)) {
+        for n in 0..lanes {
+            let x = if iota[n] < last { iota[n] } else { last };
+            (u[n], v[n]) = (along.at::<FMA, true>(x, 0.0), down.at::<FMA, true>(x, 0.0));
+        }
+        return;
+    }
+    let [along, down, denominator] = lines;
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
@@ -253,14 +271,23 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Floors of coordinates on a level, and as sign bits which are not proved.
+/// As sign bits: which coordinates of level 0 are so close to a whole number that their floors are not proved, on it or on smaller levels.
 #[inline(always)]
-fn on_level(at: &[f64], scale: f64, (up, off): (f64, f64), out: &mut PerLane<i32>, close: &mut PerLane<u64>) {
-    let (out, close) = (&mut out[..at.len()], &mut close[..at.len()]);
+fn whole_on_none(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
+    let close = &mut close[..at.len()];
     for n in 0..at.len() {
-        let t = at[n] * scale + (up - 0.5);
-        out[n] = nearest(t);
-        close[n] = (0.5 - off - (t - whole(t)).abs()).to_bits();
+        let t = at[n] + up;
+        close[n] = ((t - whole(t)).abs() - off).to_bits();
+    }
+}
+
+/// Floors of coordinates on a level.
+#[inline(always)]
+fn on_level(at: &[f64], scale: f64, up: f64, out: &mut PerLane<i32>) {
+    let out = &mut out[..at.len()];
+    let up = up * scale - 0.5;
+    for n in 0..at.len() {
+        out[n] = nearest(at[n] * scale + up);
     }
 }
 
