@@ -72,9 +72,9 @@ impl Default for Steps {
 #[derive(Clone, Copy, Debug, Default)]
 struct ReciprocalSeries {
     area: i64,
-    /// The largest sum of what edge numbers lose. `None`: some reciprocal is not what the series tells.
-    largest_loss: Option<i64>,
-    /// Coefficients, less 3/16 and one half, so that the nearest whole number is the reciprocal. The reciprocal itself, where nothing is lost.
+    /// Every reciprocal is what the series tells.
+    tells: bool,
+    /// Coefficients, less 3/16 and one half, so that the nearest whole number is the reciprocal; the reciprocal itself where nothing is lost.
     terms: [f64; 3],
     /// What makes weights of edge numbers times reciprocals.
     unit: f64,
@@ -88,26 +88,24 @@ impl ReciprocalSeries {
         if bits > 29 {
             return series;
         }
-        let largest_loss = 3 * ((1_i64 << bits.saturating_sub(24)) - 1);
         series.unit = power_of_two(-28 - bits as i32);
         let of = |sum: i64| {
             // As many bits as those that are not exact.
             if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal_of(sum).0 as f64 }
         };
-        if largest_loss == 0 {
-            series.terms[0] = of(area);
-            series.largest_loss = Some(0);
-            return series;
-        }
-        let real = area as f64;
+        let (largest_loss, real) = (3 * ((1_i64 << bits.saturating_sub(24)) - 1), area as f64);
         let first = (1_u64 << (28 + bits)) as f64 / real;
-        series.terms = [first - 0.6875, first / real, first / (real * real)];
+        series.terms = if largest_loss == 0 {
+            [of(area), 0.0, 0.0]
+        } else {
+            [first - 0.6875, first / real, first / (real * real)]
+        };
         // Each is compared with the definition's.
         let tells = |lost: i64| {
             let sum = area - lost;
             64 - sum.leading_zeros() == bits && series.at::<FMA>(lost as f64) == of(sum)
         };
-        series.largest_loss = (0..=largest_loss).all(tells).then_some(largest_loss);
+        series.tells = (0..=largest_loss).all(tells);
         series
     }
 
@@ -246,7 +244,7 @@ impl Depths<'_> {
         let (mut reference, mut until) = (0, 0);
         while first < count {
             let mut pixels = (count - first).min(CHUNK);
-            if ROW && !GENERAL && !W && steps.series.largest_loss.is_some() {
+            if ROW && !GENERAL && !W && steps.series.tells {
                 if first == until {
                     (reference, until) = same_reference(row, first);
                 }
@@ -297,15 +295,6 @@ impl Depths<'_> {
         let (of_one, of_other) = (&mut of_one[..lanes], &mut of_other[..lanes]);
         references[..lanes].fill(self.z[reference]);
         let term = |edge: f64, reciprocal: f64, by: f64| cut24(edge * reciprocal) * by;
-        if series.largest_loss == Some(0) {
-            let reciprocal = series.terms[0];
-            for n in 0..lanes {
-                let x = if iota[n] < last { iota[n] } else { last };
-                let (one, other) = (one.at::<FMA, true>(x, 0.0), other.at::<FMA, true>(x, 0.0));
-                (of_one[n], of_other[n]) = (term(one, reciprocal, by[0]), term(other, reciprocal, by[1]));
-            }
-            return;
-        }
         for n in 0..lanes {
             let x = if iota[n] < last { iota[n] } else { last };
             let one = cut24(one.at::<FMA, true>(x, 0.0));

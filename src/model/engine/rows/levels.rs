@@ -4,7 +4,7 @@
 use super::kernels::LANES;
 use super::kernels::PerLane;
 use super::quads::{AtQuads, Known, Measure, Quads, floor, parted};
-use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, undivided, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
@@ -249,21 +249,13 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
 #[inline(always)]
 pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
-    lines: [Line; 3],
+    [along, down, denominator]: [Line; 3],
     u: &mut [f64],
     v: &mut [f64],
 ) {
     let lanes = u.len();
     let last = f64::from(at.last);
     let (v, xs, ys, iota) = (&mut v[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    if let (true, Some([along, down])) = (ROW, undivided(lines, 0.0)) {
-        for n in 0..lanes {
-            let x = if iota[n] < last { iota[n] } else { last };
-            (u[n], v[n]) = (along.at::<FMA, true>(x, 0.0), down.at::<FMA, true>(x, 0.0));
-        }
-        return;
-    }
-    let [along, down, denominator] = lines;
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);

@@ -5,7 +5,7 @@ use super::direction::Looking;
 use super::kernels::LANES;
 use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quotient::{Line, SLACK, any_negative, undivided, whole};
+use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
 use super::{BLOCK, Reason, Sampler};
@@ -229,7 +229,7 @@ impl Setup<'_> {
     ) -> Spread {
         let (i, j) = batch.first;
         let lanes = batch.at.x.len();
-        let above = ((j & !1) - j) as f64;
+        let above = (j & !1) - j;
         let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind());
         if ground.behind {
             room(known, 1);
@@ -244,7 +244,7 @@ impl Setup<'_> {
             }
             room(known, LANES);
             known.of = None;
-            self.measured::<FMA, T>(batch, (unit, ground), e, (batch.count, None), quads, &mut known.each);
+            self.measured::<FMA, T>(batch, (unit, ground), e, batch.count, quads, &mut known.each);
             return Spread { last: lanes - 1, ..Spread::default() };
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
@@ -258,29 +258,28 @@ impl Setup<'_> {
             let count = ((wanted.end - next) as usize).min(BLOCK);
             let [xs, ys] = &mut quads.origins;
             let lanes = whole_steps(count);
-            let (first, last) = ((2 * next - i) as i32, count as i32 - 1);
+            let (first, above, last) = ((2 * next - i) as i32, above as f64, count as i32 - 1);
             for (k, x) in xs[..lanes].iter_mut().enumerate() {
                 *x = f64::from(first + 2 * (k as i32).min(last));
             }
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
             room(known, first + LANES);
-            let row = (count, Some(above));
-            self.measured::<FMA, T>(batch, (unit, ground), e, row, quads, &mut known.each[first..]);
+            self.measured::<FMA, T>(batch, (unit, ground), e, count, quads, &mut known.each[first..]);
             known.columns.end += count as i64;
         }
         let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
         Spread { first, odd, shift: 1, last: (batch.count - 1 + odd) >> 1 }
     }
 
-    /// That of some quads, whose first pixels are [known](Quads::origins); of those of a row, where it lies.
+    /// That of some quads, whose first pixels are [known](Quads::origins).
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
         batch: PixelBatch<'_>,
         (unit, ground): (&PlannedUnit, &Ground<'_>),
         e: &[i64; 3],
-        (count, row): (usize, Option<f64>),
+        count: usize,
         quads: &mut Quads,
         out: &mut [T],
     ) {
@@ -290,7 +289,7 @@ impl Setup<'_> {
         let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
         unknown.fill(0);
         for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
-            corners::<FMA>(ground, [xs, ys], row, [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+            corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
         }
         if let Some(planes) = ground.planes
             && any_negative(unknown)
@@ -332,44 +331,25 @@ pub(super) fn parted(gap: f64, off: f64) -> (f64, f64) {
     if gap >= 4.0 * off { (off, -1.0) } else { (0.0, off) }
 }
 
-/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved. `row`: where those of a row lie.
+/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
 #[inline(always)]
 fn corners<const FMA: bool>(
     ground: &Ground<'_>,
     [xs, ys]: [&[f64]; 2],
-    row: Option<f64>,
     [right, below]: [f64; 2],
-    u: &mut [f64],
-    v: &mut [f64],
-    unknown: &mut [u64],
-) {
-    let lines = [ground.along.times(256.0), ground.down.times(256.0), ground.denominator];
-    let off = 256.0 * ground.off;
-    let parts = ground.gaps.map(|(gap, _)| parted(256.0 * gap, off));
-    let at = ([xs, ys], [right, below]);
-    match row.and_then(|y| undivided(lines, y + below)) {
-        Some([along, down]) => floors::<FMA, false>([along, down, Line::default()], parts, at, u, v, unknown),
-        None => floors::<FMA, true>(lines, parts, at, u, v, unknown),
-    }
-}
-
-/// Floors of two functions, `DIVIDED` by a third, and as sign bits which are not proved, besides those that were not.
-#[inline(always)]
-fn floors<const FMA: bool, const DIVIDED: bool>(
-    [along, down, denominator]: [Line; 3],
-    [(up_p, off_p), (up_q, off_q)]: [(f64, f64); 2],
-    ([xs, ys], [right, below]): ([&[f64]; 2], [f64; 2]),
     u: &mut [f64],
     v: &mut [f64],
     unknown: &mut [u64],
 ) {
     let lanes = u.len();
     let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
+    let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
+    let off = 256.0 * ground.off;
+    let [(up_p, off_p), (up_q, off_q)] = ground.gaps.map(|(gap, _)| parted(256.0 * gap, off));
     for n in 0..lanes {
-        let (x, y) = (xs[n] + right, if DIVIDED { ys[n] + below } else { 0.0 });
-        let r = if DIVIDED { 1.0 / denominator.at::<FMA, false>(x, y) } else { 1.0 };
-        let p = along.at::<FMA, false>(x, y) * r + up_p;
-        let q = down.at::<FMA, false>(x, y) * r + up_q;
+        let (x, y) = (xs[n] + right, ys[n] + below);
+        let r = 1.0 / denominator.at::<FMA, false>(x, y);
+        let (p, q) = (along.at::<FMA, false>(x, y) * r + up_p, down.at::<FMA, false>(x, y) * r + up_q);
         let (near_p, near_q) = (whole(p), whole(q));
         unknown[n] |= ((p - near_p).abs() - off_p).to_bits() | ((q - near_q).abs() - off_q).to_bits();
         u[n] = if near_p > p { near_p - 1.0 } else { near_p };

@@ -99,17 +99,6 @@ impl Line {
     }
 }
 
-/// Quotients of two functions by a third in a row, as functions along it, where the third does not vary there: one division serves all. `y`: the row.
-#[inline(always)]
-pub(super) fn undivided([one, other, by]: [Line; 3], y: f64) -> Option<[Line; 2]> {
-    if by.x != 0.0 {
-        return None;
-    }
-    let r = 1.0 / (by.c + by.y * y);
-    let along = |line: Line| Line { c: (line.c + line.y * y) * r, x: line.x * r, y: 0.0 };
-    Some([along(one), along(other)])
-}
-
 /// How a quotient is estimated: what is computed for a lane is the quotient less `base`, in steps of 2^-`shift`, and less what it can be
 /// off by, so that a lane whose fraction is not above `limit` is proved.
 #[derive(Clone, Copy, Debug, Default)]

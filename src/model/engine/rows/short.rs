@@ -5,7 +5,7 @@ use super::BLOCK;
 use super::kernels::PerLane;
 use super::kernels::{LANES, STEP};
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, nearest, position, undivided, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::raster::interpolate::{SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
@@ -276,13 +276,6 @@ fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, 
     for n in 0..STEP {
         let at = IOTA_REAL[n] + first;
         x[n] = if at < last { at } else { last };
-    }
-    if let Some([along, down]) = undivided([along, down, denominator], 0.0) {
-        for n in 0..STEP {
-            u[n] = along.at::<FMA, true>(x[n], 0.0);
-            v[n] = down.at::<FMA, true>(x[n], 0.0);
-        }
-        return [u, v];
     }
     for n in 0..STEP {
         let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
