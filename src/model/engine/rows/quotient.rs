@@ -14,12 +14,6 @@ pub(super) const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
 /// 1.5 2^23: [`MAGIC`] in single precision.
 const MAGIC_32: f32 = 12_582_912.0;
 
-/// 16 roundings of single precision.
-const SLACK_32: f64 = 1.0 / (1_u64 << 20) as f64;
-
-/// An estimate of a weight must be closer to the truth than this.
-const COARSEST: f64 = 0.125;
-
 /// Fraction bits of an estimate, where its whole part leaves room for them.
 const FRACTION: i32 = 20;
 
@@ -356,77 +350,6 @@ impl Reciprocals {
         }
         close < 0
     }
-}
-
-/// [`QuotientEstimate`] in single precision, for weights on a row: twice the lanes, a wider margin.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct WeightEstimate {
-    /// Constant and slope of the numerator, less half a denominator, so that the nearest whole number is the floor.
-    line: (f32, f32),
-    base: i32,
-    /// Half, less what the estimate can be off by.
-    limit: f32,
-}
-
-impl WeightEstimate {
-    /// As [`QuotientEstimate::new`], on a row; `ratio` is the largest denominator over the smallest.
-    #[inline(always)]
-    pub(super) fn new(
-        numerator: Line,
-        denominator: Line,
-        columns: f64,
-        (reciprocal, widest): (f64, f64),
-        ratio: f64,
-    ) -> Option<WeightEstimate> {
-        let base = whole(numerator.c * reciprocal);
-        let line = numerator.less(base + 0.5, denominator);
-        let margin = ((line.c.abs() + line.x.abs() * columns) * widest + 1.0) * ratio * SLACK_32;
-        // Also refuses what is no number.
-        let proves = margin < COARSEST;
-        if !proves {
-            return None;
-        }
-        Some(WeightEstimate { line: (line.c as f32, line.x as f32), base: base as i32, limit: (0.5 - margin) as f32 })
-    }
-
-    /// The floor of a lane, and as its sign bit whether it is not proved.
-    #[inline(always)]
-    fn floor<const FMA: bool>(&self, x: f32, r: f32) -> (i32, u32) {
-        let q = line_32::<FMA>(self.line, x) * r;
-        let t = q + MAGIC_32;
-        let value = (t.to_bits() as i32).wrapping_add(self.base.wrapping_sub(MAGIC_32.to_bits() as i32));
-        (value, (self.limit - (q - (t - MAGIC_32)).abs()).to_bits())
-    }
-}
-
-#[inline(always)]
-fn line_32<const FMA: bool>((c, slope): (f32, f32), x: f32) -> f32 {
-    if FMA { slope.mul_add(x, c) } else { slope * x + c }
-}
-
-/// Floors of two weights on a row. Says whether some lane of them is not proved.
-#[inline(always)]
-pub(super) fn estimate_weights<const FMA: bool>(
-    last: i32,
-    denominator: Line,
-    numerators: &[WeightEstimate; 2],
-    first: &mut [i32],
-    second: &mut [i32],
-) -> bool {
-    let [one, other] = *numerators;
-    let denominator = (denominator.c as f32, denominator.x as f32);
-    let mut close = 0_u32;
-    let lanes = first.len();
-    let (second, iota) = (&mut second[..lanes], &IOTA[..lanes]);
-    for n in 0..lanes {
-        let x = iota[n].min(last) as f32;
-        let r = 1.0 / line_32::<FMA>(denominator, x);
-        let (a, a_close) = one.floor::<FMA>(x, r);
-        let (b, b_close) = other.floor::<FMA>(x, r);
-        (first[n], second[n]) = (a, b);
-        close |= a_close | b_close;
-    }
-    close >> 31 == 1
 }
 
 /// Where a lane lies.

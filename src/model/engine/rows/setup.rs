@@ -4,7 +4,7 @@
 use super::compiled::{Reason, Reasons};
 use super::kernels::{PerLane, STEP};
 use super::planes::Plane;
-use super::quotient::{Line, Positions, QuotientEstimate, SLACK, WeightEstimate, break_ties, correct, estimate_two};
+use super::quotient::{Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::Sample;
 use crate::raster::setup::Triangle;
@@ -151,16 +151,6 @@ impl<'a> Setup<'a> {
     ) -> Option<[QuotientEstimate; 2]> {
         // Not a closure: one that is called twice is not inlined.
         Some([self.estimate_of::<ROW>(&planes[0], bias, local)?, self.estimate_of::<ROW>(&planes[1], bias, local)?])
-    }
-
-    /// Weights on a row to be estimated, in single precision.
-    #[inline(always)]
-    pub(super) fn weight_estimates(&self, planes: &[Plane; 2], local: &BatchSetup) -> Option<[WeightEstimate; 2]> {
-        let (columns, reciprocals) = (local.columns, (local.reciprocal, local.widest));
-        Some([
-            WeightEstimate::new(planes[0].line(&local.real), local.denominator, columns, reciprocals, local.ratio)?,
-            WeightEstimate::new(planes[1].line(&local.real), local.denominator, columns, reciprocals, local.ratio)?,
-        ])
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ use super::kernels::{LANES, Lanes256, PerLane};
 use super::levels::{Placing, Reads};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
-use super::quotient::{Reciprocals, estimate_two, estimate_weights};
+use super::quotient::{Reciprocals, estimate_two};
 use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::taps::Footprints;
@@ -286,10 +286,7 @@ impl<'a> Interpolators<'a> {
         {
             let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
-            let weight_estimates = if ROW { setup.weight_estimates(planes, local) } else { None };
-            let close = if let Some(weight_estimates) = weight_estimates {
-                estimate_weights::<FMA>(batch.at.last, local.denominator, &weight_estimates, w0, w2)
-            } else if let Some(estimates) = setup.estimates::<ROW>(planes, 0, local) {
+            let close = if let Some(estimates) = setup.estimates::<ROW>(planes, 0, local) {
                 let estimates = [estimates[0].not_negative(), estimates[1].not_negative()];
                 let close = estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, w0, w2);
                 close[0] | close[1]
