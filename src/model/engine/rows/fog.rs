@@ -129,7 +129,7 @@ impl Setup<'_> {
                 };
                 if estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, values, spare)[0] {
                     let bottom = self.denominator.exact(&local.e);
-                    correct::<ROW>(batch.at, plane.exact(&local.e), bottom, plane.small(self.bits), values, spare);
+                    correct::<ROW>(batch.at, plane.exact(&local.e), bottom, values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
                     *out = factor((*value).clamp(0, 4096)) as i16;

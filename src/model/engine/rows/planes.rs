@@ -129,12 +129,6 @@ impl Plane {
         }
         Some((g0 * e[0] + g1 * e[1] + g2 * e[2], g0 * a0 + g1 * a1 + g2 * a2))
     }
-
-    /// By how many bits numerator and denominator can be divided, if that leaves denominators below 2^30. `bits` is what D can have.
-    #[inline(always)]
-    pub(super) fn small(&self, bits: u32) -> Option<u32> {
-        (bits.saturating_sub(self.shared) <= 30).then_some(self.shared)
-    }
 }
 
 /// sum g_k E_k in double precision, of g_k that are not floored.

@@ -388,52 +388,30 @@ impl Exact {
     pub(super) fn at(self, x: i64, y: i64) -> i64 {
         self.c.wrapping_add(self.x.wrapping_mul(x)).wrapping_add(self.y.wrapping_mul(y))
     }
-
-    /// Divided by a power of two that divides it, modulo 2^32.
-    #[inline(always)]
-    fn low(self, shift: u32) -> [i32; 3] {
-        [(self.c >> shift) as i32, (self.x >> shift) as i32, (self.y >> shift) as i32]
-    }
 }
 
 /// Makes floors of estimates that are off by one at most, and says where nothing remains.
 ///
-/// The remainder lies within 1.25 denominators of 0, so it is known although numerators are known modulo 2^64 only. `small` says by how
-/// many bits both functions can be divided, if denominators are below 2^30 then: 32 bits suffice.
+/// The remainder lies within 1.25 denominators of 0, so it is known although numerators are known modulo 2^64 only.
 #[inline(always)]
 pub(super) fn correct<const ROW: bool>(
     at: Positions<'_>,
     numerator: Exact,
     denominator: Exact,
-    small: Option<u32>,
     values: &mut [i32],
     whole: &mut [i32],
 ) {
-    if let Some(shift) = small {
-        let ([n, n_x, n_y], [d, d_x, d_y]) = (numerator.low(shift), denominator.low(shift));
-        for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
-            let x = (*x).min(at.last);
-            let (mut n, mut d) = (n.wrapping_add(n_x.wrapping_mul(x)), d.wrapping_add(d_x.wrapping_mul(x)));
-            if !ROW {
-                (n, d) = (n.wrapping_add(n_y.wrapping_mul(*y)), d.wrapping_add(d_y.wrapping_mul(*y)));
-            }
-            let rest = n.wrapping_sub(value.wrapping_mul(d));
-            *value += i32::from(rest >= d) - i32::from(rest < 0);
-            *whole = i32::from((rest == 0) | (rest == d) | (rest == d.wrapping_neg()));
+    for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
+        let (x, y) = (i64::from((*x).min(at.last)), i64::from(*y));
+        let mut n = numerator.c.wrapping_add(numerator.x.wrapping_mul(x));
+        let mut d = denominator.c.wrapping_add(denominator.x.wrapping_mul(x));
+        if !ROW {
+            n = n.wrapping_add(numerator.y.wrapping_mul(y));
+            d = d.wrapping_add(denominator.y.wrapping_mul(y));
         }
-    } else {
-        for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
-            let (x, y) = (i64::from((*x).min(at.last)), i64::from(*y));
-            let mut n = numerator.c.wrapping_add(numerator.x.wrapping_mul(x));
-            let mut d = denominator.c.wrapping_add(denominator.x.wrapping_mul(x));
-            if !ROW {
-                n = n.wrapping_add(numerator.y.wrapping_mul(y));
-                d = d.wrapping_add(denominator.y.wrapping_mul(y));
-            }
-            let rest = n.wrapping_sub(i64::from(*value).wrapping_mul(d));
-            *value += i32::from(rest >= d) - i32::from(rest < 0);
-            *whole = i32::from((rest == 0) | (rest == d) | (rest == d.wrapping_neg()));
-        }
+        let rest = n.wrapping_sub(i64::from(*value).wrapping_mul(d));
+        *value += i32::from(rest >= d) - i32::from(rest < 0);
+        *whole = i32::from((rest == 0) | (rest == d) | (rest == d.wrapping_neg()));
     }
 }
 

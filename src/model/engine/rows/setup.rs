@@ -79,8 +79,6 @@ pub(super) fn whole_steps(count: usize) -> usize {
 pub(super) struct Setup<'a> {
     pub(super) context: &'a TriangleContext<'a>,
     pub(super) denominator: Plane,
-    /// Bits of the largest D.
-    pub(super) bits: u32,
     /// The reciprocal of a D that none is smaller than.
     widest: f64,
     /// Pixels that the definition computed something of.
@@ -93,13 +91,11 @@ impl<'a> Setup<'a> {
     pub(super) fn new(context: &'a TriangleContext<'a>, inverse: &[f64; 3]) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
-        let bits = |n: i64| 64 - n.leading_zeros();
         let least = p[0].min(p[1]).min(p[2]) as f64 * triangle.doubled_area as f64;
         Setup {
             widest: 1.0 / least,
             denominator: Plane::new(triangle, inverse, p),
             defined: [const { Cell::new(0) }; Reason::ALL.len()],
-            bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
     }
@@ -213,7 +209,7 @@ impl<'a> Setup<'a> {
             let bottom = self.denominator.exact(e);
             let top = plane.exact(e).less(i64::from(bias), bottom);
             let whole = &mut whole[..values.len()];
-            correct::<ROW>(batch.at, top, bottom, plane.small(self.bits), values, whole);
+            correct::<ROW>(batch.at, top, bottom, values, whole);
             if plane.lowers(&self.context.triangle) {
                 for k in (0..batch.count).filter(|k| whole[*k] != 0) {
                     values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
@@ -236,8 +232,8 @@ impl<'a> Setup<'a> {
         let [whole0, whole2] = whole;
         let (whole0, whole2) = (&mut whole0[..w0.len()], &mut whole2[..w2.len()]);
         let bottom = self.denominator.exact(e);
-        correct::<ROW>(batch.at, planes[0].exact(e), bottom, planes[0].small(self.bits), w0, whole0);
-        correct::<ROW>(batch.at, planes[1].exact(e), bottom, planes[1].small(self.bits), w2, whole2);
+        correct::<ROW>(batch.at, planes[0].exact(e), bottom, w0, whole0);
+        correct::<ROW>(batch.at, planes[1].exact(e), bottom, w2, whole2);
         if !self.context.triangle.exact_reciprocal {
             break_ties(w0, w2, whole0, whole2);
         }
