@@ -32,7 +32,7 @@ pub struct Test(pub CompareFunction, pub [Operand; 2]);
 /// How a value comes about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// Given.
+    /// A value that the caller gives.
     Input(Input),
     /// a + b.
     Add(Operand, Operand),
@@ -40,9 +40,9 @@ pub enum Operation {
     Subtract(Operand, Operand),
     /// a times b.
     Multiply(Operand, Operand),
-    /// The smaller.
+    /// The smaller of a and b.
     Least(Operand, Operand),
-    /// The larger.
+    /// The larger of a and b.
     Greatest(Operand, Operand),
     /// The whole part of a / b, where a is not negative.
     Quotient(Operand, i64),

@@ -32,7 +32,7 @@ impl ErrorKind {
     }
 }
 
-/// One finding.
+/// An error or a warning about an input, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Stable code, for example "NB0201"; `docs/errors.md` lists them.
@@ -49,7 +49,7 @@ pub struct Diagnostic {
     pub related: Vec<(Range<usize>, String)>,
     /// The rule of `docs/numerics.md` behind it.
     pub rule: Option<&'static str>,
-    /// Background.
+    /// What helps to understand it, a line each.
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<String>,
@@ -106,7 +106,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds background.
+    /// Adds a line that helps to understand the finding.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self

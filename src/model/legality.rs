@@ -16,7 +16,7 @@ use crate::state::{
 
 /// What a language calls things.
 pub trait Notation {
-    /// A register.
+    /// What the language calls a register of the final combiner.
     fn register(&self, register: FinalRegister) -> &'static str {
         register.name()
     }

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct FileLimit {
     /// Its name in the list.
     pub name: &'static str,
-    /// Its value.
+    /// The most bytes that are read.
     pub bytes: u64,
     /// What is counted.
     pub counted: &'static str,
@@ -22,7 +22,7 @@ impl fmt::Display for FileLimit {
     }
 }
 
-/// Of `NAME.expect.ron`.
+/// The limit of `NAME.expect.ron`.
 pub const EXPECTATION: FileLimit =
     FileLimit { name: "expectation_bytes", bytes: 64 << 10, counted: "bytes of an expectation" };
 /// Of a table of `ninebit op`.
@@ -62,13 +62,13 @@ pub struct Limits {
     pub scene_bytes: u64,
     /// Levels of brackets inside each other.
     pub nesting: usize,
-    /// Render targets.
+    /// Render targets of a scene.
     pub targets: usize,
     /// Columns and rows of a render target, each.
     pub target_side: u32,
     /// Bytes of all colour and depth surfaces together, at four bytes a pixel each.
     pub surface_bytes: u64,
-    /// Textures.
+    /// Textures of a scene.
     pub textures: usize,
     /// Columns and rows of a texture, each; a profile may allow less.
     pub texture_side: u32,
@@ -80,7 +80,7 @@ pub struct Limits {
     pub program_bytes: u64,
     /// Bytes of one mesh file.
     pub mesh_file_bytes: u64,
-    /// Draws.
+    /// Draws of a scene.
     pub draws: usize,
     /// Vertices of all draws together.
     pub vertices: usize,

@@ -19,7 +19,7 @@ pub enum Place {
         stage: usize,
         /// The alpha portion.
         alpha: bool,
-        /// Which part.
+        /// Which part of the portion.
         part: Part,
     },
     /// An input of the final combiner: 0 to 6 for A to G.
@@ -41,9 +41,9 @@ pub enum Part {
     Dot(usize),
     /// What sends the blue of a product to alpha.
     BlueToAlpha(usize),
-    /// The scale.
+    /// The output scale.
     Scale,
-    /// The bias.
+    /// The output bias.
     Bias,
 }
 

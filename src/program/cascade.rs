@@ -15,7 +15,7 @@ use ninebit::state::{
 /// Where an argument comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// 0.
+    /// The constant 0.
     Zero,
     /// A constant colour, R, G, B, A bytes.
     Constant([u8; 4]),
@@ -47,16 +47,16 @@ pub enum Channel {
 pub struct Argument {
     /// Where x comes from.
     pub source: Source,
-    /// Its channels.
+    /// Which channels of the source are read.
     pub channel: Channel,
     /// 1 - x.
     pub complement: bool,
 }
 
 impl Argument {
-    /// 0.
+    /// The argument 0.
     pub const ZERO: Argument = Argument::new(Source::Zero);
-    /// 1.
+    /// The argument 1, the complement of 0.
     pub const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
 
     /// A source as it is.
@@ -112,12 +112,12 @@ impl Equation {
         Equation { ab, cd, form, bias: Bias::None, scale: Scale::One }
     }
 
-    /// a.
+    /// The equation a.
     pub const fn copy(a: Argument) -> Equation {
         Equation::product(a, Argument::ONE)
     }
 
-    /// a b.
+    /// The equation a b.
     pub const fn product(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Sum)
     }
@@ -188,7 +188,7 @@ pub enum Alpha {
 pub enum Destination {
     /// The colour that the next stage reads as [`Source::Current`]; SPARE0.
     Current,
-    /// [`Source::Temporary`]; SPARE1.
+    /// What the next stage reads as [`Source::Temporary`]; SPARE1.
     Temporary,
 }
 
@@ -229,7 +229,7 @@ pub struct Cascade {
 /// A finished cascade.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,

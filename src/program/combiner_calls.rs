@@ -27,7 +27,7 @@ static COMBINERS: Vocabulary = Vocabulary {
 /// What the calls say.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The combiners.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// Where their parts stand.
     pub places: Places,
@@ -62,7 +62,7 @@ struct Parser<'t> {
     reader: Reader<'t>,
     stages: Vec<GeneralStage>,
     last: FinalCombiner,
-    /// NUM_GENERAL_COMBINERS.
+    /// The value of NUM_GENERAL_COMBINERS.
     count: usize,
     /// The first call about each stage.
     touched: Vec<Option<Range<usize>>>,
@@ -70,7 +70,7 @@ struct Parser<'t> {
     per_stage: Option<Range<usize>>,
     /// The first constant of a stage.
     own: Option<Range<usize>>,
-    /// Latest last.
+    /// Where parts stand; of a part that is written twice the last place counts.
     places: Vec<(Place, Range<usize>)>,
 }
 

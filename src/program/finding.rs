@@ -7,7 +7,7 @@ use ninebit::diagnostic::Diagnostic;
 /// A value and the bytes of the program's text that gave it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct At<T> {
-    /// The value.
+    /// What was read.
     pub value: T,
     /// Its place; empty if nothing was written.
     pub place: Range<usize>,

@@ -83,14 +83,14 @@ pub(crate) enum State {
     Done(Option<Box<dyn Any>>),
 }
 
-/// One table.
+/// The names of one kind of thing, and where each is defined.
 #[derive(Default)]
 pub(crate) struct Table<'a> {
     pub(super) index: Index,
     pub(super) definitions: Vec<(Raw<'a, ()>, State)>,
 }
 
-/// All tables.
+/// The names that a scene defines, by what they name.
 #[derive(Default)]
 pub(crate) struct Names<'a> {
     /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.

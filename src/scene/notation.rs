@@ -81,7 +81,7 @@ const EXTENSIONS: [&str; 4] = ["implicit_some", "unwrap_newtypes", "unwrap_varia
 
 /// A bracket that has not been closed yet.
 struct Open {
-    /// Its number.
+    /// Its number among all brackets.
     index: usize,
     close: u8,
     /// Whether its parts have names, once that is known.

@@ -32,7 +32,7 @@ pub enum Content {
     Value(Kind),
     /// A value with parts.
     Group {
-        /// The parts.
+        /// The parts that it is made of, in order.
         parts: Vec<Node>,
         /// Fields that are not written, with what they may be, and how the group reads with one: what goes before `field: value` and behind it.
         absent: Vec<(&'static str, Kind)>,

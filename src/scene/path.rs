@@ -63,7 +63,7 @@ impl PathError {
         PathFault::Missing(folder.to_path_buf()).of(name)
     }
 
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         self.fault.told().0
     }

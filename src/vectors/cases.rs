@@ -31,7 +31,7 @@ named! {
         Exhaustive => "exhaustive",
         /// Every input is at a boundary of its column.
         Boundary => "boundary",
-        /// Drawn.
+        /// Drawn by the seeded generator.
         Random => "random",
     }
 }

@@ -33,9 +33,9 @@ pub const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 /// What a table is of.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents {
-    /// The unit.
+    /// The unit whose rows these are.
     pub unit: &'static dyn Unit,
-    /// The chip.
+    /// The chip whose rules they follow.
     pub profile: Profile,
     /// How many rows.
     pub level: Level,

@@ -10,7 +10,7 @@ use ninebit::trace::Recorder;
 /// What holds besides a row's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conditions {
-    /// The chip.
+    /// The chip whose rules apply.
     pub profile: Profile,
     /// Rules that have alternatives.
     pub policies: Policies,
@@ -113,7 +113,7 @@ named! {
         StageBefore => "stage-before",
         /// The result is negative: two draws, as it is and negated.
         TwoDraws => "two-draws",
-        /// Both.
+        /// Both of these.
         StageBeforeTwoDraws => "stage-before+two-draws",
         /// Geometry shows it: which pixels are covered, or which texel is met.
         Geometry => "geometry",
@@ -140,7 +140,7 @@ impl Reach {
 pub struct Alternative {
     /// The rule and the value, `CMB-3=literal`.
     pub policy: String,
-    /// All results.
+    /// The results, a number for each result column.
     pub results: Vec<i64>,
 }
 

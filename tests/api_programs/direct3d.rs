@@ -165,7 +165,7 @@ proptest! {
                 prop_assert!(lowered.combiners.stages.len() <= profile.general_stages());
                 prop_assert_eq!(lowered.combiners.stages.len(), lowered.origins.len());
                 for _ in 0..4 {
-                    let pixel = Pixel::of(&mut choices);
+                    let pixel = Pixel::from_choices(&mut choices);
                     let expected = reference(&program, &context, &pixel);
                     let said = agrees(&lowered.combiners, profile, &pixel, expected);
                     prop_assert!(said.is_ok(), "{:?}\n{program:?}\n{pixel:?}\n{:?}", said, lowered.combiners);
@@ -215,7 +215,7 @@ fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
 pub(super) fn told_apart(a: &Combiners, b: &Combiners) -> bool {
     let mut choices = Choices::new(7);
     (0..256).any(|_| {
-        let pixel = Pixel::of(&mut choices);
+        let pixel = Pixel::from_choices(&mut choices);
         let [a, b] = [a, b].map(|combiners| run::<i32>(combiners, Profile::Nv2a, &pixel));
         (0..4).any(|n| (a[n] - b[n]).abs() > 3)
     })
@@ -288,7 +288,7 @@ fn a_dot_product_reaches_alpha_on_both_chips() {
     assert!(!nv10.stages[0].rgb.ab_blue_to_alpha && nv2a.stages[0].rgb.ab_blue_to_alpha);
     let mut choices = Choices::new(3);
     for _ in 0..200 {
-        let pixel = Pixel::of(&mut choices);
+        let pixel = Pixel::from_choices(&mut choices);
         assert_eq!(run::<i32>(&nv10, Profile::Nv10, &pixel), run::<i32>(&nv2a, Profile::Nv2a, &pixel));
     }
 }

@@ -210,7 +210,7 @@ proptest! {
         let program = environment(&mut choices, units);
         match lower(&program, &context) {
             Ok(lowered) => for _ in 0..4 {
-                let mut pixel = Pixel::of(&mut choices);
+                let mut pixel = Pixel::from_choices(&mut choices);
                 held(&mut pixel, &textures);
                 let expected = reference(&program, &context, &pixel);
                 let said = agrees(&lowered.combiners, profile, &pixel, expected);

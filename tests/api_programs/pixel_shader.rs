@@ -253,7 +253,7 @@ proptest! {
                 let [rgb, alpha] = bound(&lowered.combiners, 1.0);
                 let selects = lowered.combiners.stages.iter().any(|stage| stage.rgb.mux || stage.alpha.mux);
                 for _ in 0..4 {
-                    let pixel = Pixel::of(&mut choices);
+                    let pixel = Pixel::from_choices(&mut choices);
                     let mut state = State::new(&program, &context, &pixel);
                     let expected = state.run(&program);
                     if state.close {
@@ -463,7 +463,7 @@ fn cnd_takes_its_second_source_above_one_half() {
         [stage.inputs[0].register, stage.inputs[2].register],
         [Register::SecondaryColor, Register::PrimaryColor]
     );
-    let mut pixel = Pixel::of(&mut Choices::new(5));
+    let mut pixel = Pixel::from_choices(&mut Choices::new(5));
     for alpha in 0..=255 {
         pixel.textures[0][3] = alpha;
         let expected = if alpha >= 128 { pixel.diffuse } else { pixel.specular };
@@ -496,7 +496,7 @@ fn a_color_cnd_behind_plus_takes_its_second_source() {
     let pixel = Pixel {
         diffuse: [10, 20, 30, 40],
         textures: [[50; 4], [60; 4], [0; 4], [0; 4]],
-        ..Pixel::of(&mut Choices::new(1))
+        ..Pixel::from_choices(&mut Choices::new(1))
     };
     for (pair, red) in [
         ("mov r1.a, v0\n+ cnd r0.rgb, r0.a, t0, t1", 50),

@@ -1,4 +1,4 @@
-//! `ninebit compare`.
+//! The command `ninebit compare`: a scene in integers against ideal arithmetic.
 
 use clap::{Args, ValueEnum};
 use ninebit_files::output::{Compression, Destination, encode_png};

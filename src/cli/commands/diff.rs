@@ -1,4 +1,4 @@
-//! `ninebit diff`.
+//! The command `ninebit diff`: how two pictures differ, and traces of a pixel side by side.
 
 mod report;
 

@@ -1,4 +1,4 @@
-//! `ninebit generate`.
+//! The command `ninebit generate`: images that techniques need, as PNG files.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `ninebit inspect`.
+//! The command `ninebit inspect`: a page that holds the model and a scene.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `ninebit measure`.
+//! The command `ninebit measure`: how far pictures are from the ground truth.
 
 use std::path::{Path, PathBuf};
 

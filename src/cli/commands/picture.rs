@@ -17,27 +17,28 @@ const FORMATS: [&str; 27] = [
 
 /// Reads the name of a PNG to be written; `-` is stdout.
 pub(crate) fn png() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "png"))
+    OsStringValueParser::new().try_map(|name| from_name(name, "png"))
 }
 
 /// Reads the name of a DDS file to be written; `-` is stdout.
 pub(crate) fn dds() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "dds"))
+    OsStringValueParser::new().try_map(|name| from_name(name, "dds"))
 }
 
 /// Reads the name of a file of stored words; `-` is stdout.
 pub(crate) fn words() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "raw"))
+    OsStringValueParser::new().try_map(|name| from_name(name, "raw"))
 }
 
 /// Reads the name of a file of depths: a PNG, or stored words; `-` is stdout.
 pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| if is_png(Path::new(&name)) { of(name, "png") } else { of(name, "raw") })
+    OsStringValueParser::new()
+        .try_map(|name| if is_png(Path::new(&name)) { from_name(name, "png") } else { from_name(name, "raw") })
 }
 
 /// Reads the name of a page to be written; `-` is stdout.
 pub(crate) fn page() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "html"))
+    OsStringValueParser::new().try_map(|name| from_name(name, "html"))
 }
 
 /// Refuses a picture on stdout, where the report goes.
@@ -55,7 +56,7 @@ pub(crate) fn is_png(path: &Path) -> bool {
 }
 
 /// A name may end as it likes, but not like another format.
-fn of(name: OsString, format: &'static str) -> Result<Destination, String> {
+fn from_name(name: OsString, format: &'static str) -> Result<Destination, String> {
     let path = Path::new(&name);
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if ending != format && FORMATS.contains(&ending.as_str()) {
@@ -73,15 +74,19 @@ mod tests {
     #[test]
     fn other_formats_are_refused() {
         for name in ["a.png", "a.PNG", "a", "-", "/dev/null", "tmp.Xy12", "a.jpg.part"] {
-            assert!(of(name.into(), "png").is_ok(), "{name}");
+            assert!(from_name(name.into(), "png").is_ok(), "{name}");
         }
         for name in ["a.jpg", "b/a.JPEG", "a.b.webp", "a.dds"] {
-            assert!(of(name.into(), "png").is_err(), "{name}");
-            assert!(of(name.into(), "raw").is_err(), "{name}");
+            assert!(from_name(name.into(), "png").is_err(), "{name}");
+            assert!(from_name(name.into(), "raw").is_err(), "{name}");
         }
-        assert!(of("a.dds".into(), "dds").is_ok() && of("a.png".into(), "raw").is_err() && is_png(Path::new("a.PNG")));
+        assert!(
+            from_name("a.dds".into(), "dds").is_ok()
+                && from_name("a.png".into(), "raw").is_err()
+                && is_png(Path::new("a.PNG"))
+        );
         assert_eq!(
-            of("b/a.png".into(), "dds"),
+            from_name("b/a.png".into(), "dds"),
             Err("this command writes DDS: write to `b/a.dds` and convert that".to_owned())
         );
     }

@@ -1,4 +1,4 @@
-//! `ninebit render`.
+//! The command `ninebit render`: scenes to pictures.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! `ninebit texture`.
+//! The command `ninebit texture`: a texture's levels and faces as pictures.
 
 mod layout;
 mod source;

@@ -75,9 +75,9 @@ pub struct Accuracy {
 /// A picture and its truth, pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pictures {
-    /// Columns.
+    /// Columns of each picture.
     pub width: u32,
-    /// Rows.
+    /// Rows of each picture.
     pub height: u32,
     /// What is shown: R, G, B, A.
     pub shown: Vec<[u8; 4]>,

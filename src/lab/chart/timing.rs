@@ -12,7 +12,7 @@ use ninebit::plan::Plan;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
-    /// The median.
+    /// Half of the times are below.
     pub median: f64,
     /// A quarter of the times are below.
     pub lower: f64,

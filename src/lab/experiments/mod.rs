@@ -63,7 +63,7 @@ impl std::fmt::Debug for Method {
 pub enum Scale {
     /// Real numbers; a threshold is sought to this much.
     Real(f64),
-    /// Whole numbers.
+    /// Integers, one after the other.
     Whole,
     /// Powers of two.
     Doubling,

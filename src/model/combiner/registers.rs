@@ -9,7 +9,7 @@ pub const REGISTERS: usize = 12;
 /// The registers of one pixel; index by [`Register`], then by channel R, G, B, A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registers<L> {
-    /// Values.
+    /// The values, by [register](Register) and channel.
     pub values: [[L; 4]; REGISTERS],
 }
 

@@ -26,7 +26,7 @@ pub struct Triangles {
 enum Provoking {
     /// Of its three vertices this one.
     Corner(usize),
-    /// Any vertex.
+    /// Any vertex: its index, a triangle each.
     Each(Arc<[u32]>),
 }
 

@@ -184,7 +184,7 @@ pub fn run<L: Lane, O: Observer>(
     out
 }
 
-/// ROP-1.
+/// ROP-1: whether an alpha passes the test.
 #[inline]
 pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
     let passes = |alpha: i32| test.function.passes(i64::from(alpha.clamp(0, 255)), i64::from(test.reference));

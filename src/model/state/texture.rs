@@ -228,9 +228,9 @@ named! {
 named! {
     /// Nearest or bilinear (TEX-5, TEX-6).
     pub enum Filter {
-        /// One texel.
+        /// One texel is read.
         Nearest,
-        /// Four texels.
+        /// Four texels are read and mixed.
         Linear,
     }
 }
@@ -241,7 +241,7 @@ named! {
         None,
         /// The nearest level.
         Nearest,
-        /// Two levels.
+        /// Two levels are read and mixed.
         Linear,
     }
 }
@@ -262,7 +262,7 @@ pub struct Texture {
 /// Texels given, or the contents of a render target drawn before.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureImage {
-    /// Raw texels.
+    /// Texels that the scene brings.
     Texels(Texels),
     /// The words of a render target, of as many bytes as the format has; one level.
     Target {
@@ -312,7 +312,7 @@ pub struct Level {
     pub offset: usize,
     /// Columns, border texels not counted.
     pub width: u32,
-    /// Rows.
+    /// Texels down.
     pub height: u32,
 }
 
@@ -378,7 +378,7 @@ pub struct ColorKey {
 pub struct ShadowComparison {
     /// The reference stands on its left, the texel on its right. The chip has one for all units.
     pub function: CompareFunction,
-    /// The reference.
+    /// What texels are compared with.
     pub reference: ShadowReference,
 }
 
@@ -409,7 +409,7 @@ pub struct TextureUnit {
     pub palette: Option<usize>,
     /// Along s. Cube maps ignore it (TEX-14).
     pub address_s: AddressMode,
-    /// Along t.
+    /// How t addresses texels outside the image.
     pub address_t: AddressMode,
     /// Along the layers of a volume.
     pub address_r: AddressMode,

@@ -22,9 +22,9 @@ pub struct Texel {
 /// One image of a texture: a level of a face, or a layer of a volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Slice<'a> {
-    /// The unit.
+    /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// The level.
+    /// The level that is read.
     pub level: &'a Level,
     /// The number of the face or layer; `None` beyond the layers of a volume, where everything is the border colour.
     pub image: Option<usize>,

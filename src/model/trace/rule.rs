@@ -122,7 +122,7 @@ named! {
         Roundings = "roundings",
         /// Products and sums of the dot unit in single precision (TSH-4, TSH-5).
         Dots = "dot operations",
-        /// Channels blended.
+        /// Channels that are blended with the surface.
         Blends = "blended channels",
         /// Bytes of colour read from surfaces.
         BytesRead = "bytes read",

@@ -83,7 +83,7 @@ pub struct EyeVertex<'a> {
     pub object: &'a ObjectVertex,
     /// How it came here.
     pub model_view: &'a ModelView,
-    /// Position.
+    /// x, y, z, w in eye space.
     pub position: [f32; 4],
     /// Normal, of unit length or zero.
     pub normal: [f32; 3],

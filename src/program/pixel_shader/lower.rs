@@ -17,14 +17,14 @@ use ninebit::state::{
 pub struct Bump {
     /// BUMPENVMAT00, 01, 10, 11.
     pub matrix: Option<[f32; 4]>,
-    /// BUMPENVLSCALE, BUMPENVLOFFSET.
+    /// Scale and offset: BUMPENVLSCALE, BUMPENVLOFFSET.
     pub luminance: Option<[f32; 2]>,
 }
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units whose colours can be negative.
     pub signed: [bool; TEXTURE_UNITS],
@@ -47,20 +47,20 @@ impl Context {
 /// What a texture unit does for a shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitUse {
-    /// Its operation.
+    /// What the unit is programmed to do.
     pub operation: ShaderOperation,
     /// The unit that it reads.
     pub previous: usize,
     /// How a dot product takes that.
     pub mapping: DotMapping,
-    /// The instruction.
+    /// The instruction that wants it, in the text.
     pub place: Range<usize>,
 }
 
 /// A lowered shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,
@@ -116,7 +116,7 @@ pub(super) struct Half {
 /// What is known of a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Value {
-    /// Colour, alpha.
+    /// Of colour and of alpha.
     pub(super) halves: [Half; 2],
     /// Its alpha is its blue: a dot product on a chip without blue-to-alpha.
     pub(super) alpha_is_blue: bool,

@@ -36,7 +36,7 @@ named! {
         Ps11 = "ps.1.1",
         /// 1.1 with three textures in an instruction. What it adds besides is refused.
         Ps12 = "ps.1.2",
-        /// The same.
+        /// 1.2 with instructions that are refused as well.
         Ps13 = "ps.1.3",
     }
 }
@@ -78,7 +78,7 @@ impl Bank {
 /// A register of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaderRegister {
-    /// Its kind.
+    /// The bank that it belongs to.
     pub bank: Bank,
     /// Its number, below [`Bank::count`].
     pub index: u8,
@@ -118,11 +118,11 @@ named! {
 /// A source of an arithmetic instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Register.
+    /// The register that is read.
     pub register: ShaderRegister,
-    /// Channels.
+    /// Which of its channels.
     pub selector: Selector,
-    /// Modifier.
+    /// What is made of them.
     pub modifier: Modifier,
     /// The negative of all that.
     pub negate: bool,
@@ -131,11 +131,11 @@ pub struct Source {
 named! {
     /// Which channels an instruction writes.
     pub enum Mask {
-        /// All four.
+        /// Colour and alpha.
         All = "",
         /// R, G and B.
         Color = ".rgb",
-        /// Alpha.
+        /// Alpha alone.
         Alpha = ".a",
     }
 }
@@ -156,7 +156,7 @@ impl Mask {
 pub struct Target {
     /// r0, r1 or t0 to t3.
     pub register: ShaderRegister,
-    /// Channels.
+    /// The channels that are written.
     pub mask: Mask,
 }
 
@@ -189,7 +189,7 @@ named! {
 pub struct Reads {
     /// Channels of its colour.
     pub color: bool,
-    /// Its alpha.
+    /// Its alpha channel.
     pub alpha: bool,
 }
 
@@ -290,7 +290,7 @@ impl TextureOperation {
 pub struct TextureSource {
     /// t0 to t2.
     pub unit: u8,
-    /// `_bx2`.
+    /// `_bx2`: 2 x - 1 of each component.
     pub signed_scale: bool,
 }
 
@@ -323,7 +323,7 @@ pub struct Definition {
 /// A pixel shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelShader {
-    /// Its version.
+    /// The version that its first line names.
     pub version: Version,
     /// Constants that it defines itself.
     pub definitions: Vec<Definition>,

@@ -14,7 +14,7 @@ use crate::{Part, Place, Places};
 /// Words, and where each stands in a text.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// The words.
+    /// The words by method, for the program's decoder.
     pub words: RegisterWords,
     places: Vec<(Word, usize, Range<usize>)>,
     /// What stands for words that are not written.

@@ -10,7 +10,7 @@ use ninebit::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units that have a texture, and what it counts as: enabled units.
     pub textures: [Option<BaseFormat>; TEXTURE_UNITS],

@@ -19,13 +19,13 @@ named! {
     pub enum Mode {
         /// The texture's colour.
         Replace,
-        /// The product.
+        /// The colour times the texture's.
         Modulate,
         /// Blended by the texture's alpha.
         Decal,
         /// Blended with the environment colour by the texture's colour.
         Blend,
-        /// The sum.
+        /// The colour plus the texture's.
         Add,
         /// As the combine functions say.
         Combine,

@@ -15,7 +15,7 @@ use ninebit::vertex::texgen::StageTransform;
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units that give a colour.
     pub bound: [bool; TEXTURE_UNITS],
@@ -41,7 +41,7 @@ pub struct UnitChange {
 /// Lowered texture stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,

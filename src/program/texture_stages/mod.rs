@@ -54,7 +54,7 @@ named! {
 /// D3DTA with its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageArgument {
-    /// Selector.
+    /// The register or constant that is read.
     pub source: ArgumentSource,
     /// D3DTA_COMPLEMENT (16): 1 - x.
     pub complement: bool,

@@ -18,7 +18,7 @@ pub use print::print;
 /// A program and where its parts stand in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The program.
+    /// The program that was read.
     pub shader: VertexShader,
     /// Of each instruction.
     pub places: Vec<InstructionPlaces>,
@@ -35,7 +35,7 @@ pub struct InstructionPlaces {
     pub opcode: Range<usize>,
     /// What it writes.
     pub destination: Range<usize>,
-    /// Each source.
+    /// Of each source, in order.
     pub sources: Vec<Range<usize>>,
 }
 

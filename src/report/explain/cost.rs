@@ -14,7 +14,7 @@ pub(super) type Amounts = [u64; Work::ALL.len()];
 /// What one fragment costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FragmentCost {
-    /// Every fragment.
+    /// What each fragment takes, whatever tests say.
     pub shaded: Amounts,
     /// On top of that, one that passes the tests.
     pub stored: Amounts,

@@ -11,9 +11,9 @@ use ninebit_program::texture_stages::{self as stages, TextureStages};
 
 /// A program of an API.
 pub(super) enum ApiProgram {
-    /// Direct3D.
+    /// Texture stages of Direct3D.
     Stages(TextureStages, Option<ProgramText>),
-    /// OpenGL.
+    /// Texture environments of OpenGL.
     Environment(TextureEnvironment, Option<ProgramText>),
     /// Direct3D, version 1.1 of pixel shaders.
     Shader(Box<ShaderProgram>),

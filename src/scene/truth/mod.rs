@@ -59,13 +59,13 @@ named! {
 /// Where something is, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// There.
+    /// A point in object space.
     Position([f64; 3]),
     /// Far away in that direction; any length.
     Direction([f64; 3]),
 }
 
-/// A light.
+/// A light with its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Where it is.
@@ -120,7 +120,7 @@ pub enum NormalSource {
 /// What is computed at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Equation {
-    /// Light.
+    /// Light on a material, by `lighting`.
     Lighting,
     /// (2s - 1)(2t - 1), negative products being 0.
     SignedProduct,
@@ -154,9 +154,9 @@ pub struct ShadingNormal {
 pub struct Truth {
     /// What is computed.
     pub equation: Equation,
-    /// The surface.
+    /// Where the surface's normals come from.
     pub normal: NormalSource,
-    /// Lights.
+    /// The lights, whose contributions are added.
     pub lights: Vec<Light>,
     /// The viewer, for highlights.
     pub eye: Option<Eye>,

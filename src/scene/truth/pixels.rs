@@ -13,7 +13,7 @@ use ninebit::state::{TriangleVertices, Vertex, VertexColor};
 use ninebit::trace::Silent;
 
 /// A given normal that is shorter stands for none: bytes of 128 are the zero vector, and half a step away from it.
-const SHORTEST: f64 = 1.0 / 64.0;
+const MIN_NORMAL_LENGTH: f64 = 1.0 / 64.0;
 
 /// What a pixel ought to show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,9 +39,9 @@ impl Pixel {
 /// What a target ought to show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruthFrame {
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// Row by row; `None` where no draw with a truth is seen, or where a triangle was cut off behind the viewer.
     pub pixels: Vec<Option<Pixel>>,
@@ -180,7 +180,7 @@ fn normal(truth: &Truth, point: &Point<'_>) -> Vector {
 fn shade(truth: &Truth, point: &Point<'_>, given: Option<(Vector, Space)>) -> Pixel {
     let mut pixel = Pixel { color: [0.0; 3], normal: [0.0; 3], basis: point.basis };
     pixel.normal = match given {
-        Some((vector, _)) if dot(vector, vector) < SHORTEST * SHORTEST => [0.0; 3],
+        Some((vector, _)) if dot(vector, vector) < MIN_NORMAL_LENGTH * MIN_NORMAL_LENGTH => [0.0; 3],
         Some((vector, space)) => unit_or_zero(pixel.object(vector, space)),
         None => normal(truth, point),
     };

@@ -11,7 +11,7 @@ pub(super) const SIDE: i64 = 16;
 /// Most columns and rows of the box of a triangle that is cut into boxes.
 const WIDEST: i64 = 64;
 
-/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be settled.
+/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be corrected.
 const WIDEST_FLAT: i64 = SIDE;
 
 /// Most pixels of a box, and what whole steps write past them.

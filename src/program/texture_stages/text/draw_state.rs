@@ -60,7 +60,7 @@ const GROUPS: [Group; 8] = [
     Group { field: "color_mask", states: &[("ColorWriteEnable", 168)], written: color_mask },
 ];
 
-/// Their names.
+/// The names of all states of a draw.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().flat_map(|group| group.states.iter().map(|(name, _)| *name))
 }
