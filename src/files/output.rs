@@ -150,7 +150,7 @@ impl Destination {
         }
     }
 
-    /// Whether it may be written, as far as files have been read: to be asked before much is computed.
+    /// Refuses the output if it would take the place of a file that was read. Ask before much is computed.
     ///
     /// # Errors
     /// See [`files::check`].

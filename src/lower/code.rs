@@ -10,7 +10,7 @@ use crate::input::Input;
 /// A value: a constant, or what an earlier line yields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operand {
-    /// The same in every pixel.
+    /// A number that is the same in every pixel.
     Constant(i64),
     /// The line of that number.
     Line(u32),

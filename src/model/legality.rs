@@ -75,7 +75,7 @@ pub struct Checked {
     pub reads: [Option<Range<usize>>; 4],
 }
 
-/// Whether a chip has so many general stages. The finding, if not; `place` tells where stage n stands.
+/// Refuses more general stages than the chip has; `place` tells where stage n stands.
 pub fn stage_count(
     count: usize,
     profile: Profile,

@@ -57,7 +57,7 @@ impl Places {
         self.0.push((place, span));
     }
 
-    /// Where it stands.
+    /// Where a part stands; `None` if it is not written.
     pub fn get(&self, place: Place) -> Option<Range<usize>> {
         self.0.iter().find(|(known, _)| *known == place).map(|(_, span)| span.clone())
     }

@@ -27,7 +27,7 @@ pub enum Style {
 pub struct Expanded {
     /// What the language's reader reads.
     pub text: String,
-    /// Of each byte, and of the end, the byte of the given text: of a name's value where the name stands.
+    /// The place in the given text of each byte, and of the end. Bytes of a name's value stand where the name does.
     pub places: Vec<usize>,
 }
 

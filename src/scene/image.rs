@@ -116,7 +116,7 @@ pub enum ImageFault {
     /// A cube map without these of its six faces.
     #[error("is a cube map without {}", .0.join(", "))]
     MissingFaces(Vec<&'static str>),
-    /// So many bits a channel.
+    /// The channels have this many bits.
     #[error("has {0} bits a channel; 8 are the most")]
     Depth(u8),
 }

@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("`{name}` {fault}")]
 pub struct PathError {
-    /// As given, shortened for messages.
+    /// The name as given, shortened for messages.
     pub name: String,
     /// What is wrong with it.
     pub fault: PathFault,

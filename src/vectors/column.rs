@@ -188,7 +188,7 @@ impl Column {
         Column::input(name, Kind::Hex(32), Domain::Float(negative, limit))
     }
 
-    /// How many numbers it takes.
+    /// The number of different values that it takes.
     pub fn size(&self) -> u128 {
         match &self.domain {
             None => 1,

@@ -50,7 +50,7 @@ pub struct Manifest {
     pub profile: String,
     /// L0, L1 or L2.
     pub level: String,
-    /// Of the random rows.
+    /// The seed of the random rows.
     pub seed: u64,
     /// Only rows that a policy changes.
     pub deciding: bool,
@@ -90,9 +90,9 @@ fn is_zero(rows: &usize) -> bool {
 pub struct Options {
     /// The chip whose rules the tables follow.
     pub profile: Profile,
-    /// How many rows.
+    /// The number of rows in each table.
     pub level: Level,
-    /// Of the random rows.
+    /// The seed of the random rows.
     pub seed: u64,
     /// The units whose tables are written.
     pub units: Vec<&'static dyn Unit>,

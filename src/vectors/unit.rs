@@ -56,7 +56,7 @@ pub trait Unit: Sync {
 
     /// Computes rows of which only the input `varying` varies, over these places of its column, and hands on those whose inputs go together.
     ///
-    /// No unit has another: it stands here so that it is compiled for each, without a call through a table for every row.
+    /// No unit overrides this. A provided method is compiled for each unit, which saves a call through a table for every row.
     #[allow(clippy::too_many_arguments, reason = "a loop that is compiled for each unit, and what it fills")]
     fn run(
         &self,

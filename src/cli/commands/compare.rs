@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
     /// A picture of the errors with its scale, a PNG
-    #[arg(long, value_name = "DIFF.png", value_parser = picture::png())]
+    #[arg(long, value_name = "DIFF.png", value_parser = picture::output("png"))]
     heatmap: Option<Destination>,
     #[command(flatten)]
     format: FormatArguments,

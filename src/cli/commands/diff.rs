@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
     /// Draw the difference: amplified where the pictures differ, a dark grey A where they do not
-    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::output("png"))]
     output: Option<Destination>,
 }
 

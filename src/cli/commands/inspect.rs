@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// The scene file, `-` for standard input
     scene: PathBuf,
     /// The page; `-` is stdout
-    #[arg(short, long, value_name = "PAGE.html", value_parser = picture::page())]
+    #[arg(short, long, value_name = "PAGE.html", value_parser = picture::output("html"))]
     output: Destination,
     #[command(flatten)]
     policies: PolicyArguments,

@@ -290,7 +290,7 @@ impl Replayed {
 pub struct Summary {
     /// All scenes that were replayed.
     pub scenes: usize,
-    /// Of these: as expected.
+    /// Scenes that show what is expected.
     pub matching: usize,
     /// Expectations that were written.
     pub blessed: usize,

@@ -116,9 +116,9 @@ pub const SHAPES: [MarkerShape; 5] =
 pub enum Join {
     /// Not at all.
     None,
-    /// By a line.
+    /// A line joins the points.
     Solid,
-    /// By a dashed line.
+    /// A dashed line joins the points.
     Dashed,
 }
 

@@ -32,7 +32,7 @@ impl<L: Lane> Registers<L> {
 }
 
 impl<V: Copy> Registers<V> {
-    /// The same everywhere.
+    /// A set that holds the value in every channel of every register.
     #[inline]
     pub fn from_value(value: V) -> Self {
         Registers { values: [[value; 4]; REGISTERS] }

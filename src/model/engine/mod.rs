@@ -66,8 +66,8 @@ impl Default for RenderOptions {
 pub struct Statistics {
     /// Covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
-    /// Of the fast engine: pixels of which the definition computed something, by the reason, and none of any other. A pixel counts once for
-    /// each thing of its that was computed so.
+    /// The pixels of which the definition computed something for the fast engine, by the reason; reasons without pixels are left out. A pixel
+    /// counts once for each such thing.
     pub defined_pixels: Vec<(Reason, u64)>,
 }
 

@@ -56,7 +56,7 @@ pub struct DrawTrace {
 }
 
 impl DrawTrace {
-    /// What a block of the steps was written as: a portion of a general stage, of a program in the language of an API.
+    /// The line of an API's program that a block of the steps comes from, if the block is a portion of a general stage.
     pub fn origin(&self, block: &str) -> Option<&str> {
         let (stage, portion) = block.strip_prefix("general stage ")?.split_once(' ')?;
         let origin = self.program_origin.get(stage.parse::<usize>().ok()?)?;

@@ -139,7 +139,7 @@ pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     ]
 }
 
-/// What is left of a clip-space triangle (RAS-6), as a polygon in the triangle's order, and the planes that cut it, as a set.
+/// Clips a clip-space triangle (RAS-6). Returns what is left, as a polygon in the triangle's order, and the set of planes that cut it.
 ///
 /// A new vertex is always computed from the inside vertex towards the outside one, so that neighbours meet.
 pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {

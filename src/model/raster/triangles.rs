@@ -68,7 +68,7 @@ impl Triangles {
         }
     }
 
-    /// How many there are.
+    /// The number of triangles.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.indices.len() / 3

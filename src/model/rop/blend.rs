@@ -103,7 +103,7 @@ pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 
 /// What blending a channel computes.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendValues<R> {
-    /// Of source and destination (ROP-4).
+    /// The factors of source and destination (ROP-4).
     pub factors: [R; 2],
     /// By the equation, not yet clamped (ROP-2, ROP-3).
     raw: R,

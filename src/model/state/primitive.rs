@@ -139,14 +139,14 @@ impl Default for Vertex {
     }
 }
 
-/// What is known of the vertex program that made the vertices of a draw. They are there already: it is for people to look at.
+/// The vertex program that made the vertices of a draw. Only reports read it: the vertices are there already.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VertexProgram {
-    /// In its language, without comments.
+    /// The program in its language, without comments.
     pub text: String,
-    /// How many instructions it has.
+    /// The number of its instructions.
     pub instructions: usize,
-    /// How many instruction slots they take.
+    /// The number of instruction slots that they take.
     pub slots: usize,
     /// It writes oFog.
     pub writes_fog: bool,

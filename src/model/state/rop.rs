@@ -200,7 +200,7 @@ pub struct StencilTest {
     pub mask: u8,
     /// Bits that are written.
     pub write_mask: u8,
-    /// Where the stencil test fails.
+    /// What is stored where the stencil test fails.
     pub fail: StencilOperation,
     /// Where it passes and the depth test fails.
     pub depth_fail: StencilOperation,

@@ -255,7 +255,7 @@ pub struct Texture {
     pub kind: TextureKind,
     /// Meaning of its words.
     pub format: TextureFormat,
-    /// Where the texels are.
+    /// The texels, or the surface that holds them.
     pub image: TextureImage,
 }
 
@@ -348,7 +348,7 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// How many entries there can be. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
+    /// The numbers of entries that a palette can have. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
     pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 

@@ -40,7 +40,7 @@ impl Vertices {
         }
     }
 
-    /// How many there are.
+    /// The number of vertices.
     pub fn len(&self) -> usize {
         self.count
     }

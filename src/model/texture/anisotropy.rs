@@ -11,7 +11,7 @@ const TEXEL: u32 = 65536;
 /// Taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taps<Offset, Weight> {
-    /// How many, 1 to [`MAX_TAPS`].
+    /// The number of taps, 1 to [`MAX_TAPS`].
     pub count: usize,
     /// Where they lie from the pixel's coordinates, u and v in 1/256 texel.
     pub offsets: [[Offset; 2]; MAX_TAPS],

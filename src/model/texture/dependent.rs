@@ -165,7 +165,7 @@ impl Target<'_> {
 /// What the same chain of stages gives at the three pixels of the quad that the lod is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadTargets {
-    /// On the face of the first.
+    /// u and v of the definition, on the face of the first pixel.
     pub fixed: Quad,
     /// s and t of the ideal.
     pub real: [[f64; 2]; 3],

@@ -73,7 +73,7 @@ impl Observer for Recorder {
     }
 }
 
-/// In place of how many make 1.0: the integer is the bit pattern of a single-precision number (TSH-4).
+/// The value of `per_one` for single-precision numbers, whose bit pattern the integer is (TSH-4).
 pub const SINGLE: i64 = 0;
 
 /// A named operand of a step.

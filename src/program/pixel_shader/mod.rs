@@ -204,7 +204,7 @@ pub struct Arithmetic {
     pub saturate: bool,
     /// Where the result goes.
     pub target: At<Target>,
-    /// As many as the operation has.
+    /// The sources, as many as the operation has.
     pub sources: Vec<At<Source>>,
     /// Issued together with the instruction before it: `+`.
     pub paired: bool,

@@ -27,7 +27,7 @@ named! {
         Blend,
         /// The colour plus the texture's.
         Add,
-        /// As the combine functions say.
+        /// The combine functions compute the result.
         Combine,
         /// COMBINE4_NV (NV_texture_env_combine4): sums of two products.
         Combine4,

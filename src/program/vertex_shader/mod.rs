@@ -20,9 +20,9 @@ pub use print::print;
 pub struct Written {
     /// The program that was read.
     pub shader: VertexShader,
-    /// Of each instruction.
+    /// Where each instruction stands.
     pub places: Vec<InstructionPlaces>,
-    /// Of the number of each definition.
+    /// Where the number of each definition stands.
     pub definitions: Vec<Range<usize>>,
     /// What is allowed but probably not meant.
     pub warnings: Vec<Diagnostic>,
@@ -35,7 +35,7 @@ pub struct InstructionPlaces {
     pub opcode: Range<usize>,
     /// What it writes.
     pub destination: Range<usize>,
-    /// Of each source, in order.
+    /// Each source, in order.
     pub sources: Vec<Range<usize>>,
 }
 

@@ -62,7 +62,7 @@ pub struct ChannelError {
     pub channel: usize,
     /// Errors of the channel over all pixels.
     pub errors: Statistics,
-    /// The same in steps.
+    /// The same errors, counted in steps of a byte.
     pub histogram: Histogram,
 }
 
@@ -131,7 +131,7 @@ pub struct Comparison {
     pub diverged: u64,
     /// Errors of R, G, B and A; without those that the surface does not keep. Empty for [`Mode::PerOp`].
     pub channels: Vec<ChannelError>,
-    /// What each part adds to those errors, in the order of `Part::ALL`: the sum over parts is the error. [`Mode::Follow`] only.
+    /// What each part contributes to those errors, in the order of `Part::ALL`. The parts add up to the error. [`Mode::Follow`] only.
     pub parts: Vec<(Part, Statistics)>,
     /// The largest amount by which the parts of a pixel miss its error: float64 rounding. [`Mode::Follow`] only.
     pub unexplained: f64,

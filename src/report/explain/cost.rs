@@ -31,7 +31,7 @@ pub struct Cost {
     pub kills: bool,
     /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
     pub lod_decides: bool,
-    /// Of one fragment.
+    /// The work of one fragment.
     pub fragment: FragmentCost,
     /// The draw is a pass over the target: something of it is drawn.
     pub seen: bool,

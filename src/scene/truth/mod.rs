@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub use field::Field;
 pub(crate) use pixels::real_color;
-pub use pixels::{Pixel, TruthFrame, evaluate, evaluate_with_normals};
+pub use pixels::{Pixel, TruthFrame, Visible, evaluate};
 
 pub use crate::generate::sky::{HemisphereLight, Integral};
 use crate::mesh::Mesh;
@@ -34,7 +34,7 @@ named! {
     pub enum Space {
         /// Along tangent, binormal and normal of the mesh.
         Tangent,
-        /// That of the mesh's positions.
+        /// The space of the mesh's positions.
         Object,
     }
 }
@@ -56,7 +56,7 @@ named! {
     }
 }
 
-/// Where something is, in object space.
+/// The place of a light or an eye, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// A point in object space.
@@ -68,7 +68,7 @@ pub enum Place {
 /// A light with its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is.
+    /// The point or direction from which it shines.
     pub place: Place,
     /// R, G, B; 1 is full.
     pub color: [f64; 3],
@@ -143,7 +143,7 @@ pub enum NormalHolder {
 /// Where a technique's normals are, and what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadingNormal {
-    /// Where they are.
+    /// What holds the normals.
     pub holder: NormalHolder,
     /// The space of the vectors.
     pub space: Space,

@@ -51,7 +51,7 @@ pub struct Read {
     pub column: String,
     /// R, G, B, A: 0 to 3.
     pub channel: usize,
-    /// By which the byte is multiplied.
+    /// The factor by which the byte is multiplied.
     pub weight: i64,
 }
 

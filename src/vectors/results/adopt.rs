@@ -34,13 +34,13 @@ pub struct Adopted {
     pub format: String,
     /// The card's name in this project: that of its folder.
     pub device: String,
-    /// As OpenGL names it.
+    /// The vendor, as OpenGL names it.
     pub vendor: String,
-    /// As OpenGL names it.
+    /// The renderer, as OpenGL names it.
     pub renderer: String,
-    /// As OpenGL names it.
+    /// The version, as OpenGL names it.
     pub version: String,
-    /// Of what is told here.
+    /// The grade of what is told here.
     pub grade: String,
     /// The chip of the pack.
     pub profile: String,

@@ -57,7 +57,7 @@ pub struct UnitComparison {
 pub struct Share {
     /// Rows with results.
     pub asked: usize,
-    /// Those that differ.
+    /// Rows whose results differ.
     pub differ: usize,
 }
 

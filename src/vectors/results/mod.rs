@@ -43,17 +43,17 @@ pub struct Device {
     pub format: String,
     /// Root digest of the pack that was asked.
     pub pack: String,
-    /// As OpenGL names it.
+    /// The vendor, as OpenGL names it.
     pub vendor: String,
-    /// As OpenGL names it.
+    /// The renderer, as OpenGL names it.
     pub renderer: String,
-    /// As OpenGL names it.
+    /// The version, as OpenGL names it.
     pub version: String,
     /// What was drawn into.
     pub surface: String,
     /// The bits of red, green, blue and alpha that the surface really has.
     pub surface_format: String,
-    /// Of OpenGL, with spaces between.
+    /// OpenGL's extensions, with spaces between.
     pub extensions: String,
 }
 
@@ -80,7 +80,7 @@ impl Device {
 /// A column that was observed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observed {
-    /// As the results name it: `out.u>>8`.
+    /// The column's name in the results: `out.u>>8`.
     pub name: String,
     /// Its place among the unit's results.
     pub column: usize,

@@ -1,4 +1,4 @@
-//! `ninebit op cube`.
+//! The operation `ninebit op cube`: a direction to a face of a cube map and coordinates on it.
 
 use clap::Args;
 use ninebit::raster::interpolate::Sample;

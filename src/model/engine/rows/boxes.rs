@@ -122,7 +122,7 @@ const MAGIC: f32 = 12_582_912.0;
 /// More than any floor.
 const BEYOND: i32 = 1 << 23;
 
-/// Limits the columns of each row of a box to those where a i + b j + e is not negative.
+/// Clips each row of a box to the columns i where a i + b j + e is not negative.
 ///
 /// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^22. (r + 1/2) / a is half an a-th from
 /// the next whole number at least, and in single precision off by less than that where it is below 32, as a is below 2^15; beyond that the

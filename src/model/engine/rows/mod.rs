@@ -1,4 +1,4 @@
-//! The fast engine: blocks of 256 pixels instead of pixels, and rows of numbers, one a pixel, instead of registers.
+//! The fast engine evaluates 256 pixels at a time: every combiner register becomes a row of 256 16-bit numbers.
 //!
 //! | file | knows |
 //! |---|---|

@@ -33,7 +33,7 @@ struct Ground {
     e: [f64; 3],
     a: [f64; 3],
     b: [f64; 3],
-    /// The magnitudes of what is added to edge functions within the box, and theirs.
+    /// An upper bound of each |E_k| over the box, and of what is added to it there.
     terms: [f64; 3],
     p: [f64; 3],
     /// 1 / P_k of the vertices.

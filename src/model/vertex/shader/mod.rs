@@ -210,7 +210,7 @@ pub struct Instruction {
 pub struct VertexShader {
     /// Constants that the program brings: number and value.
     pub definitions: Vec<(usize, [f32; 4])>,
-    /// In their order.
+    /// The instructions, in the order in which they run.
     pub instructions: Vec<Instruction>,
 }
 
