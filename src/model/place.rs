@@ -1,6 +1,7 @@
 //! Parts of a program, and where they stand in a text.
 
-use std::ops::Range;
+/// A part of a text: its bytes from `start` to before `end`.
+pub type Span = std::ops::Range<usize>;
 
 /// A part of a program that a finding can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,16 +50,16 @@ pub enum Part {
 
 /// Where the parts of a program stand: bytes of its text. What is not written has no place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Places(Vec<(Place, Range<usize>)>);
+pub struct Places(Vec<(Place, Span)>);
 
 impl Places {
     /// Notes a place.
-    pub fn set(&mut self, place: Place, span: Range<usize>) {
+    pub fn set(&mut self, place: Place, span: Span) {
         self.0.push((place, span));
     }
 
     /// Where a part stands; `None` if it is not written.
-    pub fn get(&self, place: Place) -> Option<Range<usize>> {
+    pub fn get(&self, place: Place) -> Option<Span> {
         self.0.iter().find(|(known, _)| *known == place).map(|(_, span)| span.clone())
     }
 }

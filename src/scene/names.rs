@@ -1,8 +1,8 @@
 //! Values that are defined once and used by name, as the reader keeps them.
 
+use ninebit::place::Span;
 use std::any::Any;
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
@@ -11,8 +11,6 @@ use super::raw::Raw;
 use super::wording::{closest, shorten};
 use ninebit::state::{Palette, Target, Texture};
 use ninebit_program::finding;
-
-type Span = Range<usize>;
 
 /// Names of one kind, where each is defined, and whether something uses it.
 #[derive(Default)]

@@ -4,7 +4,7 @@ use super::Choices;
 use super::direct3d::{finish, told_apart};
 use super::run::{Pixel, agrees};
 use ninebit::state::{Named, Profile, Scale};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit, lower,
 };
@@ -22,9 +22,9 @@ fn half(choices: &mut Choices, mode: Mode, alpha: bool) -> Half {
         .collect();
     let operands = if alpha { &Operand::ALL[2..] } else { Operand::ALL };
     Half {
-        function: At::default_of(choices.of(&functions)),
-        sources: std::array::from_fn(|_| At::default_of(choices.of(&sources))),
-        operands: std::array::from_fn(|_| At::default_of(choices.of(operands))),
+        function: Spanned::default_of(choices.of(&functions)),
+        sources: std::array::from_fn(|_| Spanned::default_of(choices.of(&sources))),
+        operands: std::array::from_fn(|_| Spanned::default_of(choices.of(operands))),
         scale: choices.of(&[Scale::One, Scale::Two, Scale::Four]),
     }
 }

@@ -13,6 +13,7 @@ use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;
 use crate::diagnostic::Diagnostic;
 use crate::limits::Limits;
+use crate::place::Span;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::{stencil, surface};
@@ -22,7 +23,6 @@ use crate::texture::planned::PlannedUnit;
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use liveness::{Computed, Liveness};
 use std::fmt;
-use std::ops::Range;
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl PlanError {
     }
 
     /// The same as a finding, of the part of a text that is to blame.
-    pub fn diagnostic(&self, place: impl Into<Option<Range<usize>>>) -> Diagnostic {
+    pub fn diagnostic(&self, place: impl Into<Option<Span>>) -> Diagnostic {
         let finding = Diagnostic::error(self.code, place, self.message.as_str()).help(self.help.as_str());
         Diagnostic { rule: self.rule, ..finding }
     }

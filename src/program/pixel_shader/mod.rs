@@ -15,9 +15,8 @@ mod scratch;
 mod texture;
 mod words;
 
-use std::ops::Range;
-
-use super::At;
+use super::Spanned;
+use crate::Span;
 use ninebit::diagnostic::{Diagnostic, Severity};
 use ninebit::state::{Named, Scale, named};
 
@@ -203,13 +202,13 @@ pub struct Arithmetic {
     /// `_sat`: limited to 0..1, after the scale.
     pub saturate: bool,
     /// Where the result goes.
-    pub target: At<Target>,
+    pub target: Spanned<Target>,
     /// The sources, as many as the operation has.
-    pub sources: Vec<At<Source>>,
+    pub sources: Vec<Spanned<Source>>,
     /// Issued together with the instruction before it: `+`.
     pub paired: bool,
     /// Its name in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 impl Arithmetic {
@@ -300,13 +299,13 @@ pub struct TextureInstruction {
     /// What it does.
     pub operation: TextureOperation,
     /// Its register, t0 to t3, and texture unit.
-    pub unit: At<u8>,
+    pub unit: Spanned<u8>,
     /// The earlier register that it reads.
-    pub source: Option<At<TextureSource>>,
+    pub source: Option<Spanned<TextureSource>>,
     /// The constant with the eye, of texm3x3spec.
-    pub eye: Option<At<u8>>,
+    pub eye: Option<Spanned<u8>>,
     /// Its name in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 /// `def`: a constant with its value.
@@ -317,7 +316,7 @@ pub struct Definition {
     /// R, G, B, A, finite.
     pub value: [f32; 4],
     /// The register in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 /// A pixel shader.
@@ -340,12 +339,12 @@ impl PixelShader {
     }
 
     /// Constants that are read, each with the first place.
-    pub fn constants_read(&self) -> Vec<At<u8>> {
+    pub fn constants_read(&self) -> Vec<Spanned<u8>> {
         let eyes = self.textures.iter().filter_map(|texture| texture.eye.clone());
         let sources = self.arithmetic.iter().flat_map(|instruction| &instruction.sources);
         let sources = sources.filter(|source| source.value.register.bank == Bank::Constant);
-        let sources = sources.map(|source| At { value: source.value.register.index, place: source.place.clone() });
-        let mut found: Vec<At<u8>> = Vec::new();
+        let sources = sources.map(|source| Spanned { value: source.value.register.index, span: source.span.clone() });
+        let mut found: Vec<Spanned<u8>> = Vec::new();
         for read in eyes.chain(sources) {
             if found.iter().all(|known| known.value != read.value) {
                 found.push(read);

@@ -3,7 +3,7 @@
 use super::program::{self, Through};
 use super::{CHANNELS, Column, Conditions, Reach, Unit, channels, named};
 use ninebit::state::{Combiners, Profile, Register, Scale};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
     TextureInstruction, TextureOperation, Version, lower,
@@ -42,10 +42,10 @@ fn arithmetic(operation: Operation, target: Target, sources: Vec<Source>) -> Ari
         operation,
         scale: Scale::One,
         saturate: false,
-        target: At::default_of(target),
-        sources: sources.into_iter().map(At::default_of).collect(),
+        target: Spanned::default_of(target),
+        sources: sources.into_iter().map(Spanned::default_of).collect(),
         paired: false,
-        place: 0..0,
+        span: 0..0,
     }
 }
 
@@ -78,10 +78,10 @@ fn shader(inputs: &[i64]) -> PixelShader {
     let before = Target { register: r0, mask: Mask::All };
     let textures = [0, 1, 3].map(|unit| TextureInstruction {
         operation: TextureOperation::Tex,
-        unit: At::default_of(unit),
+        unit: Spanned::default_of(unit),
         source: None,
         eye: None,
-        place: 0..0,
+        span: 0..0,
     });
     PixelShader {
         version: Version::Ps11,
