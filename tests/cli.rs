@@ -202,7 +202,7 @@ fn scenes_come_from_standard_input() {
     }
     let mut command = bench.command("render - -o piped.png");
     let given = fs::File::open(bench.path("lit-words-file.ron")).unwrap();
-    Run::of(command.stdin(given).output().unwrap()).data();
+    Run::from_output(command.stdin(given).output().unwrap()).data();
     bench.run("render lit-words-file.ron -o named.png").data();
     assert_eq!(fs::read(bench.path("piped.png")).unwrap(), fs::read(bench.path("named.png")).unwrap());
     bench.run("render - -o none.png").failed(3, "error");
@@ -297,7 +297,7 @@ fn an_output_that_cannot_be_written_is_status_7() {
         bench.run("generate height-rocks --size 16 -o /dev/full").failed(7, "error[NB0702]");
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let run = bench.command("policies").stdout(full).output().unwrap();
-        Run::of(run).failed(7, "standard output cannot be written");
+        Run::from_output(run).failed(7, "standard output cannot be written");
     }
 }
 
@@ -316,7 +316,7 @@ fn colour_is_a_choice() {
     assert!(stderr("--color=always frobnicate").contains('\x1b'));
     assert!(!stderr("--color=never frobnicate").contains('\x1b'));
     let forced = bench.command(&format!("{command} --color always")).env("NO_COLOR", "1").output().unwrap();
-    assert!(Run::of(forced).stderr.contains('\x1b'), "the command line outranks the environment");
+    assert!(Run::from_output(forced).stderr.contains('\x1b'), "the command line outranks the environment");
 }
 
 /// A scene of one red triangle on 8 x 4 pixels, and a second target.

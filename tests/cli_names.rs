@@ -84,7 +84,7 @@ fn the_command_line_is_shown_as_text() {
     let bench = Bench::new();
     for argument in ["\x1b[31m", "\n::error::x", "--\x1b[31m", "##[error]x"] {
         for command in ["", "check", "render", "op", "vectors check", "replay", "check --color always"] {
-            let run = Run::of(bench.command(command).arg(argument).output().unwrap());
+            let run = Run::from_output(bench.command(command).arg(argument).output().unwrap());
             let plain = run.stderr.replace("\x1b[0m", "").replace("\x1b[1m", "");
             assert!(run.status != 0, "{command} {argument:?}");
             if !command.contains("--color") {
@@ -215,7 +215,7 @@ fn reports_hold_hostile_names_as_text() {
     }
     bench.write("summary.md", "");
     let mut command = bench.command("replay . --report github,junit=j.xml,html=h.html,json=j.json --artifacts found");
-    let run = Run::of(command.env("GITHUB_STEP_SUMMARY", bench.path("summary.md")).output().unwrap());
+    let run = Run::from_output(command.env("GITHUB_STEP_SUMMARY", bench.path("summary.md")).output().unwrap());
     assert_eq!(run.status, 3, "{}", run.stderr);
     harmless_run("replay", &run, "::error file=");
     let all = if cfg!(unix) { 5 } else { 4 };
@@ -264,7 +264,7 @@ fn a_file_name_that_is_no_text_stops_nothing() {
     for name in [&b"\xff.ron"[..], b"\xfe.ron", b"plain.ron"] {
         fs::write(bench.path("").join(OsStr::from_bytes(name)), &scene).unwrap();
     }
-    let blessed = Run::of(bench.command("replay . --bless").env_remove("CI").output().unwrap());
+    let blessed = Run::from_output(bench.command("replay . --bless").env_remove("CI").output().unwrap());
     assert_eq!((blessed.status, blessed.stderr.as_str()), (0, ""));
     assert!(bench.path("").join(OsStr::from_bytes(b"\xff.expect.ron")).exists());
     let text = bench.run("replay . --pictures drawn --report junit=j.xml").text();

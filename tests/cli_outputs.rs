@@ -94,7 +94,7 @@ fn no_output_takes_the_place_of_an_input() {
 #[test]
 fn reports_and_pictures_of_a_replay_have_places_of_their_own() {
     let bench = bench();
-    let blessed = Run::of(bench.command("replay a.ron --bless").env_remove("CI").output().unwrap());
+    let blessed = Run::from_output(bench.command("replay a.ron --bless").env_remove("CI").output().unwrap());
     assert_eq!(blessed.status, 0, "{}", blessed.stderr);
     for reports in ["json=r,junit=r", "json=r,junit=./r,html=r", "json=r.json,html=a.expect.ron"] {
         let run = bench.run(&format!("replay a.ron --report {reports}"));
@@ -112,7 +112,7 @@ fn reports_and_pictures_of_a_replay_have_places_of_their_own() {
     let digest = expectation.split("sha256: \"").nth(1).unwrap().split('"').next().unwrap();
     let other = expectation.replace(digest, &"0".repeat(64)).replace("version: 1,", "version: 1, picture: \"a.png\",");
     bench.write("a.expect.ron", other);
-    let run = Run::of(bench.command("replay a.ron --bless").env_remove("CI").output().unwrap());
+    let run = Run::from_output(bench.command("replay a.ron --bless").env_remove("CI").output().unwrap());
     let text = String::from_utf8(run.stdout).unwrap();
     assert!(run.status == 7 && text.contains("NB0705"), "{text}");
     assert_eq!(fs::read(bench.path("a.png")).unwrap(), before);
@@ -193,7 +193,7 @@ fn a_signal_that_the_caller_ignores_stays_ignored() {
     let program = env!("CARGO_BIN_EXE_ninebit");
     let script = format!("trap '' HUP; '{program}' vectors export -o pack & sleep 0.05; kill -HUP $!; wait $!");
     let mut command = std::process::Command::new("sh");
-    let run = Run::of(command.args(["-c", &script]).current_dir(bench.path("")).output().unwrap());
+    let run = Run::from_output(command.args(["-c", &script]).current_dir(bench.path("")).output().unwrap());
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
 }
 
@@ -204,7 +204,7 @@ fn a_full_disk_is_said_by_help_as_well() {
     for command in ["--help", "--version", "help render", "render --help", "limits", "check a.ron"] {
         bench.write("a.ron", "(version: 1, profile: Nv10)");
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-        let run = Run::of(bench.command(command).stdout(full).output().unwrap());
+        let run = Run::from_output(bench.command(command).stdout(full).output().unwrap());
         assert!(run.status == 7 && run.stderr.contains("error[NB0703]"), "{command}: {} {}", run.status, run.stderr);
     }
 }
@@ -229,7 +229,7 @@ fn tables_come_through_pipes() {
         let mut child = bench.command(&format!("{command} {name}"));
         let mut child = child.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         child.stdin.take().unwrap().write_all(table.as_bytes()).unwrap();
-        assert_eq!(Run::of(child.wait_with_output().unwrap()).data(), expected, "{name}");
+        assert_eq!(Run::from_output(child.wait_with_output().unwrap()).data(), expected, "{name}");
     }
 }
 

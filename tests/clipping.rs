@@ -48,7 +48,7 @@ fn a_floor_that_passes_the_viewer_reaches_from_near_to_far() {
     // At z = -10 the floor is seen at y = -0.1, row 35.2: the rows below are its own, down to the last at z = -1.
     let whole = plan(&floor(VIEW, 50.0, -500.0));
     assert_eq!(white(&whole), 64 * (64 - 35));
-    let planes: Vec<ClipPlane> = ClipPlane::of(whole.draws[0].assembly.clipping.planes).collect();
+    let planes: Vec<ClipPlane> = ClipPlane::in_set(whole.draws[0].assembly.clipping.planes).collect();
     assert_eq!(planes, [ClipPlane::Near, ClipPlane::Far, ClipPlane::Left, ClipPlane::Right]);
     // What begins at the planes is the same picture.
     assert_eq!(white(&plan(&floor(VIEW, -1.0, -10.0))), white(&whole));

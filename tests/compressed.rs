@@ -5,37 +5,15 @@
 //! texel gets which mix, and which is transparent, must be the same.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use ninebit::random::Random;
 use ninebit::state::TextureFormat;
-use ninebit::texture::compressed::decode;
-
-/// Lowest and highest of (ours - theirs) in each channel.
-fn differences(format: TextureFormat, dithered: bool, theirs: impl Fn(&[u8], &mut [u8])) -> [(i32, i32); 4] {
-    let mut random = Random::seeded(1);
-    let mut found = [(0, 0); 4];
-    for _ in 0..200_000 {
-        let bytes: Vec<u8> = (0..format.bytes() / 8).flat_map(|_| random.bits().to_le_bytes()).collect();
-        let words: Vec<u32> = bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
-        let mut decoded = [0; 64];
-        theirs(&bytes, &mut decoded);
-        for (n, pixel) in decoded.as_chunks::<4>().0.iter().enumerate() {
-            let ours = decode(format, dithered, &words, n as u32 % 4, n as u32 / 4).bytes;
-            for channel in 0..4 {
-                let difference = i32::from(ours[channel]) - i32::from(pixel[channel]);
-                let (low, high) = &mut found[channel];
-                (*low, *high) = (difference.min(*low), difference.max(*high));
-            }
-        }
-    }
-    found
-}
+use ninebit_test_support::blocks::differences;
 
 /// One step: where bits are repeated, and where a third of rounded bytes falls on the other side.
 #[test]
 fn dxt3_and_dxt5_are_within_a_step() {
-    let dxt3 = differences(TextureFormat::Dxt3, true, |block, out| bcdec_rs::bc2(block, out, 16));
+    let dxt3 = differences(TextureFormat::Dxt3, true, &|block, out| bcdec_rs::bc2(block, out, 16));
     assert_eq!(dxt3, [(-1, 1), (-1, 1), (-1, 1), (0, 0)]);
-    let dxt5 = differences(TextureFormat::Dxt5, true, |block, out| bcdec_rs::bc3(block, out, 16));
+    let dxt5 = differences(TextureFormat::Dxt5, true, &|block, out| bcdec_rs::bc3(block, out, 16));
     // The other decoder adds 1 before it divides by 7 or 5, which rounds up only from six sevenths or four fifths of a step on; the
     // chip rounds to the nearest.
     assert_eq!(dxt5, [(-1, 1), (-1, 1), (-1, 1), (0, 1)]);
@@ -44,13 +22,13 @@ fn dxt3_and_dxt5_are_within_a_step() {
 /// Dither of three bits moves red and blue, of two bits green; dark colours fall to 0.
 #[test]
 fn dxt1_of_nv2a_is_dithered() {
-    let found = differences(TextureFormat::Dxt1, true, |block, out| bcdec_rs::bc1(block, out, 16));
+    let found = differences(TextureFormat::Dxt1, true, &|block, out| bcdec_rs::bc1(block, out, 16));
     assert_eq!(found, [(-14, 5), (-6, 3), (-14, 5), (0, 0)]);
 }
 
 /// A third or half of five bits is up to half a 31st off.
 #[test]
 fn dxt1_of_nv10_is_mixed_at_its_own_width() {
-    let found = differences(TextureFormat::Dxt1, false, |block, out| bcdec_rs::bc1(block, out, 16));
+    let found = differences(TextureFormat::Dxt1, false, &|block, out| bcdec_rs::bc1(block, out, 16));
     assert_eq!(found, [(-3, 5), (-2, 3), (-3, 5), (0, 0)]);
 }

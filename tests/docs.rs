@@ -129,7 +129,7 @@ struct Words {
 }
 
 impl Words {
-    fn of(page: &str) -> Words {
+    fn from_page(page: &str) -> Words {
         let text = fs::read_to_string(at(page)).unwrap();
         let (mut words, mut inside, mut console) = (Words::default(), None, false);
         for line in text.lines() {
@@ -177,7 +177,7 @@ fn words() {
     let mut all = Words::default();
     let documents = documents();
     for page in documents.iter().map(String::as_str).chain(TEMPLATES) {
-        let Words { by_hand, held, generated } = Words::of(page);
+        let Words { by_hand, held, generated } = Words::from_page(page);
         table += &format!("{by_hand:>8} {held:>8} {generated:>9} {page}\n");
         all = Words { by_hand: all.by_hand + by_hand, held: all.held + held, generated: all.generated + generated };
     }

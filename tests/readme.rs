@@ -35,3 +35,11 @@ fn the_excerpt_is_in_the_trace() {
         assert!(lines.contains(&words(line)), "the trace has no line `{line}`:\n{trace}");
     }
 }
+
+#[test]
+fn what_is_installed_is_a_package() {
+    let readme = std::fs::read_to_string(at("README.md")).unwrap();
+    let path = readme.split("cargo install --path ").nth(1).unwrap().split('`').next().unwrap();
+    let manifest = std::fs::read_to_string(at(path).join("Cargo.toml")).unwrap();
+    assert!(manifest.contains("[[bin]]"), "{path} is no package with a program");
+}

@@ -167,11 +167,11 @@ fn expectations_are_written_on_request_only() {
         "{text}"
     );
     let mut command = bench.command("replay . --bless");
-    Run::of(command.env("CI", "true").output().unwrap()).failed(2, "CI is set");
+    Run::from_output(command.env("CI", "true").output().unwrap()).failed(2, "CI is set");
     assert!(!bench.path("scene.expect.ron").exists());
     let bless = |arguments: &str| {
         let mut command = bench.command(arguments);
-        Run::of(command.env("CI", "false").output().unwrap())
+        Run::from_output(command.env("CI", "false").output().unwrap())
     };
     bless("replay . --bless --policy CMB-8=each").failed(2, "default policies");
     let (expected, png) = drawn(&bench, "scene.ron", &[]);
@@ -291,7 +291,7 @@ fn wrong_command_lines_are_refused() {
     fs::create_dir_all(bench.path("b/a")).unwrap();
     bench.write("b/a/one.ron", "");
     let mut command = bench.command("replay a/one.ron ../a/one.ron");
-    Run::of(command.current_dir(bench.path("b")).output().unwrap()).failed(2, "would both be called");
+    Run::from_output(command.current_dir(bench.path("b")).output().unwrap()).failed(2, "would both be called");
 }
 
 #[test]
@@ -342,7 +342,7 @@ fn github_shows_annotations() {
     bench.write("a/three, a%.ron", "(version: 1,\n profile: Nv11)");
     let mut command = bench.command("replay . --report github");
     bench.write("summary.md", "before\n");
-    let run = Run::of(command.env("GITHUB_STEP_SUMMARY", bench.path("summary.md")).output().unwrap());
+    let run = Run::from_output(command.env("GITHUB_STEP_SUMMARY", bench.path("summary.md")).output().unwrap());
     let text = said(run, 3);
     assert!(
         text.contains("::error file=./a/three%2C a%25.ron,line=2,col=11,title=a/three%2C a%25 failed::NB"),

@@ -22,7 +22,7 @@ use ninebit_scene::{ErrorKind, Loaded, SceneError};
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NinebitStatus {
-    /// As asked.
+    /// The call did what was asked.
     Ok = 0,
     /// A null pointer, a number that is too large, a buffer that is too small.
     Argument = 2,
@@ -36,7 +36,7 @@ pub enum NinebitStatus {
     Internal = 6,
 }
 
-/// A chip.
+/// The chip whose rules hold.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NinebitChip {
@@ -56,9 +56,9 @@ pub struct NinebitScene {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NinebitInputs {
-    /// Interpolated diffuse.
+    /// Interpolated diffuse colour.
     pub primary: [i32; 4],
-    /// Interpolated specular.
+    /// Interpolated specular colour.
     pub secondary: [i32; 4],
     /// Fog colour and factor.
     pub fog: [i32; 4],
@@ -72,7 +72,7 @@ pub struct NinebitInputs {
 pub struct NinebitMethod {
     /// Its number, 0x0ac0 for example.
     pub method: u32,
-    /// The word.
+    /// The word that is written to it.
     pub word: u32,
 }
 

@@ -24,13 +24,13 @@ pub const VERSION: u32 = 1;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
-    /// [`VERSION`].
+    /// The version of the format: [`VERSION`].
     pub version: u32,
     /// Name of the target.
     pub target: String,
-    /// Columns.
+    /// Columns of the picture.
     pub width: u32,
-    /// Rows.
+    /// Rows of the picture.
     pub height: u32,
     /// [`digest`] of the picture, pixels that the mask leaves out taken as 0, 0, 0, 0.
     pub sha256: String,
@@ -76,15 +76,15 @@ pub enum Mismatch {
     /// The size, as it is.
     #[error("the picture is {width} x {height}")]
     Size {
-        /// Columns.
+        /// Columns of the picture that was drawn.
         width: u32,
-        /// Rows.
+        /// Rows of the picture that was drawn.
         height: u32,
     },
     /// The digest, as it is. Without the expected picture no more can be said.
     #[error("the picture's digest is {sha256}")]
     Digest {
-        /// SHA-256.
+        /// SHA-256 of the picture that was drawn, in hexadecimal.
         sha256: String,
     },
     /// More than is allowed.
@@ -117,7 +117,7 @@ pub enum ExpectationError {
     /// The mask leaves another number of pixels.
     #[error("{found} pixels are compared, not {expected}")]
     Pixels {
-        /// As expected.
+        /// How many the expectation says.
         expected: u64,
         /// As the mask has it.
         found: u64,
@@ -125,17 +125,17 @@ pub enum ExpectationError {
     /// An image it names has another size.
     #[error("`{name}` is {width} x {height}, not of the size expected")]
     Size {
-        /// The image.
+        /// The image's file, as the expectation names it.
         name: String,
-        /// Columns.
+        /// Columns that it has.
         width: u32,
-        /// Rows.
+        /// Rows that it has.
         height: u32,
     },
 }
 
 impl ExpectationError {
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         match self {
             ExpectationError::Path(error) => error.code(),

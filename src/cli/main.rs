@@ -1,4 +1,4 @@
-//! The `ninebit` command.
+//! The program `ninebit`: runs the command line and exits with its status.
 
 fn main() -> std::process::ExitCode {
     ninebit_cli::main()

@@ -40,7 +40,7 @@ pub struct Panic {
 }
 
 impl Panic {
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub const CODE: &'static str = "NB0801";
 
     /// What to do about it.

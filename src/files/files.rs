@@ -63,7 +63,7 @@ impl Seen {
     }
 }
 
-/// Whether outputs may be written: to none of the files that were read or written, and each to a place of its own.
+/// Refuses outputs that would take the place of a file that was read or written, or of one another.
 ///
 /// # Errors
 /// [`OutputError::Input`], [`OutputError::Twice`].

@@ -23,21 +23,21 @@ pub enum OutputError {
     /// The place does not take files.
     #[error("`{}` is a folder", shown::path(path))]
     Folder {
-        /// The output.
+        /// Where the output would have gone.
         path: PathBuf,
     },
     /// The file system refused.
     #[error("`{}` cannot be written: {source}", shown::path(path))]
     Write {
-        /// The output.
+        /// Where the output would have gone.
         path: PathBuf,
-        /// Why.
+        /// What the file system said.
         source: io::Error,
     },
     /// It would take the place of a file that was read.
     #[error("`{}` is the input{}: nothing was written", shown::path(path), called(path, input))]
     Input {
-        /// The output.
+        /// Where the output would have gone.
         path: PathBuf,
         /// What the file was called when it was read.
         input: PathBuf,
@@ -45,35 +45,35 @@ pub enum OutputError {
     /// It would take the place of another output of the same run.
     #[error("`{}` would be written twice", shown::path(path))]
     Twice {
-        /// The output.
+        /// Where both would have gone.
         path: PathBuf,
     },
     /// It would take the place of a file under version control.
     #[error("`{}` is there, in a folder under version control", shown::path(path))]
     Versioned {
-        /// The output.
+        /// Where the output would have gone.
         path: PathBuf,
     },
     /// Standard output refused.
     #[error("standard output cannot be written: {source}")]
     Stdout {
-        /// Why.
+        /// What the file system said.
         source: io::Error,
     },
     /// The encoder refused the picture.
     #[error("a picture of {width} x {height} cannot be encoded: {reason}")]
     Encode {
-        /// Columns.
+        /// Columns of the picture.
         width: u32,
-        /// Rows.
+        /// Rows of the picture.
         height: u32,
-        /// Why.
+        /// What the encoder said.
         reason: String,
     },
 }
 
 impl OutputError {
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         match self {
             OutputError::Folder { .. } => "NB0701",
@@ -125,7 +125,7 @@ fn called(path: &Path, input: &Path) -> String {
 pub enum Destination {
     /// A file, replaced as a whole.
     File(PathBuf),
-    /// Standard output.
+    /// Standard output, written as `-`.
     Stdout,
 }
 
@@ -150,7 +150,7 @@ impl Destination {
         }
     }
 
-    /// Whether it may be written, as far as files have been read: to be asked before much is computed.
+    /// Refuses the output if it would take the place of a file that was read. Ask before much is computed.
     ///
     /// # Errors
     /// See [`files::check`].
@@ -158,7 +158,7 @@ impl Destination {
         files::check(self.path())
     }
 
-    /// The file.
+    /// The file that it names; `None` of standard output.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Destination::File(path) => Some(path),

@@ -10,7 +10,7 @@ use crate::input::Input;
 /// A value: a constant, or what an earlier line yields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operand {
-    /// The same in every pixel.
+    /// A number that is the same in every pixel.
     Constant(i64),
     /// The line of that number.
     Line(u32),
@@ -32,7 +32,7 @@ pub struct Test(pub CompareFunction, pub [Operand; 2]);
 /// How a value comes about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// Given.
+    /// A value that the caller gives.
     Input(Input),
     /// a + b.
     Add(Operand, Operand),
@@ -40,9 +40,9 @@ pub enum Operation {
     Subtract(Operand, Operand),
     /// a times b.
     Multiply(Operand, Operand),
-    /// The smaller.
+    /// The smaller of a and b.
     Least(Operand, Operand),
-    /// The larger.
+    /// The larger of a and b.
     Greatest(Operand, Operand),
     /// The whole part of a / b, where a is not negative.
     Quotient(Operand, i64),

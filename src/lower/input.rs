@@ -48,18 +48,18 @@ pub struct Local {
     pub range: Range,
 }
 
-/// A weight of a filter: of the right texels, of the lower ones, of the same on the next level, of the next level.
+/// A weight of a filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Weight {
-    /// Of the right texels.
+    /// The weight of the right texels.
     U,
-    /// Of the lower texels.
+    /// The weight of the lower texels.
     V,
-    /// Of the next level's right texels.
+    /// The weight of the next level's right texels.
     NextU,
-    /// Of the next level's lower texels.
+    /// The weight of the next level's lower texels.
     NextV,
-    /// Of the next level.
+    /// The weight of the next level.
     Level,
 }
 

@@ -12,7 +12,7 @@ use crate::code::{Code, Operand, Operation, Range, Test};
 pub(crate) enum Number<'a> {
     /// The same in every pixel.
     Constant(i64),
-    /// A line.
+    /// The value of a line of the code.
     Of(&'a Code, u32),
 }
 

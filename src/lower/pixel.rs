@@ -43,7 +43,7 @@ pub enum Result {
     Fragment([Operand; 4]),
     /// The surface's new word, and the alpha test: where it fails, the surface keeps its word.
     Stored {
-        /// The word.
+        /// The surface's new word.
         word: Operand,
         /// None: every fragment passes.
         test: Option<Test>,

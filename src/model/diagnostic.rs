@@ -1,6 +1,6 @@
 //! Findings: what is wrong with a scene or a program, where, and what to do about it.
 
-use std::ops::Range;
+use crate::place::Span;
 use std::sync::Arc;
 
 use crate::state::Profile;
@@ -32,7 +32,7 @@ impl ErrorKind {
     }
 }
 
-/// One finding.
+/// An error or a warning about an input, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Stable code, for example "NB0201"; `docs/errors.md` lists them.
@@ -42,14 +42,14 @@ pub struct Diagnostic {
     /// What is wrong, in one line.
     pub message: String,
     /// Bytes of [`Source::text`] that are to blame; `None` if no text is.
-    pub span: Option<Range<usize>>,
+    pub span: Option<Span>,
     /// Said under the marked text.
     pub label: String,
     /// Other places that matter, and why.
-    pub related: Vec<(Range<usize>, String)>,
+    pub related: Vec<(Span, String)>,
     /// The rule of `docs/numerics.md` behind it.
     pub rule: Option<&'static str>,
-    /// Background.
+    /// What helps to understand it, a line each.
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<String>,
@@ -63,12 +63,12 @@ pub struct File {
     /// The text and its name.
     pub source: Source,
     /// Where the scene names it.
-    pub named: Range<usize>,
+    pub named: Span,
 }
 
 impl Diagnostic {
     /// An error about `span`.
-    pub fn error(code: &'static str, span: impl Into<Option<Range<usize>>>, message: impl Into<String>) -> Self {
+    pub fn error(code: &'static str, span: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Diagnostic {
             code,
             severity: Severity::Error,
@@ -84,7 +84,7 @@ impl Diagnostic {
     }
 
     /// A warning about `span`.
-    pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn warning(code: &'static str, span: Span, message: impl Into<String>) -> Self {
         Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message) }
     }
 
@@ -106,14 +106,14 @@ impl Diagnostic {
         self
     }
 
-    /// Adds background.
+    /// Adds a line that helps to understand the finding.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
     /// Marks another place that matters, and says why.
-    pub fn related(mut self, span: Range<usize>, label: impl Into<String>) -> Self {
+    pub fn related(mut self, span: Span, label: impl Into<String>) -> Self {
         self.related.push((span, label.into()));
         self
     }
@@ -145,12 +145,7 @@ impl Diagnostic {
 }
 
 /// The finding that something needs the larger chip.
-pub fn only_nv2a(
-    code: &'static str,
-    place: impl Into<Option<Range<usize>>>,
-    what: &str,
-    rule: &'static str,
-) -> Diagnostic {
+pub fn only_nv2a(code: &'static str, place: impl Into<Option<Span>>, what: &str, rule: &'static str) -> Diagnostic {
     Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
         .label("not on this chip")
         .rule(rule)
@@ -162,7 +157,7 @@ pub fn needs_nv2a(
     profile: Profile,
     needs: bool,
     code: &'static str,
-    place: impl Into<Option<Range<usize>>>,
+    place: impl Into<Option<Span>>,
     what: &str,
     rule: &'static str,
 ) -> Option<Diagnostic> {

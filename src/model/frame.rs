@@ -6,9 +6,9 @@ use crate::state::{SurfaceFormat, depth_of, stencil_of};
 /// A render target's memory after (or during) a render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surface {
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// Format of the words.
     pub format: SurfaceFormat,
@@ -46,7 +46,7 @@ impl Surface {
 /// Every surface of a scene, in the order of [`Scene::targets`](crate::state::Scene::targets).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// The surfaces.
+    /// A surface for each target, in the plan's order.
     pub surfaces: Vec<Surface>,
 }
 

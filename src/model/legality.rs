@@ -5,10 +5,9 @@
 pub mod surface;
 pub mod texture;
 
-use std::ops::Range;
-
 use super::place::{Part, Place, Places};
 use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::place::Span;
 use crate::state::{
     Bias, Combiners, Component, FinalRegister, GeneralStage, InputMapping, Named, Portion, Profile, Register, Scale,
     named,
@@ -16,7 +15,7 @@ use crate::state::{
 
 /// What a language calls things.
 pub trait Notation {
-    /// A register.
+    /// What the language calls a register of the final combiner.
     fn register(&self, register: FinalRegister) -> &'static str {
         register.name()
     }
@@ -72,15 +71,11 @@ pub struct Checked {
     /// Errors and warnings, in no particular order.
     pub findings: Vec<Diagnostic>,
     /// The first place that reads what each texture unit gives; `None`: nothing does, or the place is not written.
-    pub reads: [Option<Range<usize>>; 4],
+    pub reads: [Option<Span>; 4],
 }
 
-/// Whether a chip has so many general stages. The finding, if not; `place` tells where stage n stands.
-pub fn stage_count(
-    count: usize,
-    profile: Profile,
-    place: impl Fn(usize) -> Option<Range<usize>>,
-) -> Option<Diagnostic> {
+/// Refuses more general stages than the chip has; `place` tells where stage n stands.
+pub fn stage_count(count: usize, profile: Profile, place: impl Fn(usize) -> Option<Span>) -> Option<Diagnostic> {
     let most = profile.general_stages();
     if count <= most {
         return None;
@@ -116,7 +111,7 @@ pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation:
 }
 
 /// The finding that a general stage reads a register of the final combiner. The state cannot express it, so front ends do.
-pub fn only_final(place: Range<usize>, name: &str, help: &str) -> Diagnostic {
+pub fn only_final(place: Span, name: &str, help: &str) -> Diagnostic {
     Diagnostic::error("NB0313", place, format!("{name} exists only in the final combiner"))
         .label("not in a general stage")
         .rule("CMB-12")
@@ -124,7 +119,7 @@ pub fn only_final(place: Range<usize>, name: &str, help: &str) -> Diagnostic {
 }
 
 /// The finding that an input of the final combiner is mapped otherwise than by inversion. The state cannot express it, so front ends do.
-pub fn final_mapping(place: impl Into<Option<Range<usize>>>, mapping: InputMapping) -> Option<Diagnostic> {
+pub fn final_mapping(place: impl Into<Option<Span>>, mapping: InputMapping) -> Option<Diagnostic> {
     let has = matches!(mapping, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert);
     let message = format!("the final combiner has no mapping {}", mapping.name());
     let finding = Diagnostic::error("NB0311", place, message).label("not here").rule("FIN-1");
@@ -350,21 +345,21 @@ impl Check<'_> {
         }
     }
 
-    fn component(&mut self, written: Place, input: Option<Range<usize>>, message: String, help: Help) {
+    fn component(&mut self, written: Place, input: Option<Span>, message: String, help: Help) {
         let place = self.places.get(written).or(input);
         let help = self.notation.help(help);
         self.push(Diagnostic::error("NB0311", place, message).label("not here").rule("CMB-12").help(help));
     }
 
     /// NV10 has two texture registers.
-    fn on_chip(&mut self, register: FinalRegister, place: Option<Range<usize>>) {
+    fn on_chip(&mut self, register: FinalRegister, place: Option<Span>) {
         if matches!(register, FinalRegister::Texture2 | FinalRegister::Texture3) && self.profile == Profile::Nv10 {
             let what = format!("register {}", self.name(register));
             self.push(only_nv2a("NB0302", place, &what, "CMB-12"));
         }
     }
 
-    fn secondary_alpha(&mut self, register: FinalRegister, alpha: bool, place: Option<Range<usize>>) {
+    fn secondary_alpha(&mut self, register: FinalRegister, alpha: bool, place: Option<Span>) {
         if register == FinalRegister::SecondaryColor && alpha && self.profile == Profile::Nv10 {
             let message = format!("the alpha of {} is not defined on Nv10", self.name(register));
             let finding = Diagnostic::error("NB0309", place, message)
@@ -376,7 +371,7 @@ impl Check<'_> {
     }
 
     /// Notes a read, and warns if nothing defines what it gives. What is not written is not meant to be read.
-    fn read(&mut self, register: FinalRegister, alpha: bool, place: Option<Range<usize>>) {
+    fn read(&mut self, register: FinalRegister, alpha: bool, place: Option<Span>) {
         let Some(place) = place else { return };
         if let Some(unit) = texture(register) {
             if !self.textures[unit][usize::from(alpha)] {

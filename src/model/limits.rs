@@ -10,7 +10,7 @@ use std::fmt;
 pub struct FileLimit {
     /// Its name in the list.
     pub name: &'static str,
-    /// Its value.
+    /// The most bytes that are read.
     pub bytes: u64,
     /// What is counted.
     pub counted: &'static str,
@@ -22,34 +22,30 @@ impl fmt::Display for FileLimit {
     }
 }
 
-/// Of `NAME.expect.ron`.
-pub const EXPECTATION: FileLimit =
-    FileLimit { name: "expectation_bytes", bytes: 64 << 10, counted: "bytes of an expectation" };
-/// Of a table of `ninebit op`.
-pub const OPERATION_TABLE: FileLimit =
-    FileLimit { name: "operation_table_bytes", bytes: 64 << 20, counted: "bytes of a table of `ninebit op`" };
-/// Of the manifest of a pack.
-pub const MANIFEST: FileLimit =
-    FileLimit { name: "manifest_bytes", bytes: 4 << 20, counted: "bytes of the manifest of a pack" };
-/// Of a table of vectors or of results.
-pub const VECTOR_TABLE: FileLimit =
-    FileLimit { name: "vector_table_bytes", bytes: 2 << 30, counted: "bytes of a table of vectors or results" };
-/// Of a leaf of a sweep.
-pub const LEAF: FileLimit = FileLimit { name: "leaf_bytes", bytes: 64 << 10, counted: "bytes of a leaf of a sweep" };
-/// Of a tree of digests.
-pub const TREE: FileLimit = FileLimit { name: "tree_bytes", bytes: 16 << 20, counted: "bytes of a tree of digests" };
-/// Of the device file of results.
-pub const DEVICE: FileLimit =
-    FileLimit { name: "device_bytes", bytes: 1 << 20, counted: "bytes of the device file of results" };
-/// A file of evaluators that were measured elsewhere.
-pub const EVALUATORS: FileLimit =
-    FileLimit { name: "evaluators_bytes", bytes: 1 << 20, counted: "bytes of a file of evaluators" };
-/// Of a list of waivers.
-pub const WAIVERS: FileLimit =
-    FileLimit { name: "waivers_bytes", bytes: 1 << 20, counted: "bytes of a list of waivers" };
-/// Of a page that stands beside scenes.
-pub const PAGE: FileLimit =
-    FileLimit { name: "page_bytes", bytes: 4 << 20, counted: "bytes of a page that a chart reads" };
+const fn limit(name: &'static str, bytes: u64, counted: &'static str) -> FileLimit {
+    FileLimit { name, bytes, counted }
+}
+
+/// The limit of `NAME.expect.ron`.
+pub const EXPECTATION: FileLimit = limit("expectation_bytes", 64 << 10, "bytes of an expectation");
+/// The limit of a table of `ninebit op`.
+pub const OPERATION_TABLE: FileLimit = limit("operation_table_bytes", 64 << 20, "bytes of a table of `ninebit op`");
+/// The limit of the manifest of a pack.
+pub const MANIFEST: FileLimit = limit("manifest_bytes", 4 << 20, "bytes of the manifest of a pack");
+/// The limit of a table of vectors or of results.
+pub const VECTOR_TABLE: FileLimit = limit("vector_table_bytes", 2 << 30, "bytes of a table of vectors or results");
+/// The limit of a leaf of a sweep.
+pub const LEAF: FileLimit = limit("leaf_bytes", 64 << 10, "bytes of a leaf of a sweep");
+/// The limit of a tree of digests.
+pub const TREE: FileLimit = limit("tree_bytes", 16 << 20, "bytes of a tree of digests");
+/// The limit of the device file of results.
+pub const DEVICE: FileLimit = limit("device_bytes", 1 << 20, "bytes of the device file of results");
+/// The limit of a file of evaluators that were measured elsewhere.
+pub const EVALUATORS: FileLimit = limit("evaluators_bytes", 1 << 20, "bytes of a file of evaluators");
+/// The limit of a list of waivers.
+pub const WAIVERS: FileLimit = limit("waivers_bytes", 1 << 20, "bytes of a list of waivers");
+/// The limit of a page that stands beside scenes.
+pub const PAGE: FileLimit = limit("page_bytes", 4 << 20, "bytes of a page that a chart reads");
 
 /// Limits of files that are neither scenes nor named by one.
 pub const FILES: [FileLimit; 10] =
@@ -62,13 +58,13 @@ pub struct Limits {
     pub scene_bytes: u64,
     /// Levels of brackets inside each other.
     pub nesting: usize,
-    /// Render targets.
+    /// Render targets of a scene.
     pub targets: usize,
     /// Columns and rows of a render target, each.
     pub target_side: u32,
     /// Bytes of all colour and depth surfaces together, at four bytes a pixel each.
     pub surface_bytes: u64,
-    /// Textures.
+    /// Textures of a scene.
     pub textures: usize,
     /// Columns and rows of a texture, each; a profile may allow less.
     pub texture_side: u32,
@@ -80,7 +76,7 @@ pub struct Limits {
     pub program_bytes: u64,
     /// Bytes of one mesh file.
     pub mesh_file_bytes: u64,
-    /// Draws.
+    /// Draws of a scene.
     pub draws: usize,
     /// Vertices of all draws together.
     pub vertices: usize,
@@ -112,22 +108,22 @@ impl Default for Limits {
 impl Limits {
     /// [`scene_bytes`](Self::scene_bytes) as the limit of a file.
     pub fn scene_file(&self) -> FileLimit {
-        FileLimit { name: "scene_bytes", bytes: self.scene_bytes, counted: "bytes of the scene file" }
+        limit("scene_bytes", self.scene_bytes, "bytes of the scene file")
     }
 
     /// [`image_file_bytes`](Self::image_file_bytes) as the limit of a file.
     pub fn image_file(&self) -> FileLimit {
-        FileLimit { name: "image_file_bytes", bytes: self.image_file_bytes, counted: "bytes of one image file" }
+        limit("image_file_bytes", self.image_file_bytes, "bytes of one image file")
     }
 
     /// [`program_bytes`](Self::program_bytes) as the limit of a file.
     pub fn program_file(&self) -> FileLimit {
-        FileLimit { name: "program_bytes", bytes: self.program_bytes, counted: "bytes of the text of one program" }
+        limit("program_bytes", self.program_bytes, "bytes of the text of one program")
     }
 
     /// [`mesh_file_bytes`](Self::mesh_file_bytes) as the limit of a file.
     pub fn mesh_file(&self) -> FileLimit {
-        FileLimit { name: "mesh_file_bytes", bytes: self.mesh_file_bytes, counted: "bytes of one mesh file" }
+        limit("mesh_file_bytes", self.mesh_file_bytes, "bytes of one mesh file")
     }
 }
 

@@ -1,6 +1,7 @@
 //! Parts of a program, and where they stand in a text.
 
-use std::ops::Range;
+/// A part of a text: its bytes from `start` to before `end`.
+pub type Span = std::ops::Range<usize>;
 
 /// A part of a program that a finding can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +20,7 @@ pub enum Place {
         stage: usize,
         /// The alpha portion.
         alpha: bool,
-        /// Which part.
+        /// Which part of the portion.
         part: Part,
     },
     /// An input of the final combiner: 0 to 6 for A to G.
@@ -41,24 +42,24 @@ pub enum Part {
     Dot(usize),
     /// What sends the blue of a product to alpha.
     BlueToAlpha(usize),
-    /// The scale.
+    /// The output scale.
     Scale,
-    /// The bias.
+    /// The output bias.
     Bias,
 }
 
 /// Where the parts of a program stand: bytes of its text. What is not written has no place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Places(Vec<(Place, Range<usize>)>);
+pub struct Places(Vec<(Place, Span)>);
 
 impl Places {
     /// Notes a place.
-    pub fn set(&mut self, place: Place, span: Range<usize>) {
+    pub fn set(&mut self, place: Place, span: Span) {
         self.0.push((place, span));
     }
 
-    /// Where it stands.
-    pub fn get(&self, place: Place) -> Option<Range<usize>> {
+    /// Where a part stands; `None` if it is not written.
+    pub fn get(&self, place: Place) -> Option<Span> {
         self.0.iter().find(|(known, _)| *known == place).map(|(_, span)| span.clone())
     }
 }

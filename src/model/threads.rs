@@ -16,7 +16,7 @@ pub fn on_threads<T: Send>(_: usize, work: impl FnOnce() -> T + Send) -> T {
     work()
 }
 
-/// How many threads [`on_threads`] works with.
+/// The number of threads that [`on_threads`] works with.
 #[cfg(feature = "threads")]
 pub fn count(threads: usize) -> usize {
     on_threads(threads, rayon::current_num_threads)

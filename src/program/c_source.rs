@@ -1,8 +1,8 @@
 //! Programs as they stand in C: texts between quotes, line by line, and `#define` of names.
 #![allow(clippy::result_large_err, reason = "the first error ends the text: it is made once")]
 
+use crate::Span;
 use std::collections::HashMap;
-use std::ops::Range;
 
 use super::finding::finding;
 use super::lexer::length;
@@ -27,7 +27,7 @@ pub enum Style {
 pub struct Expanded {
     /// What the language's reader reads.
     pub text: String,
-    /// Of each byte, and of the end, the byte of the given text: of a name's value where the name stands.
+    /// The place in the given text of each byte, and of the end. Bytes of a name's value stand where the name does.
     pub places: Vec<usize>,
 }
 
@@ -232,7 +232,7 @@ impl<'t> Walk<'t> {
         let word = &inside[..length(inside, is_name)];
         let rest = inside[word.len()..].trim_start();
         let name = &rest[..length(rest, is_name)];
-        let place: Range<usize> = at..at + directive.trim_end().len().max(1);
+        let place: Span = at..at + directive.trim_end().len().max(1);
         match word {
             "define" if !name.is_empty() && !rest[name.len()..].starts_with('(') => {
                 let value = rest[name.len()..].trim_matches(|c: char| c.is_whitespace() || c == '\\');

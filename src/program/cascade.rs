@@ -3,9 +3,8 @@
 //! APIs clamp the result of every stage to 0..1. The combiners clamp a written register to -1..1 only, so the lower limit is left to
 //! whoever reads: a value that may be negative is read by a mapping that takes max(0, x), never by a signed one.
 
-use std::ops::Range;
-
 use super::finding::finding;
+use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
@@ -15,7 +14,7 @@ use ninebit::state::{
 /// Where an argument comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// 0.
+    /// The constant 0.
     Zero,
     /// A constant colour, R, G, B, A bytes.
     Constant([u8; 4]),
@@ -47,16 +46,16 @@ pub enum Channel {
 pub struct Argument {
     /// Where x comes from.
     pub source: Source,
-    /// Its channels.
+    /// Which channels of the source are read.
     pub channel: Channel,
     /// 1 - x.
     pub complement: bool,
 }
 
 impl Argument {
-    /// 0.
+    /// The argument 0.
     pub const ZERO: Argument = Argument::new(Source::Zero);
-    /// 1.
+    /// The argument 1, the complement of 0.
     pub const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
 
     /// A source as it is.
@@ -112,12 +111,12 @@ impl Equation {
         Equation { ab, cd, form, bias: Bias::None, scale: Scale::One }
     }
 
-    /// a.
+    /// The equation a.
     pub const fn copy(a: Argument) -> Equation {
         Equation::product(a, Argument::ONE)
     }
 
-    /// a b.
+    /// The equation a b.
     pub const fn product(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Sum)
     }
@@ -188,7 +187,7 @@ pub enum Alpha {
 pub enum Destination {
     /// The colour that the next stage reads as [`Source::Current`]; SPARE0.
     Current,
-    /// [`Source::Temporary`]; SPARE1.
+    /// What the next stage reads as [`Source::Temporary`]; SPARE1.
     Temporary,
 }
 
@@ -218,7 +217,7 @@ pub struct Cascade {
     signed_textures: [bool; 4],
     stages: Vec<GeneralStage>,
     origins: Vec<StageOrigin>,
-    places: Vec<Range<usize>>,
+    places: Vec<Span>,
     /// Constants so far: of the current stage, or on nv10 of the whole program.
     constants: Vec<[u8; 4]>,
     current: Value,
@@ -229,7 +228,7 @@ pub struct Cascade {
 /// A finished cascade.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,
@@ -252,14 +251,7 @@ impl Cascade {
     }
 
     /// Adds a stage. `place` is for findings about it, `origin` for reports.
-    pub fn stage(
-        &mut self,
-        place: Range<usize>,
-        rgb: &Equation,
-        alpha: Alpha,
-        destination: Destination,
-        origin: StageOrigin,
-    ) {
+    pub fn stage(&mut self, span: Span, rgb: &Equation, alpha: Alpha, destination: Destination, origin: StageOrigin) {
         if self.profile == Profile::Nv2a {
             self.constants.clear();
         }
@@ -268,16 +260,16 @@ impl Cascade {
             Destination::Temporary => Register::Spare1,
         };
         let blue_to_alpha = alpha == Alpha::DotProduct && self.profile == Profile::Nv2a;
-        let mut rgb_portion = self.portion(rgb, false, register, &place);
+        let mut rgb_portion = self.portion(rgb, false, register, &span);
         rgb_portion.ab_blue_to_alpha = blue_to_alpha;
         let (alpha_portion, signed_alpha) = match &alpha {
-            Alpha::Equation(equation) => (self.portion(equation, true, register, &place), equation.is_signed()),
+            Alpha::Equation(equation) => (self.portion(equation, true, register, &span), equation.is_signed()),
             Alpha::DotProduct => (Portion::idle(Component::Alpha), true),
         };
         let constants = [0, 1].map(|n| self.constants.get(n).copied().unwrap_or_default());
         self.stages.push(GeneralStage { rgb: rgb_portion, alpha: alpha_portion, constants });
         self.origins.push(origin);
-        self.places.push(place);
+        self.places.push(span);
         let value = Value {
             register,
             alpha_is_blue: alpha == Alpha::DotProduct && !blue_to_alpha,
@@ -289,17 +281,17 @@ impl Cascade {
         }
     }
 
-    fn portion(&mut self, equation: &Equation, alpha: bool, register: Register, place: &Range<usize>) -> Portion {
+    fn portion(&mut self, equation: &Equation, alpha: bool, register: Register, span: &Span) -> Portion {
         let mut portion = Portion::idle(if alpha { Component::Alpha } else { Component::Rgb });
         let used = if equation.form == Form::Dot { Use::Expanded } else { Use::Plain };
-        portion.inputs[0] = self.input(&equation.ab[0], used, alpha, place);
-        portion.inputs[1] = self.input(&equation.ab[1], used, alpha, place);
+        portion.inputs[0] = self.input(&equation.ab[0], used, alpha, span);
+        portion.inputs[1] = self.input(&equation.ab[1], used, alpha, span);
         if let Some([c, d]) = &equation.cd {
             let [c, d] = match equation.form {
-                Form::Difference => self.negative(c, alpha, place),
-                Form::HalfBiased => [self.input(c, Use::HalfBiased, alpha, place), one(alpha)],
+                Form::Difference => self.negative(c, alpha, span),
+                Form::HalfBiased => [self.input(c, Use::HalfBiased, alpha, span), one(alpha)],
                 Form::Sum | Form::Dot => {
-                    [self.input(c, Use::Plain, alpha, place), self.input(d, Use::Plain, alpha, place)]
+                    [self.input(c, Use::Plain, alpha, span), self.input(d, Use::Plain, alpha, span)]
                 }
             };
             portion.inputs[2] = c;
@@ -318,8 +310,8 @@ impl Cascade {
 
     /// C D = -x: -x times 1 where x is at least 0; otherwise max(0, x) or 1 - max(0, x) times ZERO expanded, which is -1 in real numbers and
     /// -256 in integers (CMB-3).
-    fn negative(&mut self, x: &Argument, alpha: bool, place: &Range<usize>) -> [CombinerInput; 2] {
-        let plain = self.input(x, Use::Plain, alpha, place);
+    fn negative(&mut self, x: &Argument, alpha: bool, span: &Span) -> [CombinerInput; 2] {
+        let plain = self.input(x, Use::Plain, alpha, span);
         if !x.complement && !self.may_be_negative(x.source) {
             return [CombinerInput { mapping: InputMapping::SignedNegate, ..plain }, one(alpha)];
         }
@@ -335,7 +327,7 @@ impl Cascade {
         }
     }
 
-    fn input(&mut self, argument: &Argument, used: Use, alpha: bool, place: &Range<usize>) -> CombinerInput {
+    fn input(&mut self, argument: &Argument, used: Use, alpha: bool, span: &Span) -> CombinerInput {
         let plain = |register| Value { register, alpha_is_blue: false, signed: false };
         let value = match argument.source {
             Source::Zero => plain(Register::Zero),
@@ -347,7 +339,7 @@ impl Cascade {
             Source::Texture(_) => plain(Register::Texture3),
             Source::Current => self.current,
             Source::Temporary => self.temporary.unwrap_or(plain(Register::Zero)),
-            Source::Constant(color) => plain(self.constant(color, place)),
+            Source::Constant(color) => plain(self.constant(color, span)),
         };
         let component = match (argument.channel, alpha) {
             (Channel::Own, false) => Component::Rgb,
@@ -371,14 +363,14 @@ impl Cascade {
     }
 
     /// The register that holds a constant.
-    fn constant(&mut self, color: [u8; 4], place: &Range<usize>) -> Register {
+    fn constant(&mut self, color: [u8; 4], span: &Span) -> Register {
         let found = self.constants.iter().position(|constant| *constant == color);
         let index = found.unwrap_or_else(|| {
             self.constants.push(color);
             self.constants.len() - 1
         });
         if index == 2 && found.is_none() {
-            self.findings.push(too_many_constants(self.profile, place.clone()));
+            self.findings.push(too_many_constants(self.profile, span.clone()));
         }
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
@@ -395,8 +387,8 @@ impl Cascade {
             self.stage(0..0, &copy, Alpha::Equation(copy), Destination::Current, origin);
         }
         let (needed, most) = (self.stages.len(), self.profile.general_stages());
-        if let Some(place) = self.places.get(most) {
-            self.findings.push(too_many_stages(self.profile, needed, place.clone(), what));
+        if let Some(span) = self.places.get(most) {
+            self.findings.push(too_many_stages(self.profile, needed, span.clone(), what));
         }
         findings.extend(self.findings);
         if !findings.is_empty() {
@@ -415,7 +407,7 @@ impl Cascade {
 }
 
 /// The finding that a program needs more general stages than the chip has; `what` is what users call the program.
-pub(super) fn too_many_stages(profile: Profile, needed: usize, place: Range<usize>, what: &str) -> Diagnostic {
+pub(super) fn too_many_stages(profile: Profile, needed: usize, span: Span, what: &str) -> Diagnostic {
     let help = match profile {
         Profile::Nv10 if needed <= Profile::Nv2a.general_stages() => {
             "use fewer stages, draw in two passes with `blend`, or write `profile: Nv2a`, which has 8"
@@ -424,11 +416,11 @@ pub(super) fn too_many_stages(profile: Profile, needed: usize, place: Range<usiz
     };
     let (chip, most) = (format!("{profile:?}").to_lowercase(), profile.general_stages());
     let message = format!("this {what} needs {needed} general stages; {chip} has {most}");
-    finding("NB0350", place, message, "the first too many", help).rule("CMB-12")
+    finding("NB0350", span, message, "the first too many", help).rule("CMB-12")
 }
 
 /// The finding that there is no constant register left.
-pub(super) fn too_many_constants(profile: Profile, place: Range<usize>) -> Diagnostic {
+pub(super) fn too_many_constants(profile: Profile, span: Span) -> Diagnostic {
     let (message, help) = match profile {
         Profile::Nv10 => (
             "this program needs 3 constant colours; Nv10 has 2",
@@ -436,7 +428,7 @@ pub(super) fn too_many_constants(profile: Profile, place: Range<usize>) -> Diagn
         ),
         Profile::Nv2a => ("this stage needs 3 constant colours; it has 2", "make two of them equal"),
     };
-    finding("NB0351", place, message, "the third is read here", help).rule("CMB-12")
+    finding("NB0351", span, message, "the third is read here", help).rule("CMB-12")
 }
 
 pub(super) fn one(alpha: bool) -> CombinerInput {

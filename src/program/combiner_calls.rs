@@ -1,11 +1,10 @@
 //! Register combiners as the calls of OpenGL that set them, pasted: NV_register_combiners and NV_register_combiners2.
 
-use std::ops::Range;
-
 use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, table, whole};
 use super::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
 use super::finding::finding;
 use super::{Part, Place, Places};
+use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::{Help, Notation, only_final};
 use ninebit::state::{
@@ -27,7 +26,7 @@ static COMBINERS: Vocabulary = Vocabulary {
 /// What the calls say.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The combiners.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// Where their parts stand.
     pub places: Places,
@@ -62,16 +61,16 @@ struct Parser<'t> {
     reader: Reader<'t>,
     stages: Vec<GeneralStage>,
     last: FinalCombiner,
-    /// NUM_GENERAL_COMBINERS.
+    /// The value of NUM_GENERAL_COMBINERS.
     count: usize,
     /// The first call about each stage.
-    touched: Vec<Option<Range<usize>>>,
+    touched: Vec<Option<Span>>,
     /// Where PER_STAGE_CONSTANTS is enabled.
-    per_stage: Option<Range<usize>>,
+    per_stage: Option<Span>,
     /// The first constant of a stage.
-    own: Option<Range<usize>>,
-    /// Latest last.
-    places: Vec<(Place, Range<usize>)>,
+    own: Option<Span>,
+    /// Where parts stand; of a part that is written twice the last place counts.
+    places: Vec<(Place, Span)>,
 }
 
 const REGISTERS: &str = "ZERO CONSTANT_COLOR0 CONSTANT_COLOR1 FOG PRIMARY_COLOR SECONDARY_COLOR \
@@ -105,7 +104,7 @@ fn variables() -> Vec<(&'static str, usize)> {
 
 impl<'t> Parser<'t> {
     /// One call; `None` once the reason that it sets nothing has been recorded.
-    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) -> Option<()> {
+    fn call(&mut self, name: &Span, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.reader.word(name);
         let wanted = match function {
             _ if function.ends_with("FinalCombinerInputNV") => 4,
@@ -143,9 +142,9 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn enable(&mut self, name: &Range<usize>, value: &Value<'t>, enable: bool) {
-        match bare(self.reader.word(&value.place), &[]) {
-            "PER_STAGE_CONSTANTS" => self.per_stage = enable.then(|| value.place.clone()),
+    fn enable(&mut self, name: &Span, value: &Value<'t>, enable: bool) {
+        match bare(self.reader.word(&value.span), &[]) {
+            "PER_STAGE_CONSTANTS" => self.per_stage = enable.then(|| value.span.clone()),
             // The program is the combiners, whatever follows it.
             "REGISTER_COMBINERS" => {}
             _ => capability(&mut self.reader, name, value, enable),
@@ -162,11 +161,11 @@ impl<'t> Parser<'t> {
                 if !(1..=most).contains(&count) {
                     let message = format!("there cannot be {count} general stages");
                     let help = format!("write 1 to {most}; Nv10 has 2");
-                    self.reader.findings.push(finding("NB0206", value.place.clone(), message, "out of range", help));
+                    self.reader.findings.push(finding("NB0206", value.span.clone(), message, "out of range", help));
                     return None;
                 }
                 self.count = count;
-                self.places.push((Place::Stages, value.place.clone()));
+                self.places.push((Place::Stages, value.span.clone()));
             }
             COLOR_SUM_CLAMP => {
                 self.last.color_sum_clamp = flag(one.as_ref().unwrap_or(value), &mut self.reader.findings)?;
@@ -182,7 +181,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    fn stage(&mut self, name: &Range<usize>, stage: &Value<'t>) -> Option<usize> {
+    fn stage(&mut self, name: &Span, stage: &Value<'t>) -> Option<usize> {
         let most = self.stages.len();
         let index = numbered(stage, "COMBINER", most, "general stage", &mut self.reader.findings)?;
         self.touched[index].get_or_insert(name.clone());
@@ -190,7 +189,7 @@ impl<'t> Parser<'t> {
     }
 
     /// The stage and whether its alpha is meant.
-    fn portion(&mut self, name: &Range<usize>, stage: &Value<'t>, portion: &Value<'t>) -> Option<(usize, bool)> {
+    fn portion(&mut self, name: &Span, stage: &Value<'t>, portion: &Value<'t>) -> Option<(usize, bool)> {
         let stage = self.stage(name, stage)?;
         let alpha = choose(portion, "portion", &[("RGB", false), ("ALPHA", true)], &mut self.reader.findings)?;
         Some((stage, alpha))
@@ -202,7 +201,7 @@ impl<'t> Parser<'t> {
     }
 
     fn set(&mut self, (stage, alpha): (usize, bool), part: Part, value: &Value<'t>) {
-        self.places.push((Place::General { stage, alpha, part }, value.place.clone()));
+        self.places.push((Place::General { stage, alpha, part }, value.span.clone()));
     }
 
     /// A register of a general stage.
@@ -210,7 +209,7 @@ impl<'t> Parser<'t> {
         let register = choose(value, "register", &table(REGISTERS), &mut self.reader.findings)?;
         if matches!(register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF) {
             let (name, help) = (Words.register(register), "use it in `glFinalCombinerInputNV`");
-            self.reader.findings.push(only_final(value.place.clone(), name, help));
+            self.reader.findings.push(only_final(value.span.clone(), name, help));
             return None;
         }
         Some(ninebit::combiner::final_combiner::general(register))
@@ -233,7 +232,7 @@ impl<'t> Parser<'t> {
     /// AB, CD, sum, scale, bias, AB dot, CD dot, mux.
     fn output(&mut self, portion: (usize, bool), outputs: &[Value<'t>]) -> Option<()> {
         let [ab, cd, sum, scale, bias, ab_dot, cd_dot, mux] = outputs else { return None };
-        let registers = [ab, cd, sum].map(|value| match bare(self.reader.word(&value.place), &[]) {
+        let registers = [ab, cd, sum].map(|value| match bare(self.reader.word(&value.span), &[]) {
             "DISCARD" => Some(Register::Zero),
             "ZERO" => wrong_kind(value, "a register to write", "write GL_DISCARD_NV", &mut self.reader.findings),
             _ => self.register(value),
@@ -277,7 +276,7 @@ impl<'t> Parser<'t> {
             _ => {
                 let help = "write GL_UNSIGNED_IDENTITY_NV or GL_UNSIGNED_INVERT_NV; map in a general stage";
                 let message = "the final combiner has no such mapping";
-                findings.push(finding("NB0311", mapping.place.clone(), message, "not here", help).rule("FIN-1"));
+                findings.push(finding("NB0311", mapping.span.clone(), message, "not here", help).rule("FIN-1"));
                 return None;
             }
         };
@@ -286,31 +285,31 @@ impl<'t> Parser<'t> {
             Some(slot) => *slot = input_value,
             None => self.last.g = input_value,
         }
-        self.places.push((Place::FinalInput(n), input.place.clone()));
-        self.places.push((Place::FinalComponent(n), usage.place.clone()));
+        self.places.push((Place::FinalInput(n), input.span.clone()));
+        self.places.push((Place::FinalComponent(n), usage.span.clone()));
         Some(())
     }
 
     fn finish(mut self) -> Result<Pasted<Program>, Vec<Diagnostic>> {
-        if let Some(place) = self.touched[self.count..].iter().flatten().min_by_key(|place| place.start).cloned() {
+        if let Some(span) = self.touched[self.count..].iter().flatten().min_by_key(|span| span.start).cloned() {
             let message = format!("GL_NUM_GENERAL_COMBINERS_NV is {}: stages beyond are not run", self.count);
             let help = "write `glCombinerParameteriNV(GL_NUM_GENERAL_COMBINERS_NV, ...)`; it is 1 where the text does not say it";
-            self.reader.pass(place, "GL_NUM_GENERAL_COMBINERS_NV", &message, "of a stage beyond", help);
+            self.reader.pass(span, "GL_NUM_GENERAL_COMBINERS_NV", &message, "of a stage beyond", help);
         }
-        if let (Some(place), None) = (self.own.clone(), &self.per_stage) {
+        if let (Some(span), None) = (self.own.clone(), &self.per_stage) {
             let message = "constants of stages count with GL_PER_STAGE_CONSTANTS_NV only";
             let help = "write `glEnable(GL_PER_STAGE_CONSTANTS_NV);` (NV_register_combiners2)";
-            self.reader.pass(place, "GL_PER_STAGE_CONSTANTS_NV", message, "passed over", help);
+            self.reader.pass(span, "GL_PER_STAGE_CONSTANTS_NV", message, "passed over", help);
         }
         let mut places = Places::default();
         // The first that is found is the last that was written.
-        for (place, span) in self.places.into_iter().rev() {
-            if self.per_stage.is_some() || !matches!(place, Place::StageConstants(_)) {
-                places.set(place, span);
+        for (part, span) in self.places.into_iter().rev() {
+            if self.per_stage.is_some() || !matches!(part, Place::StageConstants(_)) {
+                places.set(part, span);
             }
         }
-        for (stage, place) in self.touched.into_iter().enumerate().filter_map(|(n, place)| Some((n, place?))) {
-            places.set(Place::Stage(stage), place);
+        for (stage, span) in self.touched.into_iter().enumerate().filter_map(|(n, span)| Some((n, span?))) {
+            places.set(Place::Stage(stage), span);
         }
         let mut stages = self.stages;
         stages.truncate(self.count);

@@ -1,8 +1,7 @@
 //! The tokens of a text, taken one after the other: what the parsers of all languages of programs read with.
 
-use std::ops::Range;
-
 use super::lexer::{Kind, Language, Token, Tokens, tokens};
+use crate::Span;
 use ninebit::diagnostic::shorten;
 
 /// Why a statement was given up: the reason has been recorded.
@@ -19,9 +18,9 @@ pub(super) struct Cursor<'t> {
     /// The number of the token at hand: the next one.
     pub(super) at: usize,
     /// Where a comment is opened that does not end.
-    pub(super) unclosed: Option<Range<usize>>,
+    pub(super) unclosed: Option<Span>,
     /// Comments that end with their line, without the sign that only this language has for them.
-    pub(super) comments: Vec<Range<usize>>,
+    pub(super) comments: Vec<Span>,
 }
 
 impl<'t> Cursor<'t> {
@@ -87,34 +86,34 @@ impl<'t> Cursor<'t> {
     }
 
     /// The place of a token that was taken or is at hand.
-    pub(super) fn place_at(&self, at: usize) -> Range<usize> {
-        self.tokens.get(at).map_or(0..0, |token| token.place.clone())
+    pub(super) fn span_at(&self, at: usize) -> Span {
+        self.tokens.get(at).map_or(0..0, |token| token.span.clone())
     }
 
     /// The place of the token at hand; behind the last, where that ends.
-    pub(super) fn place(&self) -> Range<usize> {
-        self.token().map_or_else(|| self.end()..self.end(), |token| token.place.clone())
+    pub(super) fn span(&self) -> Span {
+        self.token().map_or_else(|| self.end()..self.end(), |token| token.span.clone())
     }
 
     /// Where the token before the one at hand ends; 0 before the first.
     pub(super) fn end(&self) -> usize {
-        self.tokens[..self.at.min(self.tokens.len())].last().map_or(0, |token| token.place.end)
+        self.tokens[..self.at.min(self.tokens.len())].last().map_or(0, |token| token.span.end)
     }
 
     /// Where the last token ends that lies before a place; 0 if there is none.
-    pub(super) fn end_before(&self, place: usize) -> usize {
-        let count = self.tokens.partition_point(|token| token.place.end <= place);
-        count.checked_sub(1).map_or(0, |last| self.tokens[last].place.end)
+    pub(super) fn end_before(&self, at: usize) -> usize {
+        let count = self.tokens.partition_point(|token| token.span.end <= at);
+        count.checked_sub(1).map_or(0, |last| self.tokens[last].span.end)
     }
 
     /// The text of a place.
-    pub(super) fn text(&self, place: &Range<usize>) -> &'t str {
-        self.text.get(place.clone()).unwrap_or("")
+    pub(super) fn text(&self, span: &Span) -> &'t str {
+        self.text.get(span.clone()).unwrap_or("")
     }
 
     /// The text of a token; empty behind the last.
     pub(super) fn text_at(&self, at: usize) -> &'t str {
-        self.text(&self.place_at(at))
+        self.text(&self.span_at(at))
     }
 
     /// The word at hand; empty if it is none.

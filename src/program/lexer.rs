@@ -1,6 +1,6 @@
 //! Words, numbers, texts and signs: what every language of programs is made of.
 
-use std::ops::Range;
+use crate::Span;
 
 /// What a token is; its text is in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub(super) enum Kind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Token {
     pub(super) kind: Kind,
-    pub(super) place: Range<usize>,
+    pub(super) span: Span,
     /// The first of its line.
     pub(super) first: bool,
 }
@@ -57,9 +57,9 @@ impl Language {
 pub(super) struct Tokens {
     pub(super) tokens: Vec<Token>,
     /// Where a comment is opened that does not end.
-    pub(super) unclosed: Option<Range<usize>>,
+    pub(super) unclosed: Option<Span>,
     /// Comments that begin with the language's own sign, without it.
-    pub(super) comments: Vec<Range<usize>>,
+    pub(super) comments: Vec<Span>,
 }
 
 /// Takes a text apart.
@@ -89,7 +89,7 @@ pub(super) fn tokens(text: &str, language: Language) -> Tokens {
             at += length;
         } else {
             let (kind, length) = token(rest, c, language);
-            tokens.push(Token { kind, place: at..at + length, first });
+            tokens.push(Token { kind, span: at..at + length, first });
             first = false;
             at += length;
         }
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     fn parts(text: &str, language: Language) -> Vec<(String, bool)> {
-        tokens(text, language).tokens.into_iter().map(|token| (text[token.place].to_owned(), token.first)).collect()
+        tokens(text, language).tokens.into_iter().map(|token| (text[token.span].to_owned(), token.first)).collect()
     }
 
     fn words(text: &str, language: Language) -> Vec<String> {

@@ -28,6 +28,6 @@ pub mod texture_stages;
 pub mod vertex_shader;
 
 pub use calls::{Aside, Pasted};
-pub use finding::{At, finding, warning};
+pub use finding::{Spanned, finding, warning};
 pub mod spelling;
-pub use ninebit::place::{Part, Place, Places};
+pub use ninebit::place::{Part, Place, Places, Span};

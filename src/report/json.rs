@@ -6,7 +6,7 @@ use ninebit::plan::Plan;
 use ninebit::raster::project::ClipPlane;
 use ninebit::shown;
 use ninebit::state::{Named, POLICIES, Policies, Policy, StageOrigin, Texture};
-use ninebit::trace::{Operand, Place, SINGLE, Step};
+use ninebit::trace::{Operand, SINGLE, Step, TexelAddress};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io;
@@ -125,7 +125,7 @@ fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
     });
     value["steps"] = numbered(&draw.steps, &plan.textures);
     if let Some(piece) = &draw.piece {
-        let planes: Vec<&str> = ClipPlane::of(piece.planes).map(|plane| plane.name()).collect();
+        let planes: Vec<&str> = ClipPlane::in_set(piece.planes).map(|plane| plane.name()).collect();
         value["clipped"] = json!({ "triangle": piece.of, "planes": planes });
     }
     value
@@ -153,7 +153,7 @@ fn step(step: &Step, id: usize, made: &HashMap<&str, usize>, textures: &[Texture
     if let Some(text) = beyond_31_bits(step.value, step.per_one) {
         value["value_text"] = json!(text);
     }
-    if let Some(Place { texture, face, level, at: [x, y] }) = step.texel {
+    if let Some(TexelAddress { texture, face, level, at: [x, y] }) = step.texel {
         let name = textures.get(texture).map(|texture| texture.name.as_str());
         let word = format!("{:#010x}", step.value);
         value["texel"] =

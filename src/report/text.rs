@@ -109,7 +109,7 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
 
 /// The names of planes, as a list.
 pub fn planes(set: u8) -> String {
-    ClipPlane::of(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
+    ClipPlane::in_set(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {

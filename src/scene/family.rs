@@ -3,7 +3,7 @@
 //! The file's text is put behind the scene's, and both are read as one: names, targets and truth of the family are then values like
 //! others. Findings about the second text are taken to the file.
 
-use std::ops::Range;
+use ninebit::place::Span;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ impl Family {
             return finding;
         }
         let inside = finding.span.as_ref().is_some_and(|span| span.start >= start);
-        let shift = |span: Range<usize>| span.start - start..span.end - start;
+        let shift = |span: Span| span.start - start..span.end - start;
         for (span, label) in std::mem::take(&mut finding.related) {
             match (span.start >= start, inside) {
                 (true, true) => finding.related.push((shift(span), label)),
@@ -85,7 +85,7 @@ impl Family {
 
     /// Places in the family become the place where the scene names it.
     pub(super) fn keep_inside(&self, spans: &mut DrawSpans, scene: &str) {
-        let keep = |span: &mut Range<usize>| {
+        let keep = |span: &mut Span| {
             if span.start > scene.len() {
                 *span = self.file.named.clone();
             }

@@ -33,10 +33,10 @@ pub enum Kind {
     Color,
     /// A whole number.
     Whole {
-        /// The largest.
+        /// The largest value that is accepted.
         most: u32,
     },
-    /// A number.
+    /// A number of any kind.
     Number,
     /// Up to four numbers in parentheses.
     Numbers,
@@ -44,7 +44,7 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// A text in quotes.
     Text,
-    /// Anything else.
+    /// A value whose form is not described.
     Other,
 }
 

@@ -44,9 +44,9 @@ impl ImageLimits {
 /// A decoded image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rgba {
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// `width * height` pixels R, G, B, A, row by row from the top. Files without alpha give 255.
     pub pixels: Vec<[u8; 4]>,
@@ -65,7 +65,7 @@ pub enum Contents {
 #[derive(Debug, Error)]
 #[error("image `{}` {fault}", ninebit::shown::path(path))]
 pub struct ImageError {
-    /// The file.
+    /// The file that was to be read.
     pub path: PathBuf,
     /// What is wrong with it.
     pub fault: ImageFault,
@@ -92,19 +92,19 @@ pub enum ImageFault {
     /// More columns or rows than allowed.
     #[error("is {width} x {height}; a side may have {limit} pixels at most")]
     Side {
-        /// Columns.
+        /// Columns that it has.
         width: u32,
-        /// Rows.
+        /// Rows that it has.
         height: u32,
-        /// [`ImageLimits::maximum_side`].
+        /// The most of either: [`ImageLimits::maximum_side`].
         limit: u32,
     },
     /// More pixels than allowed.
     #[error("decodes to {bytes} bytes; {limit} are allowed")]
     DecodedBytes {
-        /// Needed.
+        /// Bytes that its pixels need.
         bytes: u64,
-        /// [`ImageLimits::maximum_decoded_bytes`].
+        /// The most: [`ImageLimits::maximum_decoded_bytes`].
         limit: u64,
     },
     /// The contents make no sense: what the reader said.
@@ -116,7 +116,7 @@ pub enum ImageFault {
     /// A cube map without these of its six faces.
     #[error("is a cube map without {}", .0.join(", "))]
     MissingFaces(Vec<&'static str>),
-    /// So many bits a channel.
+    /// The channels have this many bits.
     #[error("has {0} bits a channel; 8 are the most")]
     Depth(u8),
 }
@@ -155,7 +155,7 @@ impl ImageFault {
 }
 
 impl ImageError {
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         self.fault.told().0
     }

@@ -1,12 +1,12 @@
 //! Texts and numbers as the notation of scene files writes them.
 
-use std::ops::Range;
+use ninebit::place::Span;
 
 /// A text in quotes.
 pub(super) struct Literal<'a> {
     value: &'a str,
     /// What stands between the quotes.
-    inside: Range<usize>,
+    inside: Span,
     /// Whether a backslash means what it says.
     raw: bool,
 }

@@ -27,7 +27,7 @@ pub const MAXIMUM_VERTICES: u32 = 1 << 20;
 /// Vertices and triangles. The vertex lists have the same length; all vectors are of unit length (to rounding).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Object space.
+    /// x, y, z in object space.
     pub positions: Vec<[f32; 3]>,
     /// Out of the surface.
     pub normals: Vec<[f32; 3]>,
@@ -35,7 +35,7 @@ pub struct Mesh {
     pub tangents: Vec<[f32; 3]>,
     /// Along decreasing t.
     pub binormals: Vec<[f32; 3]>,
-    /// s, t.
+    /// s and t of each vertex.
     pub texture_coordinates: Vec<[f32; 2]>,
     /// Three a triangle. Draws share them.
     pub indices: Arc<[u32]>,
@@ -68,19 +68,19 @@ pub enum MeshError {
     /// Not enough divisions for the shape.
     #[error("a {shape} needs at least {minimum} {what}, not {given}")]
     TooCoarse {
-        /// The shape.
+        /// The shape's name, as messages write it.
         shape: &'static str,
         /// What is counted.
         what: &'static str,
-        /// The least.
+        /// The least that makes such a shape.
         minimum: u32,
-        /// As given.
+        /// How many were asked for.
         given: u32,
     },
     /// More than [`MAXIMUM_VERTICES`].
     #[error("a {shape} of {vertices} vertices is too fine; {MAXIMUM_VERTICES} are allowed")]
     TooFine {
-        /// The shape.
+        /// The shape's name, as messages write it.
         shape: &'static str,
         /// What it would have.
         vertices: u64,

@@ -1,8 +1,8 @@
 //! Values that are defined once and used by name, as the reader keeps them.
 
+use ninebit::place::Span;
 use std::any::Any;
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
@@ -11,8 +11,6 @@ use super::raw::Raw;
 use super::wording::{closest, shorten};
 use ninebit::state::{Palette, Target, Texture};
 use ninebit_program::finding;
-
-type Span = Range<usize>;
 
 /// Names of one kind, where each is defined, and whether something uses it.
 #[derive(Default)]
@@ -83,14 +81,14 @@ pub(crate) enum State {
     Done(Option<Box<dyn Any>>),
 }
 
-/// One table.
+/// The names of one kind of thing, and where each is defined.
 #[derive(Default)]
 pub(crate) struct Table<'a> {
     pub(super) index: Index,
     pub(super) definitions: Vec<(Raw<'a, ()>, State)>,
 }
 
-/// All tables.
+/// The names that a scene defines, by what they name.
 #[derive(Default)]
 pub(crate) struct Names<'a> {
     /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.

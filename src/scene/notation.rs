@@ -4,9 +4,8 @@
 //! [`Notation::parts`] takes one bracket apart at its commas and passes over the brackets inside it, so that every level of a scene is read
 //! once. What the parts have to be is the matter of [`source`](super::source).
 
-use std::ops::Range;
-
 use super::literal::character;
+use ninebit::place::Span;
 
 /// A text, and where the brackets of what has been checked of it open and close.
 #[derive(Debug)]
@@ -38,7 +37,7 @@ pub(super) struct Bracket<'a> {
 #[derive(Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) kind: FaultKind,
-    pub(super) place: Range<usize>,
+    pub(super) place: Span,
 }
 
 /// What is wrong with a text.
@@ -71,7 +70,7 @@ pub(super) enum FaultKind {
 }
 
 impl FaultKind {
-    fn at(self, place: Range<usize>) -> Fault {
+    fn at(self, place: Span) -> Fault {
         Fault { kind: self, place }
     }
 }
@@ -81,7 +80,7 @@ const EXTENSIONS: [&str; 4] = ["implicit_some", "unwrap_newtypes", "unwrap_varia
 
 /// A bracket that has not been closed yet.
 struct Open {
-    /// Its number.
+    /// Its number among all brackets.
     index: usize,
     close: u8,
     /// Whether its parts have names, once that is known.
@@ -99,13 +98,13 @@ impl<'a> Notation<'a> {
     ///
     /// # Errors
     /// The first place where it is not well formed.
-    pub(super) fn check(&mut self, part: Range<usize>, nesting: usize) -> Result<&'a str, Fault> {
+    pub(super) fn check(&mut self, part: Span, nesting: usize) -> Result<&'a str, Fault> {
         let before = self.brackets.len();
         // Of a text that is not well formed nothing is taken apart.
         self.walk(part, nesting).inspect_err(|_| self.brackets.truncate(before))
     }
 
-    fn walk(&mut self, part: Range<usize>, nesting: usize) -> Result<&'a str, Fault> {
+    fn walk(&mut self, part: Span, nesting: usize) -> Result<&'a str, Fault> {
         let text = &self.text[..part.end];
         let mut at = attributes(text, blank(text, part.start)?)?;
         let whole = text[at..].trim_end();
@@ -204,7 +203,7 @@ impl<'a> Notation<'a> {
     }
 
     /// Where in the text a part of it lies.
-    pub(super) fn range(&self, part: &str) -> Range<usize> {
+    pub(super) fn range(&self, part: &str) -> Span {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
         start..(start + part.len()).min(self.text.len())
     }

@@ -3,13 +3,12 @@
 //! What may stand where is read off the types of a scene: each says its `Form`. The text is taken apart at its brackets, as the reader
 //! does; what is written in an unusual way is one value without parts.
 
-use std::ops::Range;
-
 use super::fields as source;
 pub use super::form::Kind;
 use super::form::{Described, Entry, Form, described};
 use super::notation::Notation;
 use super::raw::Raw;
+use ninebit::place::Span;
 
 /// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
 const MAX_VALUES: usize = 4000;
@@ -20,7 +19,7 @@ pub struct Node {
     /// What it is called: the field, the key, or the number in its list.
     pub label: String,
     /// Bytes of the text.
-    pub span: Range<usize>,
+    pub span: Span,
     /// What it is.
     pub content: Content,
 }
@@ -32,7 +31,7 @@ pub enum Content {
     Value(Kind),
     /// A value with parts.
     Group {
-        /// The parts.
+        /// The parts that it is made of, in order.
         parts: Vec<Node>,
         /// Fields that are not written, with what they may be, and how the group reads with one: what goes before `field: value` and behind it.
         absent: Vec<(&'static str, Kind)>,

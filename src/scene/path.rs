@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("`{name}` {fault}")]
 pub struct PathError {
-    /// As given, shortened for messages.
+    /// The name as given, shortened for messages.
     pub name: String,
     /// What is wrong with it.
     pub fault: PathFault,
@@ -63,7 +63,7 @@ impl PathError {
         PathFault::Missing(folder.to_path_buf()).of(name)
     }
 
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         self.fault.told().0
     }

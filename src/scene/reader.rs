@@ -1,8 +1,9 @@
 //! Reads raw values, gathers what is wrong with them, and says it in the words of the format.
 
+use ninebit::place::Span;
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::assets::Assets;
@@ -124,16 +125,16 @@ impl<'a> Reader<'a> {
     }
 
     /// Where in the file a part of its text lies.
-    pub(super) fn range(&self, part: &str) -> Range<usize> {
+    pub(super) fn range(&self, part: &str) -> Span {
         self.notation.range(part)
     }
 
-    pub(super) fn span<T>(&self, raw: &Raw<'a, T>) -> Range<usize> {
+    pub(super) fn span<T>(&self, raw: &Raw<'a, T>) -> Span {
         self.range(raw.text)
     }
 
     /// Where a field stands, if it is written.
-    pub(super) fn place<T>(&self, field: &Option<Raw<'a, T>>) -> Option<Range<usize>> {
+    pub(super) fn place<T>(&self, field: &Option<Raw<'a, T>>) -> Option<Span> {
         field.as_ref().map(|raw| self.span(raw))
     }
 
@@ -169,7 +170,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The first character of a value, which stands for the whole.
-    pub(super) fn opening(&self, text: &str) -> Range<usize> {
+    pub(super) fn opening(&self, text: &str) -> Span {
         self.range(text.get(..1).unwrap_or(text))
     }
 
@@ -179,7 +180,7 @@ impl<'a> Reader<'a> {
         raw: &Option<Raw<'a, T>>,
         field: &str,
         owner: &str,
-        place: Range<usize>,
+        place: Span,
     ) -> Option<Raw<'a, T>> {
         if raw.is_none() {
             let message = format!("this {owner} has no `{field}`");
@@ -372,7 +373,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Records that the format reserves something that is not built.
-    pub(super) fn not_built(&mut self, span: Range<usize>, what: &str) {
+    pub(super) fn not_built(&mut self, span: Span, what: &str) {
         self.push(
             Diagnostic::error("NB0401", span, format!("not built yet: {what}"))
                 .label("reserved for a later version")
@@ -413,7 +414,7 @@ impl<'a> Reader<'a> {
         own: &Option<Raw<'a, Entries<'a, T>>>,
         shared: &Option<Raw<'a, Entries<'a, T>>>,
     ) -> Vec<Entry<'a, T>> {
-        let mut seen: HashMap<String, Range<usize>> = HashMap::new();
+        let mut seen: HashMap<String, Span> = HashMap::new();
         let mut table = Vec::new();
         for (field, shared) in [(shared, true), (own, false)] {
             let Some(entries) = field.as_ref().and_then(|raw| self.read(raw)) else { continue };
@@ -527,7 +528,7 @@ fn wanted(counts: &RangeInclusive<usize>) -> String {
 pub(super) struct Entry<'a, T> {
     pub(super) name: String,
     /// Of the name.
-    pub(super) place: Range<usize>,
+    pub(super) place: Span,
     pub(super) value: Raw<'a, T>,
     /// Other scenes may use it.
     pub(super) shared: bool,
@@ -539,7 +540,7 @@ pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);
 /// How much more of something there is than a limit allows.
 pub(super) fn too_many(
     code: &'static str,
-    place: Range<usize>,
+    place: Span,
     count: usize,
     what: &str,
     limit: &str,

@@ -1,8 +1,7 @@
 //! Findings as text with the offending lines and carets under the exact values.
 
-use std::ops::Range;
-
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use ninebit::place::Span;
 
 use ninebit::diagnostic::{Diagnostic, Severity, Source, floor_boundary};
 use ninebit::shown;
@@ -34,7 +33,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
     };
     let mut group = Group::with_title(level.primary_title(shown::name(&diagnostic.message)).id(diagnostic.code));
     if let Some(span) = &diagnostic.span {
-        let line = |place: &Range<usize>| source.position(place.start).0;
+        let line = |place: &Span| source.position(place.start).0;
         let (beside, apart): (Vec<_>, Vec<_>) =
             diagnostic.related.iter().partition(|(place, _)| line(place) == line(span));
         group = excerpt(group, source, (span, &diagnostic.label), AnnotationKind::Primary, &beside);
@@ -60,9 +59,9 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
 fn excerpt<'a>(
     group: Group<'a>,
     source: &'a Source,
-    (span, label): (&Range<usize>, &'a str),
+    (span, label): (&Span, &'a str),
     kind: AnnotationKind,
-    beside: &[&'a (Range<usize>, String)],
+    beside: &[&'a (Span, String)],
 ) -> Group<'a> {
     let text = &source.text;
     let start = floor_boundary(text, span.start);
@@ -75,12 +74,12 @@ fn excerpt<'a>(
     let last = beside.iter().map(|(place, _)| place.end).fold(span.end, usize::max).min(start + LONG_LINE);
     let to = floor_boundary(text, line_end.min(last + MARGIN));
     let part = text[from..to].trim_end_matches('\r');
-    let mark = |place: &Range<usize>| {
+    let mark = |place: &Span| {
         let begin = floor_boundary(part, place.start.saturating_sub(from));
         let end = floor_boundary(part, place.end.saturating_sub(from)).max(begin);
         begin..begin + part[begin..end].trim_end().len()
     };
-    let annotate = |kind: AnnotationKind, place: &Range<usize>, label: &'a str| {
+    let annotate = |kind: AnnotationKind, place: &Span, label: &'a str| {
         kind.span(mark(place)).label((!label.is_empty()).then(|| shown::name(label)))
     };
     let snippet = Snippet::source(shown::excerpt(part))

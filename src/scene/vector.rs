@@ -4,7 +4,7 @@
 /// x, y, z.
 pub type Vector = [f64; 3];
 
-/// The same in float64.
+/// A vector of single-precision numbers in float64.
 pub fn wide(v: [f32; 3]) -> Vector {
     v.map(f64::from)
 }

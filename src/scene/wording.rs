@@ -1,13 +1,12 @@
 //! Words and places of messages: what a value looks like, and what was probably meant.
 
-use std::ops::Range;
-
 use super::diagnostic::Diagnostic;
 pub(super) use super::diagnostic::shorten;
+use ninebit::place::Span;
 pub(super) use ninebit_program::spelling::closest;
 
 /// The finding that a name is taken.
-pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<usize>) -> Diagnostic {
+pub(super) fn twice(what: &str, name: &str, place: Span, first: Span) -> Diagnostic {
     Diagnostic::error("NB0209", place, format!("the {what} \"{}\" is defined twice", shorten(name)))
         .label("again here")
         .related(first, "first defined here")

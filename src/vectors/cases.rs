@@ -7,7 +7,7 @@ use ninebit::random::{Random, mix};
 use ninebit::state::{Profile, named};
 
 named! {
-    /// How many rows a table has.
+    /// The number of rows that a table has.
     pub enum Level =>
     /// The most rows of a table.
     rows: usize {
@@ -31,7 +31,7 @@ named! {
         Exhaustive => "exhaustive",
         /// Every input is at a boundary of its column.
         Boundary => "boundary",
-        /// Drawn.
+        /// Drawn by the seeded generator.
         Random => "random",
     }
 }

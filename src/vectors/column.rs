@@ -107,7 +107,7 @@ pub enum Domain {
     Float(bool, i32),
 }
 
-/// A column.
+/// What a number of a row is called, and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name: `cfg.`, `in.`, `mid.` or `out.` and a name of its own.
@@ -148,7 +148,7 @@ impl Column {
         Column::input(name, Kind::Unsigned(1), Domain::Interval(0, 1))
     }
 
-    /// A byte.
+    /// A column of bytes, 0 to 255.
     pub fn byte(name: &str) -> Column {
         Column::unsigned(name, 8, 255)
     }
@@ -178,7 +178,7 @@ impl Column {
         Column::input(name, kind, Domain::Listed(values.to_vec()))
     }
 
-    /// Any word.
+    /// A column of words, any bits of so many.
     pub fn word(name: &str, bits: u32) -> Column {
         Column::input(name, Kind::Hex(bits), Domain::Word(bits))
     }
@@ -188,7 +188,7 @@ impl Column {
         Column::input(name, Kind::Hex(32), Domain::Float(negative, limit))
     }
 
-    /// How many numbers it takes.
+    /// The number of different values that it takes.
     pub fn size(&self) -> u128 {
         match &self.domain {
             None => 1,

@@ -14,7 +14,7 @@ pub enum VectorError {
     /// A file is not there.
     #[error("`{}` does not exist", ninebit::shown::path(path))]
     Missing {
-        /// The file.
+        /// The file that was looked for.
         path: PathBuf,
         /// What to do.
         help: &'static str,
@@ -22,15 +22,15 @@ pub enum VectorError {
     /// A file cannot be read.
     #[error("`{}` cannot be read: {reason}", ninebit::shown::path(path))]
     Unreadable {
-        /// The file.
+        /// The file that was opened.
         path: PathBuf,
-        /// Why.
+        /// What the file system said.
         reason: String,
     },
     /// A file has more bytes than it may.
     #[error("`{}` is larger than {limit}", ninebit::shown::path(path))]
     TooLarge {
-        /// The file.
+        /// The file that was opened.
         path: PathBuf,
         /// How many it may have.
         limit: FileLimit,
@@ -38,9 +38,9 @@ pub enum VectorError {
     /// A file does not say what it should.
     #[error("{}: {message}", place(path, *line))]
     Invalid {
-        /// Stable code.
+        /// The code of `docs/errors.md`.
         code: &'static str,
-        /// The file.
+        /// The file that was read.
         path: PathBuf,
         /// Line, counted from 1; 0 for the file as a whole.
         line: usize,
@@ -83,7 +83,7 @@ impl VectorError {
         VectorError::Unreadable { path: path.to_path_buf(), reason: reason.to_string() }
     }
 
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub fn code(&self) -> &'static str {
         match self {
             VectorError::Missing { .. } => "NB1001",

@@ -42,15 +42,15 @@ pub struct Leaf {
 /// All rows of a unit, or of a part of it, on a chip.
 #[derive(Debug)]
 pub struct Exhaustive {
-    /// The unit.
+    /// The unit whose inputs are all tried.
     pub unit: &'static dyn Unit,
-    /// The chip.
+    /// The chip whose rules it follows.
     pub profile: Profile,
     /// Which of the unit's rows.
     pub part: Part,
     /// Rows, those included whose inputs do not go together.
     pub size: u64,
-    /// Leaves.
+    /// How many leaves the tree has.
     pub leaves: u64,
     outputs: Vec<Output>,
     results: usize,

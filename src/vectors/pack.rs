@@ -40,17 +40,17 @@ pub const MANIFEST: &str = "MANIFEST.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// [`FORMAT`].
+    /// The version of the format: [`FORMAT`].
     pub format: String,
     /// Version of the program.
     pub version: String,
     /// What the program computes: goes up when any output bit of any row changes.
     pub behaviour_rev: u32,
-    /// The chip.
+    /// Name of the chip.
     pub profile: String,
     /// L0, L1 or L2.
     pub level: String,
-    /// Of the random rows.
+    /// The seed of the random rows.
     pub seed: u64,
     /// Only rows that a policy changes.
     pub deciding: bool,
@@ -70,14 +70,14 @@ pub struct File {
     pub path: String,
     /// The unit; empty for licence and schemas.
     pub unit: String,
-    /// Its size.
+    /// Size of the file in bytes.
     pub bytes: u64,
     /// Rows in it.
     pub rows: usize,
     /// Rows that could be drawn and are not in it: a unit has at most [`BATCHES`](super::gpu::write::BATCHES).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub left_out: usize,
-    /// SHA-256.
+    /// SHA-256 of the file, in hexadecimal.
     pub sha256: String,
 }
 
@@ -88,13 +88,13 @@ fn is_zero(rows: &usize) -> bool {
 /// What is to be exported.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The chip.
+    /// The chip whose rules the tables follow.
     pub profile: Profile,
-    /// How many rows.
+    /// The number of rows in each table.
     pub level: Level,
-    /// Of the random rows.
+    /// The seed of the random rows.
     pub seed: u64,
-    /// The units.
+    /// The units whose tables are written.
     pub units: Vec<&'static dyn Unit>,
     /// Only rows that a policy changes.
     pub deciding: bool,

@@ -16,7 +16,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// All rows.
+    /// The part that holds all rows.
     pub fn whole(unit: &dyn Unit) -> Part {
         Part { columns: unit.inputs(), texts: Vec::new(), ties: Vec::new() }
     }

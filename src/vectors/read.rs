@@ -16,9 +16,9 @@ pub struct Table {
     pub contents: Contents,
     /// The behaviour of the model that wrote it.
     pub behaviour: u32,
-    /// Its columns.
+    /// The columns, as the file's head declares them.
     pub writer: Writer,
-    /// Its rows.
+    /// The rows, in the file's order.
     pub rows: Vec<TableRow>,
 }
 
@@ -27,7 +27,7 @@ pub struct Table {
 pub struct TableRow {
     /// Its line in the file, from 1.
     pub line: usize,
-    /// Its id.
+    /// The row's id, in its first column.
     pub id: String,
     /// Configuration and inputs.
     pub inputs: Vec<i64>,
@@ -44,7 +44,7 @@ pub struct TableRow {
 pub struct Difference {
     /// Line in the file.
     pub line: usize,
-    /// The row.
+    /// Id of the row that differs.
     pub id: String,
     /// The first column that differs.
     pub column: String,

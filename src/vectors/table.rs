@@ -17,7 +17,7 @@
 
 use sha2::{Digest, Sha256};
 
-/// What the model computes: goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
+/// The revision of what the model computes. It goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
 pub const BEHAVIOUR: u32 = 1;
 
 use super::{Column, Conditions, Level, Origin, Unit, cases, handbook, unit};
@@ -33,13 +33,13 @@ pub const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 /// What a table is of.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents {
-    /// The unit.
+    /// The unit whose rows these are.
     pub unit: &'static dyn Unit,
-    /// The chip.
+    /// The chip whose rules they follow.
     pub profile: Profile,
-    /// How many rows.
+    /// The number of rows.
     pub level: Level,
-    /// Of the random rows.
+    /// The seed of the random rows.
     pub seed: u64,
 }
 
@@ -66,7 +66,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Of a unit on a chip.
+    /// A writer of the table of a unit on a chip.
     pub fn new(contents: Contents) -> Writer {
         let unit = contents.unit;
         let (inputs, results) = (unit.inputs(), unit.results());
@@ -116,7 +116,7 @@ impl Writer {
         Row { inputs: inputs.to_vec(), results, origin, alternatives }
     }
 
-    /// What a row is known by: twelve hexadecimal digits of a hash over unit, chip, configuration and inputs. It does not change when rows
+    /// The id of a row: twelve hexadecimal digits of a hash over unit, chip, configuration and inputs. It does not change when rows
     /// come or go, nor with the results.
     pub fn id(&self, inputs: &[i64]) -> String {
         let mut hash = Sha256::new();

@@ -26,12 +26,12 @@ pub const FORMAT: &str = "ninebit-sweep-1";
 /// What all leaves of one sweep have in common.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Of {
-    /// The unit.
+    /// Name of the unit.
     pub unit: String,
     /// Which of its rows, as [`Part`] writes it; nothing for all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub only: Vec<String>,
-    /// The chip.
+    /// Name of the chip.
     pub profile: String,
     /// What the program computes.
     pub behaviour_rev: u32,
@@ -127,9 +127,9 @@ pub fn work(folder: &Path, sweep: &Exhaustive, index: u64) -> Result<bool, Vecto
 /// The digests of all rows of a unit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tree {
-    /// [`FORMAT`].
+    /// The version of the format: [`FORMAT`].
     pub format: String,
-    /// Of what.
+    /// What was evaluated, so that other trees are told apart.
     #[serde(flatten)]
     pub of: Of,
     /// Rows whose inputs go together.

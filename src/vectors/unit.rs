@@ -10,7 +10,7 @@ use ninebit::trace::Recorder;
 /// What holds besides a row's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conditions {
-    /// The chip.
+    /// The chip whose rules apply.
     pub profile: Profile,
     /// Rules that have alternatives.
     pub policies: Policies,
@@ -56,7 +56,7 @@ pub trait Unit: Sync {
 
     /// Computes rows of which only the input `varying` varies, over these places of its column, and hands on those whose inputs go together.
     ///
-    /// No unit has another: it stands here so that it is compiled for each, without a call through a table for every row.
+    /// No unit overrides this. A provided method is compiled for each unit, which saves a call through a table for every row.
     #[allow(clippy::too_many_arguments, reason = "a loop that is compiled for each unit, and what it fills")]
     fn run(
         &self,
@@ -113,7 +113,7 @@ named! {
         StageBefore => "stage-before",
         /// The result is negative: two draws, as it is and negated.
         TwoDraws => "two-draws",
-        /// Both.
+        /// Both of these.
         StageBeforeTwoDraws => "stage-before+two-draws",
         /// Geometry shows it: which pixels are covered, or which texel is met.
         Geometry => "geometry",
@@ -140,7 +140,7 @@ impl Reach {
 pub struct Alternative {
     /// The rule and the value, `CMB-3=literal`.
     pub policy: String,
-    /// All results.
+    /// The results, a number for each result column.
     pub results: Vec<i64>,
 }
 

@@ -63,7 +63,7 @@ impl View {
 /// A column's place in a packed row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slice {
-    /// The column.
+    /// The column whose numbers these are.
     pub column: Column,
     /// Its most significant bit.
     pub high: u32,
@@ -74,7 +74,7 @@ pub struct Slice {
 /// Where the columns of a table lie in a packed row.
 #[derive(Debug)]
 pub struct Layout<'w> {
-    /// The table.
+    /// The columns of the table.
     pub writer: &'w Writer,
     /// The columns in order.
     pub slices: Vec<Slice>,

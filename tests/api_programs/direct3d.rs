@@ -3,20 +3,20 @@
 use super::Choices;
 use super::run::{Pixel, agrees, run};
 use ninebit::state::{Combiners, Named, Profile, ShaderOperation};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, ResultArgument, STAGES, StageArgument, TextureStage, TextureStages, lower,
 };
 use proptest::prelude::*;
 
 /// A random argument of a stage, which has a texture or not.
-fn argument(choices: &mut Choices, texture: bool) -> At<StageArgument> {
+fn argument(choices: &mut Choices, texture: bool) -> Spanned<StageArgument> {
     let source = match choices.of(ArgumentSource::ALL) {
         ArgumentSource::Texture if !texture => ArgumentSource::Temp,
         source => source,
     };
     let [complement, alpha_replicate] = [0, 1].map(|_| choices.below(4) == 0);
-    At::default_of(StageArgument { source, complement, alpha_replicate })
+    Spanned::default_of(StageArgument { source, complement, alpha_replicate })
 }
 
 /// Stage `index` of which the first four have textures.
@@ -30,7 +30,7 @@ fn half(choices: &mut Choices, index: usize, alpha: bool) -> Half {
     let operations: Vec<Operation> =
         Operation::ALL.iter().copied().filter(|op| !(alpha && op.is_color_only()) && possible(op)).collect();
     Half {
-        operation: At::default_of(choices.of(&operations)),
+        operation: Spanned::default_of(choices.of(&operations)),
         arguments: std::array::from_fn(|_| argument(choices, index < units)),
     }
 }
@@ -66,7 +66,7 @@ fn reference(program: &TextureStages, context: &Context, pixel: &Pixel) -> [f64;
         if stage.color.operation.value.is_bump() {
             continue;
         }
-        let value = |at: &At<StageArgument>| {
+        let value = |at: &Spanned<StageArgument>| {
             let argument = at.value;
             let mut color = match argument.source {
                 ArgumentSource::Diffuse => diffuse,
@@ -165,7 +165,7 @@ proptest! {
                 prop_assert!(lowered.combiners.stages.len() <= profile.general_stages());
                 prop_assert_eq!(lowered.combiners.stages.len(), lowered.origins.len());
                 for _ in 0..4 {
-                    let pixel = Pixel::of(&mut choices);
+                    let pixel = Pixel::from_choices(&mut choices);
                     let expected = reference(&program, &context, &pixel);
                     let said = agrees(&lowered.combiners, profile, &pixel, expected);
                     prop_assert!(said.is_ok(), "{:?}\n{program:?}\n{pixel:?}\n{:?}", said, lowered.combiners);
@@ -184,11 +184,11 @@ proptest! {
 
 /// The operation in the middle of a cascade whose arguments, current colour and textures all differ.
 fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
-    let argument = |source| At::default_of(StageArgument::new(source));
+    let argument = |source| Spanned::default_of(StageArgument::new(source));
     let select =
-        |source| Half { operation: At::default_of(Operation::SelectArg1), arguments: [source; 3].map(argument) };
+        |source| Half { operation: Spanned::default_of(Operation::SelectArg1), arguments: [source; 3].map(argument) };
     let middle = |operation| Half {
-        operation: At::default_of(operation),
+        operation: Spanned::default_of(operation),
         arguments: [ArgumentSource::Specular, ArgumentSource::Diffuse, ArgumentSource::TextureFactor].map(argument),
     };
     let stage = |index, color, alpha| TextureStage { color, alpha, ..TextureStage::initial(index) };
@@ -215,7 +215,7 @@ fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
 pub(super) fn told_apart(a: &Combiners, b: &Combiners) -> bool {
     let mut choices = Choices::new(7);
     (0..256).any(|_| {
-        let pixel = Pixel::of(&mut choices);
+        let pixel = Pixel::from_choices(&mut choices);
         let [a, b] = [a, b].map(|combiners| run::<i32>(combiners, Profile::Nv2a, &pixel));
         (0..4).any(|n| (a[n] - b[n]).abs() > 3)
     })
@@ -288,7 +288,7 @@ fn a_dot_product_reaches_alpha_on_both_chips() {
     assert!(!nv10.stages[0].rgb.ab_blue_to_alpha && nv2a.stages[0].rgb.ab_blue_to_alpha);
     let mut choices = Choices::new(3);
     for _ in 0..200 {
-        let pixel = Pixel::of(&mut choices);
+        let pixel = Pixel::from_choices(&mut choices);
         assert_eq!(run::<i32>(&nv10, Profile::Nv10, &pixel), run::<i32>(&nv2a, Profile::Nv2a, &pixel));
     }
 }

@@ -4,7 +4,7 @@ use super::Choices;
 use super::direct3d::{finish, told_apart};
 use super::run::{Pixel, agrees};
 use ninebit::state::{Named, Profile, Scale};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit, lower,
 };
@@ -22,9 +22,9 @@ fn half(choices: &mut Choices, mode: Mode, alpha: bool) -> Half {
         .collect();
     let operands = if alpha { &Operand::ALL[2..] } else { Operand::ALL };
     Half {
-        function: At::default_of(choices.of(&functions)),
-        sources: std::array::from_fn(|_| At::default_of(choices.of(&sources))),
-        operands: std::array::from_fn(|_| At::default_of(choices.of(operands))),
+        function: Spanned::default_of(choices.of(&functions)),
+        sources: std::array::from_fn(|_| Spanned::default_of(choices.of(&sources))),
+        operands: std::array::from_fn(|_| Spanned::default_of(choices.of(operands))),
         scale: choices.of(&[Scale::One, Scale::Two, Scale::Four]),
     }
 }
@@ -210,7 +210,7 @@ proptest! {
         let program = environment(&mut choices, units);
         match lower(&program, &context) {
             Ok(lowered) => for _ in 0..4 {
-                let mut pixel = Pixel::of(&mut choices);
+                let mut pixel = Pixel::from_choices(&mut choices);
                 held(&mut pixel, &textures);
                 let expected = reference(&program, &context, &pixel);
                 let said = agrees(&lowered.combiners, profile, &pixel, expected);

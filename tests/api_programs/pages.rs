@@ -6,7 +6,7 @@ use std::fs;
 
 use crate::pages::hold;
 use ninebit::state::{Combiners, Named, Profile};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::pixel_shader;
 use ninebit_program::registers::Word;
 use ninebit_program::text::print;
@@ -34,8 +34,8 @@ fn comments(file: &str, enumeration: &str) -> Vec<String> {
     lines.map(|line| line.trim_end_matches('.').to_owned()).collect()
 }
 
-fn written<T>(value: T) -> At<T> {
-    At::default_of(value)
+fn written<T>(value: T) -> Spanned<T> {
+    Spanned::default_of(value)
 }
 
 /// What the stage of a Direct3D operation computes: a0 is the specular colour, a1 the texture, a2 the diffuse colour.

@@ -98,10 +98,10 @@ fn text(program: &TextureStages, form: Form) -> String {
 /// The program without its places.
 fn bare(mut program: TextureStages) -> TextureStages {
     for stage in &mut program.stages {
-        stage.place = 0..0;
+        stage.span = 0..0;
         for half in [&mut stage.color, &mut stage.alpha] {
-            half.operation.place = 0..0;
-            half.arguments.iter_mut().for_each(|argument| argument.place = 0..0);
+            half.operation.span = 0..0;
+            half.arguments.iter_mut().for_each(|argument| argument.span = 0..0);
         }
     }
     program

@@ -5,7 +5,7 @@ use super::direct3d::told_apart;
 use super::run::{Pixel, bound, run};
 use ninebit::diagnostic::Severity;
 use ninebit::state::{Named, Profile, Register, Scale, ShaderOperation};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Bump, CONSTANTS, Context, Definition, Lowered, Mask, Modifier, Operation, PixelShader, Selector,
     ShaderRegister, Source, Target, TextureInstruction, TextureOperation, TextureSource, Version, lower, parse, print,
@@ -47,11 +47,11 @@ fn arithmetic(choices: &mut Choices, known: &[ShaderRegister], target: Target, p
             (Operation::Cnd, 0) => condition,
             _ => source(choices, known, target.mask),
         })
-        .map(At::default_of)
+        .map(Spanned::default_of)
         .collect();
     let scale = if choices.flag() { Scale::One } else { choices.of(Scale::ALL) };
     let saturate = choices.below(3) == 0;
-    Arithmetic { operation, scale, saturate, target: At::default_of(target), sources, paired, place: 0..0 }
+    Arithmetic { operation, scale, saturate, target: Spanned::default_of(target), sources, paired, span: 0..0 }
 }
 
 fn registers(bank: Bank, count: u8) -> Vec<ShaderRegister> {
@@ -74,7 +74,7 @@ fn shader(choices: &mut Choices, textures: u8, slots: usize) -> PixelShader {
     let temporary = registers(Bank::Temporary, 2);
     for (n, register) in temporary.iter().enumerate().take(slots) {
         let first = Arithmetic { operation: Operation::Mov, ..arithmetic(choices, &known, whole(*register), false) };
-        let sources = vec![At::default_of(source(choices, &known, Mask::All))];
+        let sources = vec![Spanned::default_of(source(choices, &known, Mask::All))];
         program.arithmetic.push(Arithmetic { sources, ..first });
         known.push(temporary[n]);
     }
@@ -99,30 +99,30 @@ fn shader(choices: &mut Choices, textures: u8, slots: usize) -> PixelShader {
 }
 
 fn definition(choices: &mut Choices, index: u8) -> Definition {
-    Definition { index, value: std::array::from_fn(|_| constant(choices)), place: 0..0 }
+    Definition { index, value: std::array::from_fn(|_| constant(choices)), span: 0..0 }
 }
 
 fn texture(operation: TextureOperation, unit: u8, source: Option<TextureSource>) -> TextureInstruction {
     TextureInstruction {
         operation,
-        unit: At::default_of(unit),
-        source: source.map(At::default_of),
+        unit: Spanned::default_of(unit),
+        source: source.map(Spanned::default_of),
         eye: None,
-        place: 0..0,
+        span: 0..0,
     }
 }
 
 /// The shader without its places.
 fn bare(mut program: PixelShader) -> PixelShader {
-    program.definitions.iter_mut().for_each(|definition| definition.place = 0..0);
+    program.definitions.iter_mut().for_each(|definition| definition.span = 0..0);
     for texture in &mut program.textures {
-        (texture.place, texture.unit.place) = (0..0, 0..0);
-        texture.source.iter_mut().for_each(|source| source.place = 0..0);
-        texture.eye.iter_mut().for_each(|eye| eye.place = 0..0);
+        (texture.span, texture.unit.span) = (0..0, 0..0);
+        texture.source.iter_mut().for_each(|source| source.span = 0..0);
+        texture.eye.iter_mut().for_each(|eye| eye.span = 0..0);
     }
     for instruction in &mut program.arithmetic {
-        (instruction.place, instruction.target.place) = (0..0, 0..0);
-        instruction.sources.iter_mut().for_each(|source| source.place = 0..0);
+        (instruction.span, instruction.target.span) = (0..0, 0..0);
+        instruction.sources.iter_mut().for_each(|source| source.span = 0..0);
     }
     program
 }
@@ -253,7 +253,7 @@ proptest! {
                 let [rgb, alpha] = bound(&lowered.combiners, 1.0);
                 let selects = lowered.combiners.stages.iter().any(|stage| stage.rgb.mux || stage.alpha.mux);
                 for _ in 0..4 {
-                    let pixel = Pixel::of(&mut choices);
+                    let pixel = Pixel::from_choices(&mut choices);
                     let mut state = State::new(&program, &context, &pixel);
                     let expected = state.run(&program);
                     if state.close {
@@ -307,7 +307,7 @@ proptest! {
             _ => vec![texture(Op::Tex, 0, None), texture(Op::Texkill, 2, None), texture(Op::Tex, 3, None)],
         };
         for texture in program.textures.iter_mut().filter(|texture| texture.operation == Op::Texm3x3spec) {
-            texture.eye = Some(At::default_of(choices.below(CONSTANTS) as u8));
+            texture.eye = Some(Spanned::default_of(choices.below(CONSTANTS) as u8));
         }
         let text = print(&program);
         match parse(&text) {
@@ -463,7 +463,7 @@ fn cnd_takes_its_second_source_above_one_half() {
         [stage.inputs[0].register, stage.inputs[2].register],
         [Register::SecondaryColor, Register::PrimaryColor]
     );
-    let mut pixel = Pixel::of(&mut Choices::new(5));
+    let mut pixel = Pixel::from_choices(&mut Choices::new(5));
     for alpha in 0..=255 {
         pixel.textures[0][3] = alpha;
         let expected = if alpha >= 128 { pixel.diffuse } else { pixel.specular };
@@ -496,7 +496,7 @@ fn a_color_cnd_behind_plus_takes_its_second_source() {
     let pixel = Pixel {
         diffuse: [10, 20, 30, 40],
         textures: [[50; 4], [60; 4], [0; 4], [0; 4]],
-        ..Pixel::of(&mut Choices::new(1))
+        ..Pixel::from_choices(&mut Choices::new(1))
     };
     for (pair, red) in [
         ("mov r1.a, v0\n+ cnd r0.rgb, r0.a, t0, t1", 50),

@@ -20,7 +20,7 @@ pub(crate) struct Pixel {
 }
 
 impl Pixel {
-    pub(crate) fn of(choices: &mut super::Choices) -> Pixel {
+    pub(crate) fn from_choices(choices: &mut super::Choices) -> Pixel {
         Pixel {
             diffuse: choices.color(),
             specular: choices.color(),

@@ -32,14 +32,14 @@ impl Bench {
     }
 
     pub fn run(&self, arguments: &str) -> Run {
-        Run::of(self.command(arguments).output().unwrap())
+        Run::from_output(self.command(arguments).output().unwrap())
     }
 
     /// A run whose output nobody reads: it ends in silence.
     pub fn unread(&self, arguments: &str) {
         let mut child = self.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
-        let run = Run::of(child.wait_with_output().unwrap());
+        let run = Run::from_output(child.wait_with_output().unwrap());
         assert_eq!((run.status, run.stderr.as_str()), (0, ""));
     }
 }
@@ -53,7 +53,7 @@ pub struct Run {
 }
 
 impl Run {
-    pub fn of(output: Output) -> Self {
+    pub fn from_output(output: Output) -> Self {
         Run {
             status: output.status.code().unwrap(),
             stdout: output.stdout,

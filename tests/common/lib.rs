@@ -1,4 +1,4 @@
-//! What tests of several packages share: random scenes and programs, and traces recomputed from their own numbers.
+//! What tests share that computes much: random scenes and programs, traces recomputed from their own numbers, decoded blocks.
 //!
 //! Strategies are boxed, so that their code is made here. The other files of this folder are modules of the tests that name them.
 #![allow(
@@ -10,6 +10,7 @@
     reason = "tests fail by panicking"
 )]
 
+pub mod blocks;
 pub mod random_program;
 pub mod random_scene;
 pub mod random_vertex_program;

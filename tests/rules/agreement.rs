@@ -1,7 +1,8 @@
 //! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
 
-use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read, root};
+use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read};
 use crate::pages;
+use crate::repository;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Named, POLICIES, Profile, Scene};
 use ninebit::trace::Rule;
@@ -46,8 +47,8 @@ fn entries_are_complete() {
 fn every_id_that_is_mentioned_has_an_entry() {
     let sources = ["src", "tests", "benches", "fuzz/fuzz_targets"].into_iter().flat_map(|folder| files(folder, "rs"));
     let documents = ["docs", "vectors"].into_iter().flat_map(|folder| files(folder, "md"));
-    let named = ["README.md", "CHANGELOG.md", "fuzz/README.md"].into_iter().map(|file| root().join(file));
-    let unread = INVENTED.map(|file| root().join(file));
+    let named = ["README.md", "CHANGELOG.md", "fuzz/README.md"].into_iter().map(repository::at);
+    let unread = INVENTED.map(repository::at);
     for file in sources.chain(documents).chain(named).filter(|file| !unread.contains(file)) {
         for id in ids(&read(&file)) {
             assert!(find(&id).is_some(), "{} mentions {id}, which docs/numerics.md does not have", file.display());

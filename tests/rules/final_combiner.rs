@@ -33,7 +33,7 @@ fn drawn(final_combiner: FinalCombiner, primary: u8, secondary: u8, profile: Pro
     // nv10 has one pair of constants for the whole program.
     draw.combiners.stages[0].constants = final_combiner.constants;
     draw.combiners.final_combiner = final_combiner;
-    Pixel::of(&scene(profile, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]), policies)
+    Pixel::from_scene(&scene(profile, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]), policies)
 }
 
 #[test]

@@ -147,7 +147,7 @@ fn examples_of_the_general_stage() {
     let cmb13 = example("CMB-13", "without textures SPARE0 starts as (0, 0, 0, 255).");
     let draw = Draw { combiners: Combiners::showing(FinalRegister::Spare0), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![draw]);
-    let shown = Pixel::of(&scene, DEFAULT);
+    let shown = Pixel::from_scene(&scene, DEFAULT);
     cmb13.gives("the word that shows it", shown.word, 0xff00_0000);
     cmb13.gives("a read of what no document defines is marked", shown.step("spare0.r").note.is_some(), true);
 }

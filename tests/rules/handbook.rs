@@ -3,6 +3,7 @@
 //! A rule's entry is a heading `### ID title`, a block of text with its formula, and a list of fields, one a line: `- Grade: ...`.
 
 use crate::pages;
+use crate::repository;
 use crate::settings::bless;
 use ninebit::state::Policies;
 use std::collections::BTreeSet;
@@ -113,7 +114,7 @@ pub fn example(rule: &'static str, text: &str) -> Example {
             start + page[start..].find("\n- Example: ").unwrap_or_else(|| panic!("{rule} has no line of its example"));
         let end = at + 1 + page[at + 1..].find('\n').unwrap();
         let written = format!("{}\n- Example: {text}{}", &page[..at], &page[end..]);
-        std::fs::write(root().join(PAGE), written).unwrap();
+        std::fs::write(repository::at(PAGE), written).unwrap();
     } else {
         assert!(
             line == text,
@@ -146,19 +147,15 @@ pub fn policy(assignment: &str) -> Policies {
     policies
 }
 
-pub fn root() -> PathBuf {
-    crate::repository::at("")
-}
-
 /// A text file of the repository.
 pub fn read(path: impl AsRef<Path>) -> String {
-    let path = root().join(path);
+    let path = repository::at(path);
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 /// Files below a folder whose names end in `.EXTENSION`, sorted.
 pub fn files(folder: impl AsRef<Path>, extension: &str) -> Vec<PathBuf> {
-    let folder = root().join(folder);
+    let folder = repository::at(folder);
     let found = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     let mut paths: Vec<PathBuf> = found.map(|e| e.unwrap().path()).collect();
     paths.sort();

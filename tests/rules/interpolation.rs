@@ -5,7 +5,7 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::depth::{self, Binary, DepthPlane};
-use ninebit::raster::interpolate::{Sample, Settled, color};
+use ninebit::raster::interpolate::{Floored, Sample, color};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{CompareFunction, DepthFormat, DepthRange, DepthTest, PolygonOffset, Profile, VertexDepths};
 use ninebit::texture::filter;
@@ -27,8 +27,8 @@ pub fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
     Sample::new(triangle, triangle.edges(i, j))
 }
 
-fn settled(value: i64, lowered: bool) -> Settled {
-    Settled { value, lowered: lowered.into() }
+fn floored(value: i64, lowered: bool) -> Floored {
+    Floored { value, lowered: lowered.into() }
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn examples_of_interpolation() {
     int3.gives("256 E / D", sample.n.map(|n| 256 * i128::from(n)), [224, 28, 4].map(|k| k * i128::from(sample.d)));
     int3.gives("the dominant weight", sample.dominant(), 0);
     let [w0, w2] = sample.weights();
-    int3.gives("W0", w0, settled(224, false)).gives("W2", w2, settled(3, true));
+    int3.gives("W0", w0, floored(224, false)).gives("W2", w2, floored(3, true));
     int3.gives("W1", 256 - w0.value - w2.value, 29);
 
     let int4 = example(
@@ -79,7 +79,7 @@ fn examples_of_interpolation() {
         "s = (0, 0, 1), n = 64, pixel (10, 2): 16384 * 2.5 / 96 = 426.67, u = 426, that is texel 1 and 170/256.",
     );
     let u = at(&triangle, 10, 2).coordinate(&triangle.coordinate([0.0, 0.0, 1.0], 64));
-    int4.shows("the real number", 16_384.0 * 2.5 / 96.0, 2, "426.67").gives("u", u, settled(426, false));
+    int4.shows("the real number", 16_384.0 * 2.5 / 96.0, 2, "426.67").gives("u", u, floored(426, false));
     int4.gives("texel and part", (u.value >> 8, u.value & 255), (1, 170));
 
     let int4t = example(
@@ -94,16 +94,16 @@ fn examples_of_interpolation() {
     int4t.gives("256 D", sample.sum(&third), 256 * i128::from(sample.d));
     int4t.gives("64 b2", 64 * sample.n[2], sample.d).gives("S > 0", sample.shortfall(&third) > 0, true);
     let u = sample.coordinate(&third);
-    int4t.gives("u of (0, 0, 1)", u, settled(255, true)).gives("its texel", filter::nearest(u.value), 0);
+    int4t.gives("u of (0, 0, 1)", u, floored(255, true)).gives("its texel", filter::nearest(u.value), 0);
     int4t.gives("1792 D", sample.sum(&second), 1792 * i128::from(sample.d));
     int4t.gives("S < 0", sample.shortfall(&second) < 0, true);
-    int4t.gives("u of (0, 1, 0)", sample.coordinate(&second), settled(1792, false));
+    int4t.gives("u of (0, 1, 0)", sample.coordinate(&second), floored(1792, false));
     let [numerator, denominator, _] = triangle.direction([[0.0, 0.0, 2.0], [2.0; 3], [0.0; 3]]);
     int4t.gives("the loss of N_q", sample.shortfall(&denominator), 0);
     let parts = sample.sum(&numerator) * i128::from(triangle.p[1]);
     int4t.gives("the loss of N_s in 2^-24 / P_1", sample.shortfall(&numerator), parts);
     int4t.gives("64 N_s", 64 * sample.sum(&numerator), sample.sum(&denominator));
-    int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), settled(255, true));
+    int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), floored(255, true));
 
     let int6 = example("INT-6", "on `Nv10` w = 1 + 2^-20 counts as 1, w = 1 + 2^-15 as itself.");
     let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;

@@ -16,7 +16,7 @@ pub struct Pixel {
 
 impl Pixel {
     /// Draws and traces pixel (0, 0) of the first target.
-    pub fn of(scene: &Scene, policies: Policies) -> Pixel {
+    pub fn from_scene(scene: &Scene, policies: Policies) -> Pixel {
         let plan = Plan::compile(scene, &PlanOptions { policies, prune: true }).unwrap();
         let word = render(&plan, &RenderOptions::default()).surfaces[0].words[0];
         let mut trace = trace(&plan, 0, (0, 0), None).unwrap();

@@ -61,8 +61,10 @@ fn examples_of_raster_operations() {
         example("ROP-5", "R5G6B5, red S = 203, sa = 128, stored 12: rnd255(200 * 128 + 96 * 127) = 148, stored 18.");
     let diffuse = VertexColor::Bytes([203, 0, 0, 128]);
     let draw = Draw { blend: Some(OVER), ..covering(Vertex { diffuse, ..Vertex::default() }) };
-    let pixel =
-        Pixel::of(&scene(Profile::Nv10, SurfaceFormat::R5G6B5, [12 << 3, 0, 0, 0], vec![draw]), Policies::DEFAULT);
+    let pixel = Pixel::from_scene(
+        &scene(Profile::Nv10, SurfaceFormat::R5G6B5, [12 << 3, 0, 0, 0], vec![draw]),
+        Policies::DEFAULT,
+    );
     rop5.gives("stored before", pixel.value("destination.word") >> 11, 12);
     rop5.gives("S and D", ["source.r", "destination.r"].map(|name| pixel.value(name)), [200, 96]);
     rop5.gives("the blend", pixel.value("blend.r"), 148).gives("stored", pixel.word >> 11, 18);

@@ -15,7 +15,7 @@ fn sampled(texture: Texture, coordinates: [[f32; 4]; 3], change: impl Fn(&mut Te
     draw.combiners = Combiners::showing(FinalRegister::Texture0);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     scene.textures.push(texture);
-    Pixel::of(&scene, Policies::DEFAULT)
+    Pixel::from_scene(&scene, Policies::DEFAULT)
 }
 
 fn texture(kind: TextureKind, format: TextureFormat, [width, height, layers]: [u32; 3], words: &[u32]) -> Texture {

@@ -18,7 +18,7 @@ fn sampled(profile: Profile, format: TextureFormat, words: &[u32], x: u32) -> Pi
     let texels = Texels { width: 4, height: 4, levels: 1, layers: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
     scene.textures.push(Texture { name: "block".to_string(), kind, format, image });
-    Pixel::of(&scene, Policies::DEFAULT)
+    Pixel::from_scene(&scene, Policies::DEFAULT)
 }
 
 /// Two words that differ in red.

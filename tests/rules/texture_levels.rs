@@ -26,7 +26,7 @@ fn sampled(kind: TextureKind, side: u32, levels: u32, st: [f32; 3], step: [f32; 
         Texels { width: side, height: side, levels, layers: 1, border: false, words: vec![255; faces * face].into() };
     let (name, format, image) = ("white".to_string(), TextureFormat::L8, TextureImage::Texels(texels));
     scene.textures.push(Texture { name, kind, format, image });
-    Pixel::of(&scene, Policies::DEFAULT)
+    Pixel::from_scene(&scene, Policies::DEFAULT)
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn shaded(word: u32, stages: &[ShaderStage], second: Texture, sets: [[f32; 4]; 4
     draw.combiners = Combiners::showing(last[stages.len() - 1]);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     scene.textures = vec![texture("first", TextureKind::TwoDimensional, 1, &[word]), second];
-    Pixel::of(&scene, policies)
+    Pixel::from_scene(&scene, policies)
 }
 
 fn white(kind: TextureKind, side: u32) -> Texture {

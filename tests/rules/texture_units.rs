@@ -20,7 +20,7 @@ fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn
         Texels { width: words.len() as u32, height: 1, levels: 1, layers: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
     scene.textures.push(Texture { name: "row".to_string(), kind, format, image });
-    Pixel::of(&scene, Policies::DEFAULT)
+    Pixel::from_scene(&scene, Policies::DEFAULT)
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn examples_of_texture_units() {
     let tex16 = example("TEX-16", "TEXTURE1 of a draw without a second texture is (0, 0, 0, 255).");
     let unbound = Draw { combiners: Combiners::showing(FinalRegister::Texture1), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![unbound]);
-    tex16.gives("the word that shows it", Pixel::of(&scene, Policies::DEFAULT).word, 0xff00_0000);
+    tex16.gives("the word that shows it", Pixel::from_scene(&scene, Policies::DEFAULT).word, 0xff00_0000);
 
     let key1 = example("KEY-1", "the key 0xf00000ff does not match the texel 0xff0000ff. In X8R8G8B8 it does.");
     let keyed = |format| {

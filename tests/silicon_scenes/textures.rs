@@ -11,7 +11,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    fn of(width: u32, height: u32, pixel: impl Fn(u32, u32) -> Pixel) -> Picture {
+    fn from_pixels(width: u32, height: u32, pixel: impl Fn(u32, u32) -> Pixel) -> Picture {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Picture { width, height, pixels }
     }
@@ -20,7 +20,7 @@ impl Picture {
 /// Green from left to right, red from top to bottom, blue against red, alpha the sum of red and green.
 pub fn gradient(width: u32, height: u32) -> Picture {
     let step = |i: u32, n: u32| (i as f32 * 255.0 / n as f32) as u8;
-    Picture::of(width, height, |x, y| {
+    Picture::from_pixels(width, height, |x, y| {
         let (r, g) = (step(y, height), step(x, width));
         [r, g, 255 - r, r.wrapping_add(g)]
     })
@@ -29,7 +29,7 @@ pub fn gradient(width: u32, height: u32) -> Picture {
 /// Four gradients side by side and one above the other, their alpha falling off from the centre.
 pub fn four_gradients() -> Picture {
     let one = gradient(128, 128);
-    Picture::of(256, 256, |x, y| {
+    Picture::from_pixels(256, 256, |x, y| {
         let [r, g, b, _] = one.pixels[(y % 128 * 128 + x % 128) as usize];
         let (dx, dy) = (x as f32 - 128.0, y as f32 - 128.0);
         [r, g, b, (255.0 * (1.0 - (dx * dx + dy * dy) / 32768.0)) as u8]
@@ -44,7 +44,7 @@ pub fn indices() -> Vec<u8> {
 /// Diagonal stripes in steps of two texels, opaque and translucent in turn.
 pub fn stripes() -> Picture {
     const COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0x44, 0x44, 255], [255; 3]];
-    Picture::of(32, 32, |x, y| {
+    Picture::from_pixels(32, 32, |x, y| {
         let n = (x / 2 + y / 2) as usize % 8;
         let [r, g, b] = COLORS[n / 2];
         [r, g, b, if n.is_multiple_of(2) { 255 } else { 0x66 }]
@@ -54,7 +54,7 @@ pub fn stripes() -> Picture {
 /// The same with red and blue exchanged, within a checkered border of four texels on each side.
 pub fn bordered_stripes() -> Picture {
     let inside = stripes();
-    Picture::of(40, 40, |x, y| match (x.checked_sub(4), y.checked_sub(4)) {
+    Picture::from_pixels(40, 40, |x, y| match (x.checked_sub(4), y.checked_sub(4)) {
         (Some(x), Some(y)) if x < 32 && y < 32 => {
             let [r, g, b, a] = inside.pixels[(y * 32 + x) as usize];
             [b, g, r, a]
@@ -66,7 +66,7 @@ pub fn bordered_stripes() -> Picture {
 
 /// Green just below one half in two columns and just above it in the others.
 pub fn step() -> Picture {
-    Picture::of(256, 256, |x, _| [0, if x < 2 { 0x7f } else { 0x80 }, 0x45, 255])
+    Picture::from_pixels(256, 256, |x, _| [0, if x < 2 { 0x7f } else { 0x80 }, 0x45, 255])
 }
 
 /// Colours that grow from the centre outwards, fast and then slowly. `mask` says which channels are on: then all that are show the
@@ -75,7 +75,7 @@ pub fn radial(side: u32, mask: [bool; 3]) -> Picture {
     let side_f = side as f32;
     let centre = (side_f - 1.0) / 2.0;
     let farthest = (centre * centre + centre * centre).sqrt();
-    Picture::of(side, side, |x, y| {
+    Picture::from_pixels(side, side, |x, y| {
         let (x, y) = (x as f32, y as f32);
         let (dx, dy) = (x - centre, y - centre);
         let distance = (dx * dx + dy * dy).sqrt() / farthest;

@@ -5,8 +5,8 @@ use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
 use ninebit::plan::Plan;
 use ninebit::state::{Scene, Texture, TextureImage};
+use ninebit::texture::coordinates::Coordinates;
 use ninebit::texture::cube::Face;
-use ninebit::texture::place::Coordinates;
 use ninebit_scene::generate::normal_map::encode;
 
 pub fn section() -> Section {

@@ -6,7 +6,7 @@ use super::view::{Covered, draw, plan, scene, visit};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::Scene;
-use ninebit::texture::place::{Coordinates, Interpolated, Place};
+use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
 
 /// Bits of the texel coordinate that the strips of a draw end at, from top to bottom.
 const FIRST: usize = 10;
@@ -77,9 +77,9 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
         vertices: covered.vertices,
         perspective: true,
     };
-    let settled = place.on(&covered.unit.levels[0])[0];
+    let floored = place.on(&covered.unit.levels[0])[0];
     // INT-4t takes an exact tie one step lower: that is the rule and no error.
-    let u = settled.value + settled.lowered;
+    let u = floored.value + floored.lowered;
     // Everything as whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
     let whole = |value: f32, bits: i32| (f64::from(value) * f64::from(bits).exp2()) as i128;
     let w = covered.w().map(|w| whole(w, 23));

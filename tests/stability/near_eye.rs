@@ -6,7 +6,7 @@ use super::view::{draw, plan, scene};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::raster::ideal;
-use ninebit::raster::interpolate::{Sample, Settled};
+use ninebit::raster::interpolate::{Floored, Sample};
 use ninebit::raster::project::ClipPlane;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{Profile, Scene};
@@ -80,7 +80,7 @@ fn floor_below_the_eye_is_cut_off(scene: &Scene) {
         }
     });
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    let planes: Vec<ClipPlane> = ClipPlane::of(plan.draws[1].assembly.clipping.planes).collect();
+    let planes: Vec<ClipPlane> = ClipPlane::in_set(plan.draws[1].assembly.clipping.planes).collect();
     assert!(planes.first() == Some(&ClipPlane::W) && planes.contains(&ClipPlane::Bottom), "{planes:?}");
 }
 
@@ -120,8 +120,8 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
             let sample = Sample::new(&triangle, e);
             let exact = ideal::barycentrics(&triangle, e, w, true);
             let most = &mut worst[usize::from(e[0] == 0)];
-            for (n, settled) in [0, 2].into_iter().zip(sample.weights()) {
-                most.weight = most.weight.max(beyond(settled, 256.0 * exact[n]));
+            for (n, floored) in [0, 2].into_iter().zip(sample.weights()) {
+                most.weight = most.weight.max(beyond(floored, 256.0 * exact[n]));
             }
             let u = 256.0 * f64::from(SIDE) * ideal::mix(exact, s.map(f64::from));
             most.u = most.u.max(beyond(sample.coordinate(&g), u));
@@ -132,8 +132,8 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
 
 /// How far an integer lies from a floor: 0 where the real number is within the step above it. A tie that was taken one step lower
 /// counts as exact.
-fn beyond(settled: Settled, exact: f64) -> f64 {
+fn beyond(floored: Floored, exact: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
-    let error = (settled.value + settled.lowered) as f64 - exact;
+    let error = (floored.value + floored.lowered) as f64 - exact;
     if error > ROUNDING { error } else { (-error - 1.0 - ROUNDING).max(0.0) }
 }

@@ -13,7 +13,7 @@ use crate::settings::bless;
 const PAGE: &str = "docs/stability.md";
 const PICTURES: &str = "docs/pictures/stability";
 /// Bytes that a picture may have, so that the page stays quick to read.
-const LARGEST: u64 = 40_000;
+const MAX_IMAGE_BYTES: u64 = 40_000;
 
 /// What one section of the page shows.
 pub struct Section {
@@ -119,7 +119,7 @@ fn check_picture(name: &str, picture: &Picture) {
         fs::write(&path, png(picture)).unwrap();
     }
     let bytes = fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert!(bytes.len() as u64 <= LARGEST, "{} has {} bytes", path.display(), bytes.len());
+    assert!(bytes.len() as u64 <= MAX_IMAGE_BYTES, "{} has {} bytes", path.display(), bytes.len());
     let stored = image::load_from_memory(&bytes).unwrap().to_rgb8();
     let same = stored.dimensions() == (picture.width as u32, picture.height as u32)
         && stored.into_raw() == picture.pixels.as_flattened();

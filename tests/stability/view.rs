@@ -7,8 +7,8 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{Scene, TriangleVertices};
+use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
 use ninebit::texture::lod;
-use ninebit::texture::place::{Coordinates, Interpolated, Place};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit_scene as scene;
 

@@ -131,7 +131,7 @@ impl Native {
     }
 
     /// With that scene open.
-    fn of(path: &Path) -> Native {
+    fn from_path(path: &Path) -> Native {
         let mut native = Native::with(path, &load(path).unwrap().1);
         native.open(&std::fs::read_to_string(path).unwrap());
         native
@@ -272,7 +272,7 @@ fn places() -> Result<(), Failed> {
 /// Every part that a program names is changed to every choice: the text reads back as a program that has it, or says why it is not one.
 fn edits() -> Result<(), Failed> {
     let text = std::fs::read_to_string("vectors/scenes/programs/lit-combiners.ron").unwrap();
-    let mut native = Native::of(Path::new("vectors/scenes/programs/lit-combiners.ron"));
+    let mut native = Native::from_path(Path::new("vectors/scenes/programs/lit-combiners.ron"));
     let mut ask = |request: Value| native.ask(request);
     let open = json!({ "do": "open", "text": text, "name": "a.ron" });
     let program = ask(json!({ "do": "program", "draw": 0 }))["program"].clone();
@@ -324,7 +324,7 @@ fn languages() -> Result<(), Failed> {
         let Some((loaded, _)) = load(path) else { continue };
         let Some(number) = loaded.scene.draws.iter().position(|draw| !draw.program_origin.is_empty()) else { continue };
         let scale = loaded.scene.draws[number].combiners.stages[0].rgb.scale.name();
-        let mut native = Native::of(path);
+        let mut native = Native::from_path(path);
         let edit = json!({ "do": "edit", "draw": number, "path": ["stages", 0, "rgb", "scale"], "value": scale });
         let edited = native.ask(edit);
         let Some(text) = edited["text"].as_str() else {
@@ -369,7 +369,7 @@ fn firefox() -> Result<(), Failed> {
     let word = trace(&plan, 0, (200, 300), None).unwrap().word;
     let other = folder.path().join("other.png");
     std::fs::write(&other, four_off(&render(&plan, &RenderOptions::default()).surfaces[0])).unwrap();
-    let ideal = Native::of(path).differing(json!("ideal"), None);
+    let ideal = Native::from_path(path).differing(json!("ideal"), None);
     let arguments = [page.to_str().unwrap(), &digests(&plan)[0], &word.to_string(), &ideal, other.to_str().unwrap()];
     let run = Command::new("node").arg("tests/web/firefox.mjs").args(arguments).output().unwrap();
     print!("{}", String::from_utf8_lossy(&run.stdout));
@@ -417,7 +417,7 @@ fn page() -> Result<(), Failed> {
     // What the page has to show, by the library.
     let pixel = (200, 300);
     let traced = trace(&loaded.plan, 0, pixel, None).unwrap();
-    let mut native = Native::of(path);
+    let mut native = Native::from_path(path);
     let ideal = native.differing(json!("ideal"), None);
     let against_literal = native.differing(json!({ "CMB-3": "literal" }), None);
     let (text, edited) = native.edited(json!(["stages", 0, "rgb", "inputs", 0, "mapping"]), "UnsignedIdentity");
@@ -450,7 +450,7 @@ fn page() -> Result<(), Failed> {
     // Draws one over the other, with depths and stencils.
     std::fs::write(at("steps.ron"), STEPS).unwrap();
     inspect(&at("steps.ron"), &at("steps.html"));
-    let mut native = Native::of(&at("steps.ron"));
+    let mut native = Native::from_path(&at("steps.ron"));
     let steps: Vec<Value> = (0..2)
         .map(|until| {
             let mut after = |what: &str| native.ask(json!({ "do": what, "target": 0, "pixel": [20, 20], "until": until }));
@@ -475,16 +475,16 @@ fn page() -> Result<(), Failed> {
             let path = PathBuf::from(format!("vectors/scenes/programs/{name}.ron"));
             let page = format!("{name}.html");
             inspect(&path, &at(&page));
-            let (text, digest) = Native::of(&path).edited(json!(["stages", 1, "rgb", "scale"]), "Two");
+            let (text, digest) = Native::from_path(&path).edited(json!(["stages", 1, "rgb", "scale"]), "Two");
             json!({ "page": page, "part": "Scale of stage 1 rgb", "value": "Two", "text": text, "digest": digest })
         })
         .to_vec();
     // One change upon another.
-    let mut twice = Native::of(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
+    let mut twice = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
     assert_ne!(twice.edited(json!(["stages", 1, "rgb", "scale"]), "Two").1, once);
     let words = std::fs::read_to_string("vectors/scenes/programs/lit.words").unwrap();
-    let mut native = Native::of(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
+    let mut native = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let pasted = native.ask(json!({ "do": "paste", "draw": 0, "language": "RegisterWords", "program": words }));
     let opened = native.open(pasted["text"].as_str().unwrap());
     assert!(opened["scene"].is_object(), "{opened}");

@@ -15,7 +15,7 @@ enum ninebit_status
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   /*
-   As asked.
+   The call did what was asked.
    */
   NINEBIT_STATUS_OK = 0,
   /*
@@ -48,7 +48,7 @@ typedef int32_t ninebit_status;
 #endif // __cplusplus
 
 /*
- A chip.
+ The chip whose rules hold.
  */
 enum ninebit_chip
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -86,7 +86,7 @@ typedef struct ninebit_method {
    */
   uint32_t method;
   /*
-   The word.
+   The word that is written to it.
    */
   uint32_t word;
 } ninebit_method;
@@ -96,11 +96,11 @@ typedef struct ninebit_method {
  */
 typedef struct ninebit_inputs {
   /*
-   Interpolated diffuse.
+   Interpolated diffuse colour.
    */
   int32_t primary[4];
   /*
-   Interpolated specular.
+   Interpolated specular colour.
    */
   int32_t secondary[4];
   /*

@@ -1,4 +1,4 @@
-//! `ninebit bench`.
+//! The command `ninebit bench`: times of rendering scenes.
 #![allow(clippy::float_arithmetic, reason = "times")]
 
 use std::fmt::Write;

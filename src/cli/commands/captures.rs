@@ -1,4 +1,4 @@
-//! `ninebit captures`.
+//! The command `ninebit captures`: frames of the chip compared with what the model draws.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

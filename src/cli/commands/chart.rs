@@ -1,4 +1,4 @@
-//! `ninebit chart`.
+//! The command `ninebit chart`: measures techniques and experiments, and writes their pages.
 
 use std::cell::Cell;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `ninebit check`.
+//! The command `ninebit check`: reads scenes and prints every finding, without drawing.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! `ninebit compare`.
+//! The command `ninebit compare`: a scene in integers against ideal arithmetic.
 
 use clap::{Args, ValueEnum};
 use ninebit_files::output::{Compression, Destination, encode_png};
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
     /// A picture of the errors with its scale, a PNG
-    #[arg(long, value_name = "DIFF.png", value_parser = picture::png())]
+    #[arg(long, value_name = "DIFF.png", value_parser = picture::output("png"))]
     heatmap: Option<Destination>,
     #[command(flatten)]
     format: FormatArguments,

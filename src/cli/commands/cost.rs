@@ -6,7 +6,7 @@ use serde::Serialize;
 /// The amounts that matter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Cost {
-    /// Draw calls.
+    /// Draws of the scene.
     pub(crate) draws: u64,
     /// Triangles of all draws, before any are culled.
     pub(crate) triangles: u64,

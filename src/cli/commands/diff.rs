@@ -1,4 +1,4 @@
-//! `ninebit diff`.
+//! The command `ninebit diff`: how two pictures differ, and traces of a pixel side by side.
 
 mod report;
 
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
     /// Draw the difference: amplified where the pictures differ, a dark grey A where they do not
-    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::output("png"))]
     output: Option<Destination>,
 }
 

@@ -53,16 +53,16 @@ pub(crate) const HELP: &str = "Exit status:
 /// Why a command stopped: everything that stderr is to say, and the exit status.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    /// Status.
+    /// What the process exits with.
     pub(crate) exit: Exit,
-    /// What happened.
+    /// What stderr says about it.
     pub(crate) report: Report,
 }
 
 /// What stderr says.
 #[derive(Debug)]
 pub(crate) enum Report {
-    /// Nothing.
+    /// The exit status says it all, or something was printed already.
     Silent,
     /// Finished text, ready to print.
     Text(String),
@@ -74,7 +74,7 @@ pub(crate) enum Report {
         code: Option<&'static str>,
         /// One line, or more where that was made of [shown] ones.
         message: String,
-        /// One line.
+        /// What to do, in one line.
         help: Option<String>,
     },
 }

@@ -1,4 +1,4 @@
-//! `ninebit explain`.
+//! The command `ninebit explain`: a scene's program as equations, with its cost.
 
 use clap::Args;
 use ninebit::engine;

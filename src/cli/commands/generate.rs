@@ -1,4 +1,4 @@
-//! `ninebit generate`.
+//! The command `ninebit generate`: images that techniques need, as PNG files.
 
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 pub(crate) struct HeightNoise {
     /// The height field, a grey PNG; `-` is stdout
-    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 128, value_parser = side())]
@@ -87,7 +87,7 @@ pub(crate) struct Occlusion {
     #[command(flatten)]
     field: HeightField,
     /// The occlusion, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "OPEN.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "OPEN.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Put it into the alpha of this normal map, which has the height field's size
     #[arg(long, value_name = "NORMAL.png")]
@@ -107,7 +107,7 @@ pub(crate) struct NormalisationCube {
 #[derive(Debug, Args)]
 pub(crate) struct Cube {
     /// The cube map, a DDS file; `-` is stdout
-    #[arg(short, long, value_name = "CUBE.dds", value_parser = picture::dds())]
+    #[arg(short, long, value_name = "CUBE.dds", value_parser = picture::output("dds"))]
     output: Destination,
     /// Columns and rows of a face: a power of two
     #[arg(long, default_value_t = 32, value_parser = cube_side)]
@@ -157,7 +157,7 @@ pub(crate) struct HalfComponent {
     /// The normal map, PNG or TGA
     normals: PathBuf,
     /// The half component, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "HALF.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "HALF.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Which component
     #[arg(long, value_enum)]
@@ -180,7 +180,7 @@ enum Axis {
 #[derive(Debug, Args)]
 pub(crate) struct PowerTable {
     /// The table, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "TABLE.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "TABLE.png", value_parser = picture::output("png"))]
     output: Destination,
     /// The power
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
@@ -204,7 +204,7 @@ pub(crate) struct NormalMap {
     #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], default_values = ["0", "0", "1"], value_parser = finite, allow_negative_numbers = true)]
     normal: Vec<f64>,
     /// The normal map, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::output("png"))]
     output: Destination,
 }
 
@@ -238,7 +238,7 @@ enum Channel {
 #[derive(Debug, Args)]
 pub(crate) struct HeightRocks {
     /// The height field, a grey PNG; `-` is stdout
-    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 256, value_parser = side())]
@@ -251,7 +251,7 @@ pub(crate) struct HeightRocks {
 #[derive(Debug, Args)]
 pub(crate) struct HemisphereNormals {
     /// The normal map, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 256, value_parser = side())]

@@ -1,4 +1,4 @@
-//! `ninebit inspect`.
+//! The command `ninebit inspect`: a page that holds the model and a scene.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// The scene file, `-` for standard input
     scene: PathBuf,
     /// The page; `-` is stdout
-    #[arg(short, long, value_name = "PAGE.html", value_parser = picture::page())]
+    #[arg(short, long, value_name = "PAGE.html", value_parser = picture::output("html"))]
     output: Destination,
     #[command(flatten)]
     policies: PolicyArguments,

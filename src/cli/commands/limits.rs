@@ -1,4 +1,4 @@
-//! `ninebit limits`.
+//! The command `ninebit limits`: the sizes above which inputs are refused.
 
 use std::fmt::Write;
 

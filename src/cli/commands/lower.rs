@@ -1,4 +1,4 @@
-//! `ninebit lower`.
+//! The command `ninebit lower`: a program as a function of another language.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `ninebit measure`.
+//! The command `ninebit measure`: how far pictures are from the ground truth.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     policies: PolicyArguments,
     /// A picture of the truth itself, rounded, a PNG; of one scene
-    #[arg(long, value_name = "TRUTH.png", value_parser = picture::png())]
+    #[arg(long, value_name = "TRUTH.png", value_parser = picture::output("png"))]
     picture: Option<Destination>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -1,6 +1,6 @@
-//! Outputs of one format.
+//! Options that name an output of one format.
 
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::path::Path;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -15,29 +15,14 @@ const FORMATS: [&str; 27] = [
     "jxl", "ppm", "pgm", "pnm", "pam", "dds", "ktx", "ktx2", "hdr", "exr", "qoi", "svg",
 ];
 
-/// Reads the name of a PNG to be written; `-` is stdout.
-pub(crate) fn png() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "png"))
-}
-
-/// Reads the name of a DDS file to be written; `-` is stdout.
-pub(crate) fn dds() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "dds"))
-}
-
-/// Reads the name of a file of stored words; `-` is stdout.
-pub(crate) fn words() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "raw"))
+/// Reads the name of a file of that format; `-` is stdout.
+pub(crate) fn output(format: &'static str) -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(move |name| from_name(&name, format))
 }
 
 /// Reads the name of a file of depths: a PNG, or stored words; `-` is stdout.
 pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| if is_png(Path::new(&name)) { of(name, "png") } else { of(name, "raw") })
-}
-
-/// Reads the name of a page to be written; `-` is stdout.
-pub(crate) fn page() -> impl TypedValueParser<Value = Destination> {
-    OsStringValueParser::new().try_map(|name| of(name, "html"))
+    OsStringValueParser::new().try_map(|name| from_name(&name, if is_png(Path::new(&name)) { "png" } else { "raw" }))
 }
 
 /// Refuses a picture on stdout, where the report goes.
@@ -55,15 +40,15 @@ pub(crate) fn is_png(path: &Path) -> bool {
 }
 
 /// A name may end as it likes, but not like another format.
-fn of(name: OsString, format: &'static str) -> Result<Destination, String> {
-    let path = Path::new(&name);
+fn from_name(name: &OsStr, format: &'static str) -> Result<Destination, String> {
+    let path = Path::new(name);
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if ending != format && FORMATS.contains(&ending.as_str()) {
         let other = shown::path(&path.with_extension(format));
         let format = format.to_ascii_uppercase();
         return Err(format!("this command writes {format}: write to `{other}` and convert that"));
     }
-    Ok(Destination::from(name.as_os_str()))
+    Ok(Destination::from(name))
 }
 
 #[cfg(test)]
@@ -73,15 +58,16 @@ mod tests {
     #[test]
     fn other_formats_are_refused() {
         for name in ["a.png", "a.PNG", "a", "-", "/dev/null", "tmp.Xy12", "a.jpg.part"] {
-            assert!(of(name.into(), "png").is_ok(), "{name}");
+            assert!(from_name(name.as_ref(), "png").is_ok(), "{name}");
         }
+        assert!(from_name("a.png".as_ref(), "raw").is_err());
         for name in ["a.jpg", "b/a.JPEG", "a.b.webp", "a.dds"] {
-            assert!(of(name.into(), "png").is_err(), "{name}");
-            assert!(of(name.into(), "raw").is_err(), "{name}");
+            assert!(from_name(name.as_ref(), "png").is_err(), "{name}");
+            assert!(from_name(name.as_ref(), "raw").is_err(), "{name}");
         }
-        assert!(of("a.dds".into(), "dds").is_ok() && of("a.png".into(), "raw").is_err() && is_png(Path::new("a.PNG")));
+        assert!(from_name("a.dds".as_ref(), "dds").is_ok() && is_png(Path::new("a.PNG")));
         assert_eq!(
-            of("b/a.png".into(), "dds"),
+            from_name("b/a.png".as_ref(), "dds"),
             Err("this command writes DDS: write to `b/a.dds` and convert that".to_owned())
         );
     }

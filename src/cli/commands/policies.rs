@@ -1,4 +1,4 @@
-//! `ninebit policies`.
+//! The command `ninebit policies`: rules with alternatives, and their values.
 
 use std::fmt::Write;
 

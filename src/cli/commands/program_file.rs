@@ -61,7 +61,7 @@ impl ProgramArguments {
         self.profile
     }
 
-    /// Its name.
+    /// The chip's name, as messages write it.
     pub(crate) fn profile_name(&self) -> &'static str {
         self.profile.name()
     }

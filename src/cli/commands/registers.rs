@@ -1,4 +1,4 @@
-//! `ninebit registers`.
+//! The command `ninebit registers`: register words of a program, written and read.
 
 use std::fmt::Write;
 use std::path::PathBuf;

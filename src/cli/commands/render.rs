@@ -1,4 +1,4 @@
-//! `ninebit render`.
+//! The command `ninebit render`: scenes to pictures.
 
 use std::time::Instant;
 
@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// The picture, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "FRAME.png", value_parser = picture::png())]
+    #[arg(short, long, value_name = "FRAME.png", value_parser = picture::output("png"))]
     output: Destination,
     /// Which render target to write [default: the scene's first]
     #[arg(long, value_name = "NAME")]
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE", value_parser = picture::depths())]
     depth: Option<Destination>,
     /// Its stored colours: words, little-endian, as many bytes as the format has, row by row from the top
-    #[arg(long, value_name = "FILE.raw", value_parser = picture::words())]
+    #[arg(long, value_name = "FILE.raw", value_parser = picture::output("raw"))]
     raw: Option<Destination>,
     /// What stdout says: nothing, or statistics as one JSON document
     #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "stats")]

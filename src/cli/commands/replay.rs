@@ -1,4 +1,4 @@
-//! `ninebit replay`.
+//! The command `ninebit replay`: scenes against their expectations.
 
 use std::ffi::OsStr;
 use std::fs::OpenOptions;

@@ -107,7 +107,7 @@ pub(crate) fn refused_beside(error: SceneError, note: &str, context: Context) ->
 pub(crate) struct Each<T> {
     /// What was made of those that are sound.
     pub(crate) made: Vec<T>,
-    /// The others.
+    /// Those that are not, with what is wrong.
     pub(crate) failed: Vec<Failed>,
     exit: Exit,
 }

@@ -15,9 +15,9 @@ pub(crate) enum ColorChoice {
     /// On a terminal, unless NO_COLOR is set or TERM is `dumb`.
     #[default]
     Auto,
-    /// Always.
+    /// Even into files and pipes.
     Always,
-    /// Never.
+    /// Not even on a terminal.
     Never,
 }
 
@@ -47,9 +47,9 @@ impl ColorChoice {
 /// What a line on stderr begins with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
-    /// Bold red.
+    /// `error`, in bold red.
     Error,
-    /// Bold yellow.
+    /// `warning`, in bold yellow.
     Warning,
 }
 

@@ -1,4 +1,4 @@
-//! `ninebit texture`.
+//! The command `ninebit texture`: a texture's levels and faces as pictures.
 
 mod layout;
 mod source;
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "output")]
     decode: bool,
     /// The picture, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "OUT.png", requires = "decode", value_parser = picture::png())]
+    #[arg(short, long, value_name = "OUT.png", requires = "decode", value_parser = picture::output("png"))]
     output: Option<Destination>,
     /// This level only [default: all, level 0 on the left]
     #[arg(long, value_name = "N", requires = "decode")]

@@ -1,4 +1,4 @@
-//! `ninebit trace`.
+//! The command `ninebit trace`: every step that made a pixel.
 
 use clap::Args;
 use ninebit::engine::{FRAGMENTS, TraceError, Tracer};

@@ -1,4 +1,4 @@
-//! `ninebit vectors`.
+//! The command `ninebit vectors`: conformance vectors exported, checked and compared.
 
 mod adopt;
 mod check;

@@ -14,9 +14,9 @@ use super::outcome::Pixel;
 pub enum Cause {
     /// Another value of one policy.
     Policy {
-        /// The rule.
+        /// Id of the policy's rule.
         rule: &'static str,
-        /// The value.
+        /// The policy's value that draws what is expected.
         value: &'static str,
         /// What it means.
         meaning: &'static str,

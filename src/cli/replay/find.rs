@@ -23,7 +23,7 @@ const FAMILY: &str = "family";
 pub struct Entry {
     /// What it is called in reports, and where its artifacts lie: the path without `.ron`, ordinary parts only, `/` between them.
     pub name: String,
-    /// The file.
+    /// Where it was found.
     pub path: PathBuf,
     /// What it is.
     pub kind: EntryKind,
@@ -32,7 +32,7 @@ pub struct Entry {
 /// What an [`Entry`] is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EntryKind {
-    /// A scene.
+    /// A scene file, drawn and compared.
     Scene,
     /// An expectation whose scene is not there.
     Orphan,
@@ -53,7 +53,7 @@ pub struct FindError {
     pub name: String,
     /// One of them.
     pub first: PathBuf,
-    /// The other.
+    /// Another one of that name.
     pub second: PathBuf,
 }
 
@@ -145,7 +145,7 @@ pub struct Filter {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{pattern}` is not a pattern: {reason}")]
 pub struct FilterError {
-    /// As given.
+    /// The pattern, as it was given.
     pub pattern: String,
     /// What is wrong with it.
     pub reason: String,

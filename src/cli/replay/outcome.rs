@@ -15,7 +15,7 @@ use ninebit_scene::diff::{self, CHANNELS, histogram_text, pixels, share};
 /// A scene that was replayed.
 #[derive(Clone, Debug)]
 pub struct Replayed {
-    /// [`Entry::name`](super::Entry::name).
+    /// What reports call it: [`Entry::name`](super::Entry::name).
     pub name: String,
     /// The scene's file; of an expectation without scene that one.
     pub path: PathBuf,
@@ -52,7 +52,7 @@ pub enum ProblemKind {
     Scene(ErrorKind),
     /// An output's, which was not written.
     Output,
-    /// This program's.
+    /// A fault of this program.
     Internal,
 }
 
@@ -61,7 +61,7 @@ pub enum ProblemKind {
 pub struct Problem {
     /// What a caller does about it.
     pub kind: ProblemKind,
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub code: &'static str,
     /// What is wrong, in one line.
     pub message: String,
@@ -126,7 +126,7 @@ pub struct Difference {
 /// Where an expected picture comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// A file.
+    /// The picture that the expectation names.
     File(PathBuf),
     /// It was drawn in another way, which yields the expected digest.
     Cause,
@@ -152,9 +152,9 @@ pub struct Known {
 /// A pixel of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
-    /// Column.
+    /// Column, 0 on the left.
     pub x: u32,
-    /// Row.
+    /// Row, 0 at the top.
     pub y: u32,
     /// R, G, B, A that are expected.
     pub expected: [u8; 4],
@@ -288,13 +288,13 @@ impl Replayed {
 /// How many scenes ended in which way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Scenes.
+    /// All scenes that were replayed.
     pub scenes: usize,
-    /// Of these: as expected.
+    /// Scenes that show what is expected.
     pub matching: usize,
     /// Expectations that were written.
     pub blessed: usize,
-    /// Not drawn.
+    /// Scenes that were not drawn, for want of files that are not handed out.
     pub skipped: usize,
     /// Not as expected.
     pub differing: usize,
@@ -303,7 +303,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Counts.
+    /// Counts how often each outcome occurs.
     pub fn from_replays(all: &[Replayed]) -> Self {
         let mut summary = Summary { scenes: all.len(), ..Summary::default() };
         for one in all {

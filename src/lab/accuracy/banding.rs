@@ -16,7 +16,7 @@ pub struct Banding {
     pub truth_levels: u64,
     /// The most pixels side by side in a row that have one byte.
     pub flat_run: u64,
-    /// The same of the truth, rounded.
+    /// The longest flat run of the truth, rounded to bytes.
     pub truth_flat_run: u64,
 }
 

@@ -17,7 +17,7 @@ pub struct HardwareCost {
 /// Counts of one frame. What tests or the lod may save is counted as if they saved nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameCost {
-    /// Draws.
+    /// Draws of the frame.
     pub passes: u64,
     /// The most general stages that a pass has.
     pub most_stages: u64,

@@ -23,7 +23,7 @@ use ninebit::rop::surface;
 use ninebit::state::{Named, Scene};
 use ninebit::trace::Part;
 use ninebit_report::compare::{CompareOptions, Comparison, Mode, Statistics, compare};
-use ninebit_scene::truth::{Truth, TruthFrame, evaluate, evaluate_with_normals};
+use ninebit_scene::truth::{Truth, TruthFrame, Visible};
 
 pub use banding::Banding;
 pub use cost::{FrameCost, HardwareCost};
@@ -75,9 +75,9 @@ pub struct Accuracy {
 /// A picture and its truth, pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pictures {
-    /// Columns.
+    /// Columns of each picture.
     pub width: u32,
-    /// Rows.
+    /// Rows of each picture.
     pub height: u32,
     /// What is shown: R, G, B, A.
     pub shown: Vec<[u8; 4]>,
@@ -87,7 +87,8 @@ pub struct Pictures {
 
 /// Measures a scene with its truth. `None` if no pixel with a truth is drawn.
 pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
-    let ideal = evaluate(plan, truth, TARGET);
+    let visible = Visible::new(plan, truth, TARGET);
+    let ideal = visible.evaluate(|_| None);
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let technique = compare(plan, &options);
     let shown = shown(plan);
@@ -99,9 +100,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     }
     let drawn = technique.errors.iter().filter(|errors| errors[0].is_finite()).count();
     let read = truth.shading_normal.map(|register| normals::read(scene, plan, truth, register, &measured));
-    let quantised = read
-        .as_ref()
-        .map(|read| evaluate_with_normals(plan, truth, TARGET, |at| Some(((*read.ideal.get(at)?)?, read.space))));
+    let quantised = read.as_ref().map(|read| visible.evaluate(|at| Some(((*read.ideal.get(at)?)?, read.space))));
     let mut errors = [Statistics::default(); 3];
     let (mut inputs, mut method) = (Statistics::default(), Statistics::default());
     for at in &measured {

@@ -25,7 +25,7 @@ pub(super) struct Normals {
     stored: Vec<Option<Vector>>,
     /// The same if nothing on the way to the register had been rounded: 2x - 1 of the ideal of the texels or colours.
     pub(super) ideal: Vec<Option<Vector>>,
-    /// Their space.
+    /// The space in which the vectors are given.
     pub(super) space: Space,
 }
 

@@ -11,9 +11,9 @@ use ninebit::combiner::mapping::map;
 use ninebit::state::{ExpandCentre, InputMapping, Policies};
 
 /// Two errors are alike if the larger is at most so many times the smaller.
-const ALIKE: f64 = 1.25;
+const MAX_ERROR_RATIO: f64 = 1.25;
 /// A speed is what is claimed if it is no further off than this, of 100.
-const NEAR: f64 = 10.0;
+const MAX_SPEED_DEVIATION: f64 = 10.0;
 
 /// A row of words.
 type Row = Vec<String>;
@@ -222,7 +222,7 @@ fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Decided {
     let after = ratio(bumps, ["bumps combiners", "bumps cube 8"])?;
     let ways = ["bumps cube 8", "bumps combiners", "bumps plain", "bumps table"];
     let [cube, stages, plain, table] = ways.map(|name| bumps.way(name).map_or("-".to_owned(), rms));
-    let verdict = verdict(after <= ALIKE && after < before);
+    let verdict = verdict(after <= MAX_ERROR_RATIO && after < before);
     let [before, after] = [before, after].map(number);
     let text = format!(
         "Cube map against stages: errors {before} times one another on the smooth ball, {after} times on bumps ({cube} and {stages}; neither \
@@ -236,7 +236,8 @@ fn speeds(smooth: &Light<'_>) -> Decided {
     let [Some(vertex), Some(stages), Some(sixteen)] = ways else { return None };
     let all = [vertex, stages, sixteen];
     let speed = all.map(|way| 100.0 * vertex.time.median / way.time.median);
-    let near = speed.iter().zip([100.0, 80.0, 50.0]).all(|(speed, claimed)| (speed - claimed).abs() <= NEAR);
+    let near =
+        speed.iter().zip([100.0, 80.0, 50.0]).all(|(speed, claimed)| (speed - claimed).abs() <= MAX_SPEED_DEVIATION);
     let (counts, speeds) = (all.map(told).join("; "), speed.map(number).join(" : "));
     let text = format!("Of a chip's speed counts decide nothing: {counts}. This program's: {speeds}");
     Some((if near { "confirmed here" } else { "refuted here" }, text))

@@ -25,7 +25,7 @@ pub enum Side {
 /// Pixels of a picture, row by row, R, G, B.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
-    /// Columns.
+    /// Pixels across.
     pub width: usize,
     /// Its rows one after another.
     pub pixels: Vec<[u8; 3]>,

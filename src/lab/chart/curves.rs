@@ -13,18 +13,16 @@ use ninebit::plan::Plan;
 use ninebit::state::{self, GeneralStage, Register};
 use ninebit_scene::SceneError;
 
-/// The scene, without what varies: a draw for each grid of [`CELLS`].
+/// The scene, without what varies: a draw for each grid, the smallest first.
 const SCENE: &str = include_str!("curve.ron");
-/// Columns and rows of the grids.
-const CELLS: [usize; 6] = [1, 4, 11, 32, 101, 320];
 
 /// A scene of some size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scene {
     /// Columns and rows of the frame.
     pub side: usize,
-    /// Columns and rows of the grid, of two triangles each.
-    pub cells: usize,
+    /// The grid: the number of its draw in the scene's file.
+    pub grid: usize,
     /// Draws of the same.
     pub draws: usize,
     /// General stages, 1 to 8: dot products and, each fourth, a choice.
@@ -33,7 +31,7 @@ pub struct Scene {
     pub unseen: usize,
 }
 
-const PLAIN: Scene = Scene { side: 256, cells: 1, draws: 1, stages: 1, unseen: 0 };
+const PLAIN: Scene = Scene { side: 256, grid: 0, draws: 1, stages: 1, unseen: 0 };
 
 /// A point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -55,7 +53,7 @@ pub struct Curve {
     pub counted: &'static str,
     /// Its name among others of its chart; may be empty.
     pub label: &'static str,
-    /// In ascending order.
+    /// The points, by ascending count.
     pub points: Vec<Point>,
 }
 
@@ -68,7 +66,7 @@ pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     let sizes = |all: &[usize], of: fn(usize) -> Scene| all.iter().map(|n| of(*n)).collect::<Vec<_>>();
     let pixels = sizes(&[32, 64, 128, 256, 512, 1024, 2048], |side| Scene { side, ..PLAIN });
     let draws = sizes(&[1, 4, 16, 64, 256, 1024], |draws| Scene { draws, side: 64, ..PLAIN });
-    let triangles = sizes(&[4, 11, 32, 101, 320], |cells| Scene { cells, side: 1024, ..PLAIN });
+    let triangles = sizes(&[1, 2, 3, 4, 5], |grid| Scene { grid, side: 1024, ..PLAIN });
     let stages = [1, 2, 3, 4, 5, 6, 7, 8];
     let seen = sizes(&stages, |stages| Scene { stages, ..PLAIN });
     let unseen = sizes(&stages, |stages| Scene { unseen: stages - 1, ..PLAIN });
@@ -112,8 +110,7 @@ impl Scene {
     /// The scene is not accepted: a fault of the file.
     pub fn plan(&self) -> Result<Plan, Box<SceneError>> {
         let mut scene = base()?.clone();
-        let draw = CELLS.iter().position(|cells| *cells == self.cells).unwrap_or(0);
-        let mut draw = scene.draws.swap_remove(draw);
+        let mut draw = scene.draws.swap_remove(self.grid);
         let (texture, color) = (Register::Texture0, Register::PrimaryColor);
         let mut first = dot_product(expanded(texture), expanded(color));
         first.alpha.inputs[0].register = texture;
@@ -197,7 +194,7 @@ mod tests {
                 let wanted = match curve.counted {
                     "pixels" => point.pixels,
                     "draws" => [1, 4][n],
-                    "triangles" => 2 * (scene.cells * scene.cells) as u64,
+                    "triangles" => [2 * 4 * 4, 2 * 11 * 11][n],
                     _ => n as u64 + 1,
                 };
                 assert_eq!(point.count, wanted, "{}", curve.chart);

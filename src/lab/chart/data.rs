@@ -99,7 +99,7 @@ impl Measured {
         fixed.into_iter().chain(columns).collect()
     }
 
-    /// Everything.
+    /// All measurements of the page as one JSON document.
     pub(super) fn document(&self, lights: &[Light<'_>]) -> Value {
         let technique = |technique: &Technique| {
             let mut value = accuracy_value(&technique.accuracy);

@@ -16,7 +16,7 @@ use ninebit_scene::SceneError;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluator {
-    /// Its name.
+    /// What tables call it.
     pub name: String,
     /// What is drawn.
     pub surface: String,

@@ -3,13 +3,13 @@
 /// A rectangle, in pixels from the top left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
-    /// Left edge.
+    /// Its left edge.
     pub x: f64,
-    /// Top edge.
+    /// Its upper edge.
     pub y: f64,
-    /// Width.
+    /// Pixels across.
     pub width: f64,
-    /// Height.
+    /// Pixels down.
     pub height: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct Named {
 /// Half the side of the square that a mark covers.
 const MARK: f64 = 6.0;
 /// Names further from their marks than this get a line.
-const LED: f64 = 14.0;
+const MIN_LEADER: f64 = 14.0;
 /// Distances of a name from its mark.
 const DISTANCES: [f64; 8] = [8.0, 13.0, 20.0, 30.0, 42.0, 56.0, 74.0, 95.0];
 /// Directions, best first: right, left, above, below, and between them.
@@ -160,7 +160,7 @@ pub fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
     let apart = ((end[0] - mark.at[0]).powi(2) + (end[1] - mark.at[1]).powi(2)).sqrt();
     let share = MARK / apart;
     let start = [0, 1].map(|n| mark.at[n] + (end[n] - mark.at[n]) * share);
-    (apart > LED).then_some((start, end))
+    (apart > MIN_LEADER).then_some((start, end))
 }
 
 /// The point of a rectangle nearest to another point.

@@ -3,7 +3,7 @@
 /// A file to be written, its path relative to the output folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// With `/` between folders.
+    /// Path below the page's folder, with `/` between folders.
     pub path: String,
     /// What it holds.
     pub bytes: Vec<u8>,

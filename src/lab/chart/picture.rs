@@ -24,7 +24,7 @@ pub struct Axis {
     pub label: String,
     /// Lower end; above 0 on a logarithmic axis.
     pub low: f64,
-    /// Upper end.
+    /// Upper end, above the lower one.
     pub high: f64,
     /// Equal ratios are equal lengths.
     pub logarithmic: bool,
@@ -116,9 +116,9 @@ pub const SHAPES: [MarkerShape; 5] =
 pub enum Join {
     /// Not at all.
     None,
-    /// By a line.
+    /// A line joins the points.
     Solid,
-    /// By a dashed line.
+    /// A dashed line joins the points.
     Dashed,
 }
 
@@ -138,27 +138,27 @@ pub struct Mark {
 pub struct Series {
     /// For the legend; empty keeps it out of there.
     pub label: String,
-    /// Colour, `#rrggbb`.
+    /// The colour of marks and lines, `#rrggbb`.
     pub color: &'static str,
     /// At each point; none where a line is alone.
     pub shape: Option<MarkerShape>,
-    /// Between points.
+    /// How lines run from point to point.
     pub join: Join,
-    /// The points.
+    /// The points, in the order in which lines join them.
     pub marks: Vec<Mark>,
 }
 
 /// Dark colours that stay apart for those who see few colours.
 pub const COLORS: [&str; 8] = ["#1f5fa8", "#c2401e", "#2f7d4f", "#7b3fa0", "#a67c00", "#00838f", "#ad1457", "#4d4d4d"];
 
-/// A chart.
+/// A chart before it is drawn: titles, axes, points and lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// Above the chart.
     pub title: String,
-    /// Horizontal axis.
+    /// The axis along the bottom.
     pub x: Axis,
-    /// Vertical axis.
+    /// The axis on the left.
     pub y: Axis,
     /// Points and lines; later ones stand on earlier ones.
     pub series: Vec<Series>,

@@ -14,7 +14,7 @@ use ninebit::engine::Isa;
 use ninebit::state::Named;
 use ninebit_files::output::OutputError;
 
-/// The prose.
+/// What the page says between its tables.
 const TEMPLATE: &str = include_str!("page.md");
 /// The folder of the files, beside the page; also the name of the page.
 pub(super) const FOLDER: &str = "speed-accuracy";

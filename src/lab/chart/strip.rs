@@ -18,7 +18,7 @@ const INK: &str = "#222222";
 const PALE: &str = "#767676";
 /// An error of so many steps has the full colour.
 const FULL: f64 = 64.0;
-const SAYS: &str = "Below each picture its error: red is too bright, blue too dark; full colour from 64 steps on, half of it at 16, a quarter at 4.";
+const LEGEND: &str = "Below each picture its error: red is too bright, blue too dark; full colour from 64 steps on, half of it at 16, a quarter at 4.";
 
 /// The truth, then the ways to it from the most exact on.
 pub fn of_light(light: &Light<'_>) -> Canvas {
@@ -26,10 +26,10 @@ pub fn of_light(light: &Light<'_>) -> Canvas {
     let across = (ways.len() + 1).min(ACROSS);
     let rows = (ways.len() + 1).div_ceil(ACROSS);
     let height = CAPTION + 2.0 * TILE + GAP + 10.0;
-    let width = (2.0 * GAP + across as f64 * (TILE + GAP)).max(text_width(SAYS, 11.0) + 32.0);
+    let width = (2.0 * GAP + across as f64 * (TILE + GAP)).max(text_width(LEGEND, 11.0) + 32.0);
     let mut canvas = Canvas::new(width, 66.0 + rows as f64 * height);
     canvas.text([16.0, 26.0], Side::Left, 15, INK, &light.title);
-    canvas.text([16.0, 46.0], Side::Left, 11, PALE, SAYS);
+    canvas.text([16.0, 46.0], Side::Left, 11, PALE, LEGEND);
     let place = |n: usize| [16.0 + (n % ACROSS) as f64 * (TILE + GAP), 62.0 + (n / ACROSS) as f64 * height];
     if let Some(first) = ways.first() {
         let [x, y] = place(0);

@@ -29,7 +29,7 @@ pub struct Surface {
     pub alpha: bool,
     /// The colour is added to what is there.
     pub blend: bool,
-    /// Fog.
+    /// The colour is blended with the fog's.
     pub fog: bool,
     /// State that nothing sees: a stage and a unit whose results are not read.
     pub unused: bool,

@@ -23,7 +23,7 @@ pub struct Entry {
     pub technique: String,
     /// The number that the file's name ends in.
     pub parameter: Option<u32>,
-    /// Its file.
+    /// The scene's file.
     pub path: PathBuf,
 }
 
@@ -38,7 +38,7 @@ impl Entry {
 /// What was measured of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Technique {
-    /// The scene.
+    /// Where the scene stands, and what it is called.
     pub entry: Entry,
     /// What its picture ought to show, without what tells how the technique does it. Scenes of which this is equal are ways to the same
     /// light.

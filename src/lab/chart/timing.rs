@@ -12,7 +12,7 @@ use ninebit::plan::Plan;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
-    /// The median.
+    /// Half of the times are below.
     pub median: f64,
     /// A quarter of the times are below.
     pub lower: f64,
@@ -21,7 +21,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of some times; zeros of none.
+    /// The median and the quartiles of some times; zeros if there are none.
     pub fn from_times(times: &mut [f64]) -> Spread {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| {
@@ -35,16 +35,16 @@ impl Spread {
 /// How long to go on measuring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// At least so many times.
+    /// The least number of times that a frame is drawn.
     pub times: usize,
     /// And so long, a hundred times as often at most.
     pub duration: Duration,
 }
 
 impl Effort {
-    /// For figures that are kept.
+    /// What figures that are kept are measured with.
     pub const FULL: Effort = Effort { times: 9, duration: Duration::from_millis(100) };
-    /// To see that everything works.
+    /// The least that shows whether everything works.
     pub const QUICK: Effort = Effort { times: 1, duration: Duration::ZERO };
 
     /// Times `work` again and again, once before that unmeasured; nanoseconds for each of `pixels`. Work runs on one thread, whichever:

@@ -5,13 +5,13 @@ use super::*;
 /// Toward the middle of the highlight.
 const AXIS: [f64; 3] = [0.3, 0.1, 1.0];
 /// The directions end before the face does: what happens at its edges is another matter.
-const REACH: f64 = 0.8;
+const HALF_WIDTH: f64 = 0.8;
 
 pub(super) fn experiment() -> Experiment {
     let method = |exponent: i32| {
         Method::new(format!("exponent {exponent}"), [256.0, 4.0], move |side| {
             largest_error(picture(side as usize, exponent), 0, |at| {
-                highlight([REACH * (2.0 * at - 1.0), 0.2, 1.0], exponent)
+                highlight([HALF_WIDTH * (2.0 * at - 1.0), 0.2, 1.0], exponent)
             })
         })
     };
@@ -39,7 +39,7 @@ fn picture(side: usize, exponent: i32) -> Pixels {
     if let TextureImage::Texels(texels) = &mut cube.image {
         texels.height = side as u32;
     }
-    let ends = [[-REACH, 0.2, 1.0], [REACH, 0.2, 1.0]];
+    let ends = [[-HALF_WIDTH, 0.2, 1.0], [HALF_WIDTH, 0.2, 1.0]];
     let row = row(WIDTH, ends, TextureUnit::new(0), Combiners::showing(FinalRegister::Texture0));
     drawn(Profile::Nv2a, WIDTH, vec![cube], vec![row])
 }

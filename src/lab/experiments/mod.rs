@@ -32,7 +32,7 @@ pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync
 
 /// One way of doing it.
 pub struct Method {
-    /// For the legend and the table.
+    /// What legend and table call it.
     pub name: String,
     /// How far the picture is off.
     pub measure: Measure,
@@ -63,7 +63,7 @@ impl std::fmt::Debug for Method {
 pub enum Scale {
     /// Real numbers; a threshold is sought to this much.
     Real(f64),
-    /// Whole numbers.
+    /// Integers, one after the other.
     Whole,
     /// Powers of two.
     Doubling,

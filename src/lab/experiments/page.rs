@@ -7,7 +7,7 @@ use crate::chart::page::{File, comma_separated, fill, number, plain, table};
 use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
 use ninebit_scene::SceneError;
 
-/// The prose.
+/// What the section says between its tables.
 const TEMPLATE: &str = include_str!("page.md");
 /// The folder of the files, beside the page.
 const FOLDER: &str = "stability";
@@ -15,7 +15,7 @@ const FOLDER: &str = "stability";
 /// What an experiment yielded.
 #[derive(Debug)]
 pub struct Measured {
-    /// The experiment.
+    /// What was moved, and the methods that were compared.
     pub experiment: Experiment,
     /// The errors of each method at the values that are shown.
     pub curves: Vec<Vec<f64>>,

@@ -21,7 +21,7 @@ pub struct Generic {
 /// The files of the generic C.
 #[derive(Clone, Debug)]
 pub struct Sources {
-    /// `ninebit_combiners.h`.
+    /// `ninebit_combiners.h`, which declares the functions.
     pub header: String,
     /// `ninebit_combiners.c`, which includes it.
     pub source: String,

@@ -65,7 +65,7 @@ pub(super) struct Case {
 
 /// A register as stages write it.
 const REGISTER: Range = (-256, 255);
-/// A byte.
+/// The range of a byte.
 const BYTE: Range = (0, 255);
 /// An input of the final combiner: SPARE0 + SECONDARY can be as much (FIN-3).
 const FINAL: Range = (0, 510);

@@ -195,7 +195,7 @@ impl Printer<'_> {
         out + "    default: return 0;\n    }\n}\n\n"
     }
 
-    /// All functions.
+    /// All functions, in an order in which each is declared before it is called.
     fn body(&self, inputs: Mapped) -> String {
         let mut out = String::new();
         for piece in pieces(self.generic.policies) {

@@ -1,4 +1,4 @@
-//! C99.
+//! C99: how operations are written, and the helpers that they need.
 
 use super::{Call, Named, ROUNDING, Syntax, Text, comment, needs};
 use crate::code::{Kind, Line};

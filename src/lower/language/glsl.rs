@@ -1,4 +1,4 @@
-//! GLSL 3.30 and GLSL ES 3.00.
+//! GLSL 3.30 and GLSL ES 3.00: how operations are written, and the helpers that they need.
 
 use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
 use crate::code::{Kind, Line};

@@ -23,7 +23,7 @@ named! {
         C99 = "c99",
         /// GLSL 3.30, and GLSL ES 3.00.
         Glsl = "glsl",
-        /// WGSL.
+        /// WGSL, the shading language of WebGPU.
         Wgsl = "wgsl",
         /// Verilog-2001: combinational modules.
         Verilog = "verilog",
@@ -37,7 +37,7 @@ pub struct Named<'f> {
     pub name: String,
     /// What it is, in one line; anything that would end a comment has been taken out of it.
     pub about: String,
-    /// The function.
+    /// What it computes.
     pub function: &'f Function,
 }
 
@@ -94,7 +94,7 @@ pub(crate) trait Syntax {
     }
     /// How an input is read.
     fn input(&self, input: Input) -> String;
-    /// A constant.
+    /// A constant, written as a value of that kind.
     fn constant(&self, value: i64, kind: Kind) -> String {
         match kind {
             Kind::Number => value.to_string(),

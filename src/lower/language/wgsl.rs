@@ -1,4 +1,4 @@
-//! WGSL.
+//! WGSL: how operations are written, and the helpers that they need.
 
 use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
 use crate::code::Line;

@@ -24,7 +24,7 @@ use traced::Traced;
 /// Holds one fragment against the trace; whether it was one to be held.
 fn check(scene: &Scene, fragment: &DrawTrace, function: &Function, what: &str) -> bool {
     let draw = &scene.draws[fragment.draw];
-    let traced = Traced::of(fragment);
+    let traced = Traced::from_fragment(fragment);
     let said = |name: &str| traced.said(name);
     let dropped = traced.dropped();
     if !fragment.stored && !dropped {

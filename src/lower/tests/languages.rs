@@ -482,7 +482,7 @@ fn rows_given(scene: &Scene, plan: &Plan, functions: &[Function], surface: &Surf
         assert_eq!(traced.word, surface.words[(y * surface.width + x) as usize], "{x}, {y}");
         assert_eq!(traced.left_out, 0);
         for fragment in &traced.draws {
-            let of = Traced::of(fragment);
+            let of = Traced::from_fragment(fragment);
             assert!(fragment.stored || of.dropped(), "{x}, {y}: another test dropped it");
             let mut row = [0; COLUMNS];
             for (input, column) in &columns[fragment.draw] {

@@ -57,7 +57,7 @@ impl Site {
         Site(1 << (52 + n))
     }
 
-    /// The same place some channels on.
+    /// The site of the same step, `channel` channels further on.
     #[inline(always)]
     pub const fn channel(self, channel: usize) -> Site {
         Site(self.0 << channel)

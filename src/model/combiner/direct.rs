@@ -52,7 +52,7 @@ impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
 /// A sum, and the rule that its rounding counts as.
 #[derive(Clone, Copy, Debug)]
 pub struct Ruled<S> {
-    /// The sum.
+    /// The sum, not yet rounded.
     pub sum: S,
     rule: Rule,
 }

@@ -12,7 +12,7 @@ use crate::trace::{Observer, Operand, Rule, Step, report};
 /// The final combiner with what the plan found out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedFinal {
-    /// The state.
+    /// The registers as the scene has them.
     pub state: FinalCombiner,
     /// Channels R, G, B (bits 1, 2, 4) and alpha (8) that the raster operations need.
     pub live: u8,
@@ -37,7 +37,7 @@ impl PlannedFinal {
 }
 
 /// SPARE0 + SECONDARY above 1.0 enters the lerp and D: the sum can pass 2.0 (FIN-5).
-const TWO: i32 = 510;
+const MAX_SUM: i32 = 510;
 
 const BLOCK: &str = "final combiner";
 
@@ -301,7 +301,7 @@ fn report_rgb<L: Lane, O: Observer>(
         LerpRounding::Once => "lerp_add",
         LerpRounding::Twice => "lerp_add_rounded_twice",
     };
-    let wrong = profile == Profile::Nv10 && raw.observe().0 > i64::from(TWO);
+    let wrong = profile == Profile::Nv10 && raw.observe().0 > i64::from(MAX_SUM);
     let note =
         wrong.then(|| "above 2.0: the real part gives a wrong value that nobody has recorded (FIN-5)".to_string());
     let name = format!("final.rgb.{suffix}");

@@ -252,7 +252,7 @@ pub fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Regis
 /// A portion with what the plan found out: which channels of which output anybody reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedPortion {
-    /// The state.
+    /// The registers as the scene has them.
     pub portion: Portion,
     /// Channels of AB, CD and the sum or mux that are needed: bits R, G, B in an RGB portion, bit A (8) in an alpha portion.
     pub live: [u8; 3],
@@ -307,9 +307,9 @@ pub const BLUE: u8 = 4;
 pub struct PlannedStage {
     /// The stage's number in the scene's state.
     pub index: usize,
-    /// RGB portion.
+    /// What computes red, green and blue.
     pub rgb: PlannedPortion,
-    /// Alpha portion.
+    /// What computes alpha.
     pub alpha: PlannedPortion,
     /// Constants of the stage, R, G, B, A bytes.
     pub constants: [[u8; 4]; 2],

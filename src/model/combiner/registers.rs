@@ -9,7 +9,7 @@ pub const REGISTERS: usize = 12;
 /// The registers of one pixel; index by [`Register`], then by channel R, G, B, A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registers<L> {
-    /// Values.
+    /// The values, by [register](Register) and channel.
     pub values: [[L; 4]; REGISTERS],
 }
 
@@ -32,7 +32,7 @@ impl<L: Lane> Registers<L> {
 }
 
 impl<V: Copy> Registers<V> {
-    /// The same everywhere.
+    /// A set that holds the value in every channel of every register.
     #[inline]
     pub fn from_value(value: V) -> Self {
         Registers { values: [[value; 4]; REGISTERS] }

@@ -10,7 +10,7 @@ use crate::trace::{Observer, Step, Work};
 pub struct DrawCounts {
     /// Covered pixels, once for each triangle that covers them.
     pub fragments: u64,
-    /// Those that passed the tests.
+    /// Fragments that passed the tests.
     pub stored: u64,
     /// By kind, in the order of `Work::ALL`.
     pub work: [u64; Work::ALL.len()],

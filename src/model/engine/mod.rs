@@ -66,8 +66,8 @@ impl Default for RenderOptions {
 pub struct Statistics {
     /// Covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
-    /// Of the fast engine: pixels of which the definition computed something, by the reason, and none of any other. A pixel counts once for
-    /// each thing of its that was computed so.
+    /// The pixels of which the definition computed something for the fast engine, by the reason; reasons without pixels are left out. A pixel
+    /// counts once for each such thing.
     pub defined_pixels: Vec<(Reason, u64)>,
 }
 
@@ -81,7 +81,7 @@ const SMALL: usize = 16_384;
 const CACHED: usize = 32_768;
 
 /// Up to so many triangles a draw, setting each up for every band costs nothing to speak of.
-const FEW: usize = 16;
+const MAX_UNSORTED_TRIANGLES: usize = 16;
 
 /// Renders every draw.
 pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
@@ -189,7 +189,7 @@ impl<'a> Renderer<'a> {
         let rows = match (&self.rows, self.team.count()) {
             (None, _) => BAND,
             // What is set up for a triangle is set up for each band that it meets.
-            (Some(_), 1) if draws.len() == 1 || triangles > FEW * draws.len() => height,
+            (Some(_), 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
             (Some(_), 1) => CACHED / width,
             // More would share the work more evenly; but triangles on a border are set up on both sides of it.
             (Some(_), threads) => height.div_ceil(3 * threads),

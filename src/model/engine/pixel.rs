@@ -9,7 +9,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::depth::{self, DepthPlane};
 use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
-use crate::raster::interpolate::{self, Sample, Settled};
+use crate::raster::interpolate::{self, Floored, Sample};
 use crate::raster::setup::{Triangle, centres};
 use crate::rop::{blend, stencil, surface};
 use crate::state::{
@@ -17,7 +17,7 @@ use crate::state::{
     stencil_of,
 };
 use crate::texture::chain::Chain;
-use crate::texture::place::{self, Coordinates, Interpolated};
+use crate::texture::coordinates::{self, Coordinates, Interpolated};
 use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::stage::ShaderSetup;
 use crate::texture::unit;
@@ -28,7 +28,7 @@ use std::cell::OnceCell;
 #[derive(Debug)]
 pub struct TriangleContext<'a> {
     pub(super) plan: &'a Plan,
-    /// The draw.
+    /// The draw that the triangle belongs to.
     pub draw: &'a PlannedDraw,
     /// Its number in the draw.
     pub number: usize,
@@ -52,7 +52,7 @@ pub struct TriangleContext<'a> {
 pub struct Fragment {
     /// Column and row.
     pub pixel: (i64, i64),
-    /// Edge functions.
+    /// The edge functions E_k at the pixel (RAS-2).
     pub e: [i64; 3],
     /// What the surface holds.
     pub stored: u32,
@@ -65,7 +65,7 @@ pub struct Fragment {
 pub struct DepthStencil {
     /// The depth, as the lane keeps it.
     pub depth: i64,
-    /// The stencil.
+    /// The stencil, 0 to 255.
     pub stencil: u8,
 }
 
@@ -183,7 +183,7 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Its vertices.
+    /// The triangle's vertices.
     #[inline(always)]
     pub fn vertices(&self) -> TriangleVertices<'a> {
         self.draw.assembly.triangle(self.number)
@@ -199,7 +199,7 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn sampled_coordinates(&self, unit: usize) -> [[f32; 4]; 3] {
         let unit = &self.draw.units[unit];
-        place::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
+        coordinates::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
     }
 
     /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.
@@ -275,7 +275,7 @@ impl<'a> TriangleContext<'a> {
             }
             weights
         } else {
-            [Settled { value: 0, lowered: 0 }; 2]
+            [Floored { value: 0, lowered: 0 }; 2]
         };
         let lane = |n: usize| {
             let k = 2 * n;
@@ -403,7 +403,7 @@ impl<'a> TriangleContext<'a> {
         }
         let units = if self.draw.shader.is_none() { &self.draw.units[..] } else { &[] };
         for planned in units {
-            let Some(place) = self.place(planned, sample, pixel) else { continue };
+            let Some(place) = self.sample_coordinates(planned, sample, pixel) else { continue };
             let image = &textures[planned.state.texture];
             let (value, dropped) = unit::sample::<L, O>(planned, image, &place, observer);
             if dropped {
@@ -437,7 +437,7 @@ impl<'a> TriangleContext<'a> {
 
     /// Where a unit samples at its own coordinates.
     #[inline]
-    pub(super) fn place<'s>(
+    pub(super) fn sample_coordinates<'s>(
         &'s self,
         unit: &'s PlannedUnit,
         sample: &'s Sample<'s>,

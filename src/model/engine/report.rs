@@ -5,7 +5,7 @@ use crate::combiner::registers::{self, channel_name};
 use crate::number::{Lane, convert, light};
 use crate::plan::PlannedDraw;
 use crate::raster::fog::{FogFactor, FogPlane, FogStep};
-use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::interpolate::{Floored, Sample};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
 use crate::state::{
@@ -61,26 +61,26 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
 /// The 8-bit weights of the colours.
 pub(super) fn weights<O: Observer>(
     sample: &Sample<'_>,
-    weights: [Settled; 2],
+    weights: [Floored; 2],
     barycentrics: [f64; 3],
     observer: &mut O,
 ) {
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
     let ideal = barycentrics.map(|b| Some(256.0 * b));
-    for (k, settled) in [(0, weights[0]), (2, weights[1])] {
+    for (k, floored) in [(0, weights[0]), (2, weights[1])] {
         let inputs = vec![
             plain(format!("P{k}"), sample.triangle.p[k]),
             plain(format!("E{k}"), sample.e[k]),
             plain("D", sample.d),
-            plain("lowered", settled.lowered),
+            plain("lowered", floored.lowered),
         ];
-        let (rule, note) = if settled.lowered != 0 {
+        let (rule, note) = if floored.lowered != 0 {
             ("INT-3", Some(format!("exact tie; weight {} dominates: one step lower", sample.dominant())))
         } else {
             ("INT-2", None)
         };
         observer.step(
-            Step::given(INTERPOLATION, rule, format!("W{k}"), settled.value)
+            Step::given(INTERPOLATION, rule, format!("W{k}"), floored.value)
                 .per(256)
                 .by("floor_weight", inputs)
                 .ideal(ideal[k])
@@ -103,7 +103,7 @@ pub(super) fn color<L: Lane, O: Observer>(
     channel: usize,
     (sources, output): ([VertexColor; 3], Option<&str>),
     corners: [L; 3],
-    weights: &[Settled; 2],
+    weights: &[Floored; 2],
     value: L,
     observer: &mut O,
 ) {
@@ -326,7 +326,7 @@ impl TriangleContext<'_> {
         if format.is_float() { 1 } else { i64::from(format.largest()) }
     }
 
-    /// DEP-2.
+    /// DEP-2: the depth test, as a step.
     pub(super) fn report_depth_test<O: Observer>(
         &self,
         test: &DepthTest,

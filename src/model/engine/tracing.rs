@@ -18,9 +18,9 @@ use crate::trace::{Observer, Recorder, Silent, Step};
 pub struct PixelTrace {
     /// Name of the target.
     pub target: String,
-    /// Column.
+    /// Column, 0 on the left.
     pub x: u32,
-    /// Row.
+    /// Row, 0 at the top.
     pub y: u32,
     /// R, G, B, A as a picture shows them, after the clear.
     pub cleared: [u8; 4],
@@ -39,7 +39,7 @@ pub struct PixelTrace {
 pub struct DrawTrace {
     /// Number of the draw.
     pub draw: usize,
-    /// Its name.
+    /// The draw's name in the scene.
     pub name: String,
     /// Number of the triangle in the draw.
     pub triangle: usize,
@@ -56,7 +56,7 @@ pub struct DrawTrace {
 }
 
 impl DrawTrace {
-    /// What a block of the steps was written as: a portion of a general stage, of a program in the language of an API.
+    /// The line of an API's program that a block of the steps comes from, if the block is a portion of a general stage.
     pub fn origin(&self, block: &str) -> Option<&str> {
         let (stage, portion) = block.strip_prefix("general stage ")?.split_once(' ')?;
         let origin = self.program_origin.get(stage.parse::<usize>().ok()?)?;
@@ -73,11 +73,11 @@ pub enum TraceError {
         x: u32,
         /// Row asked for.
         y: u32,
-        /// Target.
+        /// Name of the target.
         target: String,
-        /// Its columns.
+        /// Columns that the target has.
         width: u32,
-        /// Its rows.
+        /// Rows that the target has.
         height: u32,
     },
     /// No such draw.

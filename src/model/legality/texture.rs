@@ -1,28 +1,25 @@
 //! What the chips take of textures: formats, sides, layers, levels and border texels, by kind.
 
-use std::ops::Range;
-
 use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
+use crate::place::Span;
 use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
 
 /// Checks textures for a chip. Each check gives the finding, if there is one, at the place that it is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureChecks {
-    /// The chip.
+    /// The chip that is asked.
     pub profile: Profile,
     /// Texels along a side that [`Limits`](crate::limits::Limits) allow, whatever the chip does.
     pub largest_side: u32,
 }
 
 /// The bytes of a text that are to blame, if it has them.
-type Place = Option<Range<usize>>;
-
 fn cannot(what: &str, [width, height]: [u32; 2]) -> String {
     format!("{what} cannot be {width} x {height}")
 }
 
 /// The finding that a side has no texels.
-pub fn no_texels(what: &str, sides: [u32; 2], place: Place) -> Diagnostic {
+pub fn no_texels(what: &str, sides: [u32; 2], place: Option<Span>) -> Diagnostic {
     Diagnostic::error("NB0219", place, cannot(what, sides))
         .label("no texels")
         .rule("TEX-7")
@@ -31,7 +28,7 @@ pub fn no_texels(what: &str, sides: [u32; 2], place: Place) -> Diagnostic {
 
 impl TextureChecks {
     /// The format exists on the chip.
-    pub fn format(self, format: TextureFormat, place: Place) -> Option<Diagnostic> {
+    pub fn format(self, format: TextureFormat, place: Option<Span>) -> Option<Diagnostic> {
         let what = format!("texture format {}", format.name());
         needs_nv2a(self.profile, format.is_nv2a_only(), "NB0320", place, &what, "TEX-1")
     }
@@ -42,7 +39,7 @@ impl TextureChecks {
         kind: TextureKind,
         format: TextureFormat,
         [width, height]: [u32; 2],
-        place: Place,
+        place: Option<Span>,
     ) -> Option<Diagnostic> {
         let what = match kind {
             TextureKind::TwoDimensional => "a texture",
@@ -77,7 +74,7 @@ impl TextureChecks {
     }
 
     /// The finding that a side is too long.
-    pub fn too_large(self, what: &str, [width, height]: [u32; 2], most: u32, place: Place) -> Diagnostic {
+    pub fn too_large(self, what: &str, [width, height]: [u32; 2], most: u32, place: Option<Span>) -> Diagnostic {
         let on = if self.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
         Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
             .label(format!("a side has at most {most} texels on {:?}", self.profile))
@@ -86,7 +83,7 @@ impl TextureChecks {
     }
 
     /// Linear layouts have neither blocks nor indices; nv10 has four of them, of even width.
-    fn rectangle(self, format: TextureFormat, [width, height]: [u32; 2], place: Place) -> Option<Diagnostic> {
+    fn rectangle(self, format: TextureFormat, [width, height]: [u32; 2], place: Option<Span>) -> Option<Diagnostic> {
         let (message, help) = if !format.is_linear(Profile::Nv2a) {
             let message = format!("a rectangle texture cannot be {}", format.name());
             (message, "use another format, or another kind")
@@ -103,7 +100,7 @@ impl TextureChecks {
     }
 
     /// Layers of a volume, which nv2a has.
-    pub fn layers(self, kind: TextureKind, layers: u32, place: Place) -> Option<Diagnostic> {
+    pub fn layers(self, kind: TextureKind, layers: u32, place: Option<Span>) -> Option<Diagnostic> {
         if kind != TextureKind::ThreeDimensional {
             return None;
         }
@@ -120,7 +117,7 @@ impl TextureChecks {
     }
 
     /// A rectangle has one level, and a volume.
-    pub fn levels(self, kind: TextureKind, levels: u32, place: Place) -> Option<Diagnostic> {
+    pub fn levels(self, kind: TextureKind, levels: u32, place: Option<Span>) -> Option<Diagnostic> {
         let (what, rule, help) = match kind {
             TextureKind::ThreeDimensional => {
                 ("volume", "VOL-1", "write `levels: 1`: which of them a volume reads is not known")
@@ -135,12 +132,12 @@ impl TextureChecks {
     }
 
     /// A border colour is known of nv2a.
-    pub fn address_mode(self, mode: AddressMode, place: Place) -> Option<Diagnostic> {
+    pub fn address_mode(self, mode: AddressMode, place: Option<Span>) -> Option<Diagnostic> {
         needs_nv2a(self.profile, mode == AddressMode::ClampToBorder, "NB0317", place, "a border colour", "TEX-7")
     }
 
     /// Border texels: of nv2a, two dimensions, no blocks.
-    pub fn border(self, kind: TextureKind, format: TextureFormat, place: Place) -> Option<Diagnostic> {
+    pub fn border(self, kind: TextureKind, format: TextureFormat, place: Option<Span>) -> Option<Diagnostic> {
         if self.profile == Profile::Nv10 {
             return Some(only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
         }

@@ -4,7 +4,7 @@ use super::{Blend, Factor, Halves, Lane, Quarters, Register, Sum};
 use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
-/// How many there are.
+/// Numbers side by side in [`Lanes16`].
 pub const LANES: usize = 16;
 
 /// A value of each of sixteen evaluations that take the same decisions: [`decision`](Lane::decision) and what observers see is that of the first.
@@ -12,7 +12,7 @@ pub const LANES: usize = 16;
 pub struct Lanes16<T>(pub [T; LANES]);
 
 impl<T: Copy> Lanes16<T> {
-    /// The same value everywhere.
+    /// Sixteen lanes that hold the same value.
     #[inline(always)]
     pub fn all(value: T) -> Lanes16<T> {
         Lanes16([value; LANES])

@@ -9,7 +9,7 @@ pub const NAN: u32 = 0x7fff_fc00;
 pub const INFINITY: u32 = 0x7f80_0000;
 
 /// The word of the largest finite number.
-pub const LARGEST: u32 = 0x7f7f_fc00;
+pub const LARGEST_FINITE: u32 = 0x7f7f_fc00;
 
 /// Bits of a word that stay 0.
 const LOW: u32 = 0x3ff;
@@ -75,7 +75,7 @@ fn finite(sign: u32, magnitude: u32, exponent: i32) -> u32 {
     let mantissa = if up >= 0 { magnitude << up } else { magnitude >> -up };
     match exponent - up {
         ..=0 => 0,
-        255.. => sign | LARGEST,
+        255.. => sign | LARGEST_FINITE,
         field => sign | (field as u32) << 23 | (mantissa & ((1 << FRACTION_BITS) - 1)) << 10,
     }
 }
@@ -84,7 +84,7 @@ fn exponent(word: u32) -> i32 {
     (word >> 23 & 255) as i32
 }
 
-/// 14 bits.
+/// The 14 bits of a mantissa, the leading one included.
 fn mantissa(word: u32) -> u32 {
     word >> 10 & ((1 << FRACTION_BITS) - 1) | 1 << FRACTION_BITS
 }
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(word(0xbb13_bb3c), 0xbb13_bc00);
         assert_eq!([word(1), word(0x807f_ffff), word(0x7f80_0000), word(0xff80_0000)], [0, 0, INFINITY, 0xff80_0000]);
         assert_eq!([word(0x7f80_0001), word(0xffff_ffff)], [NAN; 2]);
-        assert_eq!(word(0x7f7f_ffff), LARGEST);
+        assert_eq!(word(0x7f7f_ffff), LARGEST_FINITE);
     }
 
     /// No word is further than one unit of its last place from its number, and words are their own.
@@ -141,11 +141,11 @@ mod tests {
     #[test]
     fn ends_of_the_range() {
         let one = 0x3f80_0000;
-        assert_eq!(product(LARGEST, LARGEST | 1 << 31), LARGEST | 1 << 31);
+        assert_eq!(product(LARGEST_FINITE, LARGEST_FINITE | 1 << 31), LARGEST_FINITE | 1 << 31);
         assert_eq!(product(0x0080_0000, 0x3f00_0000), 0);
         assert_eq!(product(0x0080_0000, one), 0x0080_0000);
         assert_eq!((product(0, INFINITY), product(0, NAN), product(one | 1 << 31, INFINITY)), (0, NAN, INFINITY));
-        assert_eq!(sum([LARGEST, LARGEST, 0]), LARGEST);
+        assert_eq!(sum([LARGEST_FINITE, LARGEST_FINITE, 0]), LARGEST_FINITE);
         assert_eq!(sum([0xff80_0000, one, 0]), INFINITY);
         assert_eq!((sum([INFINITY, NAN, 0]), sum([0, 0x8000_0000, 0])), (NAN, 0));
         assert_eq!(sum([0x0080_0400, 0x8080_0000, 0]), 0);

@@ -82,7 +82,7 @@ impl Word for u32 {}
 pub trait Blend: Copy + Add<Output = Self> {
     /// A weight, 0 to 256.
     type Weight: Copy + Sub<Output = Self::Weight>;
-    /// 256.
+    /// The weight of 1.0: 256.
     const WHOLE: Self::Weight;
     /// Product with a weight; nothing is rounded.
     fn times(self, weight: Self::Weight) -> Self;
@@ -96,13 +96,13 @@ pub trait Register: Copy + Add<Output = Self> + Sub<Output = Self> {
     type Factor: Factor<Register = Self>;
     /// What the expand mappings yield: a [`Factor`](Self::Factor), or a narrower lane that knows it is even.
     type Expanded: Factor<Register = Self>;
-    /// 0.
+    /// The register value 0.
     const ZERO: Self;
-    /// 1.0: 255.
+    /// The register value of 1.0: 255.
     const ONE: Self;
     /// One half: 128 (CMB-3, CMB-4, CMB-9); 127.5 in the ideal.
     const HALF: Self;
-    /// max(0, x).
+    /// max(0, x), as unsigned mappings begin.
     fn max0(self) -> Self;
     /// The value itself as a factor.
     fn factor(self) -> Self::Factor;
@@ -162,9 +162,9 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn rounded_half(sum: Self::Full) -> Self;
     /// Limited to 0..255.
     fn clamped(self) -> Self;
-    /// The smaller.
+    /// The smaller of both.
     fn least(self, other: Self) -> Self;
-    /// The larger.
+    /// The larger of both.
     fn greatest(self, other: Self) -> Self;
     /// The integer that takes decisions: mux, alpha test, stores. The ideal rounds to nearest.
     fn decision(self) -> i32;
@@ -220,7 +220,7 @@ pub trait Ideal:
 {
     /// A real number of this lane's unit.
     fn from_real(real: f64) -> Self;
-    /// The ideal.
+    /// The ideal's real number.
     fn real(self) -> f64;
     /// A rule of `part` has yielded this where the definition has `fixed`: the error of that rule alone, if the lane knows it.
     fn absorb(self, fixed: f64, part: Part) -> (Self, f64);

@@ -7,7 +7,7 @@ use std::ops::{Add, Sub};
 /// A value as an integer of the definition and as the real number that it stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paired<I = f64, F = i32> {
-    /// The definition.
+    /// The definition's number.
     pub fixed: F,
     /// The ideal, in steps of 1/255.
     pub ideal: I,

@@ -9,7 +9,7 @@ named! {
         Interpolation = "interpolation",
         /// Texels and their filter.
         Filtering = "filtering",
-        /// Input mappings.
+        /// Input mappings (CMB-2 to CMB-5).
         Expansion = "expansion",
         /// Products, sums, bias, scale, saturation, the final combiner.
         Product = "product and sum",

@@ -13,6 +13,7 @@ use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;
 use crate::diagnostic::Diagnostic;
 use crate::limits::Limits;
+use crate::place::Span;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::{stencil, surface};
@@ -22,7 +23,6 @@ use crate::texture::planned::PlannedUnit;
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use liveness::{Computed, Liveness};
 use std::fmt;
-use std::ops::Range;
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl PlanError {
     }
 
     /// The same as a finding, of the part of a text that is to blame.
-    pub fn diagnostic(&self, place: impl Into<Option<Range<usize>>>) -> Diagnostic {
+    pub fn diagnostic(&self, place: impl Into<Option<Span>>) -> Diagnostic {
         let finding = Diagnostic::error(self.code, place, self.message.as_str()).help(self.help.as_str());
         Diagnostic { rule: self.rule, ..finding }
     }
@@ -101,13 +101,13 @@ impl std::error::Error for PlanError {}
 /// A scene ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The chip.
+    /// The chip that draws.
     pub profile: Profile,
     /// The policies in force. They do not change what is planned, so they may be set afterwards.
     pub policies: Policies,
-    /// Render targets.
+    /// The scene's render targets, in its order.
     pub targets: Vec<Target>,
-    /// Textures.
+    /// The scene's textures, in its order.
     pub textures: Vec<Texture>,
     /// Draws in order.
     pub draws: Vec<PlannedDraw>,
@@ -128,9 +128,9 @@ pub struct PlannedDraw {
     pub assembly: Assembly,
     /// Smooth or flat.
     pub shade_model: ShadeModel,
-    /// Perspective-corrected weights.
+    /// Attributes are interpolated with w (INT-1).
     pub perspective: bool,
-    /// Faces dropped.
+    /// Which faces are dropped.
     pub cull: Cull,
     /// Which winding is the front.
     pub front_face: FrontFace,
@@ -140,7 +140,7 @@ pub struct PlannedDraw {
     pub secondary: u8,
     /// Channels of the fog register that are read.
     pub fog_channels: u8,
-    /// Fog state.
+    /// How fog coordinates become factors.
     pub fog: Fog,
     /// Bound units that are read.
     pub units: Vec<PlannedUnit>,
@@ -158,15 +158,15 @@ pub struct PlannedDraw {
     pub program_origin: Vec<StageOrigin>,
     /// The vertices were made by a vertex program.
     pub vertex_program: bool,
-    /// Mux bit.
+    /// Which bit of SPARE0's alpha a mux looks at (CMB-10).
     pub mux_select: MuxSelect,
-    /// Final combiner.
+    /// What of the final combiner is needed.
     pub final_combiner: PlannedFinal,
     /// Alpha test, unless it always passes.
     pub alpha_test: Option<AlphaTest>,
     /// Stencil test, unless it always passes and changes nothing.
     pub stencil_test: Option<StencilTest>,
-    /// Depth test.
+    /// Depth test, where the target has a depth buffer.
     pub depth_test: Option<DepthTest>,
     /// Format of the target's depth buffer; of a target without one it says nothing.
     pub depth_format: DepthFormat,
@@ -174,7 +174,7 @@ pub struct PlannedDraw {
     pub blend: Option<Blend>,
     /// Channels that are blended, bits R, G, B, A.
     pub blended: u8,
-    /// Blend constant.
+    /// The constant that blend factors name, R, G, B, A.
     pub blend_constant: [u8; 4],
     /// Bits of the stored word that are written.
     pub write_mask: u32,

@@ -10,11 +10,11 @@ use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Verti
 pub struct Corner {
     /// x and y, 1/16 pixel (RAS-1); 0 of vertices that no triangle uses.
     pub position: [i32; 2],
-    /// w.
+    /// w of the clip coordinates, not 0.
     pub w: f32,
-    /// Diffuse (NUM-4).
+    /// Primary colour R, G, B, A (NUM-4).
     pub primary: [u8; 4],
-    /// Specular (NUM-4).
+    /// Secondary colour R, G, B, A (NUM-4).
     pub secondary: [u8; 4],
 }
 
@@ -56,7 +56,7 @@ impl Clipping {
 /// A triangle that was cut off another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// Its number.
+    /// Its number among the triangles that are drawn.
     pub number: usize,
     /// The number of the other, before anything was clipped.
     pub of: usize,

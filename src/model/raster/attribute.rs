@@ -5,7 +5,7 @@
 //! P x of the three vertices, a [`Quotient`] the ratio at a sample; rounding it to a float or to steps sees the exact remainder.
 
 use super::depth::Binary;
-use super::interpolate::{Sample, Settled};
+use super::interpolate::{Floored, Sample};
 use super::setup::Triangle;
 use crate::number::convert::{align, shift, split};
 
@@ -63,10 +63,10 @@ impl Sample<'_> {
     }
 
     /// floor(2^bits times the value), ties as INT-4t has them, at a sample that the triangle covers.
-    pub fn steps(&self, attribute: &Attribute, bits: i32) -> Settled {
+    pub fn steps(&self, attribute: &Attribute, bits: i32) -> Floored {
         let (value, exact) = self.attribute(attribute).floor_steps(bits);
         let lowered = i64::from(self.lowers_tie(exact, || self.shortfall(&attribute.g)));
-        Settled { value: value - lowered, lowered }
+        Floored { value: value - lowered, lowered }
     }
 }
 

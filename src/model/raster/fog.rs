@@ -5,7 +5,7 @@
 //! read at the interpolated e less 3/2.
 
 use super::attribute::Attribute;
-use super::interpolate::{Sample, Settled};
+use super::interpolate::{Floored, Sample};
 use super::setup::Triangle;
 use crate::number::convert::{factor_byte, shift, split};
 use crate::state::{FogFunction, FogMode};
@@ -61,7 +61,7 @@ pub struct Line {
 /// A fog byte, and what it was made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FogFactor {
-    /// FOG.a.
+    /// The factor as a byte: alpha of the fog register.
     pub byte: u8,
     /// The step before.
     pub from: FogStep,
@@ -75,8 +75,8 @@ pub enum FogStep {
     /// The same, of the coordinate m 2^e as (m, e).
     Linear(i64, (i64, i32)),
     /// Steps of 1/4096 from the centre of the table, less the tie that was lowered.
-    Exponential(Settled),
-    /// Nothing finite.
+    Exponential(Floored),
+    /// The coordinate is not a finite number.
     NotFinite,
 }
 
@@ -121,7 +121,7 @@ impl FogPlane {
             }
             FogPlane::Exponential(mode, attribute) => {
                 let steps = sample.steps(attribute, FACTOR_BITS);
-                let q = Settled { value: steps.value.saturating_sub(CENTRE), ..steps };
+                let q = Floored { value: steps.value.saturating_sub(CENTRE), ..steps };
                 FogFactor { byte: exponential(*mode, q.value), from: FogStep::Exponential(q) }
             }
             FogPlane::NotFinite(byte) => FogFactor { byte: *byte, from: FogStep::NotFinite },

@@ -30,7 +30,7 @@ pub struct Sample<'a> {
 
 /// A quotient's floor, and what weights that fall short did to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settled {
+pub struct Floored {
     /// The result.
     pub value: i64,
     /// By how many steps that is lower than the floor of the exact quotient. 0 or 1 on a tie (INT-3, INT-4t); of coordinates divided by q (TEX-15)
@@ -59,23 +59,23 @@ impl<'a> Sample<'a> {
 
     /// INT-2, INT-3: W0 and W2, 0..=256; W1 is the remainder.
     #[inline]
-    pub fn weights(&self) -> [Settled; 2] {
+    pub fn weights(&self) -> [Floored; 2] {
         [self.weight(0), self.weight(2)]
     }
 
     #[inline(always)]
-    fn weight(&self, k: usize) -> Settled {
+    fn weight(&self, k: usize) -> Floored {
         let (value, rest) = quotient(i128::from(self.n[k]) << 8, self.d);
         let lowered = rest == 0 && value > 0 && !self.triangle.exact_reciprocal && self.dominant() != k;
-        Settled { value: value - i64::from(lowered), lowered: lowered.into() }
+        Floored { value: value - i64::from(lowered), lowered: lowered.into() }
     }
 
     /// INT-4, INT-4t: floor(sum G E / D), 1/256 texel.
     #[inline(always)]
-    pub fn coordinate(&self, g: &[i64; 3]) -> Settled {
+    pub fn coordinate(&self, g: &[i64; 3]) -> Floored {
         let (value, rest) = quotient(self.sum(g), self.d);
         let lowered = i64::from(self.lowers_tie(rest == 0, || self.shortfall(g)));
-        Settled { value: value - lowered, lowered }
+        Floored { value: value - lowered, lowered }
     }
 
     /// A factor in 4096ths, 0..=4096.
@@ -86,7 +86,7 @@ impl<'a> Sample<'a> {
 
     /// TEX-15: 256 size s/q as a floor, 1/256 texel, limited to [`COORDINATE_LIMIT`], of s and q with weights that fall short (INT-4t). By 0 it is
     /// infinite; 0/0 is 0.
-    pub fn ratio(&self, s: &[i64; 3], q: &[i64; 3], size: u32) -> Settled {
+    pub fn ratio(&self, s: &[i64; 3], q: &[i64; 3], size: u32) -> Floored {
         let (scale, limit) = (i128::from(size) << 8, i128::from(COORDINATE_LIMIT));
         let (ns, nq) = (self.sum(s), self.sum(q));
         let exact = match nq {
@@ -107,15 +107,15 @@ impl<'a> Sample<'a> {
             None => limit * numerator.signum() * denominator.signum(),
         };
         let value = value.clamp(-limit, limit) as i64;
-        Settled { value, lowered: exact.clamp(-limit, limit) as i64 - value }
+        Floored { value, lowered: exact.clamp(-limit, limit) as i64 - value }
     }
 
     /// TEX-12: 128 n (s + m)/m as a floor, 1/256 texel of a face of n texels, for a minor direction s and the major one m, which is not
     /// negative; the zero vector is 0 (TEX-13). Ties as in INT-4t.
-    pub fn face_coordinate(&self, s: &[i64; 3], m: &[i64; 3], size: u32) -> Settled {
+    pub fn face_coordinate(&self, s: &[i64; 3], m: &[i64; 3], size: u32) -> Floored {
         let (ns, nm) = (self.sum(s), self.sum(m));
         if nm <= 0 {
-            return Settled { value: 0, lowered: 0 };
+            return Floored { value: 0, lowered: 0 };
         }
         let scale = i128::from(size) << 7;
         let numerator = (ns + nm) * scale;
@@ -124,7 +124,7 @@ impl<'a> Sample<'a> {
             let (loss_s, loss_m) = (self.shortfall(s), self.shortfall(m));
             (loss_s + loss_m) * scale - value * loss_m
         });
-        Settled { value: value as i64 - i64::from(lowered), lowered: lowered.into() }
+        Floored { value: value as i64 - i64::from(lowered), lowered: lowered.into() }
     }
 
     /// sum G_k E_k.
@@ -319,7 +319,7 @@ mod tests {
             for i in 0..100 {
                 let e = t.edges(i, j);
                 if t.covers(e) {
-                    assert_eq!(Sample::new(&t, e).coordinate(&g), Settled { value: 48 * 256, lowered: 0 });
+                    assert_eq!(Sample::new(&t, e).coordinate(&g), Floored { value: 48 * 256, lowered: 0 });
                 }
             }
         }

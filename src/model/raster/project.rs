@@ -37,7 +37,7 @@ impl ClipPlane {
     }
 
     /// The planes of a set, in order.
-    pub fn of(set: u8) -> impl Iterator<Item = ClipPlane> {
+    pub fn in_set(set: u8) -> impl Iterator<Item = ClipPlane> {
         ClipPlane::VOLUME.into_iter().chain(ClipPlane::SIDES).filter(move |plane| set & plane.bit() != 0)
     }
 
@@ -59,7 +59,7 @@ impl ClipPlane {
     }
 
     /// Puts a position that is near the plane onto it.
-    fn settle(self, position: &mut [f32; 4], viewport: &Viewport) {
+    fn snap(self, position: &mut [f32; 4], viewport: &Viewport) {
         let (half_width, half_height) = (viewport.width / 2.0, viewport.height / 2.0);
         let [x, y, z, w] = position;
         match self {
@@ -91,7 +91,7 @@ impl ClipPlane {
             _ => near / (near - far),
         };
         let mut vertex = mixed(inside, outside, t);
-        self.settle(&mut vertex.position, viewport);
+        self.snap(&mut vertex.position, viewport);
         vertex
     }
 
@@ -139,7 +139,7 @@ pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     ]
 }
 
-/// What is left of a clip-space triangle (RAS-6), as a polygon in the triangle's order, and the planes that cut it, as a set.
+/// Clips a clip-space triangle (RAS-6). Returns what is left, as a polygon in the triangle's order, and the set of planes that cut it.
 ///
 /// A new vertex is always computed from the inside vertex towards the outside one, so that neighbours meet.
 pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {

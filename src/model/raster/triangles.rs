@@ -26,7 +26,7 @@ pub struct Triangles {
 enum Provoking {
     /// Of its three vertices this one.
     Corner(usize),
-    /// Any vertex.
+    /// Any vertex: its index, a triangle each.
     Each(Arc<[u32]>),
 }
 
@@ -68,7 +68,7 @@ impl Triangles {
         }
     }
 
-    /// How many there are.
+    /// The number of triangles.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.indices.len() / 3

@@ -103,7 +103,7 @@ pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 
 /// What blending a channel computes.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendValues<R> {
-    /// Of source and destination (ROP-4).
+    /// The factors of source and destination (ROP-4).
     pub factors: [R; 2],
     /// By the equation, not yet clamped (ROP-2, ROP-3).
     raw: R,
@@ -184,7 +184,7 @@ pub fn run<L: Lane, O: Observer>(
     out
 }
 
-/// ROP-1.
+/// ROP-1: whether an alpha passes the test.
 #[inline]
 pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
     let passes = |alpha: i32| test.function.passes(i64::from(alpha.clamp(0, 255)), i64::from(test.reference));

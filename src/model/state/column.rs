@@ -43,7 +43,7 @@ impl Value for VertexColor {
 pub(super) enum Column<T> {
     /// All are this one.
     Same(T),
-    /// They differ.
+    /// A value of its own for each.
     Each(Arc<Vec<T>>),
 }
 
@@ -57,7 +57,7 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// Three values.
+    /// The values of a triangle's vertices.
     #[inline(always)]
     pub(super) fn three(&self, [a, b, c]: [u32; 3]) -> [T; 3] {
         match self {

@@ -29,9 +29,9 @@ registers! {
     ConstantColor1,
     /// Fog colour and factor.
     Fog,
-    /// Interpolated diffuse.
+    /// The interpolated diffuse colour.
     PrimaryColor,
-    /// Interpolated specular.
+    /// The interpolated specular colour.
     SecondaryColor,
     /// Unit 0's result.
     Texture0,
@@ -43,7 +43,7 @@ registers! {
     Texture3,
     /// Scratch; its alpha steers the mux.
     Spare0,
-    /// Scratch.
+    /// A second scratch register.
     Spare1;
     /// SPARE0 + SECONDARY, up to 2.0 (FIN-3). Inputs A to D, RGB.
     Spare0PlusSecondary,
@@ -84,7 +84,7 @@ named! {
     }
 }
 named! {
-    /// Output scale.
+    /// What an output is multiplied by (CMB-7).
     pub enum Scale {
         /// x1.
         One,
@@ -99,7 +99,7 @@ named! {
 named! {
     /// Output bias, applied before the scale.
     pub enum Bias {
-        /// None.
+        /// Nothing is subtracted.
         None,
         /// -1/2. Legal with scales One and Two.
         NegativeHalf,
@@ -118,11 +118,11 @@ named! {
 /// One of the inputs A, B, C, D of a general portion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CombinerInput {
-    /// Register.
+    /// The register that is read.
     pub register: Register,
-    /// Component.
+    /// Which of its channels.
     pub component: Component,
-    /// Mapping.
+    /// How its value becomes a factor.
     pub mapping: InputMapping,
 }
 
@@ -150,9 +150,9 @@ pub struct Portion {
     pub cd_dot_product: bool,
     /// The third output is mux(AB, CD) instead of the sum.
     pub mux: bool,
-    /// Output scale.
+    /// What all three outputs are multiplied by.
     pub scale: Scale,
-    /// Output bias.
+    /// What is subtracted from all three outputs first.
     pub bias: Bias,
     /// AB's blue also goes to the alpha of `ab_output` (RGB only; nv2a).
     pub ab_blue_to_alpha: bool,
@@ -182,9 +182,9 @@ impl Portion {
 /// One general combiner stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GeneralStage {
-    /// RGB portion.
+    /// What computes red, green and blue.
     pub rgb: Portion,
-    /// Alpha portion.
+    /// What computes alpha.
     pub alpha: Portion,
     /// Constant colours 0 and 1 of this stage, R, G, B, A bytes. Equal in all stages on nv10.
     pub constants: [[u8; 4]; 2],
@@ -213,7 +213,7 @@ impl GeneralStage {
 /// One of the inputs A to G of the final combiner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FinalInput {
-    /// Register.
+    /// The register that is read.
     pub register: FinalRegister,
     /// Component: Rgb or Alpha for A to F, Blue or Alpha for G.
     pub component: Component,
@@ -222,7 +222,7 @@ pub struct FinalInput {
 }
 
 impl FinalInput {
-    /// ZERO.
+    /// An input that reads ZERO.
     pub fn zero(component: Component) -> Self {
         FinalInput { register: FinalRegister::Zero, component, invert: false }
     }
@@ -238,7 +238,7 @@ impl FinalInput {
 pub struct FinalCombiner {
     /// A, B, C, D, E, F.
     pub inputs: [FinalInput; 6],
-    /// G: alpha.
+    /// G: the alpha of the fragment.
     pub g: FinalInput,
     /// SPARE0 + SECONDARY is limited to 1.0 (FIN-3).
     pub color_sum_clamp: bool,
@@ -289,6 +289,6 @@ pub struct Combiners {
     pub stages: Vec<GeneralStage>,
     /// Mux bit, the same for all stages.
     pub mux_select: MuxSelect,
-    /// Final combiner.
+    /// What makes the fragment of the registers.
     pub final_combiner: FinalCombiner,
 }

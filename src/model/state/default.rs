@@ -66,7 +66,7 @@ impl Default for Draw {
 }
 
 impl Default for Fog {
-    /// Off, black.
+    /// Fog that is off, and black.
     fn default() -> Self {
         Fog { enabled: false, color: [0; 3], function: None }
     }

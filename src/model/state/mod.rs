@@ -79,7 +79,7 @@ impl Profile {
 /// it comes from. Columns of [`Vertices`] cannot be of different lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The chip.
+    /// The chip that draws, which decides what is legal.
     pub profile: Profile,
     /// Render targets; the first is the default one.
     pub targets: Vec<Target>,
@@ -100,7 +100,7 @@ pub struct Draw {
     pub target: usize,
     /// How positions are to be read.
     pub positions: Positions,
-    /// Vertices.
+    /// The vertices, before they are assembled.
     pub vertices: Vertices,
     /// Indices into `vertices`, in the order of `topology`. The plan shares them.
     pub indices: Arc<[u32]>,
@@ -126,7 +126,7 @@ pub struct Draw {
     pub textures: [Option<TextureUnit>; TEXTURE_UNITS],
     /// What each unit does; [`ShaderStage::conventional`] unless a texture shader is given (nv2a).
     pub texture_shader: [ShaderStage; TEXTURE_UNITS],
-    /// Register combiners.
+    /// The program of each pixel.
     pub combiners: Combiners,
     /// What each general stage was written as; empty if the program was written for the combiners.
     pub program_origin: Vec<StageOrigin>,

@@ -4,7 +4,7 @@
 pub trait Named: Copy + PartialEq + 'static {
     /// The enumeration's own name.
     const TYPE: &'static str;
-    /// Every variant.
+    /// Every variant, in the order in which they are declared.
     const ALL: &'static [Self];
     /// Names of [`ALL`](Self::ALL), in its order, spelled as in the source and in scene files.
     const NAMES: &'static [&'static str];

@@ -170,7 +170,7 @@ impl Default for Policies {
 /// A rule with alternatives.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Policy {
-    /// Rule id.
+    /// Id of the rule in `docs/numerics.md`.
     pub rule: &'static str,
     /// What is to be decided.
     pub question: &'static str,
@@ -181,13 +181,13 @@ pub struct Policy {
 /// A `--policy` argument that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PolicyError {
-    /// No `=`.
+    /// There is no `=` in it.
     Form(String),
     /// No rule of that id has alternatives.
     Rule(String),
     /// The rule has no such value.
     Value {
-        /// The rule.
+        /// The rule that has alternatives.
         policy: &'static Policy,
         /// What was given.
         value: String,

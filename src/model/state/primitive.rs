@@ -31,29 +31,29 @@ named! {
 named! {
     /// Which vertex provides flat colours (RAS-5). Quads, quad strips and polygons ignore it.
     pub enum ProvokingVertex {
-        /// The first.
+        /// The first vertex of the primitive.
         First,
-        /// The last.
+        /// The last vertex of the primitive.
         Last,
     }
 }
 named! {
     /// Faces that are dropped.
     pub enum Cull {
-        /// None.
+        /// All faces are drawn.
         None,
-        /// Front faces.
+        /// Front faces are dropped.
         Front,
-        /// Back faces.
+        /// Back faces are dropped.
         Back,
     }
 }
 named! {
     /// The winding, on screen with y down as the viewer sees it, that makes a front face.
     pub enum FrontFace {
-        /// Counter-clockwise.
+        /// Counter-clockwise triangles face the viewer.
         CounterClockwise,
-        /// Clockwise.
+        /// Clockwise triangles face the viewer.
         Clockwise,
     }
 }
@@ -85,9 +85,9 @@ pub struct Viewport {
     pub x: f32,
     /// Top edge, pixels.
     pub y: f32,
-    /// Width, pixels.
+    /// Pixels across; may be a fraction.
     pub width: f32,
-    /// Height, pixels.
+    /// Pixels down; may be a fraction.
     pub height: f32,
     /// Depth of ndc.z = -1.
     pub near: f32,
@@ -108,7 +108,7 @@ pub enum VertexColor {
     Floats([f32; 4]),
 }
 
-/// One vertex.
+/// A vertex in clip or window coordinates, with all its attributes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
     /// Position, read as [`Positions`] says.
@@ -139,14 +139,14 @@ impl Default for Vertex {
     }
 }
 
-/// What is known of the vertex program that made the vertices of a draw. They are there already: it is for people to look at.
+/// The vertex program that made the vertices of a draw. Only reports read it: the vertices are there already.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VertexProgram {
-    /// In its language, without comments.
+    /// The program in its language, without comments.
     pub text: String,
-    /// How many instructions it has.
+    /// The number of its instructions.
     pub instructions: usize,
-    /// How many instruction slots they take.
+    /// The number of instruction slots that they take.
     pub slots: usize,
     /// It writes oFog.
     pub writes_fog: bool,
@@ -180,7 +180,7 @@ impl FogMode {
 /// Fog of a coordinate d: coefficients at the vertices or, of linear fog, at each pixel, and a curve at each pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogFunction {
-    /// The curve.
+    /// How the coordinate becomes a factor.
     pub mode: FogMode,
     /// First parameter, the bias.
     pub p0: f32,
@@ -213,12 +213,12 @@ pub struct Fog {
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
-    /// First column.
+    /// Its first column.
     pub x: u32,
-    /// First row.
+    /// Its first row.
     pub y: u32,
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 named! {
     /// A comparison of two unsigned integers, incoming value on the left.
     pub enum CompareFunction {
-        /// Never passes.
+        /// No value passes.
         Never,
         /// incoming < stored.
         Less,
@@ -20,7 +20,7 @@ named! {
         NotEqual,
         /// incoming >= stored.
         GreaterOrEqual,
-        /// Always passes.
+        /// Every value passes.
         Always,
     }
 }
@@ -67,19 +67,19 @@ named! {
         Zero,
         /// 255.
         One,
-        /// Source colour.
+        /// The source's own channel.
         SourceColor,
         /// 255 - source colour.
         OneMinusSourceColor,
-        /// Source alpha.
+        /// The source's alpha.
         SourceAlpha,
         /// 255 - source alpha.
         OneMinusSourceAlpha,
-        /// Destination alpha.
+        /// The destination's alpha.
         DestinationAlpha,
         /// 255 - destination alpha.
         OneMinusDestinationAlpha,
-        /// Destination colour.
+        /// The destination's own channel.
         DestinationColor,
         /// 255 - destination colour.
         OneMinusDestinationColor,
@@ -99,9 +99,9 @@ named! {
 /// Alpha test (ROP-1): `function(fragment alpha, reference)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AlphaTest {
-    /// Comparison.
+    /// How alpha, on the left, is compared.
     pub function: CompareFunction,
-    /// Reference byte.
+    /// What alpha is compared with, 0 to 255.
     pub reference: u8,
 }
 
@@ -140,7 +140,7 @@ pub struct PolygonOffset {
 /// Depth test (DEP-2): `function(fragment depth, stored depth)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTest {
-    /// Comparison.
+    /// How the fragment's depth, on the left, is compared.
     pub function: CompareFunction,
     /// Whether a passing fragment's depth is stored.
     pub write: bool,
@@ -192,15 +192,15 @@ named! {
 /// Stencil test (STN-1): `function(reference & mask, stored & mask)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StencilTest {
-    /// Comparison.
+    /// How the reference, on the left, is compared.
     pub function: CompareFunction,
-    /// Reference byte.
+    /// R, 0 to 255: what the stencil is compared with.
     pub reference: u8,
     /// Bits that are compared.
     pub mask: u8,
     /// Bits that are written.
     pub write_mask: u8,
-    /// Where the stencil test fails.
+    /// What is stored where the stencil test fails.
     pub fail: StencilOperation,
     /// Where it passes and the depth test fails.
     pub depth_fail: StencilOperation,
@@ -223,7 +223,7 @@ pub const WINDOW_CLIP_RECTANGLES: usize = 8;
 /// Blend function. Factors are ignored by Min, Max and the signed equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blend {
-    /// Equation.
+    /// How both products are combined.
     pub equation: BlendEquation,
     /// Factor of the source.
     pub source: BlendFactor,
@@ -308,7 +308,7 @@ impl SurfaceFormat {
 named! {
     /// Depth buffer formats (DEP-2, DEP-3).
     pub enum DepthFormat {
-        /// 16 bits.
+        /// 16 bits of depth, no stencil.
         Z16,
         /// 24 bits of depth, eight of stencil.
         Z24S8,
@@ -349,7 +349,7 @@ impl DepthFormat {
 /// A depth buffer and what it is cleared to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DepthBuffer {
-    /// Format.
+    /// How depth and stencil are stored.
     pub format: DepthFormat,
     /// Integer written by the clear, below 2^bits.
     pub clear: u32,
@@ -387,11 +387,11 @@ pub fn stencil_of(word: u32) -> u8 {
 pub struct Target {
     /// Name in the scene.
     pub name: String,
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
-    /// Format.
+    /// How colours are stored.
     pub format: SurfaceFormat,
     /// R, G, B, A bytes; the clear stores them by the format's own rule.
     pub clear_color: [u8; 4],

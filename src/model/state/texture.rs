@@ -228,9 +228,9 @@ named! {
 named! {
     /// Nearest or bilinear (TEX-5, TEX-6).
     pub enum Filter {
-        /// One texel.
+        /// One texel is read.
         Nearest,
-        /// Four texels.
+        /// Four texels are read and mixed.
         Linear,
     }
 }
@@ -241,7 +241,7 @@ named! {
         None,
         /// The nearest level.
         Nearest,
-        /// Two levels.
+        /// Two levels are read and mixed.
         Linear,
     }
 }
@@ -255,14 +255,14 @@ pub struct Texture {
     pub kind: TextureKind,
     /// Meaning of its words.
     pub format: TextureFormat,
-    /// Where the texels are.
+    /// The texels, or the surface that holds them.
     pub image: TextureImage,
 }
 
 /// Texels given, or the contents of a render target drawn before.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureImage {
-    /// Raw texels.
+    /// Texels that the scene brings.
     Texels(Texels),
     /// The words of a render target, of as many bytes as the format has; one level.
     Target {
@@ -312,7 +312,7 @@ pub struct Level {
     pub offset: usize,
     /// Columns, border texels not counted.
     pub width: u32,
-    /// Rows.
+    /// Texels down.
     pub height: u32,
 }
 
@@ -348,7 +348,7 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// How many entries there can be. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
+    /// The numbers of entries that a palette can have. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
     pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 
@@ -378,7 +378,7 @@ pub struct ColorKey {
 pub struct ShadowComparison {
     /// The reference stands on its left, the texel on its right. The chip has one for all units.
     pub function: CompareFunction,
-    /// The reference.
+    /// What texels are compared with.
     pub reference: ShadowReference,
 }
 
@@ -409,7 +409,7 @@ pub struct TextureUnit {
     pub palette: Option<usize>,
     /// Along s. Cube maps ignore it (TEX-14).
     pub address_s: AddressMode,
-    /// Along t.
+    /// How t addresses texels outside the image.
     pub address_t: AddressMode,
     /// Along the layers of a volume.
     pub address_r: AddressMode,

@@ -25,7 +25,7 @@ pub struct Vertices {
 const CHUNK: usize = 256;
 
 impl Vertices {
-    /// No vertices.
+    /// A list without vertices.
     pub fn new() -> Self {
         let Vertex { position, diffuse, specular, fog, fog_coordinate, texture_coordinates } = Vertex::default();
         Vertices {
@@ -40,7 +40,7 @@ impl Vertices {
         }
     }
 
-    /// How many there are.
+    /// The number of vertices.
     pub fn len(&self) -> usize {
         self.count
     }
@@ -275,7 +275,7 @@ impl TriangleVertices<'_> {
         self.indices.map(|index| self.vertices.at(index as usize))
     }
 
-    /// Their positions.
+    /// x, y, z, w of each vertex.
     #[inline(always)]
     pub fn positions(&self) -> [[f32; 4]; 3] {
         turned([self.position(0), self.position(1), self.position(2), self.position(3)])

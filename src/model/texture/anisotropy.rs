@@ -11,7 +11,7 @@ const TEXEL: u32 = 65536;
 /// Taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taps<Offset, Weight> {
-    /// How many, 1 to [`MAX_TAPS`].
+    /// The number of taps, 1 to [`MAX_TAPS`].
     pub count: usize,
     /// Where they lie from the pixel's coordinates, u and v in 1/256 texel.
     pub offsets: [[Offset; 2]; MAX_TAPS],
@@ -32,7 +32,7 @@ pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
     let most = 1 << 40;
     let along = |to: [i64; 2]| [0, 1].map(|n| to[n].saturating_sub(origin[n]).clamp(-most, most));
     let (x, y) = (along(right), along(lower));
-    let near = |axis: [i64; 2]| axis.iter().all(|n| n.unsigned_abs() < NEAR);
+    let near = |axis: [i64; 2]| axis.iter().all(|n| n.unsigned_abs() < MAX_NARROW_STEP);
     if near(x) && near(y) {
         taps_of_near(x, y, limit)
     } else {
@@ -41,7 +41,7 @@ pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
 }
 
 /// Steps of a footprint that need no more than 64 bits.
-const NEAR: u64 = 1 << 26;
+const MAX_NARROW_STEP: u64 = 1 << 26;
 
 /// The taps of a footprint's two steps, in integers of some width.
 macro_rules! taps_in {

@@ -1,9 +1,9 @@
 //! TSH-1 to TSH-10: the stages of a texture shader, in order, for one pixel.
 
+use super::coordinates::{Coordinates, Interpolated, quad_samples, real_coordinate};
 use super::dependent::{Dependent, Moved, QuadTargets, Target};
 use super::dot;
 use super::filter::nearest;
-use super::place::{Coordinates, Interpolated, quad_samples, real_coordinate};
 use super::planned::{Image, PlannedUnit};
 use super::real::{self, RealColor, RealTarget};
 use super::shader;
@@ -19,7 +19,7 @@ use crate::trace::{Decision, Observer, Rule, Silent, Work};
 /// A texture shader with everything that it looks at.
 #[derive(Debug)]
 pub struct Chain<'a, L> {
-    /// The stages.
+    /// The stages, one for each texture unit.
     pub shader: &'a PlannedShader,
     /// The units of the draw.
     pub units: &'a [PlannedUnit],
@@ -31,7 +31,7 @@ pub struct Chain<'a, L> {
     pub vertices: TriangleVertices<'a>,
     /// Whether that divides by their w.
     pub perspective: bool,
-    /// TSH-6.
+    /// How vectors of a dependent read are scaled (TSH-6).
     pub scale: DependentScale,
 }
 
@@ -139,7 +139,7 @@ impl<L: Lane> Chain<'_, L> {
         [0, 1, 2, 3].map(|n| ideal::mix(weights, set.map(|v| f64::from(v[n]))))
     }
 
-    /// Ordinary sampling.
+    /// A unit that samples at its own coordinates.
     fn sampled<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> ([L; 4], bool) {
         let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
             return (black(), false);
@@ -153,7 +153,7 @@ impl<L: Lane> Chain<'_, L> {
         self.shader.stages[index].unit.map(|unit| &self.units[unit])
     }
 
-    /// TSH-9.
+    /// TSH-9: the coordinates, limited, as a colour.
     fn pass_through<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
         let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return black() };
         let live = self.shader.stages[index].live;
@@ -396,7 +396,7 @@ impl<L: Lane> Chain<'_, L> {
         Some(QuadTargets { fixed, real, face: face? })
     }
 
-    /// TSH-8.
+    /// TSH-8: the texel times scaled luminance.
     fn luminance<O: Observer>(
         &self,
         index: usize,

@@ -25,7 +25,7 @@ named! {
 pub struct Signed {
     /// 0 x, 1 y, 2 z.
     pub axis: usize,
-    /// Negated.
+    /// The component is taken with the other sign.
     pub negative: bool,
 }
 
@@ -73,16 +73,16 @@ impl Face {
 mod tests {
     use super::*;
 
-    fn of([x, y, z]: [i32; 3]) -> Face {
+    fn face_of([x, y, z]: [i32; 3]) -> Face {
         Face::from_direction([x, y, z], [x.abs(), y.abs(), z.abs()], 0)
     }
 
     #[test]
     fn axes_ties_and_zero() {
         let axes = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
-        assert_eq!(axes.map(of).as_slice(), <Face as crate::state::Named>::ALL);
+        assert_eq!(axes.map(face_of).as_slice(), <Face as crate::state::Named>::ALL);
         assert_eq!(
-            [[1, 1, 1], [-1, 1, 1], [0, -1, 1], [0, 0, 0]].map(of),
+            [[1, 1, 1], [-1, 1, 1], [0, -1, 1], [0, 0, 0]].map(face_of),
             [Face::PositiveX, Face::NegativeX, Face::NegativeY, Face::PositiveX]
         );
     }
@@ -92,7 +92,7 @@ mod tests {
     fn minor_components_are_not_larger() {
         for n in 0..33_i32.pow(3) {
             let d = [n % 33 - 16, n / 33 % 33 - 16, n / 1089 - 16];
-            let [s, t, m] = of(d).components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
+            let [s, t, m] = face_of(d).components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
             assert!(m >= s.abs() && m >= t.abs(), "{d:?}");
         }
     }

@@ -1,14 +1,14 @@
 //! Where a stage of the texture shader samples whose coordinates come from earlier units.
 
+use super::coordinates::{Real, SampleCoordinates};
 use super::cube::Face;
 use super::lod::Quad;
-use super::place::{Place, Real};
 use super::planned::PlannedUnit;
 use super::real::RealTarget;
 use super::report::Report;
 use super::shader::{self, OFFSET_BITS};
 use super::shader_report;
-use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, Sample, Settled};
+use crate::raster::interpolate::{COORDINATE_LIMIT, Floored, SHORT_BITS, Sample};
 use crate::state::{DependentScale, Level};
 use crate::trace::{Observer, Rule};
 
@@ -33,7 +33,7 @@ const _: () = assert!(OFFSET_BITS == SHORT_BITS);
 pub struct Moved<'a> {
     /// u and v at the vertices (INT-4), 1/256 texel of level 0. q plays no part.
     pub planes: &'a [[i64; 3]; 2],
-    /// The sample.
+    /// The pixel, as interpolation takes it.
     pub at: Sample<'a>,
     /// m0 to m3.
     pub matrix: [f32; 4],
@@ -61,7 +61,7 @@ impl Moved<'_> {
     }
 
     /// INT-4 of the moved coordinate, with weights that fall short (INT-4t).
-    fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
+    fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
         std::array::from_fn(|n| {
             let (exact, rest) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
@@ -70,7 +70,7 @@ impl Moved<'_> {
             let short = rest * unit - self.at.shortfall(&planes[n]);
             let floor = exact + short.div_euclid((i128::from(self.at.d) << OFFSET_BITS) * unit);
             let limited = |value: i128| value.clamp(-i128::from(COORDINATE_LIMIT), COORDINATE_LIMIT.into()) as i64;
-            Settled { value: limited(floor), lowered: limited(exact) - limited(floor) }
+            Floored { value: limited(floor), lowered: limited(exact) - limited(floor) }
         })
     }
 
@@ -103,9 +103,9 @@ impl Target<'_> {
     }
 
     /// u and v on a level, 1/256 texel.
-    pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
+    pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let sides = unit.scale(level);
-        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Settled { value: of(n), lowered: 0 });
+        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Floored { value: of(n), lowered: 0 });
         match self {
             Target::Moved(moved) => moved.on(unit, level),
             Target::Bytes(bytes, scale) => plain(&|n| shader::dependent(bytes[n], sides[n], *scale)),
@@ -165,20 +165,20 @@ impl Target<'_> {
 /// What the same chain of stages gives at the three pixels of the quad that the lod is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadTargets {
-    /// On the face of the first.
+    /// u and v of the definition, on the face of the first pixel.
     pub fixed: Quad,
     /// s and t of the ideal.
     pub real: [[f64; 2]; 3],
-    /// That face.
+    /// The face that the first pixel lies on.
     pub face: Face,
 }
 
-/// A dependent read as a place.
+/// Coordinates that an earlier unit gives.
 #[derive(Clone, Copy, Debug)]
 pub struct Dependent<'a> {
-    /// The unit.
+    /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// Its coordinates.
+    /// Where on its image it samples.
     pub target: Target<'a>,
     /// The ideal's, where somebody wants them.
     pub real: RealTarget,
@@ -186,12 +186,12 @@ pub struct Dependent<'a> {
     pub quad: Option<QuadTargets>,
 }
 
-impl Place for Dependent<'_> {
+impl SampleCoordinates for Dependent<'_> {
     fn face(&self) -> Face {
         self.target.face()
     }
 
-    fn on(&self, level: &Level) -> [Settled; 2] {
+    fn on(&self, level: &Level) -> [Floored; 2] {
         self.target.on(self.unit, level)
     }
 
@@ -219,11 +219,11 @@ impl Place for Dependent<'_> {
         &self,
         report: &Report<'_>,
         level: &Level,
-        settled: [Settled; 2],
+        floored: [Floored; 2],
         ideal: [f64; 2],
         observer: &mut O,
     ) {
-        shader_report::coordinates(self, report, level, settled, ideal, observer);
+        shader_report::coordinates(self, report, level, floored, ideal, observer);
     }
 
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O) {

@@ -22,21 +22,21 @@ pub struct Texel {
 /// One image of a texture: a level of a face, or a layer of a volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Slice<'a> {
-    /// The unit.
+    /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// The level.
+    /// The level that is read.
     pub level: &'a Level,
     /// The number of the face or layer; `None` beyond the layers of a volume, where everything is the border colour.
     pub image: Option<usize>,
 }
 
 impl PlannedUnit {
-    /// Which sides of a level coordinates are multiplied by: 1 for rectangles, whose coordinates are texels.
+    /// What coordinates are multiplied by on a level: its sides; 1 for rectangles, whose coordinates are texels.
     pub fn scale(&self, level: &Level) -> [u32; 2] {
         if self.kind == TextureKind::Rectangle { [1, 1] } else { [level.width, level.height] }
     }
 
-    /// By how many bits the planes of level 0 (INT-4) lie above those of a level: sides are powers of two, and a floor of a floor is one.
+    /// The shift from planes of level 0 (INT-4) to those of a level, in bits: sides are powers of two, and a floor of a floor is one.
     pub fn plane_shifts(&self, level: &Level) -> [u32; 2] {
         let (sides, whole) = (self.scale(level), self.scale(&self.levels[0]));
         [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]

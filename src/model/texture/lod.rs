@@ -67,7 +67,7 @@ pub fn real_biased(unit: &PlannedUnit, log2_ratio: f64) -> f64 {
 pub struct Choice {
     /// Filter within a level.
     pub filter: Filter,
-    /// The level.
+    /// The level that is read first, 0 the largest.
     pub level: usize,
     /// The level that is mixed in, and its weight, 0..=255.
     pub next: Option<(usize, i32)>,

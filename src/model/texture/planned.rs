@@ -8,7 +8,7 @@ use std::sync::Arc;
 pub struct PlannedUnit {
     /// The unit's number.
     pub index: usize,
-    /// Its state.
+    /// The unit's registers.
     pub state: TextureUnit,
     /// Its part of the texture shader.
     pub stage: ShaderStage,
@@ -43,7 +43,7 @@ impl PlannedUnit {
 /// The image that a unit samples, as it stands when a draw begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a, L> {
-    /// Its words.
+    /// The words of all faces and levels, as they are stored.
     pub words: &'a [u32],
     /// What the lane holds of them, where the image is a surface read in its own format, and of which channels (bits R, G, B, A).
     pub memory: Option<(&'a [[L; 4]], u8)>,

@@ -1,9 +1,9 @@
 //! The ideal of the texture shader: the same stages in real numbers.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
+use super::coordinates::{Real, real_direction};
 use super::cube::Face;
 use super::dot::Vector;
-use super::place::{Real, real_direction};
 use crate::state::DotMapping;
 
 /// A colour as the ideal reads it: real bytes, and halves.
@@ -80,7 +80,7 @@ pub fn pass_through(coordinate: f64) -> f64 {
 pub enum RealTarget {
     /// s and t, of which 1.0 is the whole image; texels of a rectangle.
     Coordinates([f64; 2]),
-    /// A direction.
+    /// A direction into a cube map, of any length.
     Vector([f64; 3]),
 }
 

@@ -8,13 +8,13 @@ use super::planned::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::attribute::Attribute;
-use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::interpolate::{Floored, Sample};
 use crate::rop::blend::compare_operation;
 use crate::state::{
     AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, ShadowComparison, ShadowReference,
     TextureFormat, TextureKind, depth_of,
 };
-use crate::trace::{Observer, Operand, Place, Step, part, plain, report};
+use crate::trace::{Observer, Operand, Step, TexelAddress, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.
 const QUAD_PART: i64 = 65536;
@@ -25,7 +25,7 @@ pub(super) const COORDINATES: [&str; 4] = ["s", "t", "r", "q"];
 /// Names for the steps of one unit, or of its second level.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
-    /// The unit.
+    /// The unit whose steps are told.
     pub unit: &'a PlannedUnit,
     /// Put before the names of what happens on the second of two levels: `"next."`.
     pub prefix: &'a str,
@@ -79,16 +79,16 @@ impl Report<'_> {
         &self,
         rule: &'static str,
         letter: &str,
-        settled: Settled,
+        floored: Floored,
         ideal: f64,
         (operation, inputs): (&'static str, Vec<Operand>),
         observer: &mut O,
     ) {
-        let note = (settled.lowered != 0).then(|| match rule {
+        let note = (floored.lowered != 0).then(|| match rule {
             "TEX-15" | "TSH-7" => "weights fall short: another 1/256 texel (INT-4t)".to_string(),
             _ => "exactly on a 1/256 texel: one step lower (INT-4t)".to_string(),
         });
-        observer.step(self.step(rule, letter, settled.value).per(256).by(operation, inputs).ideal(ideal).note(note));
+        observer.step(self.step(rule, letter, floored.value).per(256).by(operation, inputs).ideal(ideal).note(note));
     }
 
     /// A coordinate of a pixel of the quad.
@@ -310,7 +310,7 @@ impl Report<'_> {
                 place.push(plain(format!("unit{}.layer", self.unit.index), layer));
             }
         }
-        let lies = texel.at.map(|at| Place {
+        let lies = texel.at.map(|at| TexelAddress {
             texture: self.unit.state.texture,
             face: slice.image.unwrap_or(0),
             level: self.unit.levels.iter().position(|level| level.offset == slice.level.offset).unwrap_or(0),
@@ -368,7 +368,7 @@ impl Report<'_> {
         &self,
         words: &[u32],
         texel: &Texel,
-        (place, lies): (Vec<Operand>, Option<Place>),
+        (place, lies): (Vec<Operand>, Option<TexelAddress>),
         name: &impl Fn(&str) -> String,
         observer: &mut O,
     ) -> u32 {

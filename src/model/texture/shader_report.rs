@@ -8,7 +8,7 @@ use super::stage::{Color, Dot};
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::attribute::Attribute;
-use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::interpolate::{Floored, Sample};
 use crate::state::{DependentScale, DotMapping, Level, Named};
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, plain, report};
 
@@ -220,7 +220,7 @@ pub(super) fn coordinates<O: Observer>(
     place: &Dependent<'_>,
     report: &Report<'_>,
     level: &Level,
-    settled: [Settled; 2],
+    floored: [Floored; 2],
     ideal: [f64; 2],
     observer: &mut O,
 ) {
@@ -253,7 +253,7 @@ pub(super) fn coordinates<O: Observer>(
                 inputs.push(plain("D", moved.at.d));
                 inputs.push(offset);
                 inputs.extend(shortfall(&moved.at));
-                inputs.push(plain("lowered", settled[axis].lowered));
+                inputs.push(plain("lowered", floored[axis].lowered));
                 ("TSH-7", "floor_plane_moved", inputs)
             }
             Target::Bytes(bytes, scale) => {
@@ -275,7 +275,7 @@ pub(super) fn coordinates<O: Observer>(
                 ("TEX-12", ["floor_float_face_u", "floor_float_face_v"][axis], inputs)
             }
         };
-        report.coordinate(rule, letter, settled[axis], ideal[axis], (operation, inputs), observer);
+        report.coordinate(rule, letter, floored[axis], ideal[axis], (operation, inputs), observer);
     }
 }
 

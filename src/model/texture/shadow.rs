@@ -1,7 +1,7 @@
 //! SHD-1: textures of depths, which a unit does not read but compares.
 
+use super::coordinates::SampleCoordinates;
 use super::fetch::Texel;
-use super::place::Place;
 use super::planned::PlannedUnit;
 use super::report::Report;
 use crate::number::Lane;
@@ -22,7 +22,7 @@ pub fn compare<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     shadow: ShadowComparison,
     texel: &Texel,
-    place: &impl Place,
+    place: &impl SampleCoordinates,
     observer: &mut O,
 ) -> [L; 4] {
     let format = unit.format.depth().unwrap_or(DepthFormat::Z16);

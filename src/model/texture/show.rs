@@ -7,9 +7,9 @@ use crate::state::{BORDER_TEXELS, Level, Texels, TextureFormat};
 /// A level of a face, border texels included.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// R, G, B, A of each texel, row by row from the top.
     pub pixels: Vec<[u8; 4]>,

@@ -1,6 +1,6 @@
 //! The stages of a texture shader as they are planned for a draw, and their coordinates as they are set up for a triangle.
 
-use super::place::Coordinates;
+use super::coordinates::Coordinates;
 use super::planned::PlannedUnit;
 use super::real::RealColor;
 use crate::raster::attribute::Attribute;

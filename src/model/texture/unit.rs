@@ -3,11 +3,11 @@
 use super::address::address;
 use super::anisotropy::{self, MAX_TAPS};
 use super::color_key;
+use super::coordinates::{SampleCoordinates, real_coordinate};
 use super::cube::Face;
 use super::fetch::{Slice, Texel, lanes};
 use super::filter::{bilinear, lerp, linear, nearest};
 use super::lod::{self, Choice};
-use super::place::{Place, real_coordinate};
 use super::planned::{Image, PlannedUnit};
 use super::report::{Report, filtered};
 use super::shadow;
@@ -28,7 +28,7 @@ struct Chosen<L: Lane> {
 pub fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     image: &Image<'_, L>,
-    place: &impl Place,
+    place: &impl SampleCoordinates,
     observer: &mut O,
 ) -> ([L; 4], bool) {
     let wants_ideal = O::ON || O::MEASURES || L::DECIDES;
@@ -85,7 +85,7 @@ pub fn sample<L: Lane, O: Observer>(
 
 /// TEX-9 to TEX-11.
 #[inline(always)]
-fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer: &mut O) -> Chosen<L> {
+fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer: &mut O) -> Chosen<L> {
     let whole = |choice| Chosen { choice, weight: L::weight(0, || 0.0) };
     if !unit.needs_lod() {
         return whole(Choice { filter: unit.state.mag_filter, level: 0, next: None });
@@ -114,15 +114,19 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer
 
 /// VOL-1: the layer of a volume. `None`: beyond them, in the border.
 #[inline(always)]
-pub fn layer<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer: &mut O) -> Option<usize> {
-    let settled = place.layer(unit.layers);
+pub fn layer<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    place: &impl SampleCoordinates,
+    observer: &mut O,
+) -> Option<usize> {
+    let fixed = place.layer(unit.layers);
     let of = |w: i64| address(unit.state.address_r, nearest(w), unit.layers, false).map(|layer| layer as usize);
     let real = || of(floored(real_coordinate(place.real_r(), unit.layers)));
-    let layer = if L::DECIDES { real() } else { of(settled.value) };
+    let layer = if L::DECIDES { real() } else { of(fixed.value) };
     if O::ON {
         let report = Report { unit, prefix: "" };
-        place.describe_layer(&report, unit.layers, settled, observer);
-        report.layer(settled.value, layer, observer);
+        place.describe_layer(&report, unit.layers, fixed, observer);
+        report.layer(fixed.value, layer, observer);
     }
     let code = |layer: Option<usize>| layer.map_or(-1, |layer| layer as i64);
     observer.decided(Decision::Layer, code(layer), || code(real()));
@@ -133,17 +137,17 @@ pub fn layer<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, obser
 #[inline(always)]
 fn coordinates<L: Lane, O: Observer>(
     slice: &Slice<'_>,
-    place: &impl Place,
+    place: &impl SampleCoordinates,
     real: [f64; 2],
     report: &Report<'_>,
     observer: &mut O,
 ) -> ([i64; 2], [f64; 2]) {
-    let settled = place.on(slice.level);
+    let fixed = place.on(slice.level);
     let wanted = if O::ON || O::MEASURES || L::DECIDES { real_on(slice.unit, slice.level, real) } else { [0.0; 2] };
     if O::ON {
-        place.describe(report, slice.level, settled, wanted, observer);
+        place.describe(report, slice.level, fixed, wanted, observer);
     }
-    (if L::DECIDES { wanted.map(floored) } else { settled.map(|c| c.value) }, wanted)
+    (if L::DECIDES { wanted.map(floored) } else { fixed.map(|c| c.value) }, wanted)
 }
 
 /// TEX-17: the taps of a footprint on level 0, each filtered.
@@ -151,7 +155,7 @@ fn coordinates<L: Lane, O: Observer>(
 fn taps<L: Lane, O: Observer>(
     slice: &Slice<'_>,
     image: &Image<'_, L>,
-    place: &impl Place,
+    place: &impl SampleCoordinates,
     (coordinates, wanted): ([i64; 2], [f64; 2]),
     observer: &mut O,
 ) -> [L; 4] {
@@ -211,7 +215,7 @@ fn taps<L: Lane, O: Observer>(
 fn fetched<L: Lane, O: Observer>(
     slice: &Slice<'_>,
     image: &Image<'_, L>,
-    place: &impl Place,
+    place: &impl SampleCoordinates,
     ([u, v], wanted): ([i64; 2], [f64; 2]),
     filter: Filter,
     report: &Report<'_>,

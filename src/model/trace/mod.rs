@@ -50,7 +50,7 @@ pub trait Observer {
     fn count(&mut self, _work: Work, _amount: u64) {}
 }
 
-/// Nobody listens.
+/// An observer that ignores everything, at no cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
@@ -73,7 +73,7 @@ impl Observer for Recorder {
     }
 }
 
-/// In place of how many make 1.0: the integer is the bit pattern of a single-precision number (TSH-4).
+/// The value of `per_one` for single-precision numbers, whose bit pattern the integer is (TSH-4).
 pub const SINGLE: i64 = 0;
 
 /// A named operand of a step.
@@ -81,7 +81,7 @@ pub const SINGLE: i64 = 0;
 pub struct Operand {
     /// The name of an earlier step, or of something given.
     pub name: String,
-    /// Its integer.
+    /// The operand as an integer.
     pub value: i64,
     /// How many make 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain integers, [`SINGLE`] for floats.
     pub per_one: i64,
@@ -98,9 +98,9 @@ pub struct Step {
     pub name: String,
     /// How: a fixed vocabulary, listed in `docs/trace-format.md`.
     pub operation: &'static str,
-    /// From what.
+    /// The operands, in the order of the operation.
     pub inputs: Vec<Operand>,
-    /// The integer.
+    /// The result as an integer.
     pub value: i64,
     /// How many make 1.0; [`SINGLE`]: the integer is the bit pattern of a single-precision number.
     pub per_one: i64,
@@ -109,12 +109,12 @@ pub struct Step {
     /// A remark for the reader: a tie, a saturation, an undefined value.
     pub note: Option<String>,
     /// Of a word that was read from a texture: where it lies.
-    pub texel: Option<Place>,
+    pub texel: Option<TexelAddress>,
 }
 
 /// Where a texel lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct TexelAddress {
     /// Number of the texture in the scene.
     pub texture: usize,
     /// The face of a cube map, 0 to 5 for +X, -X, +Y, -Y, +Z, -Z; 0 of others.
@@ -174,7 +174,7 @@ impl Step {
 
     /// Sets the place of the word.
     #[must_use]
-    pub fn at(mut self, texel: Option<Place>) -> Step {
+    pub fn at(mut self, texel: Option<TexelAddress>) -> Step {
         self.texel = texel;
         self
     }

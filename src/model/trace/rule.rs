@@ -20,15 +20,15 @@ named! {
         Int2 = "INT-2" => Part::Interpolation,
         /// Texture coordinates, as the weights of the filter.
         Int4 = "INT-4" => Part::Interpolation,
-        /// The same of projective coordinates.
+        /// Texture coordinates that are divided by q.
         Tex15 = "TEX-15" => Part::Interpolation,
-        /// The same of cube maps.
+        /// Texture coordinates on a face of a cube map.
         Tex12 = "TEX-12" => Part::Interpolation,
         /// Dependent coordinates of the dot unit, as the weights of the filter.
         Tsh4 = "TSH-4" => Part::Interpolation,
         /// The same of dependent reads by bytes.
         Tsh6 = "TSH-6" => Part::Interpolation,
-        /// The same of bump environment maps.
+        /// Texture coordinates moved by a bump environment map.
         Tsh7 = "TSH-7" => Part::Interpolation,
         /// Luminance.
         Tsh8 = "TSH-8" => Part::Filtering,
@@ -122,7 +122,7 @@ named! {
         Roundings = "roundings",
         /// Products and sums of the dot unit in single precision (TSH-4, TSH-5).
         Dots = "dot operations",
-        /// Channels blended.
+        /// Channels that are blended with the surface.
         Blends = "blended channels",
         /// Bytes of colour read from surfaces.
         BytesRead = "bytes read",

@@ -33,7 +33,7 @@ pub struct ObjectVertex {
     pub dimensions: [usize; 4],
 }
 
-/// Where lines of sight start.
+/// The point, or the direction, from which lines of sight start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewer {
     /// At the origin of eye space: each vertex has its own.
@@ -55,7 +55,7 @@ pub struct ModelView {
 }
 
 impl ModelView {
-    /// Of the matrix that takes positions there. Normals are taken by its cofactors, which point where the inverse transpose points,
+    /// Takes the matrix that brings positions there. Normals are transformed by its cofactors, which point where the inverse transpose points,
     /// need no division, and are right for a singular matrix as well.
     pub fn new(matrix: &Rows) -> ModelView {
         let m = |row: usize, column: usize| matrix[row % 3][column % 3];
@@ -79,11 +79,11 @@ impl ModelView {
 /// A vertex in eye space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeVertex<'a> {
-    /// As it was given.
+    /// The vertex as it was given, in object space.
     pub object: &'a ObjectVertex,
     /// How it came here.
     pub model_view: &'a ModelView,
-    /// Position.
+    /// x, y, z, w in eye space.
     pub position: [f32; 4],
     /// Normal, of unit length or zero.
     pub normal: [f32; 3],

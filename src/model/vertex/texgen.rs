@@ -34,9 +34,9 @@ pub struct Emboss {
 pub struct CoordinateSet {
     /// The given set that components without a generator come from.
     pub input: usize,
-    /// Of s, t, r, q.
+    /// The generators of s, t, r and q; `None`: the component that was given.
     pub generators: [Option<Generator>; 4],
-    /// In place of the generators.
+    /// Embossed coordinates, which take the place of the generators.
     pub emboss: Option<Emboss>,
     /// Applied at the end.
     pub matrix: Option<Rows>,

@@ -6,8 +6,8 @@
 pub(super) mod opengl;
 mod value;
 
+use crate::Span;
 use std::collections::HashMap;
-use std::ops::Range;
 
 use super::cursor::{Cursor, GivenUp};
 use super::finding::finding;
@@ -67,9 +67,9 @@ pub struct Aside {
 #[derive(Debug)]
 pub(super) enum Statement<'t> {
     /// `name(a, b)`
-    Call { name: Range<usize>, arguments: Vec<Value<'t>> },
+    Call { name: Span, arguments: Vec<Value<'t>> },
     /// `name = value` or `name[index] = value`
-    State { name: Range<usize>, index: Option<Value<'t>>, value: Value<'t> },
+    State { name: Span, index: Option<Value<'t>>, value: Value<'t> },
 }
 
 pub(super) struct Reader<'t> {
@@ -128,12 +128,12 @@ impl<'t> Reader<'t> {
     }
 
     /// The text of a place.
-    pub(super) fn word(&self, place: &Range<usize>) -> &'t str {
-        self.cursor.text(place)
+    pub(super) fn word(&self, span: &Span) -> &'t str {
+        self.cursor.text(span)
     }
 
     /// Whether a call has as many arguments as its function takes. `None` once it has been recorded that it has not.
-    pub(super) fn takes(&mut self, name: &Range<usize>, wanted: usize, written: usize) -> Option<()> {
+    pub(super) fn takes(&mut self, name: &Span, wanted: usize, written: usize) -> Option<()> {
         if written != wanted {
             let message = format!("{} has {wanted} arguments, not {written}", self.word(name));
             self.findings.push(finding("NB0211", name.clone(), message, "this call", "write them all"));
@@ -142,26 +142,19 @@ impl<'t> Reader<'t> {
     }
 
     /// Notes something that is no part of the program, once for each name.
-    pub(super) fn pass(&mut self, place: Range<usize>, name: &'t str, message: &str, label: &str, help: &str) {
+    pub(super) fn pass(&mut self, span: Span, name: &'t str, message: &str, label: &str, help: &str) {
         if self.asides.len() >= MAX_FINDINGS || self.passed.contains(&name) {
             return;
         }
         self.passed.push(name);
-        let finding = Diagnostic::warning("NB0917", place, message).label(label).help(help);
+        let finding = Diagnostic::warning("NB0917", span, message).label(label).help(help);
         self.asides.push(Aside { finding, field: None });
     }
 
     /// Notes a state that a field of the draw has, once for each name.
-    pub(super) fn aside(
-        &mut self,
-        place: Range<usize>,
-        name: &'t str,
-        message: &str,
-        help: &str,
-        field: Option<&'static str>,
-    ) {
+    pub(super) fn aside(&mut self, span: Span, name: &'t str, message: &str, help: &str, field: Option<&'static str>) {
         let before = self.asides.len();
-        self.pass(place, name, message, "no part of the program", help);
+        self.pass(span, name, message, "no part of the program", help);
         if let Some(aside) = self.asides.get_mut(before) {
             (aside.finding.code, aside.field) = ("NB0918", field);
         }
@@ -180,7 +173,7 @@ impl<'t> Reader<'t> {
     fn expected<T>(&mut self, what: &str) -> Option<T> {
         let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
-        self.findings.push(finding("NB0103", self.cursor.place(), message, "not a statement from here", help));
+        self.findings.push(finding("NB0103", self.cursor.span(), message, "not a statement from here", help));
         None
     }
 
@@ -212,9 +205,9 @@ impl<'t> Reader<'t> {
             }
             Some(Kind::Word) => self.at_word(),
             Some(Kind::Sign('#')) => {
-                let (place, name) = (self.cursor.place(), self.cursor.text_at(self.cursor.at + 1));
+                let (span, name) = (self.cursor.span(), self.cursor.text_at(self.cursor.at + 1));
                 let help = "the text is read as if the line were not there; `#define NAME value` is understood";
-                self.pass(place, name, "this line of the preprocessor is passed over", "not looked at", help);
+                self.pass(span, name, "this line of the preprocessor is passed over", "not looked at", help);
                 self.cursor.advance();
                 self.cursor.skip_to(Cursor::is_new_line);
                 Ok(None)
@@ -225,20 +218,20 @@ impl<'t> Reader<'t> {
 
     fn at_word(&mut self) -> Result<Option<Statement<'t>>, GivenUp> {
         let word = self.cursor.text_at(self.cursor.at);
-        let place = self.cursor.place();
+        let span = self.cursor.span();
         match (word, self.cursor.kind_at(self.cursor.at + 1)) {
             ("if" | "while" | "for" | "switch", Some(Kind::Sign('('))) => {
                 let message = format!("the condition of `{word}` is not looked at");
                 let help = "what stands below is read as if it were run once: paste the part that is meant";
-                self.pass(place, word, &message, "passed over", help);
+                self.pass(span, word, &message, "passed over", help);
                 self.until = self.behind_brackets(self.cursor.at + 1);
                 self.cursor.advance();
             }
             ("else" | "do" | "try", _) => self.cursor.advance(),
             ("return" | "break" | "continue" | "goto" | "case" | "default", _) => self.until = self.statement_end(),
-            (_, Some(Kind::Sign('('))) => return self.at_call(word, place),
+            (_, Some(Kind::Sign('('))) => return self.at_call(word, span),
             (_, Some(Kind::Sign('[' | '='))) if self.vocabulary.is_state(word) => {
-                let statement = self.state(place).ok_or(GivenUp)?;
+                let statement = self.state(span).ok_or(GivenUp)?;
                 self.end().ok_or(GivenUp)?;
                 return Ok(Some(statement));
             }
@@ -247,20 +240,20 @@ impl<'t> Reader<'t> {
                 if let Some(state) = (self.vocabulary.states)().into_iter().find(|state| nearly(word, state)) {
                     let message = format!("there is no state `{}`", shorten(word));
                     let help = format!("did you mean `{state}`?");
-                    self.findings.push(finding("NB0204", place, message, "not known", help));
+                    self.findings.push(finding("NB0204", span, message, "not known", help));
                     return Err(GivenUp);
                 }
-                self.pass_statement(word, place);
+                self.pass_statement(word, span);
             }
             // What stands before a call: a pointer, a type, a name of a pass.
             (_, Some(Kind::Arrow | Kind::Sign('.' | ':'))) => self.cursor.at += 2,
             (_, Some(Kind::Word | Kind::Sign('*' | '{'))) => self.cursor.advance(),
-            _ => self.pass_statement(word, place),
+            _ => self.pass_statement(word, span),
         }
         Ok(None)
     }
 
-    fn at_call(&mut self, word: &'t str, place: Range<usize>) -> Result<Option<Statement<'t>>, GivenUp> {
+    fn at_call(&mut self, word: &'t str, span: Span) -> Result<Option<Statement<'t>>, GivenUp> {
         if self.vocabulary.reads(word) {
             let call = self.call().ok_or(GivenUp)?;
             self.end().ok_or(GivenUp)?;
@@ -269,7 +262,7 @@ impl<'t> Reader<'t> {
         if let Some(known) = self.vocabulary.calls.split(' ').find(|known| nearly(word, known)) {
             let message = format!("`{}` is no call that is read here", shorten(word));
             let help = format!("did you mean `{known}`?");
-            self.findings.push(finding("NB0204", place, message, "not known", help));
+            self.findings.push(finding("NB0204", span, message, "not known", help));
             return Err(GivenUp);
         }
         let end = self.behind_brackets(self.cursor.at + 1);
@@ -279,30 +272,30 @@ impl<'t> Reader<'t> {
             return Ok(None);
         }
         if !self.vocabulary.silent.split(' ').any(|silent| word.ends_with(silent)) {
-            self.pass_name(word, place);
+            self.pass_name(word, span);
         }
         self.cursor.at = end;
         Ok(None)
     }
 
-    fn pass_name(&mut self, word: &'t str, place: Range<usize>) {
+    fn pass_name(&mut self, word: &'t str, span: Span) {
         let vocabulary = self.vocabulary;
         let instead = vocabulary.instead.iter().find(|(name, _)| word.ends_with(name));
         let help =
             instead.map_or("nothing to do, if the scene says what it is for in fields of its own", |(_, help)| *help);
         let message = format!("`{}` is passed over", shorten(word));
         let label = format!("no part of {}", vocabulary.what);
-        self.pass(place, word, &message, &label, help);
+        self.pass(span, word, &message, &label, help);
     }
 
     /// Passes over a statement that is not read, but for the calls in it.
-    fn pass_statement(&mut self, word: &'t str, place: Range<usize>) {
+    fn pass_statement(&mut self, word: &'t str, span: Span) {
         let end = self.statement_end();
         if (self.cursor.at..end).any(|at| self.is_call(at)) {
             self.until = end;
             return;
         }
-        self.pass_name(word, place);
+        self.pass_name(word, span);
         self.cursor.at = end;
     }
 
@@ -351,7 +344,7 @@ impl<'t> Reader<'t> {
 
     /// `name(a, b)`; `None` once the reason that it is none has been recorded.
     fn call(&mut self) -> Option<Statement<'t>> {
-        let name = self.cursor.place();
+        let name = self.cursor.span();
         self.cursor.at += 2;
         let mut arguments = Vec::new();
         if self.cursor.take(')') {
@@ -365,7 +358,7 @@ impl<'t> Reader<'t> {
         Some(Statement::Call { name, arguments })
     }
 
-    fn state(&mut self, name: Range<usize>) -> Option<Statement<'t>> {
+    fn state(&mut self, name: Span) -> Option<Statement<'t>> {
         self.cursor.advance();
         let mut index = None;
         if self.cursor.take('[') {

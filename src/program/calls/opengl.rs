@@ -1,8 +1,7 @@
 //! What OpenGL's calls have in common: names, numbers, colours, capabilities.
 
-use std::ops::Range;
-
 use super::{Part, PartKind, Reader, Value, known, out_of_range, wrong_kind};
+use crate::Span;
 use crate::finding::finding;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::number::convert::constant;
@@ -64,7 +63,7 @@ pub(crate) fn numbered(
         Some(index) if index < count => Some(index),
         Some(index) => {
             let help = format!("write GL_{name}0 to GL_{name}{}", count - 1);
-            out_of_range(&value.place, what, index, &help, findings)
+            out_of_range(&value.span, what, index, &help, findings)
         }
         None => wrong_kind(value, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings),
     }
@@ -110,8 +109,8 @@ pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) 
     const HELP: &str =
         "define it in the text, `GLfloat color[4] = { 1, 0.5, 0, 1 };`, or write `{ 1, 0.5, 0, 1 }` here";
     let Some(values) = reader.list(value) else {
-        let message = format!("the values of `{}` are not in the text", shorten(reader.word(&value.place)));
-        reader.findings.push(finding("NB0205", value.place.clone(), message, "four numbers are needed", HELP));
+        let message = format!("the values of `{}` are not in the text", shorten(reader.word(&value.span)));
+        reader.findings.push(finding("NB0205", value.span.clone(), message, "four numbers are needed", HELP));
         return None;
     };
     let integral = is_integral(function);
@@ -120,7 +119,7 @@ pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) 
         Some(&[r, g, b, a]) => Some([r, g, b, a]),
         Some(bytes) => {
             let message = format!("a colour has four numbers, not {}", if bytes.len() > 4 { "more" } else { "fewer" });
-            reader.findings.push(finding("NB0211", value.place.clone(), message, "R, G, B and A", HELP));
+            reader.findings.push(finding("NB0211", value.span.clone(), message, "R, G, B and A", HELP));
             None
         }
         None => {
@@ -158,8 +157,8 @@ const CAPABILITIES: &[(&str, &str, &str)] = &[
 ];
 
 /// `glEnable` and `glDisable` of something that is no part of the program.
-pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Range<usize>, value: &Value<'t>, enable: bool) {
-    let written = reader.word(&value.place);
+pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Span, value: &Value<'t>, enable: bool) {
+    let written = reader.word(&value.span);
     let capability = bare(written, &[]);
     if capability.starts_with("TEXTURE_") && capability != "TEXTURE_SHADER" {
         // The draw's `textures` say which units have one.
@@ -170,12 +169,12 @@ pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Range<usize>, value
         Some((_, field, form)) => {
             let message = format!("`{}` is a state of the draw", shorten(written));
             let help = format!("write it in the draw: {form}");
-            reader.aside(value.place.clone(), written, &message, &help, Some(*field));
+            reader.aside(value.span.clone(), written, &message, &help, Some(*field));
         }
         None => {
             let message = format!("`{}({})` is passed over", reader.word(name), shorten(written));
             let help = "nothing to do, if the scene says what it is for in fields of its own";
-            reader.pass(value.place.clone(), written, &message, "no part of the program", help);
+            reader.pass(value.span.clone(), written, &message, "no part of the program", help);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Values of pasted text: numbers, names of an API, macros, lists.
 
+use crate::Span;
 use std::fmt::Display;
-use std::ops::Range;
 
 use super::{Kind, Reader};
 use crate::finding::finding;
@@ -15,7 +15,7 @@ const MAX_BRACKET_DEPTH: usize = 8;
 #[derive(Clone, Debug)]
 pub(crate) struct Part<'t> {
     pub(crate) text: &'t str,
-    pub(crate) place: Range<usize>,
+    pub(crate) span: Span,
     pub(crate) kind: PartKind<'t>,
 }
 
@@ -35,7 +35,7 @@ pub(crate) enum PartKind<'t> {
 #[derive(Clone, Debug)]
 pub(crate) struct Value<'t> {
     pub(crate) parts: Vec<Part<'t>>,
-    pub(crate) place: Range<usize>,
+    pub(crate) span: Span,
 }
 
 impl<'t> Reader<'t> {
@@ -45,36 +45,36 @@ impl<'t> Reader<'t> {
     }
 
     fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
-        let start = self.cursor.place().start;
+        let start = self.cursor.span().start;
         let mut parts = Vec::new();
         self.part(&mut parts, depth)?;
         while self.cursor.take('|') || self.cursor.take('+') {
             self.part(&mut parts, depth)?;
         }
-        Some(Value { parts, place: start..self.cursor.end() })
+        Some(Value { parts, span: start..self.cursor.end() })
     }
 
     fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
         if depth > MAX_BRACKET_DEPTH {
             return self.expected("a value in fewer brackets");
         }
-        let place = self.cursor.place();
-        let text = self.word(&place);
+        let span = self.cursor.span();
+        let text = self.word(&span);
         match self.cursor.kind() {
             Some(Kind::Number) => {
                 self.cursor.advance();
-                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, false)? });
+                parts.push(Part { text, span: span.clone(), kind: self.number_kind(text, span, false)? });
             }
             Some(Kind::Sign('-')) => {
                 self.cursor.advance();
-                let number = self.cursor.place();
+                let number = self.cursor.span();
                 let text = self.word(&number);
                 if self.cursor.kind() != Some(Kind::Number) {
                     return self.expected("a number");
                 }
                 self.cursor.advance();
-                let place = place.start..number.end;
-                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, true)? });
+                let span = span.start..number.end;
+                parts.push(Part { text, span: span.clone(), kind: self.number_kind(text, span, true)? });
             }
             // The address of an array's first element is the array.
             Some(Kind::Sign('&' | '+')) => {
@@ -94,26 +94,26 @@ impl<'t> Reader<'t> {
             Some(Kind::Sign('{')) => {
                 self.cursor.advance();
                 let values = self.values('}', depth)?;
-                let place = place.start..self.cursor.end();
-                parts.push(Part { text: self.word(&place), place, kind: PartKind::List(values) });
+                let span = span.start..self.cursor.end();
+                parts.push(Part { text: self.word(&span), span, kind: PartKind::List(values) });
             }
             Some(Kind::Sign('<')) if self.cursor.kind_at(self.cursor.at + 2) == Some(Kind::Sign('>')) => {
                 self.cursor.at += 3;
-                let place = place.start..self.cursor.end();
-                parts.push(Part { text: self.word(&place), place, kind: PartKind::Name });
+                let span = span.start..self.cursor.end();
+                parts.push(Part { text: self.word(&span), span, kind: PartKind::Name });
             }
             Some(Kind::Word) => {
                 self.cursor.advance();
                 if self.cursor.take('(') {
                     let arguments = self.values(')', depth)?;
-                    let place = place.start..self.cursor.end();
-                    parts.push(Part { text, place, kind: PartKind::Call(arguments) });
+                    let span = span.start..self.cursor.end();
+                    parts.push(Part { text, span, kind: PartKind::Call(arguments) });
                     return Some(());
                 }
                 self.members();
-                let place = place.start..self.cursor.end();
-                let text = self.word(&place).trim_end_matches("[0]");
-                parts.push(Part { text, place, kind: PartKind::Name });
+                let span = span.start..self.cursor.end();
+                let text = self.word(&span).trim_end_matches("[0]");
+                parts.push(Part { text, span, kind: PartKind::Name });
             }
             _ => {
                 return self.expected("a number or a name of the API");
@@ -159,7 +159,7 @@ impl<'t> Reader<'t> {
         (self.cursor.kind_at(close) == Some(Kind::Sign(')'))).then_some(close + 1)
     }
 
-    fn number_kind(&mut self, text: &str, place: Range<usize>, negative: bool) -> Option<PartKind<'t>> {
+    fn number_kind(&mut self, text: &str, span: Span, negative: bool) -> Option<PartKind<'t>> {
         if let Some(value) = integer(text) {
             return Some(PartKind::Integer(if negative { value.wrapping_neg() } else { value }));
         }
@@ -174,7 +174,7 @@ impl<'t> Reader<'t> {
             _ => {
                 let help = "write a whole number, a hexadecimal one such as 0xff8040, or a fraction such as 0.5f";
                 let message = format!("`{}` is not a number", shorten(text));
-                self.findings.push(finding("NB0205", place, message, "not a number", help));
+                self.findings.push(finding("NB0205", span, message, "not a number", help));
                 None
             }
         }
@@ -231,7 +231,7 @@ pub(crate) fn known<T: Copy>(
     }
     let message = format!("there is no {what} `{:.40}`", part.text);
     let help = meant(bare, known, spelled);
-    findings.push(finding("NB0204", part.place.clone(), message, "not known", help));
+    findings.push(finding("NB0204", part.span.clone(), message, "not known", help));
     None
 }
 
@@ -249,25 +249,25 @@ pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<D
         return Some(part);
     }
     let message = format!("expected one {what}, found several joined by `|`");
-    findings.push(finding("NB0205", value.place.clone(), message, "not one value", "write one of them"));
+    findings.push(finding("NB0205", value.span.clone(), message, "not one value", "write one of them"));
     None
 }
 
 /// Records that there is no such number.
 pub(crate) fn out_of_range<T>(
-    place: &Range<usize>,
+    span: &Span,
     what: &str,
     value: impl Display,
     help: &str,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<T> {
     let message = format!("there is no {what} {value}");
-    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
+    findings.push(finding("NB0206", span.clone(), message, "out of range", help));
     None
 }
 
 /// Records that another kind of value stands here.
 pub(crate) fn wrong_kind<T>(value: &Value<'_>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<T> {
-    findings.push(finding("NB0205", value.place.clone(), format!("expected {what}"), "wrong kind of value", help));
+    findings.push(finding("NB0205", value.span.clone(), format!("expected {what}"), "wrong kind of value", help));
     None
 }

@@ -1,8 +1,7 @@
 //! The rules of the language, as its validator has them.
 
-use std::ops::Range;
-
 use super::*;
+use crate::Span;
 use crate::finding::finding;
 
 /// Arithmetic instructions, or pairs of them, that a shader can have.
@@ -69,63 +68,56 @@ struct Check<'p> {
 }
 
 impl Check<'_> {
-    fn push(
-        &mut self,
-        code: &'static str,
-        place: &Range<usize>,
-        message: String,
-        label: &str,
-        help: impl Into<String>,
-    ) {
-        self.findings.push(finding(code, place.clone(), message, label, help));
+    fn push(&mut self, code: &'static str, span: &Span, message: String, label: &str, help: impl Into<String>) {
+        self.findings.push(finding(code, span.clone(), message, label, help));
     }
 
-    fn warn(&mut self, code: &'static str, place: &Range<usize>, message: String, label: &str, help: &str) {
-        self.findings.push(Diagnostic::warning(code, place.clone(), message).label(label).help(help));
+    fn warn(&mut self, code: &'static str, span: &Span, message: String, label: &str, help: &str) {
+        self.findings.push(Diagnostic::warning(code, span.clone(), message).label(label).help(help));
     }
 
     /// Where the first instruction stands.
     fn first(&self) -> Option<usize> {
-        let first = |texture: &TextureInstruction| texture.place.start;
+        let first = |texture: &TextureInstruction| texture.span.start;
         let texture = self.program.textures.first().map(first);
-        let arithmetic = self.program.arithmetic.first().map(|instruction| instruction.place.start);
+        let arithmetic = self.program.arithmetic.first().map(|instruction| instruction.span.start);
         texture.into_iter().chain(arithmetic).min()
     }
 
     fn definitions(&mut self) {
-        let mut seen: [Option<Range<usize>>; CONSTANTS] = Default::default();
+        let mut seen: [Option<Span>; CONSTANTS] = Default::default();
         for definition in &self.program.definitions {
-            let Definition { index, place, .. } = definition;
-            if self.first().is_some_and(|first| first < place.start) {
+            let Definition { index, span, .. } = definition;
+            if self.first().is_some_and(|first| first < span.start) {
                 let message = format!("def c{index} behind an instruction");
                 let help = "definitions stand between the version and the instructions";
-                self.push("NB0373", place, message, "too late", help);
+                self.push("NB0373", span, message, "too late", help);
             }
             let Some(slot) = seen.get_mut(usize::from(*index)) else { continue };
             match slot {
                 Some(first) => {
                     let message = format!("c{index} is defined twice");
-                    let finding = finding("NB0364", place.clone(), message, "again here", "keep one of them");
+                    let finding = finding("NB0364", span.clone(), message, "again here", "keep one of them");
                     self.findings.push(finding.related(first.clone(), "first here"));
                 }
-                None => *slot = Some(place.clone()),
+                None => *slot = Some(span.clone()),
             }
         }
     }
 
     fn textures(&mut self) {
-        let arithmetic = self.program.arithmetic.first().map(|instruction| instruction.place.start);
+        let arithmetic = self.program.arithmetic.first().map(|instruction| instruction.span.start);
         let mut last: Option<u8> = None;
         for (n, texture) in self.program.textures.iter().enumerate() {
             let (unit, name) = (texture.unit.value, texture.operation.name());
-            if arithmetic.is_some_and(|first| first < texture.place.start) {
+            if arithmetic.is_some_and(|first| first < texture.span.start) {
                 let message = format!("{name} t{unit} behind an arithmetic instruction");
-                self.push("NB0373", &texture.place, message, "too late", "texture instructions come first: move it up");
+                self.push("NB0373", &texture.span, message, "too late", "texture instructions come first: move it up");
             }
             if let Some(last) = last.filter(|last| unit <= *last) {
                 let message = format!("t{unit} is loaded behind t{last}");
                 let help = "each texture instruction has a register of its own, in the order of their numbers";
-                self.push("NB0373", &texture.unit.place, message, "not in this order", help);
+                self.push("NB0373", &texture.unit.span, message, "not in this order", help);
             }
             last = Some(unit.max(last.unwrap_or(0)));
             if let Some(source) = &texture.source {
@@ -139,7 +131,7 @@ impl Check<'_> {
         }
     }
 
-    fn texture_source(&mut self, texture: &TextureInstruction, source: &At<TextureSource>) {
+    fn texture_source(&mut self, texture: &TextureInstruction, source: &Spanned<TextureSource>) {
         let (unit, from) = (texture.unit.value, source.value.unit);
         if self.known.of(ShaderRegister { bank: Bank::Texture, index: from })[0] {
             return;
@@ -149,7 +141,7 @@ impl Check<'_> {
             true => format!("write `tex t{from}` before it"),
             false => "it reads a register with a lower number, loaded before".to_owned(),
         };
-        self.push("NB0375", &source.place, message, "no colour here yet", help);
+        self.push("NB0375", &source.span, message, "no colour here yet", help);
     }
 
     /// Why a texture register holds no colour.
@@ -193,7 +185,7 @@ impl Check<'_> {
         };
         if let Some(wanted) = wanted {
             let message = format!("{} t{unit} is part of no whole matrix", texture.operation.name());
-            self.push("NB0373", &texture.place, message, "a row without the others", format!("it takes {wanted}"));
+            self.push("NB0373", &texture.span, message, "a row without the others", format!("it takes {wanted}"));
         }
     }
 
@@ -203,7 +195,7 @@ impl Check<'_> {
             let message = format!("{slots} arithmetic instructions; ps.1.1 has {MAX_ARITHMETIC_SLOTS}");
             let help =
                 "a colour and an alpha instruction count as one if paired by `+`; or draw in two passes with `blend`";
-            self.push("NB0374", &slot.place, message, "the first too many", help);
+            self.push("NB0374", &slot.span, message, "the first too many", help);
         }
     }
 
@@ -212,13 +204,13 @@ impl Check<'_> {
         let [first, rest @ ..] = slot else { return };
         if first.paired {
             let message = "`+` without an instruction to pair with".to_owned();
-            self.push("NB0376", &first.place, message, "nothing before it", "leave the `+` out");
+            self.push("NB0376", &first.span, message, "nothing before it", "leave the `+` out");
         }
         let Some(second) = rest.first() else { return };
         if let Some(third) = rest.get(1) {
             let message = "three instructions cannot be issued together".to_owned();
             let help = "leave this `+` out: a pair is one instruction that writes `.rgb` and one that writes `.a`";
-            self.push("NB0376", &third.place, message, "one too many", help);
+            self.push("NB0376", &third.span, message, "one too many", help);
         }
         let [one, other] = [first, second].map(|instruction| instruction.target.value);
         if !matches!((one.mask, other.mask), (Mask::Color, Mask::Alpha) | (Mask::Alpha, Mask::Color)) {
@@ -228,19 +220,19 @@ impl Check<'_> {
             };
             let message = format!("both instructions of this pair write {pipe}");
             let help = "one of a pair writes `.rgb`, the other `.a`";
-            let error = finding("NB0376", second.target.place.clone(), message, "not in the same cycle", help);
-            self.findings.push(error.related(first.target.place.clone(), "the other one"));
+            let error = finding("NB0376", second.target.span.clone(), message, "not in the same cycle", help);
+            self.findings.push(error.related(first.target.span.clone(), "the other one"));
         } else if self.program.version == Version::Ps10 && one.register != other.register {
             let message = format!(
                 "ps.1.0 pairs instructions that write one register, not {} and {}",
                 one.register, other.register
             );
-            self.push("NB0376", &second.target.place, message, "another register", "write `ps.1.1`");
+            self.push("NB0376", &second.target.span, message, "another register", "write `ps.1.1`");
         }
         if second.operation == Operation::Cnd && second.target.value.mask == Mask::Color {
             let message = "a colour `cnd` behind `+` does not compare: it takes its second source".to_owned();
             let help = "write the pair the other way round, cnd first, to have it compare";
-            self.warn("NB0908", &second.place, message, "always the second source", help);
+            self.warn("NB0908", &second.span, message, "always the second source", help);
         }
     }
 
@@ -270,10 +262,10 @@ impl Check<'_> {
                             _ => format!("{what} reads more than {most} of the {name} registers"),
                         };
                         let help = "`mov` one of them to r0 or r1 first";
-                        self.push("NB0372", &source.place, message, "one too many", help);
+                        self.push("NB0372", &source.span, message, "one too many", help);
                     } else if in_all && slot.len() > 1 && all.len() == 4 {
                         let message = format!("this pair reads more than 3 of the {name} registers");
-                        self.push("NB0372", &source.place, message, "one too many", "issue the two after one another");
+                        self.push("NB0372", &source.span, message, "one too many", "issue the two after one another");
                     }
                 }
             }
@@ -282,17 +274,17 @@ impl Check<'_> {
 
     fn instruction(&mut self, instruction: &Arithmetic) {
         let name = instruction.operation.name();
-        let At { value: target, place } = &instruction.target;
+        let Spanned { value: target, span } = &instruction.target;
         if matches!(target.register.bank, Bank::Constant | Bank::Color) {
             let message = format!("{} cannot be written", target.register);
-            self.push("NB0371", place, message, "read only", "write r0, r1 or a texture register");
+            self.push("NB0371", span, message, "read only", "write r0, r1 or a texture register");
         }
         if instruction.operation == Operation::Dp3 && target.mask == Mask::Alpha {
             let message = "dp3 cannot write alpha alone".to_owned();
             let help = "it runs in the colour pipe: write all channels, or `.rgb`";
-            self.push("NB0371", place, message, "alpha only", help);
+            self.push("NB0371", span, message, "alpha only", help);
         }
-        for (n, At { value: source, place }) in instruction.sources.iter().enumerate() {
+        for (n, Spanned { value: source, span }) in instruction.sources.iter().enumerate() {
             if instruction.operation == Operation::Cnd && n == 0 {
                 // An alpha instruction reads alpha anyway.
                 let alpha = source.selector == Selector::Alpha
@@ -301,7 +293,7 @@ impl Check<'_> {
                 let r0 = ShaderRegister { bank: Bank::Temporary, index: 0 };
                 if source.register != r0 || !alpha || !plain {
                     let help = "the first source is `r0.a`, as it is: compute the condition there";
-                    self.push("NB0371", place, format!("{name} compares r0.a alone"), "not r0.a", help);
+                    self.push("NB0371", span, format!("{name} compares r0.a alone"), "not r0.a", help);
                 }
             }
             if source.selector == Selector::Blue
@@ -312,19 +304,19 @@ impl Check<'_> {
                     _ => format!("{name} cannot read blue for colours"),
                 };
                 let help = "`.b` is read by instructions that write `.a`, from ps.1.1 on";
-                self.push("NB0371", place, message, "blue alone", help);
+                self.push("NB0371", span, message, "blue alone", help);
             }
             if source.register.bank == Bank::Constant && (source.modifier != Modifier::Plain || source.negate) {
                 let message = format!("{} is modified, which the API leaves undefined for constants", source.register);
                 let help = "put the modified value into the constant, or read it by way of r0 or r1";
-                self.warn("NB0907", place, message, "modified as a register here", help);
+                self.warn("NB0907", span, message, "modified as a register here", help);
             }
-            self.read(instruction, source, place);
+            self.read(instruction, source, span);
         }
     }
 
     /// A register is written before it is read.
-    fn read(&mut self, instruction: &Arithmetic, source: &Source, place: &Range<usize>) {
+    fn read(&mut self, instruction: &Arithmetic, source: &Source, span: &Span) {
         let Reads { color, alpha } = instruction.reads(source);
         let [has_color, has_alpha] = self.known.of(source.register);
         let part = match (color && !has_color, alpha && !has_alpha) {
@@ -344,27 +336,27 @@ impl Check<'_> {
                 format!("write it with an instruction above: `mov {register}, ...`"),
             ),
         };
-        self.push("NB0375", place, message, "nothing here yet", help);
+        self.push("NB0375", span, message, "nothing here yet", help);
     }
 
     /// The result is r0.
     fn result(&mut self) {
-        let place = self.program.arithmetic.last().map(|instruction| instruction.target.place.clone());
-        let place = place.or(self.program.textures.last().map(|texture| texture.unit.place.clone())).unwrap_or(0..0);
+        let span = self.program.arithmetic.last().map(|instruction| instruction.target.span.clone());
+        let span = span.or(self.program.textures.last().map(|texture| texture.unit.span.clone())).unwrap_or(0..0);
         match self.known.temporary[0] {
             [true, true] => {}
             [false, false] => {
                 let message = "this shader does not write r0".to_owned();
-                self.push("NB0377", &place, message, "the last result", "r0 is the pixel: `mov r0, ...` at the end");
+                self.push("NB0377", &span, message, "the last result", "r0 is the pixel: `mov r0, ...` at the end");
             }
             [true, false] => {
                 let message = "the alpha of r0 is not written".to_owned();
                 let help = "it is that of texture 0, as a register combiner starts (CMB-13); write `mov r0.a, ...`";
-                self.warn("NB0909", &place, message, "the last result", help);
+                self.warn("NB0909", &span, message, "the last result", help);
             }
             [false, true] => {
                 let message = "the colour of r0 is not written".to_owned();
-                self.warn("NB0909", &place, message, "the last result", "it is black; write `mov r0.rgb, ...`");
+                self.warn("NB0909", &span, message, "the last result", "it is black; write `mov r0.rgb, ...`");
             }
         }
     }

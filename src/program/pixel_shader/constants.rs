@@ -59,7 +59,7 @@ impl Pool {
         self.alpha(value).or_else(|| self.color([value; 3]))
     }
 
-    /// The registers.
+    /// The values of both constant registers, R, G, B, A; 0 where nothing is needed.
     pub(super) fn registers(&self) -> [[u8; 4]; 2] {
         [0, 1].map(|n| {
             let [r, g, b] = self.colors[n].unwrap_or_default();

@@ -17,7 +17,7 @@ pub(super) enum Need {
     Factor(usize),
     /// The blue of a register is copied to its alpha (nv10: a dot product).
     Alpha(Register),
-    /// Nothing helps.
+    /// No stage can prepare it.
     Refused,
 }
 
@@ -54,14 +54,14 @@ impl Factor {
         Factor { negated: None, positive: true, ..Factor::new(register, component, [mapping; 2]) }
     }
 
-    /// 1.
+    /// The factor 1.
     pub(super) fn one(alpha: bool) -> Factor {
         let component = if alpha { Component::Alpha } else { Component::Rgb };
         let mappings = [InputMapping::UnsignedInvert, InputMapping::ExpandNormal];
         Factor { positive: true, ..Factor::new(Register::Zero, component, mappings) }
     }
 
-    /// -x.
+    /// The factor with the other sign.
     pub(super) fn minus(self) -> Factor {
         Factor { negate: !self.negate, ..self }
     }

@@ -1,10 +1,9 @@
 //! From instructions to general stages: one for each instruction or pair, and one more where a stage cannot say it.
 
-use std::ops::Range;
-
 use super::constants::{Pool, Signed, signed, values};
 use super::scratch::{Set, contains, hardware, live};
 use super::*;
+use crate::Span;
 use crate::cascade::{End, final_combiner, too_many_stages};
 use crate::finding::finding;
 use ninebit::state::{
@@ -17,14 +16,14 @@ use ninebit::state::{
 pub struct Bump {
     /// BUMPENVMAT00, 01, 10, 11.
     pub matrix: Option<[f32; 4]>,
-    /// BUMPENVLSCALE, BUMPENVLOFFSET.
+    /// Scale and offset: BUMPENVLSCALE, BUMPENVLOFFSET.
     pub luminance: Option<[f32; 2]>,
 }
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units whose colours can be negative.
     pub signed: [bool; TEXTURE_UNITS],
@@ -47,20 +46,20 @@ impl Context {
 /// What a texture unit does for a shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitUse {
-    /// Its operation.
+    /// What the unit is programmed to do.
     pub operation: ShaderOperation,
     /// The unit that it reads.
     pub previous: usize,
     /// How a dot product takes that.
     pub mapping: DotMapping,
-    /// The instruction.
-    pub place: Range<usize>,
+    /// The instruction that wants it, in the text.
+    pub span: Span,
 }
 
 /// A lowered shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,
@@ -116,7 +115,7 @@ pub(super) struct Half {
 /// What is known of a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Value {
-    /// Colour, alpha.
+    /// Of colour and of alpha.
     pub(super) halves: [Half; 2],
     /// Its alpha is its blue: a dot product on a chip without blue-to-alpha.
     pub(super) alpha_is_blue: bool,
@@ -149,7 +148,7 @@ pub(super) struct Lowering {
     pub(super) pool: Pool,
     stages: Vec<GeneralStage>,
     origins: Vec<StageOrigin>,
-    places: Vec<Range<usize>>,
+    places: Vec<Span>,
     pub(super) findings: Vec<Diagnostic>,
 }
 
@@ -170,7 +169,7 @@ impl Lowering {
     /// One instruction or pair.
     fn slot(&mut self, slot: &[Arithmetic], live: Set) {
         let Some(first) = slot.first() else { return };
-        let place = first.place.clone();
+        let span = first.span.clone();
         self.held.keep(|register| !contains(live, register));
         // Each turn prepares one thing; there are fewer things than this.
         for _ in 0..16 {
@@ -184,23 +183,23 @@ impl Lowering {
                     };
                     let none = || "pixel shader: nothing".to_owned();
                     let [rgb_origin, alpha_origin] = [false, true].map(|alpha| part(alpha).unwrap_or_else(none));
-                    self.push(rgb, alpha, pool, StageOrigin { rgb: rgb_origin, alpha: alpha_origin }, place);
+                    self.push(rgb, alpha, pool, StageOrigin { rgb: rgb_origin, alpha: alpha_origin }, span);
                     self.write(slot);
                     let targets = slot.iter().map(|instruction| hardware(instruction.target.value.register));
                     self.held.keep(|register| targets.clone().all(|target| target != Some(register)));
                     return;
                 }
                 Err(need) => {
-                    if self.prepare(need, slot, live, &place).is_none() {
+                    if self.prepare(need, slot, live, &span).is_none() {
                         return;
                     }
                 }
             }
         }
-        self.no_register(&place);
+        self.no_register(&span);
     }
 
-    pub(super) fn push(&mut self, rgb: Written, alpha: Written, pool: Pool, origin: StageOrigin, place: Range<usize>) {
+    pub(super) fn push(&mut self, rgb: Written, alpha: Written, pool: Pool, origin: StageOrigin, span: Span) {
         for ((portion, positive), half) in [(&rgb, 0), (&alpha, 1)] {
             for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
                 let value = &mut self.values[output as usize];
@@ -214,7 +213,7 @@ impl Lowering {
         self.values[Register::Zero as usize] = Value::default();
         self.stages.push(GeneralStage { rgb: rgb.0, alpha: alpha.0, constants: pool.registers() });
         self.origins.push(origin);
-        self.places.push(place);
+        self.places.push(span);
     }
 
     /// What the instructions of a stage leave to their readers.
@@ -239,8 +238,8 @@ impl Lowering {
     fn finish(mut self, program: &PixelShader, fog: bool) -> Result<(Combiners, Vec<StageOrigin>), Vec<Diagnostic>> {
         self.secondary_alpha(program);
         let (needed, most) = (self.stages.len(), self.profile.general_stages());
-        if let Some(place) = self.places.get(most) {
-            let error = too_many_stages(self.profile, needed, place.clone(), "pixel shader");
+        if let Some(span) = self.places.get(most) {
+            let error = too_many_stages(self.profile, needed, span.clone(), "pixel shader");
             let dot = program.arithmetic.iter().any(|instruction| instruction.operation == Operation::Dp3);
             let more = needed.saturating_sub(program.slots().count());
             let error = match more {
@@ -278,11 +277,11 @@ impl Lowering {
         }
         let v1 = ShaderRegister { bank: Bank::Color, index: 1 };
         for instruction in &program.arithmetic {
-            for At { value: source, place } in &instruction.sources {
+            for Spanned { value: source, span } in &instruction.sources {
                 if source.register == v1 && instruction.reads(source).alpha {
                     let message = "the alpha of v1 is not defined on Nv10";
                     let help = "profile Nv2a defines it: write `profile: Nv2a`, or write `.rgb` alone here";
-                    let error = finding("NB0309", place.clone(), message, "read for alpha", help);
+                    let error = finding("NB0309", span.clone(), message, "read for alpha", help);
                     self.findings.push(error.rule("CMB-13"));
                 }
             }

@@ -15,9 +15,8 @@ mod scratch;
 mod texture;
 mod words;
 
-use std::ops::Range;
-
-use super::At;
+use super::Spanned;
+use crate::Span;
 use ninebit::diagnostic::{Diagnostic, Severity};
 use ninebit::state::{Named, Scale, named};
 
@@ -36,7 +35,7 @@ named! {
         Ps11 = "ps.1.1",
         /// 1.1 with three textures in an instruction. What it adds besides is refused.
         Ps12 = "ps.1.2",
-        /// The same.
+        /// 1.2 with instructions that are refused as well.
         Ps13 = "ps.1.3",
     }
 }
@@ -78,7 +77,7 @@ impl Bank {
 /// A register of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaderRegister {
-    /// Its kind.
+    /// The bank that it belongs to.
     pub bank: Bank,
     /// Its number, below [`Bank::count`].
     pub index: u8,
@@ -118,11 +117,11 @@ named! {
 /// A source of an arithmetic instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Register.
+    /// The register that is read.
     pub register: ShaderRegister,
-    /// Channels.
+    /// Which of its channels.
     pub selector: Selector,
-    /// Modifier.
+    /// What is made of them.
     pub modifier: Modifier,
     /// The negative of all that.
     pub negate: bool,
@@ -131,11 +130,11 @@ pub struct Source {
 named! {
     /// Which channels an instruction writes.
     pub enum Mask {
-        /// All four.
+        /// Colour and alpha.
         All = "",
         /// R, G and B.
         Color = ".rgb",
-        /// Alpha.
+        /// Alpha alone.
         Alpha = ".a",
     }
 }
@@ -156,7 +155,7 @@ impl Mask {
 pub struct Target {
     /// r0, r1 or t0 to t3.
     pub register: ShaderRegister,
-    /// Channels.
+    /// The channels that are written.
     pub mask: Mask,
 }
 
@@ -189,7 +188,7 @@ named! {
 pub struct Reads {
     /// Channels of its colour.
     pub color: bool,
-    /// Its alpha.
+    /// Its alpha channel.
     pub alpha: bool,
 }
 
@@ -203,13 +202,13 @@ pub struct Arithmetic {
     /// `_sat`: limited to 0..1, after the scale.
     pub saturate: bool,
     /// Where the result goes.
-    pub target: At<Target>,
-    /// As many as the operation has.
-    pub sources: Vec<At<Source>>,
+    pub target: Spanned<Target>,
+    /// The sources, as many as the operation has.
+    pub sources: Vec<Spanned<Source>>,
     /// Issued together with the instruction before it: `+`.
     pub paired: bool,
     /// Its name in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 impl Arithmetic {
@@ -290,7 +289,7 @@ impl TextureOperation {
 pub struct TextureSource {
     /// t0 to t2.
     pub unit: u8,
-    /// `_bx2`.
+    /// `_bx2`: 2 x - 1 of each component.
     pub signed_scale: bool,
 }
 
@@ -300,13 +299,13 @@ pub struct TextureInstruction {
     /// What it does.
     pub operation: TextureOperation,
     /// Its register, t0 to t3, and texture unit.
-    pub unit: At<u8>,
+    pub unit: Spanned<u8>,
     /// The earlier register that it reads.
-    pub source: Option<At<TextureSource>>,
+    pub source: Option<Spanned<TextureSource>>,
     /// The constant with the eye, of texm3x3spec.
-    pub eye: Option<At<u8>>,
+    pub eye: Option<Spanned<u8>>,
     /// Its name in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 /// `def`: a constant with its value.
@@ -317,13 +316,13 @@ pub struct Definition {
     /// R, G, B, A, finite.
     pub value: [f32; 4],
     /// The register in the text.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 /// A pixel shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelShader {
-    /// Its version.
+    /// The version that its first line names.
     pub version: Version,
     /// Constants that it defines itself.
     pub definitions: Vec<Definition>,
@@ -340,12 +339,12 @@ impl PixelShader {
     }
 
     /// Constants that are read, each with the first place.
-    pub fn constants_read(&self) -> Vec<At<u8>> {
+    pub fn constants_read(&self) -> Vec<Spanned<u8>> {
         let eyes = self.textures.iter().filter_map(|texture| texture.eye.clone());
         let sources = self.arithmetic.iter().flat_map(|instruction| &instruction.sources);
         let sources = sources.filter(|source| source.value.register.bank == Bank::Constant);
-        let sources = sources.map(|source| At { value: source.value.register.index, place: source.place.clone() });
-        let mut found: Vec<At<u8>> = Vec::new();
+        let sources = sources.map(|source| Spanned { value: source.value.register.index, span: source.span.clone() });
+        let mut found: Vec<Spanned<u8>> = Vec::new();
         for read in eyes.chain(sources) {
             if found.iter().all(|known| known.value != read.value) {
                 found.push(read);

@@ -1,41 +1,40 @@
 //! Operands of instructions: registers with what stands around them, and numbers.
 
-use std::ops::Range;
-
 use super::parser::Parser;
 use super::words;
 use super::*;
+use crate::Span;
 use crate::lexer::Kind;
 use ninebit::diagnostic::shorten;
 
 impl Parser<'_> {
-    fn register(&mut self, word: &str, place: Range<usize>) -> Option<ShaderRegister> {
+    fn register(&mut self, word: &str, span: Span) -> Option<ShaderRegister> {
         match words::register(word) {
             Some(Ok(register)) => Some(register),
             Some(Err(bank)) => {
                 let (name, last) = (bank.name(), bank.count() - 1);
                 let message = format!("there is no register {}", shorten(word));
                 let help = format!("ps.1.1 has {name}0 to {name}{last}");
-                self.push("NB0206", place, message, "out of range", help);
+                self.push("NB0206", span, message, "out of range", help);
                 None
             }
             None => {
                 let message = format!("there is no register `{}`", shorten(word));
                 let help = "registers: c0 to c7, r0 and r1, t0 to t3, v0 and v1";
-                self.push("NB0204", place, message, "not known", help);
+                self.push("NB0204", span, message, "not known", help);
                 None
             }
         }
     }
 
     /// A register without anything around it.
-    pub(super) fn plain_register(&mut self, bank: Bank, what: &str, why: &str) -> Option<At<u8>> {
+    pub(super) fn plain_register(&mut self, bank: Bank, what: &str, why: &str) -> Option<Spanned<u8>> {
         let pieces = self.word(&format!("a register {}n", bank.name()))?;
-        let (name, place) = pieces.first()?.clone();
-        let register = self.register(&name, place.clone())?;
+        let (name, span) = pieces.first()?.clone();
+        let register = self.register(&name, span.clone())?;
         if register.bank != bank {
             let message = format!("{what} takes {why}, not {register}");
-            self.push("NB0371", place, message, "not here", format!("write a register {}n", bank.name()));
+            self.push("NB0371", span, message, "not here", format!("write a register {}n", bank.name()));
             return None;
         }
         if let Some((modifier, span)) = pieces.get(1) {
@@ -43,20 +42,20 @@ impl Parser<'_> {
             self.push("NB0371", span.clone(), message, "not here", "leave it out");
         }
         if self.cursor.is('.') {
-            let place = self.cursor.place();
+            let span = self.cursor.span();
             self.cursor.advance();
             let word = self.word("channels")?;
-            let end = word.last().map_or(place.end, |(_, span)| span.end);
+            let end = word.last().map_or(span.end, |(_, span)| span.end);
             if word.first().is_none_or(|(word, _)| words::mask(word) != Some(Mask::All)) {
                 let message = format!("{what} takes all channels of {register}");
-                self.push("NB0371", place.start..end, message, "not here", "leave it out");
+                self.push("NB0371", span.start..end, message, "not here", "leave it out");
             }
         }
-        Some(At { value: register.index, place })
+        Some(Spanned { value: register.index, span })
     }
 
     pub(super) fn number(&mut self) -> Option<f32> {
-        let from = self.cursor.place().start;
+        let from = self.cursor.span().start;
         let negative = self.cursor.take('-');
         if !negative {
             self.cursor.take('+');
@@ -64,26 +63,26 @@ impl Parser<'_> {
         if self.cursor.kind() != Some(Kind::Number) {
             return self.expected("a number");
         }
-        let place = self.cursor.place();
+        let span = self.cursor.span();
         self.cursor.advance();
-        let digits = self.cursor.text(&place).trim_end_matches(['f', 'F']);
+        let digits = self.cursor.text(&span).trim_end_matches(['f', 'F']);
         let value = format!("{}{digits}", if negative { "-" } else { "" }).parse::<f32>().ok();
         let value = value.filter(|value| value.is_finite());
         if value.is_none() {
             let message = "this number is not finite".to_owned();
-            self.push("NB0207", from..place.end, message, "too large", "constants are limited to -1..1");
+            self.push("NB0207", from..span.end, message, "too large", "constants are limited to -1..1");
         }
         value
     }
 
-    pub(super) fn texture_source(&mut self, operation: TextureOperation) -> Option<At<TextureSource>> {
+    pub(super) fn texture_source(&mut self, operation: TextureOperation) -> Option<Spanned<TextureSource>> {
         let at = self.source()?;
-        let At { value: Source { register, selector, modifier, negate }, place } = at;
+        let Spanned { value: Source { register, selector, modifier, negate }, span } = at;
         let name = operation.name();
         if register.bank != Bank::Texture {
             let message = format!("{name} reads a texture register, not {register}");
             let help = "write t0, t1 or t2, loaded before";
-            self.push("NB0371", place, message, "not here", help);
+            self.push("NB0371", span, message, "not here", help);
             return None;
         }
         let signed_scale = modifier == Modifier::SignedScale;
@@ -97,15 +96,15 @@ impl Parser<'_> {
                     "write the register alone; the rows of matrices take `_bx2`",
                 ),
             };
-            self.push("NB0371", place.clone(), message, "modified here", help);
+            self.push("NB0371", span.clone(), message, "modified here", help);
         }
-        Some(At { value: TextureSource { unit: register.index, signed_scale }, place })
+        Some(Spanned { value: TextureSource { unit: register.index, signed_scale }, span })
     }
 
-    pub(super) fn target(&mut self) -> Option<At<Target>> {
+    pub(super) fn target(&mut self) -> Option<Spanned<Target>> {
         let pieces = self.word("a register to write")?;
-        let (name, mut place) = pieces.first()?.clone();
-        let register = self.register(&name, place.clone())?;
+        let (name, mut whole) = pieces.first()?.clone();
+        let register = self.register(&name, whole.clone())?;
         if let Some((modifier, span)) = pieces.get(1) {
             let message = format!("a destination takes no `_{}`", shorten(modifier));
             let help = "write scales and `_sat` behind the instruction's name";
@@ -113,9 +112,9 @@ impl Parser<'_> {
         }
         let mut mask = Mask::All;
         if self.cursor.take('.') {
-            let span = self.cursor.place();
+            let span = self.cursor.span();
             let word = self.word("the channels to write")?;
-            place.end = span.end;
+            whole.end = span.end;
             match word.first().and_then(|(word, _)| words::mask(word)) {
                 Some(found) if word.len() == 1 => mask = found,
                 _ => {
@@ -125,19 +124,19 @@ impl Parser<'_> {
                 }
             }
         }
-        Some(At { value: Target { register, mask }, place })
+        Some(Spanned { value: Target { register, mask }, span: whole })
     }
 
-    pub(super) fn source(&mut self) -> Option<At<Source>> {
-        let from = self.cursor.place().start;
+    pub(super) fn source(&mut self) -> Option<Spanned<Source>> {
+        let from = self.cursor.span().start;
         let negate = self.cursor.take('-');
         let mut modifier = Modifier::Plain;
         if self.cursor.kind() == Some(Kind::Number) {
-            let place = self.cursor.place();
-            if self.cursor.text(&place).parse::<f32>().ok() != Some(1.0) {
-                let message = format!("`{}` is no source", shorten(self.cursor.text(&place)));
+            let span = self.cursor.span();
+            if self.cursor.text(&span).parse::<f32>().ok() != Some(1.0) {
+                let message = format!("`{}` is no source", shorten(self.cursor.text(&span)));
                 let help = "write `1-` before a register, or `def c0, ...` and c0";
-                self.push("NB0205", place, message, "a number", help);
+                self.push("NB0205", span, message, "a number", help);
                 return None;
             }
             self.cursor.advance();
@@ -147,8 +146,8 @@ impl Parser<'_> {
             modifier = Modifier::Invert;
         }
         let mut pieces = self.word("a register to read")?.into_iter();
-        let (name, place) = pieces.next()?;
-        let register = self.register(&name, place.clone());
+        let (name, span) = pieces.next()?;
+        let register = self.register(&name, span.clone());
         let mut selector = None;
         let mut suffixes: Vec<_> = pieces.collect();
         while self.cursor.take('.') {
@@ -185,6 +184,6 @@ impl Parser<'_> {
             self.push("NB0371", from..end, "`1-` does not go with a minus".to_owned(), "both here", help);
         }
         let selector = selector.unwrap_or(Selector::All);
-        Some(At { value: Source { register: register?, selector, modifier, negate }, place: from..end })
+        Some(Spanned { value: Source { register: register?, selector, modifier, negate }, span: from..end })
     }
 }

@@ -1,9 +1,8 @@
 //! From text to instructions.
 
-use std::ops::Range;
-
 use super::words::{self, Word};
 use super::*;
+use crate::Span;
 use crate::cursor::Cursor;
 use crate::finding::{finding, foreign, header};
 use crate::lexer::{Kind, Language};
@@ -18,8 +17,8 @@ pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
     let program =
         PixelShader { version: Version::Ps11, definitions: Vec::new(), textures: Vec::new(), arithmetic: Vec::new() };
     let mut parser = Parser { cursor: Cursor::new(text, Language::ASSEMBLER), findings: Vec::new(), program };
-    if let Some(place) = header(text) {
-        parser.findings.push(foreign(text, place, "NB0370", "a pixel shader begins with `ps.1.1`"));
+    if let Some(span) = header(text) {
+        parser.findings.push(foreign(text, span, "NB0370", "a pixel shader begins with `ps.1.1`"));
     } else if parser.version().is_some() {
         while !parser.cursor.is_done() && parser.findings.len() < MAX_FINDINGS {
             if parser.instruction().is_none() {
@@ -40,22 +39,22 @@ impl Parser<'_> {
     pub(super) fn push(
         &mut self,
         code: &'static str,
-        place: Range<usize>,
+        span: Span,
         message: String,
         label: &str,
         help: impl Into<String>,
     ) {
-        self.findings.push(finding(code, place, message, label, help));
+        self.findings.push(finding(code, span, message, label, help));
     }
 
     pub(super) fn expected<T>(&mut self, what: &str) -> Option<T> {
-        let (place, label) = match self.cursor.is_done() {
-            true => (self.cursor.place_at(self.cursor.count().saturating_sub(1)), "behind this"),
-            false => (self.cursor.place(), "not expected here"),
+        let (span, label) = match self.cursor.is_done() {
+            true => (self.cursor.span_at(self.cursor.count().saturating_sub(1)), "behind this"),
+            false => (self.cursor.span(), "not expected here"),
         };
         let help = "an instruction is written `mad_x2_sat r0.rgb, t0_bx2, 1-v0.a, c0`";
         let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
-        self.push("NB0103", place, message, label, help);
+        self.push("NB0103", span, message, label, help);
         None
     }
 
@@ -66,14 +65,14 @@ impl Parser<'_> {
     }
 
     /// The word at hand, taken: in lower case, cut at its underscores, and where each piece stands.
-    pub(super) fn word(&mut self, what: &str) -> Option<Vec<(String, Range<usize>)>> {
+    pub(super) fn word(&mut self, what: &str) -> Option<Vec<(String, Span)>> {
         if self.cursor.kind() != Some(Kind::Word) {
             return self.expected(what);
         }
-        let place = self.cursor.place();
+        let span = self.cursor.span();
         self.cursor.advance();
-        let mut start = place.start;
-        let pieces = self.cursor.text(&place).split('_').map(|piece| {
+        let mut start = span.start;
+        let pieces = self.cursor.text(&span).split('_').map(|piece| {
             let span = start..start + piece.len();
             start = span.end + 1;
             (piece.to_ascii_lowercase(), span)
@@ -83,9 +82,9 @@ impl Parser<'_> {
 
     /// The version, if the text starts with one; without one it is 1.1. `None`: a version that is not read.
     fn version(&mut self) -> Option<()> {
-        let place = self.cursor.place();
+        let span = self.cursor.span();
         let word = match self.cursor.kind() {
-            Some(Kind::Word) => self.cursor.text(&place).to_ascii_lowercase(),
+            Some(Kind::Word) => self.cursor.text(&span).to_ascii_lowercase(),
             None => return self.expected("a pixel shader"),
             Some(_) => String::new(),
         };
@@ -97,12 +96,12 @@ impl Parser<'_> {
             Some(Err(())) => {
                 let message = format!("`{}` is not read", shorten(&word));
                 let help = "this reads ps.1.0 and ps.1.1, and what ps.1.2 and ps.1.3 have in common with them";
-                self.push("NB0370", place, message, "another kind of shader", help);
+                self.push("NB0370", span, message, "another kind of shader", help);
                 return None;
             }
             None => {
                 let warning =
-                    Diagnostic::warning("NB0906", place, "this shader does not say its version: read as ps.1.1");
+                    Diagnostic::warning("NB0906", span, "this shader does not say its version: read as ps.1.1");
                 self.findings.push(warning.label("before this").help("write `ps.1.1` in the first line"));
             }
         }
@@ -114,7 +113,7 @@ impl Parser<'_> {
         let paired = self.cursor.take('+');
         let start = self.cursor.at;
         let mut pieces = self.word("an instruction")?.into_iter();
-        let (name, place) = pieces.next()?;
+        let (name, span) = pieces.next()?;
         let Some(word) = words::find(&name) else {
             return self.unknown(start, &name);
         };
@@ -129,15 +128,15 @@ impl Parser<'_> {
         if paired && !matches!(word, Word::Arithmetic(_) | Word::Nothing) {
             let message = format!("{name} cannot be issued together with another instruction");
             let help = "leave the `+` out: only arithmetic instructions are paired";
-            self.push("NB0376", place.clone(), message, "no arithmetic instruction", help);
+            self.push("NB0376", span.clone(), message, "no arithmetic instruction", help);
         }
         match word {
             Word::Nothing => {}
             Word::Define => self.definition()?,
-            Word::Texture(operation) => self.texture(operation, place)?,
+            Word::Texture(operation) => self.texture(operation, span)?,
             Word::Arithmetic(operation) => {
                 let (scale, saturate) = self.scale(&name, &modifiers);
-                self.arithmetic(operation, scale, saturate, paired, place)?;
+                self.arithmetic(operation, scale, saturate, paired, span)?;
             }
         }
         match self.cursor.token() {
@@ -148,29 +147,29 @@ impl Parser<'_> {
     }
 
     fn unknown(&mut self, token: usize, name: &str) -> Option<()> {
-        let place = self.cursor.place_at(token);
+        let span = self.cursor.span_at(token);
         if let Some((version, help)) = words::later(name) {
             let message = format!("`{name}` is an instruction of ps.{version}, which ps.1.1 does not have");
-            self.push("NB0370", place, message, "not in this language", help);
+            self.push("NB0370", span, message, "not in this language", help);
             return None;
         }
         if words::version(name).is_some() {
             let message = "a version in the middle of a shader".to_owned();
-            self.push("NB0373", place, message, "belongs in the first line", "keep one shader in a text");
+            self.push("NB0373", span, message, "belongs in the first line", "keep one shader in a text");
             return None;
         }
         let help = match closest(name, words::names()) {
             Some(known) => format!("did you mean `{known}`?"),
             None => format!("instructions: {}", words::names().collect::<Vec<_>>().join(", ")),
         };
-        self.push("NB0204", place, format!("there is no instruction `{}`", shorten(name)), "not known", help);
+        self.push("NB0204", span, format!("there is no instruction `{}`", shorten(name)), "not known", help);
         None
     }
 
     /// `_x2`, `_x4`, `_d2` and `_sat`, in any order.
-    fn scale(&mut self, name: &str, modifiers: &[(String, Range<usize>)]) -> (Scale, bool) {
+    fn scale(&mut self, name: &str, modifiers: &[(String, Span)]) -> (Scale, bool) {
         let (mut scale, mut saturate) = (None, false);
-        for (modifier, place) in modifiers {
+        for (modifier, span) in modifiers {
             let found = words::SCALES.iter().find(|(known, _)| known == modifier);
             let again = if found.is_some() { scale.is_some() } else { saturate };
             match (modifier.as_str(), found) {
@@ -179,13 +178,13 @@ impl Parser<'_> {
                 _ => {
                     let message = format!("there is no instruction modifier `_{}`", shorten(modifier));
                     let help = format!("write `{name}_x2`, `_x4`, `_d2`, and `_sat` with any of them or alone");
-                    self.push("NB0204", place.clone(), message, "not known", help);
+                    self.push("NB0204", span.clone(), message, "not known", help);
                     continue;
                 }
             }
             if again {
                 let message = format!("`_{modifier}` beside another modifier of its kind");
-                self.push("NB0371", place.clone(), message, "one too many", "keep one scale and one `_sat`");
+                self.push("NB0371", span.clone(), message, "one too many", "keep one scale and one `_sat`");
             }
         }
         (scale.unwrap_or(Scale::One), saturate)
@@ -196,7 +195,7 @@ impl Parser<'_> {
             return Some(());
         }
         if self.cursor.is_new_line() || self.cursor.is('+') {
-            let token = self.cursor.place_at(start);
+            let token = self.cursor.span_at(start);
             let message = format!("{what} has {wanted} operands, not {found}");
             self.push("NB0211", token, message, "this instruction", operands(what));
             return None;
@@ -205,8 +204,8 @@ impl Parser<'_> {
     }
 
     fn too_many(&mut self, what: &str, start: usize) -> Option<()> {
-        let place = self.cursor.place();
-        let first = self.cursor.place_at(start);
+        let span = self.cursor.span();
+        let first = self.cursor.span_at(start);
         let wanted = match words::find(what) {
             Some(Word::Arithmetic(operation)) => 1 + operation.sources(),
             Some(Word::Texture(operation)) => operation.operands(),
@@ -214,24 +213,24 @@ impl Parser<'_> {
             Some(Word::Nothing) | None => 0,
         };
         let message = format!("{what} has {wanted} operands, not more");
-        let finding = finding("NB0211", place, message, "one too many", operands(what));
+        let finding = finding("NB0211", span, message, "one too many", operands(what));
         self.findings.push(finding.related(first, "this instruction"));
         None
     }
 
     fn definition(&mut self) -> Option<()> {
         let start = self.cursor.at - 1;
-        let At { value: index, place } = self.plain_register(Bank::Constant, "def", "a constant")?;
+        let Spanned { value: index, span } = self.plain_register(Bank::Constant, "def", "a constant")?;
         let mut value = [0.0; 4];
         for (n, slot) in value.iter_mut().enumerate() {
             self.comma("def", start, 5, n + 1)?;
             *slot = self.number()?;
         }
-        self.program.definitions.push(Definition { index, value, place });
+        self.program.definitions.push(Definition { index, value, span });
         Some(())
     }
 
-    fn texture(&mut self, operation: TextureOperation, place: Range<usize>) -> Option<()> {
+    fn texture(&mut self, operation: TextureOperation, span: Span) -> Option<()> {
         let start = self.cursor.at - 1;
         let name = operation.name();
         let unit = self.plain_register(Bank::Texture, name, "a texture register")?;
@@ -250,7 +249,7 @@ impl Parser<'_> {
             }
             _ => None,
         };
-        self.program.textures.push(TextureInstruction { operation, unit, source, eye, place });
+        self.program.textures.push(TextureInstruction { operation, unit, source, eye, span });
         Some(())
     }
 
@@ -260,7 +259,7 @@ impl Parser<'_> {
         scale: Scale,
         saturate: bool,
         paired: bool,
-        place: Range<usize>,
+        span: Span,
     ) -> Option<()> {
         let start = self.cursor.at - 1;
         let target = self.target()?;
@@ -269,7 +268,7 @@ impl Parser<'_> {
             self.comma(operation.name(), start, 1 + operation.sources(), 1 + sources.len())?;
             sources.push(self.source()?);
         }
-        self.program.arithmetic.push(Arithmetic { operation, scale, saturate, target, sources, paired, place });
+        self.program.arithmetic.push(Arithmetic { operation, scale, saturate, target, sources, paired, span });
         Some(())
     }
 }

@@ -1,20 +1,19 @@
 //! Stages that are added: what has to happen before an instruction fits one stage.
 
-use std::ops::Range;
-
 use super::constants::Pool;
 use super::factor::Need;
 use super::lower::{Lowering, TEXTURES, Written};
 use super::print;
 use super::scratch::{Set, free};
 use super::{Arithmetic, Operation};
+use crate::Span;
 use crate::cascade::{one, too_many_constants};
 use crate::finding::finding;
 use ninebit::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
 
 impl Lowering {
     /// A stage before the instruction. `None` once the reason has been recorded that nothing helps.
-    pub(super) fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, place: &Range<usize>) -> Option<()> {
+    pub(super) fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, span: &Span) -> Option<()> {
         let idle = |component| (Portion::idle(component), true);
         let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
         let ([rgb, alpha], what) = match need {
@@ -26,20 +25,20 @@ impl Lowering {
                 ([idle(Component::Rgb), self.copied_alpha(register)], format!("the alpha of {}", self.name(register)))
             }
             Need::Constant(index) => {
-                let register = self.scratch(live, place)?;
+                let register = self.scratch(live, span)?;
                 let constant = self.constants.get(usize::from(index)).copied().unwrap_or_default();
                 let halves = [false, true].map(|alpha| self.loaded(constant, alpha, register, &mut pool));
                 if let Some(slot) = self.held.constants.get_mut(usize::from(index)) {
                     *slot = Some(register);
                 }
                 let [Some(rgb), Some(alpha)] = halves else {
-                    self.findings.push(too_many_constants(self.profile, place.clone()));
+                    self.findings.push(too_many_constants(self.profile, span.clone()));
                     return None;
                 };
                 ([rgb, alpha], format!("c{index}"))
             }
             Need::Factor(n) => {
-                let register = self.scratch(live, place)?;
+                let register = self.scratch(live, span)?;
                 let instruction = slot.get(n)?;
                 let source = instruction.sources.first()?;
                 let copy = Arithmetic {
@@ -49,7 +48,7 @@ impl Lowering {
                     target: instruction.target.clone(),
                     sources: vec![source.clone()],
                     paired: false,
-                    place: place.clone(),
+                    span: span.clone(),
                 };
                 let mut halves = [idle(Component::Rgb), idle(Component::Alpha)];
                 for alpha in [true, false] {
@@ -61,7 +60,7 @@ impl Lowering {
                                 }
                                 halves[usize::from(alpha)] = (portion, positive);
                             }
-                            Err(need) => return self.prepare(need, slot, live, place),
+                            Err(need) => return self.prepare(need, slot, live, span),
                         }
                     }
                 }
@@ -73,7 +72,7 @@ impl Lowering {
             Need::Refused => {
                 let message = "this instruction has no form in the register combiners";
                 let help = "write it with other modifiers, or in two instructions";
-                self.findings.push(finding("NB0379", place.clone(), message, "no form", help).rule("CMB-12"));
+                self.findings.push(finding("NB0379", span.clone(), message, "no form", help).rule("CMB-12"));
                 return None;
             }
         };
@@ -82,7 +81,7 @@ impl Lowering {
         }
         let instruction = self.described(slot);
         let origin = format!("pixel shader: {what}{instruction}");
-        self.push(rgb, alpha, pool, StageOrigin { rgb: origin.clone(), alpha: origin }, place.clone());
+        self.push(rgb, alpha, pool, StageOrigin { rgb: origin.clone(), alpha: origin }, span.clone());
         Some(())
     }
 
@@ -108,7 +107,7 @@ impl Lowering {
         Some((portion, false))
     }
 
-    fn scratch(&mut self, live: Set, place: &Range<usize>) -> Option<Register> {
+    fn scratch(&mut self, live: Set, span: &Span) -> Option<Register> {
         let mut found = free(live, &self.held.taken, self.profile);
         if found.is_none() {
             // Constants can be brought again.
@@ -117,15 +116,15 @@ impl Lowering {
         }
         match found {
             Some(register) => self.held.taken.push(register),
-            None => self.no_register(place),
+            None => self.no_register(span),
         }
         found
     }
 
-    pub(super) fn no_register(&mut self, place: &Range<usize>) {
+    pub(super) fn no_register(&mut self, span: &Span) {
         let message = "this instruction needs a register more than are free";
         let help = "write it in two instructions, or read fewer texture registers after it";
-        self.findings.push(finding("NB0379", place.clone(), message, "for a value in between", help).rule("CMB-12"));
+        self.findings.push(finding("NB0379", span.clone(), message, "for a value in between", help).rule("CMB-12"));
     }
 
     fn name(&self, register: Register) -> String {

@@ -10,7 +10,7 @@ pub fn print(program: &PixelShader) -> String {
     }
     for TextureInstruction { operation, unit, source, eye, .. } in &program.textures {
         text.push_str(&format!("{} t{}", operation.name(), unit.value));
-        if let Some(At { value: TextureSource { unit, signed_scale }, .. }) = source {
+        if let Some(Spanned { value: TextureSource { unit, signed_scale }, .. }) = source {
             text.push_str(&format!(", t{unit}{}", if *signed_scale { "_bx2" } else { "" }));
         }
         if let Some(eye) = eye {
@@ -27,7 +27,8 @@ pub fn print(program: &PixelShader) -> String {
 
 /// The text of an arithmetic instruction.
 pub fn instruction(arithmetic: &Arithmetic) -> String {
-    let Arithmetic { operation, scale, saturate, target: At { value: target, .. }, sources, paired, .. } = arithmetic;
+    let Arithmetic { operation, scale, saturate, target: Spanned { value: target, .. }, sources, paired, .. } =
+        arithmetic;
     let plus = if *paired { "+ " } else { "" };
     let scale = match scale {
         Scale::One => "",
@@ -37,7 +38,7 @@ pub fn instruction(arithmetic: &Arithmetic) -> String {
     };
     let saturate = if *saturate { "_sat" } else { "" };
     let mut text = format!("{plus}{}{scale}{saturate} {}{}", operation.name(), target.register, target.mask.name());
-    for At { value: Source { register, selector, modifier, negate }, .. } in sources {
+    for Spanned { value: Source { register, selector, modifier, negate }, .. } in sources {
         let minus = if *negate { "-" } else { "" };
         let (before, after) = match modifier {
             Modifier::Invert => ("1-", ""),

@@ -33,7 +33,7 @@ pub(super) fn units(
                 operation,
                 previous,
                 mapping,
-                place: texture.place.clone(),
+                span: texture.span.clone(),
             });
         }
     }
@@ -52,7 +52,7 @@ fn refused(texture: &TextureInstruction, context: &Context) -> Option<Diagnostic
         let message = format!("t{index}: nv10 has textures 0 to {}", units - 1);
         let help = "profile Nv2a has 4: write `profile: Nv2a`, or draw in two passes with `blend`";
         return (usize::from(index) >= units).then(|| {
-            finding("NB0319", texture.unit.place.clone(), message, "a texture unit that the chip lacks", help)
+            finding("NB0319", texture.unit.span.clone(), message, "a texture unit that the chip lacks", help)
                 .rule("CMB-12")
         });
     }
@@ -71,7 +71,7 @@ fn refused(texture: &TextureInstruction, context: &Context) -> Option<Diagnostic
     };
     let message = format!("{name} needs the texture shader; nv10 has none");
     let help = "write `profile: Nv2a`, which has the texture shader";
-    let error = finding("NB0340", texture.place.clone(), message, "not on this chip", help);
+    let error = finding("NB0340", texture.span.clone(), message, "not on this chip", help);
     Some(error.rule("TSH-10").note(instead))
 }
 
@@ -116,7 +116,7 @@ fn operation(
             let help = format!(
                 "the state of texture stage {index} has it: write `bump: {{ \"t{index}\": ({fields}) }}` beside the text"
             );
-            findings.push(finding("NB0378", texture.place.clone(), message, "moves coordinates by it", help));
+            findings.push(finding("NB0378", texture.span.clone(), message, "moves coordinates by it", help));
             return None;
         }
     })

@@ -13,7 +13,7 @@ pub struct Description {
     pub method: u32,
     /// Its name, `RC_IN_RGB[1]`.
     pub name: String,
-    /// Its value.
+    /// The word itself.
     pub value: u32,
     /// What the value says.
     pub meaning: String,

@@ -6,9 +6,9 @@ use ninebit::state::Profile;
 /// Bits of a word that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// The lowest.
+    /// Number of the lowest bit.
     pub shift: u32,
-    /// How many.
+    /// How many bits there are.
     pub bits: u32,
 }
 

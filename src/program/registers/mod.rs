@@ -107,11 +107,11 @@ impl RegisterWords {
 /// Why a chip does not take a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// Which word.
+    /// The kind of word.
     pub word: Word,
     /// Which of them.
     pub index: usize,
-    /// Stable code.
+    /// The code of `docs/errors.md`.
     pub code: &'static str,
     /// What is wrong, in one line.
     pub message: String,

@@ -6,7 +6,7 @@ use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, Surface
 named! {
     /// A method of the raster operations.
     pub enum Method =>
-    /// Its number.
+    /// Offset of the method in the chip's 3D class.
     number: u32 {
         /// Format of the surface: colour in the lowest four bits.
         SurfaceFormat = "surface_format" => 0x208,
@@ -24,7 +24,7 @@ named! {
         BlendFuncDfactor = "blend_func_dfactor" => 0x348,
         /// Blend constant, A8R8G8B8.
         BlendColor = "blend_color" => 0x34c,
-        /// Equation.
+        /// How source and destination are combined.
         BlendEquation = "blend_equation" => 0x350,
         /// Channels that are written.
         ColorMask = "color_mask" => 0x358,

@@ -1,7 +1,6 @@
 //! Register words as text: lines of a name or a method and its words, as drivers, logs of pushbuffers and the Xbox's shader definitions have them.
 
-use std::ops::Range;
-
+use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Combiners, Named, Profile};
 
@@ -14,29 +13,29 @@ use crate::{Part, Place, Places};
 /// Words, and where each stands in a text.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// The words.
+    /// The words by method, for the program's decoder.
     pub words: RegisterWords,
-    places: Vec<(Word, usize, Range<usize>)>,
+    places: Vec<(Word, usize, Span)>,
     /// What stands for words that are not written.
-    opening: Range<usize>,
+    opening: Span,
 }
 
 impl Written {
     /// None yet; `opening` stands for those that are not written.
-    pub fn new(chip: Profile, opening: Range<usize>) -> Written {
+    pub fn new(chip: Profile, opening: Span) -> Written {
         Written { words: RegisterWords::new(chip), places: Vec::new(), opening }
     }
 
     /// A word that stands there.
-    pub fn set(&mut self, word: Word, index: usize, value: u32, place: Range<usize>) {
-        self.places.push((word, index, place));
+    pub fn set(&mut self, word: Word, index: usize, value: u32, span: Span) {
+        self.places.push((word, index, span));
         self.words.set(word, index, value);
     }
 
     /// Where a word stands last; the opening if it does not.
-    fn place(&self, word: Word, index: usize) -> Range<usize> {
+    fn span(&self, word: Word, index: usize) -> Span {
         let found = self.places.iter().rev().find(|(known, n, _)| (*known, *n) == (word, index));
-        found.map_or(self.opening.clone(), |(_, _, place)| place.clone())
+        found.map_or(self.opening.clone(), |(_, _, span)| span.clone())
     }
 
     /// The program of the words, and where its parts stand.
@@ -45,7 +44,7 @@ impl Written {
     /// Every word that the chip does not take.
     pub fn program(&self) -> Result<(Combiners, Places), Vec<Diagnostic>> {
         let refused = |Refusal { code, word, index, message, help }: Refusal| {
-            finding(code, self.place(word, index), message, "this word", help).rule("CMB-12")
+            finding(code, self.span(word, index), message, "this word", help).rule("CMB-12")
         };
         let combiners =
             decode(&self.words).map_err(|refusals| refusals.into_iter().map(refused).collect::<Vec<_>>())?;
@@ -56,9 +55,9 @@ impl Written {
     /// Where the parts of the program stand: in their words.
     fn parts(&self, combiners: &Combiners) -> Places {
         let mut places = Places::default();
-        let mut note = |place| {
-            let (word, index) = word_of(place, self.words.chip);
-            places.set(place, self.place(word, index));
+        let mut note = |part| {
+            let (word, index) = word_of(part, self.words.chip);
+            places.set(part, self.span(word, index));
         };
         note(Place::Stages);
         for (stage, state) in combiners.stages.iter().enumerate() {
@@ -109,7 +108,7 @@ struct Piece<'t> {
     text: &'t str,
     /// It stands behind an opening bracket.
     bracketed: bool,
-    place: Range<usize>,
+    span: Span,
 }
 
 impl Piece<'_> {
@@ -138,15 +137,15 @@ pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
     while !cursor.is_done() {
         let mut statement: Vec<Piece<'_>> = Vec::new();
         loop {
-            let place = cursor.place();
+            let span = cursor.span();
             match cursor.kind() {
                 Some(Kind::Word | Kind::Number) => {
-                    let bracketed = text[..place.start].ends_with(['[', '(']);
-                    statement.push(Piece { text: cursor.text(&place), bracketed, place });
+                    let bracketed = text[..span.start].ends_with(['[', '(']);
+                    statement.push(Piece { text: cursor.text(&span), bracketed, span });
                 }
                 Some(Kind::Sign(sign)) if ";,:={}[]()".contains(sign) => {}
                 _ => findings.push(
-                    Diagnostic::error("NB0103", place, "this is no part of a list of register words")
+                    Diagnostic::error("NB0103", span, "this is no part of a list of register words")
                         .label("here")
                         .help("write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`"),
                 ),
@@ -195,26 +194,26 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
             None => format!("`{}` is no register of the combiners", name.text),
         };
         let help = format!("docs/registers.md lists the words and methods of {}", chip.name());
-        findings.push(finding("NB0204", name.place.clone(), message, "not known", help));
+        findings.push(finding("NB0204", name.span.clone(), message, "not known", help));
         return;
     };
     if values.is_empty() {
         findings.push(
-            Diagnostic::error("NB0202", name.place.clone(), "a register without a word").label("what does it hold?"),
+            Diagnostic::error("NB0202", name.span.clone(), "a register without a word").label("what does it hold?"),
         );
     }
     if index + values.len() > word.count(chip) {
         let message = format!("there are {} words of {}", word.count(chip), word.name());
-        let place =
-            values.get(word.count(chip).saturating_sub(index)).map_or(name.place.clone(), |token| token.place.clone());
-        findings.push(Diagnostic::error("NB0211", place, message).label("too many from here"));
+        let span =
+            values.get(word.count(chip).saturating_sub(index)).map_or(name.span.clone(), |token| token.span.clone());
+        findings.push(Diagnostic::error("NB0211", span, message).label("too many from here"));
         values = &[];
     }
     for (n, token) in values.iter().enumerate() {
         match token.number() {
-            Some(value) => written.set(word, index + n, value, token.place.clone()),
+            Some(value) => written.set(word, index + n, value, token.span.clone()),
             None => findings.push(
-                Diagnostic::error("NB0205", token.place.clone(), format!("`{}` is no word of 32 bits", token.text))
+                Diagnostic::error("NB0205", token.span.clone(), format!("`{}` is no word of 32 bits", token.text))
                     .label("not a number")
                     .help("write it with `0x`, or as eight hexadecimal digits, or in decimal"),
             ),

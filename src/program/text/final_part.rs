@@ -1,10 +1,9 @@
 //! The statements of the final combiner.
 
-use std::ops::Range;
-
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{find, registers};
 use crate::Place;
+use crate::Span;
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
@@ -12,11 +11,11 @@ use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 /// What the statements have said so far, each with its place.
 #[derive(Default)]
 pub(super) struct Final {
-    rgb: Option<([FinalInput; 4], Range<usize>)>,
-    alpha: Option<(FinalInput, Range<usize>)>,
-    product: Option<([FinalInput; 2], Range<usize>)>,
-    sum: Option<([bool; 2], Range<usize>)>,
-    clamp: Option<Range<usize>>,
+    rgb: Option<([FinalInput; 4], Span)>,
+    alpha: Option<(FinalInput, Span)>,
+    product: Option<([FinalInput; 2], Span)>,
+    sum: Option<([bool; 2], Span)>,
+    clamp: Option<Span>,
 }
 
 const ZERO: FinalInput = FinalInput { register: FinalRegister::Zero, component: Component::Rgb, invert: false };
@@ -25,7 +24,7 @@ const ONE: FinalInput = FinalInput { register: FinalRegister::Zero, component: C
 impl Final {
     /// Reads one of them.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
-        let start = parser.cursor.place();
+        let start = parser.cursor.span();
         match parser.cursor.word() {
             "clamp_color_sum" => {
                 parser.call()?;
@@ -56,11 +55,11 @@ impl Final {
 
     /// `out.rgb = ...;` or `out.a = ...;`
     fn out(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
-        let start = parser.cursor.place().start;
+        let start = parser.cursor.span().start;
         parser.cursor.advance();
         parser.sign('.')?;
         let what = parser.cursor.word();
-        let span = start..parser.cursor.place().end;
+        let span = start..parser.cursor.span().end;
         if !matches!(what, "rgb" | "a") {
             return Err(parser.unknown_or_expected("output", &["rgb", "a"]));
         }
@@ -84,7 +83,7 @@ impl Final {
     }
 
     /// The place of the first statement that only helps others.
-    fn aside(&self) -> Option<Range<usize>> {
+    fn aside(&self) -> Option<Span> {
         let product = self.product.as_ref().map(|(_, span)| span.clone());
         product.or(self.sum.as_ref().map(|(_, span)| span.clone())).or(self.clamp.clone())
     }
@@ -129,7 +128,7 @@ impl Final {
 }
 
 /// Keeps what a statement says, once.
-fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: T, span: Range<usize>) {
+fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Span)>, value: T, span: Span) {
     parser.set(slot, value, span.clone(), span, "this");
 }
 
@@ -146,26 +145,26 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     // Where an operand stands in the sum is known behind it.
     let first = unplaced(parser, false)?;
     if parser.cursor.take('*') {
-        inputs[0] = place(parser, 0, first);
+        inputs[0] = put(parser, 0, first);
         inputs[1] = operand(parser, 1)?;
         if parser.cursor.take('+') {
             inputs[3] = operand(parser, 3)?;
         }
     } else if !parser.cursor.take('+') {
-        inputs[3] = place(parser, 3, first);
+        inputs[3] = put(parser, 3, first);
     } else if parser.cursor.word() == "lerp" {
-        inputs[3] = place(parser, 3, first);
+        inputs[3] = put(parser, 3, first);
         lerp(parser, &mut inputs)?;
     } else {
         let second = unplaced(parser, false)?;
         if parser.cursor.take('*') {
-            inputs[3] = place(parser, 3, first);
-            inputs[0] = place(parser, 0, second);
+            inputs[3] = put(parser, 3, first);
+            inputs[0] = put(parser, 0, second);
             inputs[1] = operand(parser, 1)?;
         } else {
-            inputs[0] = place(parser, 0, first);
+            inputs[0] = put(parser, 0, first);
             inputs[1] = ONE;
-            inputs[3] = place(parser, 3, second);
+            inputs[3] = put(parser, 3, second);
         }
     }
     Ok(inputs)
@@ -187,11 +186,11 @@ fn lerp(parser: &mut Parser<'_>, inputs: &mut [FinalInput; 4]) -> Result<(), Giv
 /// Input n of the final combiner.
 fn operand(parser: &mut Parser<'_>, n: usize) -> Result<FinalInput, GivenUp> {
     let operand = unplaced(parser, n == 6)?;
-    Ok(place(parser, n, operand))
+    Ok(put(parser, n, operand))
 }
 
 /// Notes where input n stands.
-fn place(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
+fn put(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
     parser.places.set(Place::FinalInput(n), operand.span);
     if let Some(component) = operand.component {
         parser.places.set(Place::FinalComponent(n), component);
@@ -202,24 +201,24 @@ fn place(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
 /// An input and its place.
 struct Operand {
     input: FinalInput,
-    span: Range<usize>,
+    span: Span,
     /// Where the component stands, if it is written.
-    component: Option<Range<usize>>,
+    component: Option<Span>,
 }
 
 /// `spare0`, `spare0.a`, `unsigned_invert(spare0)`, `unsigned(spare0)`
 fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
-    let start = parser.cursor.place().start;
+    let start = parser.cursor.span().start;
     let function = parser.cursor.word();
     if parser.cursor.is('-') || matches!(function, "expand" | "half_bias") {
         let name = if function.is_empty() { "-" } else { function };
         let message = format!("the final combiner has no mapping `{name}`");
         let help = "its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage";
-        let finding = finding("NB0311", parser.cursor.place(), message, "not here", help).rule("FIN-1");
+        let finding = finding("NB0311", parser.cursor.span(), message, "not here", help).rule("FIN-1");
         return Err(parser.give_up(finding));
     }
     if function == "lerp" {
-        let finding = Diagnostic::error("NB0104", parser.cursor.place(), "`lerp` is not an input")
+        let finding = Diagnostic::error("NB0104", parser.cursor.span(), "`lerp` is not an input")
             .label("not here")
             .rule("FIN-1")
             .help("a final combiner has one: `out.rgb = lerp(a, b, c) + d;`");
@@ -238,7 +237,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
         parser.sign(')')?;
     }
     let plain = if alpha { Component::Alpha } else { Component::Rgb };
-    let (read, component) = component.map_or((plain, None), |(read, place)| (read, Some(place)));
+    let (read, component) = component.map_or((plain, None), |(read, span)| (read, Some(span)));
     let input = FinalInput { register, component: read, invert: function == "unsigned_invert" };
     Ok(Operand { input, span: start..parser.cursor.end(), component })
 }

@@ -1,9 +1,8 @@
 //! What all statements of the language share: the place in the text, findings, registers, signs.
 
-use std::ops::Range;
-
 use super::words::{find, registers};
 use crate::Places;
+use crate::Span;
 use crate::cursor::Cursor;
 pub(super) use crate::cursor::{GivenUp, Read};
 use crate::finding::{finding, foreign, header};
@@ -16,8 +15,8 @@ use ninebit::state::{Component, FinalRegister};
 pub(super) struct Source {
     pub(super) register: FinalRegister,
     /// The component and its place, if it is written.
-    pub(super) component: Option<(Component, Range<usize>)>,
-    pub(super) span: Range<usize>,
+    pub(super) component: Option<(Component, Span)>,
+    pub(super) span: Span,
 }
 
 /// What is known while a program is read.
@@ -38,21 +37,21 @@ impl<'t> Parser<'t> {
     /// Passes over what programs of the assembler start with, and refuses the languages beside it by name.
     fn header(&mut self) {
         // Comments may stand before it.
-        let start = self.cursor.place().start;
-        let Some(place) = header(self.cursor.text.get(start..).unwrap_or("")) else { return };
-        let place = start + place.start..start + place.end;
-        if self.cursor.text(&place).starts_with("!!RC1.0") {
-            let end = place.start + "!!RC1.0".len();
-            self.cursor.skip_to(|cursor| cursor.place().start >= end);
+        let start = self.cursor.span().start;
+        let Some(span) = header(self.cursor.text.get(start..).unwrap_or("")) else { return };
+        let span = start + span.start..start + span.end;
+        if self.cursor.text(&span).starts_with("!!RC1.0") {
+            let end = span.start + "!!RC1.0".len();
+            self.cursor.skip_to(|cursor| cursor.span().start >= end);
             return;
         }
-        self.give_up(foreign(self.cursor.text, place, "NB0104", "a combiner program starts with `!!RC1.0`"));
+        self.give_up(foreign(self.cursor.text, span, "NB0104", "a combiner program starts with `!!RC1.0`"));
         self.cursor.skip_to(|_| false);
     }
 
     /// A register, perhaps with a component: `tex0`, `tex0.a`.
     pub(super) fn register(&mut self) -> Read<Source> {
-        let span = self.cursor.place();
+        let span = self.cursor.span();
         if self.cursor.kind() != Some(Kind::Word) {
             return Err(self.expected("a register"));
         }
@@ -66,15 +65,15 @@ impl<'t> Parser<'t> {
     }
 
     /// `.rgb`, `.a` or `.b` without a space before the point: anything else is an operator.
-    pub(super) fn component(&mut self) -> Option<(Component, Range<usize>)> {
-        if !self.cursor.is('.') || self.cursor.place().start != self.cursor.end() {
+    pub(super) fn component(&mut self) -> Option<(Component, Span)> {
+        if !self.cursor.is('.') || self.cursor.span().start != self.cursor.end() {
             return None;
         }
-        let place = self.cursor.place_at(self.cursor.at + 1);
-        if place.start != self.cursor.place().end {
+        let span = self.cursor.span_at(self.cursor.at + 1);
+        if span.start != self.cursor.span().end {
             return None;
         }
-        let component = match self.cursor.text(&place) {
+        let component = match self.cursor.text(&span) {
             "rgb" => Component::Rgb,
             "a" => Component::Alpha,
             "b" => Component::Blue,
@@ -82,7 +81,7 @@ impl<'t> Parser<'t> {
         };
         self.cursor.advance();
         self.cursor.advance();
-        Some((component, place))
+        Some((component, span))
     }
 
     // What all statements share.
@@ -101,7 +100,7 @@ impl<'t> Parser<'t> {
     }
 
     /// Keeps the place of a statement that may be there once.
-    pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) {
+    pub(super) fn once(&mut self, slot: &mut Option<Span>, span: Span) {
         match slot {
             Some(first) => self.twice(span, first.clone(), "this"),
             None => *slot = Some(span),
@@ -109,17 +108,10 @@ impl<'t> Parser<'t> {
     }
 
     /// Keeps what a statement says that may be there once: its place, and where it is found again.
-    pub(super) fn set<T>(
-        &mut self,
-        slot: &mut Option<(T, Range<usize>)>,
-        value: T,
-        place: Range<usize>,
-        again: Range<usize>,
-        what: &str,
-    ) {
+    pub(super) fn set<T>(&mut self, slot: &mut Option<(T, Span)>, value: T, span: Span, again: Span, what: &str) {
         match slot {
             Some((_, first)) => self.twice(again, first.clone(), what),
-            None => *slot = Some((value, place)),
+            None => *slot = Some((value, span)),
         }
     }
 
@@ -136,11 +128,11 @@ impl<'t> Parser<'t> {
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
         let found = self.cursor.found("the end of the program");
         // What is missing at the end of a line is missing there, not where the next one starts.
-        let between = self.cursor.text.get(self.cursor.end()..self.cursor.place().start).unwrap_or("");
+        let between = self.cursor.text.get(self.cursor.end()..self.cursor.span().start).unwrap_or("");
         let (span, label) = if self.cursor.kind().is_none() || between.contains('\n') {
             (self.before(self.cursor.end()), "behind this")
         } else {
-            (self.cursor.place(), "not expected here")
+            (self.cursor.span(), "not expected here")
         };
         self.give_up(Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label(label))
     }
@@ -154,7 +146,7 @@ impl<'t> Parser<'t> {
             None => format!("write one of {list}"),
         };
         let message = format!("there is no {what} `{}`", shorten(word));
-        self.give_up(finding("NB0204", self.cursor.place(), message, "not known", help))
+        self.give_up(finding("NB0204", self.cursor.span(), message, "not known", help))
     }
 
     /// A word that is not known, or something that is no word.
@@ -171,7 +163,7 @@ impl<'t> Parser<'t> {
     }
 
     /// Records that a statement, which has been read to its end, was there before.
-    pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) {
+    pub(super) fn twice(&mut self, span: Span, first: Span, what: &str) {
         self.findings.push(
             Diagnostic::error("NB0364", span, format!("{what} is given twice"))
                 .label("again here")
@@ -181,13 +173,13 @@ impl<'t> Parser<'t> {
     }
 
     /// The character that ends at a place.
-    pub(super) fn before(&self, end: usize) -> Range<usize> {
+    pub(super) fn before(&self, end: usize) -> Span {
         let start =
             self.cursor.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
         start..end
     }
 
-    pub(super) fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
+    pub(super) fn unclosed(&mut self, opening: Span) -> GivenUp {
         self.give_up(finding("NB0104", opening, "this bracket is not closed", "opened here", "close it with `}`"))
     }
 

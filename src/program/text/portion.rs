@@ -1,9 +1,8 @@
 //! The statements of a portion of a general stage.
 
-use std::ops::Range;
-
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, find, registers};
+use crate::Span;
 use crate::finding::finding;
 use crate::{Part, Place};
 use ninebit::diagnostic::Diagnostic;
@@ -16,11 +15,11 @@ pub(super) struct PortionReader {
     alpha: bool,
     pub(super) portion: Portion,
     /// Places of the products so far.
-    products: Vec<Range<usize>>,
+    products: Vec<Span>,
     /// Place of the sum or mux.
-    third: Option<Range<usize>>,
-    scale: Option<Range<usize>>,
-    bias: Option<Range<usize>>,
+    third: Option<Span>,
+    scale: Option<Span>,
+    bias: Option<Span>,
 }
 
 const CALLS: [&str; 5] = [
@@ -50,7 +49,7 @@ impl PortionReader {
 
     /// Reads one of them.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let span = parser.cursor.place();
+        let span = parser.cursor.span();
         let word = parser.cursor.word();
         let scale = match word {
             "scale_by_two" | "bias_by_negative_one_half_scale_by_two" => Some(Scale::Two),
@@ -78,7 +77,7 @@ impl PortionReader {
 
     /// `spare0 = ...;`
     fn assignment(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let start = parser.cursor.place().start;
+        let start = parser.cursor.span().start;
         let (output, written) = self.destination(parser)?;
         parser.sign('=')?;
         if let third @ ("sum" | "mux") = parser.cursor.word() {
@@ -102,7 +101,7 @@ impl PortionReader {
             return Err(parser.give_up(finding));
         }
         let first = self.operand(parser, 2 * n)?;
-        let sign = parser.cursor.place();
+        let sign = parser.cursor.span();
         let dot = parser.cursor.take('.');
         let second = if dot || parser.cursor.take('*') {
             self.operand(parser, 2 * n + 1)?
@@ -113,7 +112,7 @@ impl PortionReader {
         };
         let mut blue = None;
         if parser.cursor.take(',') {
-            blue = Some(parser.cursor.place());
+            blue = Some(parser.cursor.span());
             if parser.cursor.word() != "blue_to_alpha" {
                 return Err(parser.unknown_or_expected("property of a product", &["blue_to_alpha"]));
             }
@@ -143,8 +142,8 @@ impl PortionReader {
     }
 
     /// A register to write, or `discard`.
-    fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
-        let span = parser.cursor.place();
+    fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Span)> {
+        let span = parser.cursor.span();
         if parser.cursor.word() == "discard" {
             parser.cursor.advance();
             return Ok((Register::Zero, span));
@@ -156,7 +155,7 @@ impl PortionReader {
             return Err(parser.unknown_or_expected("destination or statement", &known));
         };
         parser.cursor.advance();
-        if let Some((component, place)) = parser.component() {
+        if let Some((component, span)) = parser.component() {
             let own = if self.alpha { Component::Alpha } else { Component::Rgb };
             if component != own {
                 let (what, help) = if self.alpha {
@@ -165,7 +164,7 @@ impl PortionReader {
                     ("RGB", "write alpha in `alpha { ... }`, or add `, blue_to_alpha` to a product (Nv2a)")
                 };
                 let message = format!("this portion writes {what}");
-                let finding = finding("NB0311", place, message, "not this component", help).rule("CMB-12");
+                let finding = finding("NB0311", span, message, "not this component", help).rule("CMB-12");
                 return Err(parser.give_up(finding));
             }
         }
@@ -174,7 +173,7 @@ impl PortionReader {
 
     /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
     fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
-        let start = parser.cursor.place().start;
+        let start = parser.cursor.span().start;
         let negative = parser.cursor.take('-');
         let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.cursor.word());
         let mapping = match function {
@@ -182,7 +181,7 @@ impl PortionReader {
             Some((_, _, Some(negated))) => *negated,
             Some((name, _, None)) => {
                 let finding =
-                    Diagnostic::error("NB0311", start..parser.cursor.place().end, format!("there is no `-{name}`"))
+                    Diagnostic::error("NB0311", start..parser.cursor.span().end, format!("there is no `-{name}`"))
                         .label("not negated")
                         .rule("CMB-5")
                         .help("a plain register can be negated, `expand` and `half_bias` too");
@@ -209,8 +208,8 @@ impl PortionReader {
         }
         parser.places.set(self.at(Part::Input(n)), start..parser.cursor.end());
         let plain = if self.alpha { Component::Alpha } else { Component::Rgb };
-        if let Some((_, place)) = &component {
-            parser.places.set(self.at(Part::Component(n)), place.clone());
+        if let Some((_, span)) = &component {
+            parser.places.set(self.at(Part::Component(n)), span.clone());
         }
         let component = component.map_or(plain, |(component, _)| component);
         Ok(CombinerInput { register, component, mapping })

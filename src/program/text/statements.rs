@@ -1,12 +1,11 @@
 //! Statements of the language, one after the other. What cannot be read is recorded and passed over, so that one run shows all.
 
-use std::ops::Range;
-
 use super::Program;
 use super::final_part::Final;
 use super::parser::{Parser, Read};
 use super::portion::PortionReader;
 use crate::Place;
+use crate::Span;
 use crate::finding::finding;
 use crate::lexer::Kind;
 use ninebit::diagnostic::{Diagnostic, Severity, shorten};
@@ -17,7 +16,7 @@ use ninebit::state::{Combiners, Component, GeneralStage, MuxSelect, Portion};
 const MAX_FINDINGS: usize = 64;
 
 /// A constant that is written, and where.
-type Written = Option<([u8; 4], Range<usize>)>;
+type Written = Option<([u8; 4], Span)>;
 
 /// What may stand beside stages.
 const STATEMENTS: &[&str] =
@@ -31,7 +30,7 @@ impl Parser<'_> {
         }
         let mut shared: [Written; 2] = [None, None];
         let mut stages: Vec<(GeneralStage, [Written; 2])> = Vec::new();
-        let mut mux: Option<Range<usize>> = None;
+        let mut mux: Option<Span> = None;
         let mut last = Final::default();
         while self.cursor.kind().is_some() && self.findings.len() < MAX_FINDINGS {
             let outcome = match self.cursor.word() {
@@ -39,7 +38,7 @@ impl Parser<'_> {
                 "const0" => self.constant(&mut shared[0]),
                 "const1" => self.constant(&mut shared[1]),
                 "mux_by_least_significant_bit" => {
-                    let span = self.cursor.place();
+                    let span = self.cursor.span();
                     self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
@@ -79,12 +78,12 @@ impl Parser<'_> {
 
     /// `{ const0 = ...; rgb { ... } alpha { ... } }`
     fn stage(&mut self, stages: &mut Vec<(GeneralStage, [Written; 2])>) -> Read<()> {
-        let opening = self.cursor.place();
+        let opening = self.cursor.span();
         self.cursor.advance();
         let index = stages.len();
         self.places.set(Place::Stage(index), opening.clone());
         let mut own: [Written; 2] = [None, None];
-        let mut portions: [Option<(Portion, Range<usize>)>; 2] = [None, None];
+        let mut portions: [Option<(Portion, Span)>; 2] = [None, None];
         while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
             if self.cursor.kind().is_none() {
                 return Err(self.unclosed(opening));
@@ -120,10 +119,10 @@ impl Parser<'_> {
     }
 
     /// `rgb { ... }` or `alpha { ... }`
-    fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Range<usize>)>) -> Read<()> {
-        let name = self.cursor.place();
+    fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Span)>) -> Read<()> {
+        let name = self.cursor.span();
         self.cursor.advance();
-        let opening = self.cursor.place();
+        let opening = self.cursor.span();
         self.sign('{')?;
         let mut reader = PortionReader::new(stage, alpha);
         while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
@@ -141,18 +140,18 @@ impl Parser<'_> {
 
     /// `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`
     fn constant(&mut self, slot: &mut Written) -> Read<()> {
-        let name = self.cursor.place();
+        let name = self.cursor.span();
         self.cursor.advance();
         self.sign('=')?;
         let bytes = self.cursor.word() == "bytes";
         if bytes {
             self.cursor.advance();
         }
-        let opening = self.cursor.place().start;
+        let opening = self.cursor.span().start;
         self.sign('(')?;
         let mut values = Vec::new();
         loop {
-            let start = self.cursor.place().start;
+            let start = self.cursor.span().start;
             let negative = self.cursor.take('-');
             if !negative {
                 self.cursor.take('+');
@@ -160,9 +159,9 @@ impl Parser<'_> {
             if self.cursor.kind() != Some(Kind::Number) {
                 return Err(self.expected("a number"));
             }
-            let place = start..self.cursor.place().end;
+            let span = start..self.cursor.span().end;
             self.cursor.advance();
-            values.push(self.number(place, negative, bytes));
+            values.push(self.number(span, negative, bytes));
             if !self.cursor.take(',') {
                 break;
             }
@@ -183,8 +182,8 @@ impl Parser<'_> {
     }
 
     /// A number as a byte of a colour. What is beyond 0.0 to 1.0 is limited to it, as the extension has it.
-    fn number(&mut self, place: Range<usize>, negative: bool, byte: bool) -> Option<u8> {
-        let written = self.cursor.text(&place);
+    fn number(&mut self, span: Span, negative: bool, byte: bool) -> Option<u8> {
+        let written = self.cursor.text(&span);
         let digits = written.trim_start_matches(['+', '-']).trim_start();
         let limited = if negative { "0" } else { "1" };
         // NUM-0. Digits and a point are a number, at most infinite.
@@ -193,7 +192,7 @@ impl Parser<'_> {
             Ok(value) if value == 0.0 || !negative && value <= 1.0 => Some(constant(value)),
             Ok(_) => {
                 let message = format!("`{}` is limited to {limited}", shorten(written));
-                let finding = Diagnostic::warning("NB0916", place, message).label("a part of a colour is 0.0 to 1.0");
+                let finding = Diagnostic::warning("NB0916", span, message).label("a part of a colour is 0.0 to 1.0");
                 self.findings.push(finding.rule("NUM-0").help(match negative {
                     true => "write 0; registers hold negative numbers, constants do not",
                     false => "write 1; for bytes write `bytes(255, 128, 0, 255)`",
@@ -209,8 +208,7 @@ impl Parser<'_> {
                 ("a part of a colour is a number from 0.0 to 1.0", "for bytes write `bytes(255, 128, 0, 255)`")
             };
             let message = format!("`{}` is not a part of this colour", shorten(written));
-            self.findings
-                .push(Diagnostic::error("NB0206", place, message).label("out of range").note(range).help(help));
+            self.findings.push(Diagnostic::error("NB0206", span, message).label("out of range").note(range).help(help));
         }
         value
     }

@@ -71,14 +71,14 @@ pub(super) fn unit(
         (rgb.then, alpha.then) = (Some(rgb_scale), Some(alpha_scale));
     }
     let first = if function.writes_alpha() { Alpha::DotProduct } else { Alpha::Equation(alpha.first) };
-    cascade.stage(unit.place.clone(), &rgb.first, first, Destination::Current, origin.clone());
+    cascade.stage(unit.span.clone(), &rgb.first, first, Destination::Current, origin.clone());
     if rgb.then.is_some() || alpha.then.is_some() {
         let current = Argument::new(Source::Current);
         let [rgb, alpha] =
             [rgb.then, alpha.then].map(|scale| Equation::copy(current).scaled(scale.unwrap_or(Scale::One)));
         let text = |text: String| format!("{text}, scale");
         let origin = StageOrigin { rgb: text(origin.rgb), alpha: text(origin.alpha) };
-        cascade.stage(unit.place.clone(), &rgb, Alpha::Equation(alpha), Destination::Current, origin);
+        cascade.stage(unit.span.clone(), &rgb, Alpha::Equation(alpha), Destination::Current, origin);
     }
 }
 
@@ -118,16 +118,16 @@ impl Combined {
 fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
     let (mode, function) = (unit.mode, half.function.value);
     let fits = mode != Mode::Combine4 || matches!(function, Function::Add | Function::AddSigned);
-    if !fits && half.function.place.is_empty() {
+    if !fits && half.function.span.is_empty() {
         let what = if alpha { "combine_alpha" } else { "combine_rgb" };
         let message = format!("a unit in mode Combine4 says its `{what}`");
         let help =
             format!("write `{what}: Add` or `AddSigned`; what the API starts with, Modulate, is none of Combine4's");
-        findings.push(finding("NB0353", unit.place.clone(), message, "this one does not", help));
+        findings.push(finding("NB0353", unit.span.clone(), message, "this one does not", help));
         return;
     }
     let mut wrong = |message: String, help: &str| {
-        findings.push(finding("NB0353", half.function.place.clone(), message, "not here", help));
+        findings.push(finding("NB0353", half.function.span.clone(), message, "not here", help));
     };
     if alpha && function.is_dot() {
         wrong(
@@ -144,11 +144,11 @@ fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) 
         if alpha && color {
             let message = format!("the alpha of a unit has no {}", operand.value.name());
             let help = "write SourceAlpha or OneMinusSourceAlpha";
-            findings.push(finding("NB0353", operand.place.clone(), message, "not here", help));
+            findings.push(finding("NB0353", operand.span.clone(), message, "not here", help));
         }
         if mode == Mode::Combine && source.value == EnvironmentSource::Zero {
             let help = "write `mode: Combine4`, or another source";
-            findings.push(finding("NB0353", source.place.clone(), "Combine has no source Zero", "not here", help));
+            findings.push(finding("NB0353", source.span.clone(), "Combine has no source Zero", "not here", help));
         }
     }
 }

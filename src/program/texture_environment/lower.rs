@@ -10,7 +10,7 @@ use ninebit::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units that have a texture, and what it counts as: enabled units.
     pub textures: [Option<BaseFormat>; TEXTURE_UNITS],
@@ -38,7 +38,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
         let (index, chip) = (context.profile.texture_units(), context.profile.name());
         let message = format!("{chip} has no texture unit {index}");
         let help = format!("units 0 to {} are the entries of this list", index - 1);
-        let error = finding("NB0319", unit.place.clone(), message, "one too many", help);
+        let error = finding("NB0319", unit.span.clone(), message, "one too many", help);
         findings.push(error.rule("CMB-12"));
     }
     for (index, texture) in textures.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
                 let (rgb, alpha) = classic(mode, own, Argument::new(Source::Constant(unit.color)));
                 let text = |half: &str| format!("texture unit {index}: {} of {}, {half}", mode.name(), format.name());
                 let origin = StageOrigin { rgb: text("colour"), alpha: text("alpha") };
-                cascade.stage(unit.place.clone(), &rgb, Alpha::Equation(alpha), Destination::Current, origin);
+                cascade.stage(unit.span.clone(), &rgb, Alpha::Equation(alpha), Destination::Current, origin);
             }
         }
     }

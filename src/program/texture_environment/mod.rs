@@ -6,9 +6,8 @@ mod combine;
 mod lower;
 mod text;
 
-use std::ops::Range;
-
-use crate::At;
+use crate::Span;
+use crate::Spanned;
 use ninebit::state::{Scale, TextureFormat, named};
 
 pub use lower::{Context, lower};
@@ -19,15 +18,15 @@ named! {
     pub enum Mode {
         /// The texture's colour.
         Replace,
-        /// The product.
+        /// The colour times the texture's.
         Modulate,
         /// Blended by the texture's alpha.
         Decal,
         /// Blended with the environment colour by the texture's colour.
         Blend,
-        /// The sum.
+        /// The colour plus the texture's.
         Add,
-        /// As the combine functions say.
+        /// The combine functions compute the result.
         Combine,
         /// COMBINE4_NV (NV_texture_env_combine4): sums of two products.
         Combine4,
@@ -134,11 +133,11 @@ impl BaseFormat {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Half {
     /// COMBINE_RGB or COMBINE_ALPHA.
-    pub function: At<Function>,
+    pub function: Spanned<Function>,
     /// SOURCE0 to SOURCE3.
-    pub sources: [At<EnvironmentSource>; 4],
+    pub sources: [Spanned<EnvironmentSource>; 4],
     /// OPERAND0 to OPERAND3.
-    pub operands: [At<Operand>; 4],
+    pub operands: [Spanned<Operand>; 4],
     /// RGB_SCALE or ALPHA_SCALE: One, Two, Four.
     pub scale: Scale,
 }
@@ -157,22 +156,22 @@ pub struct Unit {
     /// What the texture counts as; `None`: as its texel format says.
     pub base_format: Option<BaseFormat>,
     /// Where it is written; empty if it is not.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 impl Unit {
     /// The API's initial state in a mode: those of Combine and Combine4 differ in nothing that both read.
     pub fn initial() -> Unit {
         let half = |operands: [Operand; 4]| Half {
-            function: At::default_of(Function::Modulate),
+            function: Spanned::default_of(Function::Modulate),
             sources: [
                 EnvironmentSource::Texture,
                 EnvironmentSource::Previous,
                 EnvironmentSource::Constant,
                 EnvironmentSource::Zero,
             ]
-            .map(At::default_of),
-            operands: operands.map(At::default_of),
+            .map(Spanned::default_of),
+            operands: operands.map(Spanned::default_of),
             scale: Scale::One,
         };
         let (color, alpha) = (Operand::SourceColor, Operand::SourceAlpha);
@@ -182,7 +181,7 @@ impl Unit {
             alpha: half([alpha, alpha, alpha, Operand::OneMinusSourceAlpha]),
             color: [0; 4],
             base_format: None,
-            place: 0..0,
+            span: 0..0,
         }
     }
 }

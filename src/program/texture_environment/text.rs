@@ -1,9 +1,8 @@
 //! The texture environment as pasted text: calls of glTexEnv, with the extensions ARB_texture_env_combine and NV_texture_env_combine4.
 
-use std::ops::Range;
-
 use super::{Half, TextureEnvironment, Unit};
-use crate::At;
+use crate::Span;
+use crate::Spanned;
 use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, table, whole};
 use crate::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
 use crate::finding::finding;
@@ -79,7 +78,7 @@ fn parameters() -> Vec<(String, Parameter)> {
 }
 
 impl<'t> Parser<'t> {
-    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) -> Option<()> {
+    fn call(&mut self, name: &Span, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.reader.word(name);
         let wanted = match function {
             _ if function.contains("TexEnv") => 3,
@@ -89,7 +88,7 @@ impl<'t> Parser<'t> {
         self.reader.takes(name, wanted, arguments.len())?;
         match arguments {
             [target, parameter, value] => self.environment(function, target, parameter, value)?,
-            [parameter, value] if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" => {
+            [parameter, value] if bare(self.reader.word(&parameter.span), &[]) == "LIGHT_MODEL_COLOR_CONTROL" => {
                 let table = [("SEPARATE_SPECULAR_COLOR", true), ("SINGLE_COLOR", false)];
                 self.program.color_sum = choose(value, "colour control", &table, &mut self.reader.findings)?;
             }
@@ -99,7 +98,7 @@ impl<'t> Parser<'t> {
             [unit] if function.contains("ActiveTexture") => {
                 self.unit = numbered(unit, "TEXTURE", TEXTURE_UNITS, "texture unit", &mut self.reader.findings)?;
             }
-            [value] if bare(self.reader.word(&value.place), &[]) == "COLOR_SUM" => {
+            [value] if bare(self.reader.word(&value.span), &[]) == "COLOR_SUM" => {
                 self.program.color_sum = function.ends_with("glEnable");
             }
             [value] => capability(&mut self.reader, name, value, function.ends_with("glEnable")),
@@ -116,7 +115,7 @@ impl<'t> Parser<'t> {
         parameter: &Value<'t>,
         value: &Value<'t>,
     ) -> Option<()> {
-        let (place, written) = (target.place.clone(), self.reader.word(&target.place));
+        let (span, written) = (target.span.clone(), self.reader.word(&target.span));
         match bare(written, &[]) {
             "TEXTURE_ENV" => {
                 let table = parameters();
@@ -128,12 +127,12 @@ impl<'t> Parser<'t> {
             }
             "TEXTURE_FILTER_CONTROL" => {
                 let help = "write it in the draw: `textures: [(texture: ..., lod_bias: ...)]`";
-                self.reader.aside(place, written, "a bias of levels is a state of the sampler", help, None);
+                self.reader.aside(span, written, "a bias of levels is a state of the sampler", help, None);
             }
             "TEXTURE_SHADER" => {
                 let help = "write it in the draw: `texture_shader: [Sample, ...]`";
                 let field = Some("texture_shader");
-                self.reader.aside(place, written, "texture shaders are states of the draw", help, field);
+                self.reader.aside(span, written, "texture shaders are states of the draw", help, field);
             }
             _ => {
                 let findings = &mut self.reader.findings;
@@ -145,7 +144,7 @@ impl<'t> Parser<'t> {
 
     fn set(&mut self, function: &str, chosen: Parameter, parameter: &Value<'t>, value: &Value<'t>) -> Option<()> {
         let vector = is_vector(function);
-        let (place, index) = (value.place.clone(), self.unit);
+        let (span, index) = (value.span.clone(), self.unit);
         if let Parameter::Color = chosen {
             if !vector {
                 let help = "write `glTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);`";
@@ -165,15 +164,15 @@ impl<'t> Parser<'t> {
             }
             Parameter::Function(alpha) => {
                 let value = choose(value, "combine function", &table(FUNCTIONS), findings)?;
-                self.half(index, parameter, alpha).function = At { value, place };
+                self.half(index, parameter, alpha).function = Spanned { value, span };
             }
             Parameter::Source(alpha, n) => {
                 let value = choose(value, "source", &table(SOURCES), findings)?;
-                self.half(index, parameter, alpha).sources[n] = At { value, place };
+                self.half(index, parameter, alpha).sources[n] = Spanned { value, span };
             }
             Parameter::Operand(alpha, n) => {
                 let value = choose(value, "operand", &table(OPERANDS), findings)?;
-                self.half(index, parameter, alpha).operands[n] = At { value, place };
+                self.half(index, parameter, alpha).operands[n] = Spanned { value, span };
             }
             Parameter::Scale(alpha) => {
                 let scale = match whole(value, findings)? {
@@ -182,7 +181,7 @@ impl<'t> Parser<'t> {
                     4 => Scale::Four,
                     other => {
                         let message = format!("a scale cannot be {other}");
-                        findings.push(finding("NB0206", place, message, "out of range", "write 1.0, 2.0 or 4.0"));
+                        findings.push(finding("NB0206", span, message, "out of range", "write 1.0, 2.0 or 4.0"));
                         return None;
                     }
                 };
@@ -200,8 +199,8 @@ impl<'t> Parser<'t> {
             units.push(Unit::initial());
         }
         let unit = &mut units[index];
-        if unit.place.is_empty() {
-            unit.place = by.place.clone();
+        if unit.span.is_empty() {
+            unit.span = by.span.clone();
         }
         unit
     }

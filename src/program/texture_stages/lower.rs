@@ -1,11 +1,10 @@
 //! From texture stages to general stages.
 
-use std::ops::Range;
-
 use super::{
     ArgumentSource, Generation, Half, Operation, PROJECTED, ResultArgument, StageArgument, TextureStage, TextureStages,
 };
-use crate::At;
+use crate::Span;
+use crate::Spanned;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
@@ -15,7 +14,7 @@ use ninebit::vertex::texgen::StageTransform;
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
-    /// The chip.
+    /// The chip that runs the program.
     pub profile: Profile,
     /// Units that give a colour.
     pub bound: [bool; TEXTURE_UNITS],
@@ -31,17 +30,17 @@ pub struct UnitChange {
     /// Its coordinate set.
     pub coordinate_set: Option<usize>,
     /// Its coordinates are made on the vertex side.
-    pub generation: Option<At<Generation>>,
+    pub generation: Option<Spanned<Generation>>,
     /// How the draw's texture matrix of the stage's number applies to them, if the stage says so.
-    pub transform: Option<At<StageTransform>>,
+    pub transform: Option<Spanned<StageTransform>>,
     /// Its texture shader operation, with the place of the stage operation that asks for it. It reads the unit before.
-    pub operation: Option<At<ShaderOperation>>,
+    pub operation: Option<Spanned<ShaderOperation>>,
 }
 
 /// Lowered texture stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program.
+    /// The program, in the chip's own terms.
     pub combiners: Combiners,
     /// What each general stage came from.
     pub origins: Vec<StageOrigin>,
@@ -55,7 +54,7 @@ pub struct Lowered {
 /// Everything that the chip, or this version, has no form for.
 pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
-    let transforms = program.stages.iter().any(|stage| !stage.transform_flags.place.is_empty());
+    let transforms = program.stages.iter().any(|stage| !stage.transform_flags.span.is_empty());
     let mut walk = Walk { program, context, active, transforms, findings: Vec::new(), units: Default::default() };
     let mut cascade = Cascade::new(context.profile, context.signed);
     for (index, stage) in program.stages.iter().take(active).enumerate() {
@@ -74,8 +73,8 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
             ResultArgument::Current => Destination::Current,
             ResultArgument::Temp => Destination::Temporary,
         };
-        let place = written([&stage.color.operation.place, &stage.place]);
-        cascade.stage(place, &rgb, alpha, destination, origin(index, stage));
+        let span = written([&stage.color.operation.span, &stage.span]);
+        cascade.stage(span, &rgb, alpha, destination, origin(index, stage));
     }
     let end = End { specular: program.specular_enable, fog: context.fog };
     let crate::cascade::Lowered { combiners, origins } = cascade.finish("cascade", end, walk.findings)?;
@@ -83,8 +82,8 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
 }
 
 /// The first place that is written.
-fn written<const N: usize>(places: [&Range<usize>; N]) -> Range<usize> {
-    places.into_iter().find(|place| !place.is_empty()).cloned().unwrap_or(0..0)
+fn written<const N: usize>(places: [&Span; N]) -> Span {
+    places.into_iter().find(|span| !span.is_empty()).cloned().unwrap_or(0..0)
 }
 
 /// What is known while the stages are gone through.
@@ -104,31 +103,31 @@ impl Walk<'_> {
     fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::cascade::Equation {
         let operation = half.operation.value;
         let stage = &self.program.stages[index];
-        let place = written([&half.operation.place, &stage.color.operation.place, &stage.place]);
+        let span = written([&half.operation.span, &stage.color.operation.span, &stage.span]);
         if alpha && operation.is_color_only() {
             let message = format!("AlphaOp cannot be {}", operation.name());
             let help = "alpha has SelectArg1 to AddSmooth, the Blend operations, PreModulate, MultiplyAdd and Lerp";
-            self.findings.push(finding("NB0353", place.clone(), message, "a colour operation", help));
+            self.findings.push(finding("NB0353", span.clone(), message, "a colour operation", help));
         }
         let reads = operation.reads();
         let arguments = std::array::from_fn(|n| {
-            if reads[n] { self.argument(index, &half.arguments[n], alpha, &place) } else { Argument::ZERO }
+            if reads[n] { self.argument(index, &half.arguments[n], alpha, &span) } else { Argument::ZERO }
         });
         let texture = match operation {
-            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => self.texture(index, place),
-            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, place),
+            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => self.texture(index, span),
+            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, span),
             _ => Argument::ONE,
         };
         operation.equation(arguments, texture, Argument::new(Source::Constant(self.program.texture_factor)))
     }
 
-    fn argument(&mut self, index: usize, at: &At<StageArgument>, alpha: bool, operation: &Range<usize>) -> Argument {
-        let place = written([&at.place, operation]);
+    fn argument(&mut self, index: usize, at: &Spanned<StageArgument>, alpha: bool, operation: &Span) -> Argument {
+        let span = written([&at.span, operation]);
         let StageArgument { source, complement, alpha_replicate } = at.value;
         let mut argument = match source {
             ArgumentSource::Diffuse => Argument::new(Source::Primary),
             ArgumentSource::Current => Argument::new(Source::Current),
-            ArgumentSource::Texture => self.texture(index, place.clone()),
+            ArgumentSource::Texture => self.texture(index, span.clone()),
             ArgumentSource::TextureFactor => Argument::new(Source::Constant(self.program.texture_factor)),
             ArgumentSource::Specular => Argument::new(Source::Secondary),
             ArgumentSource::Temp => Argument::new(Source::Temporary),
@@ -136,7 +135,7 @@ impl Walk<'_> {
         };
         if source == ArgumentSource::Specular && (alpha || alpha_replicate) && self.context.profile == Profile::Nv10 {
             let help = "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse";
-            let error = finding("NB0309", place, "the alpha of Specular is not defined on Nv10", "undefined", help);
+            let error = finding("NB0309", span, "the alpha of Specular is not defined on Nv10", "undefined", help);
             self.findings.push(error.rule("CMB-13"));
         }
         if alpha_replicate {
@@ -146,7 +145,7 @@ impl Walk<'_> {
     }
 
     /// The colour of a unit's texture: opaque white if it has none.
-    fn texture(&mut self, unit: usize, place: Range<usize>) -> Argument {
+    fn texture(&mut self, unit: usize, span: Span) -> Argument {
         let units = self.context.profile.texture_units();
         if unit >= units {
             let chip = self.context.profile.name();
@@ -155,7 +154,7 @@ impl Walk<'_> {
                 Profile::Nv10 => "profile Nv2a has 4: write `profile: Nv2a`, or draw in two passes with `blend`",
                 Profile::Nv2a => "draw in two passes with `blend`",
             };
-            let error = finding("NB0319", place, message, "a texture unit that the chip lacks", help);
+            let error = finding("NB0319", span, message, "a texture unit that the chip lacks", help);
             self.findings.push(error.rule("CMB-12"));
             return Argument::ONE;
         }
@@ -168,32 +167,32 @@ impl Walk<'_> {
             let made = at.value.generation.checked_sub(1).map(|index| Generation::ALL.get(index as usize));
             if let Some(made) = made {
                 match (made, self.units.get_mut(index)) {
-                    (Some(made), Some(unit)) => unit.generation = Some(At { value: *made, place: at.place.clone() }),
+                    (Some(made), Some(unit)) => unit.generation = Some(Spanned { value: *made, span: at.span.clone() }),
                     (Some(_), None) => {}
                     (None, _) => {
                         let message = format!("there is no source of coordinates {:#x}", at.value.generation << 16);
                         let help = "write 0x10000 (D3DTSS_TCI_CAMERASPACENORMAL) to 0x40000 (D3DTSS_TCI_SPHEREMAP)";
-                        self.findings.push(finding("NB0206", at.place.clone(), message, "out of range", help));
+                        self.findings.push(finding("NB0206", at.span.clone(), message, "out of range", help));
                     }
                 }
             } else if at.value.set >= 4 {
                 let message = format!("a set of texture coordinates cannot be {}", at.value.set);
-                self.findings.push(finding("NB0206", at.place.clone(), message, "out of range", "write 0 to 3"));
+                self.findings.push(finding("NB0206", at.span.clone(), message, "out of range", "write 0 to 3"));
             } else if let Some(unit) = self.units.get_mut(index) {
                 unit.coordinate_set = Some(at.value.set as usize);
             }
         }
-        let At { value: flags, place } = &stage.transform_flags;
+        let Spanned { value: flags, span } = &stage.transform_flags;
         let (count, projected) = (flags & !PROJECTED, flags & PROJECTED != 0);
         if count > 4 {
             let message = format!("there are no transform flags {flags:#x}");
             let help = "write 0 (D3DTTFF_DISABLE) to 4 (D3DTTFF_COUNT4), with 256 (D3DTTFF_PROJECTED) or without";
-            self.findings.push(finding("NB0206", place.clone(), message, "out of range", help));
+            self.findings.push(finding("NB0206", span.clone(), message, "out of range", help));
         } else if let Some(unit) = self.units.get_mut(index)
             && self.transforms
         {
             let value = StageTransform { count: count as usize, projected };
-            unit.transform = Some(At { value, place: place.clone() });
+            unit.transform = Some(Spanned { value, span: span.clone() });
         }
     }
 
@@ -203,11 +202,11 @@ impl Walk<'_> {
         if self.context.profile == Profile::Nv10 {
             let message = format!("Nv10 has no {}", operation.value.name());
             let help = "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`";
-            let error = finding("NB0340", operation.place.clone(), message, "not on this chip", help);
+            let error = finding("NB0340", operation.span.clone(), message, "not on this chip", help);
             self.findings.push(error.rule("TSH-10"));
             return;
         }
-        self.texture(index, operation.place.clone());
+        self.texture(index, operation.span.clone());
         let next = index + 1;
         let both = self.context.bound.get(index..=next).is_some_and(|bound| bound == [true; 2]);
         if !both || next >= self.active {
@@ -216,9 +215,9 @@ impl Walk<'_> {
         // u' = u + M00 du + M10 dv, v' = v + M01 du + M11 dv: the registers' order is M00, M01, M11, M10.
         let [m00, m01, m10, m11] = stage.bump_matrix;
         let luminance = (operation.value == Operation::BumpEnvMapLuminance).then_some(stage.bump_luminance);
-        let place = stage.color.operation.place.clone();
+        let span = stage.color.operation.span.clone();
         let operation = ShaderOperation::BumpEnvironment { matrix: [m00, m01, m11, m10], luminance };
-        self.units[next].operation = Some(At { value: operation, place });
+        self.units[next].operation = Some(Spanned { value: operation, span });
     }
 }
 

@@ -7,9 +7,8 @@ mod lower;
 mod operation;
 mod text;
 
-use std::ops::Range;
-
-use crate::At;
+use crate::Span;
+use crate::Spanned;
 use ninebit::state::named;
 
 pub use lower::{Context, Lowered, UnitChange, lower};
@@ -54,7 +53,7 @@ named! {
 /// D3DTA with its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageArgument {
-    /// Selector.
+    /// The register or constant that is read.
     pub source: ArgumentSource,
     /// D3DTA_COMPLEMENT (16): 1 - x.
     pub complement: bool,
@@ -107,9 +106,9 @@ pub struct CoordinateIndex {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Half {
     /// COLOROP or ALPHAOP.
-    pub operation: At<Operation>,
+    pub operation: Spanned<Operation>,
     /// ARG0, ARG1, ARG2.
-    pub arguments: [At<StageArgument>; 3],
+    pub arguments: [Spanned<StageArgument>; 3],
 }
 
 /// One texture stage.
@@ -124,25 +123,25 @@ pub struct TextureStage {
     /// CONSTANT, R, G, B, A bytes.
     pub constant: [u8; 4],
     /// TEXCOORDINDEX; `None`: as the texture unit says.
-    pub coordinate_index: Option<At<CoordinateIndex>>,
+    pub coordinate_index: Option<Spanned<CoordinateIndex>>,
     /// TEXTURETRANSFORMFLAGS: a count 0 to 4, and [`PROJECTED`]. Where no stage writes them the draw's texture matrices apply as they
     /// do to other programs.
-    pub transform_flags: At<u32>,
+    pub transform_flags: Spanned<u32>,
     /// BUMPENVMAT00, 01, 10, 11.
     pub bump_matrix: [f32; 4],
     /// BUMPENVLSCALE, BUMPENVLOFFSET.
     pub bump_luminance: [f32; 2],
     /// Where the stage is written, for findings about what is not; empty if it is not.
-    pub place: Range<usize>,
+    pub span: Span,
 }
 
 impl TextureStage {
     /// The API's initial state of stage `index`.
     pub fn initial(index: usize) -> TextureStage {
         let half = |operation| Half {
-            operation: At::default_of(operation),
+            operation: Spanned::default_of(operation),
             arguments: [ArgumentSource::Current, ArgumentSource::Texture, ArgumentSource::Current]
-                .map(|source| At::default_of(StageArgument::new(source))),
+                .map(|source| Spanned::default_of(StageArgument::new(source))),
         };
         let [color, alpha] = match index {
             0 => [Operation::Modulate, Operation::SelectArg1],
@@ -154,10 +153,10 @@ impl TextureStage {
             result: ResultArgument::Current,
             constant: [0; 4],
             coordinate_index: None,
-            transform_flags: At::default_of(0),
+            transform_flags: Spanned::default_of(0),
             bump_matrix: [0.0; 4],
             bump_luminance: [0.0; 2],
-            place: 0..0,
+            span: 0..0,
         }
     }
 }

@@ -3,10 +3,9 @@
 mod draw_state;
 mod value;
 
-use std::ops::Range;
-
 use super::{CoordinateIndex, STAGES, TextureStages};
-use crate::At;
+use crate::Span;
+use crate::Spanned;
 use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary, out_of_range};
 use crate::finding::finding;
 use draw_state::{DrawStates, OTHER_STATES};
@@ -108,11 +107,11 @@ struct Parser<'t> {
 }
 
 impl<'t> Parser<'t> {
-    fn word(&self, place: &Range<usize>) -> &'t str {
-        self.reader.word(place)
+    fn word(&self, span: &Span) -> &'t str {
+        self.reader.word(span)
     }
 
-    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) -> Option<()> {
+    fn call(&mut self, name: &Span, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.word(name);
         let render = function.ends_with("SetRenderState");
         let count = if render { 2 } else { 3 };
@@ -129,40 +128,40 @@ impl<'t> Parser<'t> {
         };
         match arguments {
             [_, state, _] if function.ends_with("SetSamplerState") => self.sampler_state(name, state),
-            [stage, state, value] => self.stage_state(stage, &state.place.clone(), value, true),
-            [state, value] => self.render_state(&state.place.clone(), value, true),
+            [stage, state, value] => self.stage_state(stage, &state.span.clone(), value, true),
+            [state, value] => self.render_state(&state.span.clone(), value, true),
             _ => None,
         }
     }
 
     /// Direct3D 9 took these states out of the stages.
-    fn sampler_state(&mut self, name: &Range<usize>, state: &Value<'t>) -> Option<()> {
+    fn sampler_state(&mut self, name: &Span, state: &Value<'t>) -> Option<()> {
         let function = self.word(name);
         let message = "`SetSamplerState` is Direct3D 9's: the interfaces of these chips set samplers by stage";
         let help =
             "the draw's `textures` have filters and address modes: `textures: [(texture: ..., min_filter: Linear)]`";
         self.reader.pass(name.clone(), function, message, "passed over", help);
-        let bare = calls::without_prefix(self.word(&state.place), &["D3DSAMP_"]).1;
+        let bare = calls::without_prefix(self.word(&state.span), &["D3DSAMP_"]).1;
         let (name, _, field) = SAMPLER_STATES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(bare))?;
-        self.sampler(name, field, state.place.clone());
+        self.sampler(name, field, state.span.clone());
         Some(())
     }
 
-    fn sampler(&mut self, name: &'static str, field: &str, place: Range<usize>) {
+    fn sampler(&mut self, name: &'static str, field: &str, span: Span) {
         let message = format!("{name} is a state of the sampler");
         let help = format!("write it in the draw: `textures: [(texture: ..., {field}: ...)]`");
-        self.reader.pass(place, name, &message, "no part of a pixel program", &help);
+        self.reader.pass(span, name, &message, "no part of a pixel program", &help);
     }
 
     /// The state's name without its prefix, in its own spelling: by name, or by its value.
     fn state(
         &mut self,
-        place: &Range<usize>,
+        span: &Span,
         prefixes: &[&str],
         known: &[(&'static str, u32)],
         call: bool,
     ) -> Option<&'static str> {
-        let word = self.word(place);
+        let word = self.word(span);
         let value = calls::integer(word);
         let (prefix, bare) = calls::without_prefix(word, prefixes);
         let found = known.iter().find(|(name, number)| name.eq_ignore_ascii_case(bare) || value == Some(*number));
@@ -177,11 +176,11 @@ impl<'t> Parser<'t> {
         };
         let (message, help) =
             (format!("there is no state `{word}` of a pixel program"), calls::meant(bare, known, spelled));
-        self.reader.findings.push(finding("NB0204", place.clone(), message, "not known", help));
+        self.reader.findings.push(finding("NB0204", span.clone(), message, "not known", help));
         None
     }
 
-    fn stage_state(&mut self, stage: &Value<'t>, state: &Range<usize>, value: &Value<'t>, call: bool) -> Option<()> {
+    fn stage_state(&mut self, stage: &Value<'t>, state: &Span, value: &Value<'t>, call: bool) -> Option<()> {
         let prefixes: &[&str] = if call { &["D3DTSS_"] } else { &[] };
         let bare = calls::without_prefix(self.word(state), prefixes).1;
         let number = calls::integer(bare);
@@ -198,25 +197,25 @@ impl<'t> Parser<'t> {
         let index = value::number(stage, &mut self.reader.findings)?;
         let Some(target) = self.program.stage_mut(index as usize) else {
             let help = format!("write 0 to {}", STAGES - 1);
-            return out_of_range(&stage.place, "texture stage", index, &help, &mut self.reader.findings);
+            return out_of_range(&stage.span, "texture stage", index, &help, &mut self.reader.findings);
         };
-        if target.place.is_empty() {
-            target.place = state.clone();
+        if target.span.is_empty() {
+            target.span = state.clone();
         }
         let findings = &mut self.reader.findings;
-        let place = value.place.clone();
+        let span = value.span.clone();
         let half = if name.starts_with("Color") { &mut target.color } else { &mut target.alpha };
         match name {
-            "ColorOp" | "AlphaOp" => half.operation = At { value: value::operation(value, call, findings)?, place },
+            "ColorOp" | "AlphaOp" => half.operation = Spanned { value: value::operation(value, call, findings)?, span },
             "ResultArg" => target.result = value::result(value, call, findings)?,
             "Constant" => target.constant = value::color(value, findings)?,
             "TexCoordIndex" => {
                 let bits = value::coordinate_index(value, findings)?;
                 let value = CoordinateIndex { set: bits & 0xffff, generation: bits >> 16 };
-                target.coordinate_index = Some(At { value, place });
+                target.coordinate_index = Some(Spanned { value, span });
             }
             "TextureTransformFlags" => {
-                target.transform_flags = At { value: value::transform_flags(value, findings)?, place };
+                target.transform_flags = Spanned { value: value::transform_flags(value, findings)?, span };
             }
             "BumpEnvMat00" => target.bump_matrix[0] = value::float(value, findings)?,
             "BumpEnvMat01" => target.bump_matrix[1] = value::float(value, findings)?,
@@ -226,13 +225,13 @@ impl<'t> Parser<'t> {
             "BumpEnvLOffset" => target.bump_luminance[1] = value::float(value, findings)?,
             argument => {
                 let slot = usize::from(argument.as_bytes()[argument.len() - 1] - b'0').min(2);
-                half.arguments[slot] = At { value: value::argument(value, call, findings)?, place };
+                half.arguments[slot] = Spanned { value: value::argument(value, call, findings)?, span };
             }
         }
         Some(())
     }
 
-    fn render_state(&mut self, state: &Range<usize>, value: &Value<'t>, call: bool) -> Option<()> {
+    fn render_state(&mut self, state: &Span, value: &Value<'t>, call: bool) -> Option<()> {
         let prefixes: &[&str] = if call { &["D3DRS_", "D3DRENDERSTATE_"] } else { &[] };
         let word = self.word(state);
         let (prefix, bare) = calls::without_prefix(word, prefixes);

@@ -1,9 +1,8 @@
 //! What the language allows, as far as the text alone can tell.
 
-use std::ops::Range;
-
 use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
+use crate::Span;
 use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::{
@@ -39,9 +38,9 @@ pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
     flow::unwritten(written, &mut findings);
     overlaps(written, &mut findings);
     if written.shader.written(DestinationRegister::Position) == 0 {
-        let place = written.places.last().map_or(0..0, |places| places.opcode.clone());
+        let span = written.places.last().map_or(0..0, |places| places.opcode.clone());
         let help = "write the position in clip space: `m4x4 oPos, v0, c0`";
-        findings.push(finding("NB0386", place, "this program does not write oPos", "ends without a position", help));
+        findings.push(finding("NB0386", span, "this program does not write oPos", "ends without a position", help));
     }
     findings.sort_by_key(Diagnostic::order);
     findings
@@ -54,12 +53,12 @@ fn addresses(
     addressed: &mut bool,
     findings: &mut Vec<Diagnostic>,
 ) {
-    for (source, place) in instruction.sources.iter().zip(&places.sources) {
+    for (source, span) in instruction.sources.iter().zip(&places.sources) {
         if matches!(source.register, SourceRegister::Constant { relative: true, .. }) && !*addressed {
             *addressed = true;
             let message = "a0.x is read before anything writes it";
             let help = "write it first: `mov a0.x, v1.x`";
-            findings.push(finding("NB0383", place.clone(), message, "not written yet", help));
+            findings.push(finding("NB0383", span.clone(), message, "not written yet", help));
         }
     }
     if instruction.destination.register == DestinationRegister::Address {
@@ -113,9 +112,9 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
         findings.push(finding("NB0206", places.sources[1].clone(), message, "the first of them", help));
     }
     if letter == 'v' && rows > 1 {
-        let (place, message) = (places.sources[1].clone(), "rows of a matrix in inputs");
+        let (span, message) = (places.sources[1].clone(), "rows of a matrix in inputs");
         let help = "move the rows into temporaries first; each of its dot products reads one register v";
-        findings.push(finding("NB0382", place, message, "several inputs", help));
+        findings.push(finding("NB0382", span, message, "several inputs", help));
     }
     let DestinationRegister::Temporary(to) = instruction.destination.register else { return };
     let overwritten = vector.register == SourceRegister::Temporary(to)
@@ -129,20 +128,20 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
 
 /// One register c and one register v for each instruction.
 fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
-    let mut first: [Option<(SourceRegister, Range<usize>)>; 2] = [None, None];
-    for (source, place) in instruction.sources.iter().zip(&places.sources) {
+    let mut first: [Option<(SourceRegister, Span)>; 2] = [None, None];
+    for (source, span) in instruction.sources.iter().zip(&places.sources) {
         let (port, what) = match source.register {
             SourceRegister::Input(_) => (0, "inputs"),
             SourceRegister::Constant { .. } => (1, "constants"),
             SourceRegister::Temporary(_) => continue,
         };
         match &first[port] {
-            None => first[port] = Some((source.register, place.clone())),
+            None => first[port] = Some((source.register, span.clone())),
             Some((known, at)) if *known != source.register => {
                 let message =
                     format!("`{}` reads two {what}; vs.1.1 reads one for each instruction", instruction.opcode.word());
                 let help = format!("move one of them into a temporary before: `mov r11, {}`", name(source.register));
-                let found = finding("NB0382", place.clone(), message, "the second", help);
+                let found = finding("NB0382", span.clone(), message, "the second", help);
                 findings.push(found.related(at.clone(), "the first"));
             }
             Some(_) => {}
@@ -168,7 +167,7 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
 fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
     let shader = &written.shader;
     // For each constant the base of the matrix that it is a row of, and where that is read.
-    let mut row_of: Vec<Option<(usize, Range<usize>)>> = vec![None; CONSTANTS];
+    let mut row_of: Vec<Option<(usize, Span)>> = vec![None; CONSTANTS];
     let constant = |instruction: &Instruction, n: usize| match instruction.sources.get(n).map(|source| source.register)
     {
         Some(SourceRegister::Constant { index, relative: false }) => Some(index),
@@ -178,14 +177,14 @@ fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
         let Some(((rows, _), base)) = instruction.opcode.matrix().zip(constant(instruction, 1)) else { continue };
         let word = instruction.opcode.word();
         let taken = (base..(base + rows).min(CONSTANTS)).find_map(|row| {
-            let (other, place) = row_of[row].clone()?;
-            (other != base).then_some((row, other, place))
+            let (other, span) = row_of[row].clone()?;
+            (other != base).then_some((row, other, span))
         });
-        if let Some((row, other, place)) = taken {
+        if let Some((row, other, span)) = taken {
             let message = format!("`{word}` reads a matrix from c{base}, and c{row} belongs to the matrix at c{other}");
             let help = "matrices of four rows begin four constants apart";
             let finding = warning("NB0911", places.sources[1].clone(), message, "overlaps", help);
-            findings.push(finding.related(place, format!("the matrix at c{other}")));
+            findings.push(finding.related(span, format!("the matrix at c{other}")));
         }
         for row in row_of.iter_mut().skip(base).take(rows).filter(|row| row.is_none()) {
             *row = Some((base, places.sources[1].clone()));
@@ -196,11 +195,11 @@ fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
         for (n, source) in instruction.sources.iter().enumerate() {
             let Some(index) = constant(instruction, n).filter(|_| !(rows && n == 1)) else { continue };
             let product = matches!(instruction.opcode, Opcode::Dp3 | Opcode::Dp4) && !source.negate;
-            let Some((base, place)) = row_of[index].clone().filter(|_| !product) else { continue };
+            let Some((base, span)) = row_of[index].clone().filter(|_| !product) else { continue };
             let message = format!("c{index} is a vector here and a row of the matrix at c{base}");
             let help = "give the vector a constant of its own";
             let finding = warning("NB0911", places.sources[n].clone(), message, "a second meaning", help);
-            findings.push(finding.related(place, format!("reads c{index} as a row")));
+            findings.push(finding.related(span, format!("reads c{index} as a row")));
         }
     }
 }

@@ -1,9 +1,8 @@
 //! What is read before anything has written it, and what is read at all.
 
-use std::ops::Range;
-
 use super::Written;
 use super::print::letters;
+use crate::Span;
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::{CONSTANTS, DestinationRegister, INPUTS, Instruction, SourceRegister, TEMPORARIES};
@@ -69,16 +68,16 @@ pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
 
 impl Written {
     /// Constants that are read, with the first place that does; and whether an address chooses some.
-    pub fn constants_read(&self) -> ([Option<Range<usize>>; CONSTANTS], bool) {
-        let mut read: [Option<Range<usize>>; CONSTANTS] = std::array::from_fn(|_| None);
+    pub fn constants_read(&self) -> ([Option<Span>; CONSTANTS], bool) {
+        let mut read: [Option<Span>; CONSTANTS] = std::array::from_fn(|_| None);
         let mut any = false;
         for (instruction, places) in self.shader.instructions.iter().zip(&self.places) {
-            for (n, (source, place)) in instruction.sources.iter().zip(&places.sources).enumerate() {
+            for (n, (source, span)) in instruction.sources.iter().zip(&places.sources).enumerate() {
                 let SourceRegister::Constant { index, relative } = source.register else { continue };
                 any |= relative;
                 let rows = instruction.opcode.matrix().filter(|_| n == 1).map_or(1, |(rows, _)| rows);
                 for slot in read.iter_mut().skip(index).take(rows).filter(|slot| slot.is_none() && !relative) {
-                    *slot = Some(place.clone());
+                    *slot = Some(span.clone());
                 }
             }
         }
@@ -86,12 +85,12 @@ impl Written {
     }
 
     /// Inputs that are read, with the first place that does.
-    pub fn inputs_read(&self) -> [Option<Range<usize>>; INPUTS] {
-        let mut read: [Option<Range<usize>>; INPUTS] = std::array::from_fn(|_| None);
+    pub fn inputs_read(&self) -> [Option<Span>; INPUTS] {
+        let mut read: [Option<Span>; INPUTS] = std::array::from_fn(|_| None);
         for (instruction, places) in self.shader.instructions.iter().zip(&self.places) {
-            for (source, place) in instruction.sources.iter().zip(&places.sources) {
+            for (source, span) in instruction.sources.iter().zip(&places.sources) {
                 let SourceRegister::Input(index) = source.register else { continue };
-                read[index].get_or_insert_with(|| place.clone());
+                read[index].get_or_insert_with(|| span.clone());
             }
         }
         read

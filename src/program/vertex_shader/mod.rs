@@ -8,8 +8,7 @@ mod operand;
 mod parser;
 mod print;
 
-use std::ops::Range;
-
+use crate::Span;
 use ninebit::diagnostic::{Diagnostic, Severity};
 use ninebit::vertex::shader::VertexShader;
 pub use parser::parse;
@@ -18,12 +17,12 @@ pub use print::print;
 /// A program and where its parts stand in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The program.
+    /// The program that was read.
     pub shader: VertexShader,
-    /// Of each instruction.
+    /// Where each instruction stands.
     pub places: Vec<InstructionPlaces>,
-    /// Of the number of each definition.
-    pub definitions: Vec<Range<usize>>,
+    /// Where the number of each definition stands.
+    pub definitions: Vec<Span>,
     /// What is allowed but probably not meant.
     pub warnings: Vec<Diagnostic>,
 }
@@ -32,11 +31,11 @@ pub struct Written {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InstructionPlaces {
     /// The word of the instruction.
-    pub opcode: Range<usize>,
+    pub opcode: Span,
     /// What it writes.
-    pub destination: Range<usize>,
-    /// Each source.
-    pub sources: Vec<Range<usize>>,
+    pub destination: Span,
+    /// Each source, in order.
+    pub sources: Vec<Span>,
 }
 
 /// Reads a program and checks everything that the text alone can tell.

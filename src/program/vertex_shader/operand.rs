@@ -1,8 +1,7 @@
 //! Operands: registers with their swizzles and write masks.
 
-use std::ops::Range;
-
 use super::parser::Parser;
+use crate::Span;
 use crate::cursor::{GivenUp, Read};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
@@ -35,21 +34,21 @@ enum Register {
 }
 
 /// Reads what an instruction writes.
-pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Range<usize>)> {
-    let start = parser.cursor.place().start;
+pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Span)> {
+    let start = parser.cursor.span().start;
     if let Some(minus) = parser.sign('-') {
         let help = "negate the sources instead";
         return Err(parser.refuse("NB0380", minus, "a result cannot be negated", "not before what is written", help));
     }
-    let (found, place) = register(parser)?;
+    let (found, span) = register(parser)?;
     let register = match found {
         Register::Destination(register) => register,
         Register::Source(SourceRegister::Temporary(index)) => DestinationRegister::Temporary(index),
         Register::Source(_) | Register::Constants => {
-            let name = parser.cursor.text(&place).to_owned();
+            let name = parser.cursor.text(&span).to_owned();
             let message = format!("`{name}` cannot be written");
             let help = "write to r0 to r11 or an output, such as oPos; `def` gives a constant its value";
-            return Err(parser.refuse("NB0380", place, &message, "only read", help));
+            return Err(parser.refuse("NB0380", span, &message, "only read", help));
         }
     };
     let mask = match modifier(parser)? {
@@ -57,40 +56,40 @@ pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Range<u
             DestinationRegister::Address | DestinationRegister::Fog | DestinationRegister::PointSize => 1,
             _ => 15,
         },
-        Some(place) => mask(parser, parser.cursor.text(&place), place.clone(), register)?,
+        Some(span) => mask(parser, parser.cursor.text(&span), span.clone(), register)?,
     };
     Ok((Destination { register, mask }, start..parser.cursor.end()))
 }
 
 /// Reads a source.
-pub(super) fn source(parser: &mut Parser<'_>) -> Read<(Source, Range<usize>)> {
-    let start = parser.cursor.place().start;
+pub(super) fn source(parser: &mut Parser<'_>) -> Read<(Source, Span)> {
+    let start = parser.cursor.span().start;
     let negate = parser.sign('-').is_some();
-    let (found, place) = register(parser)?;
+    let (found, span) = register(parser)?;
     let register = match found {
         Register::Source(register) => register,
         Register::Constants => relative(parser)?,
         Register::Destination(register) => {
-            let name = parser.cursor.text(&place).to_owned();
+            let name = parser.cursor.text(&span).to_owned();
             let help = match register {
                 DestinationRegister::Address => "use it in `c[a0.x + 4]`",
                 _ => "keep the value in a temporary, and move it to the output as well",
             };
             let message = format!("`{name}` cannot be read");
-            return Err(parser.refuse("NB0380", place, &message, "only written", help));
+            return Err(parser.refuse("NB0380", span, &message, "only written", help));
         }
     };
     let swizzle = match modifier(parser)? {
         None => [0, 1, 2, 3],
-        Some(place) => swizzle(parser, parser.cursor.text(&place), place.clone())?,
+        Some(span) => swizzle(parser, parser.cursor.text(&span), span.clone())?,
     };
     Ok((Source { register, swizzle, negate }, start..parser.cursor.end()))
 }
 
 /// Reads the name of a register; `c[` up to the bracket.
-fn register(parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
-    let place = parser.word();
-    let word = parser.cursor.text(&place).to_owned();
+fn register(parser: &mut Parser<'_>) -> Read<(Register, Span)> {
+    let span = parser.word();
+    let word = parser.cursor.text(&span).to_owned();
     if word.is_empty() {
         return Err(parser.expected("a register"));
     }
@@ -98,11 +97,11 @@ fn register(parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
     let letters = lower.trim_end_matches(|c: char| c.is_ascii_digit());
     let digits = &lower[letters.len()..];
     let Some((name, written, count, what)) = FAMILIES.iter().find(|(name, ..)| *name == letters) else {
-        return Err(unknown(parser, &word, place));
+        return Err(unknown(parser, &word, span));
     };
     if digits.is_empty() != (*count == 0) {
         let brackets = *name == "c" && parser.cursor.is('[');
-        return if brackets { Ok((Register::Constants, place)) } else { Err(unknown(parser, &word, place)) };
+        return if brackets { Ok((Register::Constants, span)) } else { Err(unknown(parser, &word, span)) };
     }
     let number = digits.parse::<usize>().unwrap_or(usize::MAX);
     if *count > 0 && number >= *count {
@@ -112,7 +111,7 @@ fn register(parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
             1 => format!("write {written}0"),
             count => format!("write {written}0 to {written}{}", count - 1),
         };
-        return Err(parser.refuse("NB0206", place, &message, "out of range", &help));
+        return Err(parser.refuse("NB0206", span, &message, "out of range", &help));
     }
     let register = match *name {
         "v" => Register::Source(SourceRegister::Input(number)),
@@ -125,16 +124,16 @@ fn register(parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
         "od" => Register::Destination(DestinationRegister::Color(number)),
         _ => Register::Destination(DestinationRegister::Coordinates(number)),
     };
-    Ok((register, place))
+    Ok((register, span))
 }
 
-fn unknown(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> GivenUp {
+fn unknown(parser: &mut Parser<'_>, word: &str, span: Span) -> GivenUp {
     let known = ["v0", "r0", "c0", "a0", "oPos", "oFog", "oPts", "oD0", "oD1", "oT0", "oT1", "oT2", "oT3"];
     let help = match closest(word, known) {
         Some(name) => format!("did you mean `{name}`? Registers: {ALL}"),
         None => format!("registers: {ALL}"),
     };
-    parser.refuse("NB0204", place, &format!("there is no register `{}`", shorten(word)), "not known", &help)
+    parser.refuse("NB0204", span, &format!("there is no register `{}`", shorten(word)), "not known", &help)
 }
 
 /// Reads `[a0.x + 4]`, `[4 + a0.x]` or `[4]`.
@@ -142,13 +141,13 @@ fn relative(parser: &mut Parser<'_>) -> Read<SourceRegister> {
     let Some(open) = parser.sign('[') else { return Err(parser.expected("`[`")) };
     let (mut relative, mut index) = (false, None);
     loop {
-        let place = parser.word();
-        let word = parser.cursor.text(&place).to_ascii_lowercase();
+        let span = parser.word();
+        let word = parser.cursor.text(&span).to_ascii_lowercase();
         if word == "a0" && !relative {
             relative = true;
             let component = match parser.sign('.') {
                 Some(_) => parser.word(),
-                None => place.clone(),
+                None => span.clone(),
             };
             if !parser.cursor.text(&component).eq_ignore_ascii_case("x") {
                 let message = "the address register is read as a0.x";
@@ -157,7 +156,7 @@ fn relative(parser: &mut Parser<'_>) -> Read<SourceRegister> {
         } else if let (Ok(number), None) = (word.parse::<usize>(), index) {
             if number >= CONSTANTS {
                 let message = format!("there is no constant c{number}");
-                return Err(parser.refuse("NB0206", place, &message, "out of range", "write 0 to 95"));
+                return Err(parser.refuse("NB0206", span, &message, "out of range", "write 0 to 95"));
             }
             index = Some(number);
         } else {
@@ -175,12 +174,12 @@ fn relative(parser: &mut Parser<'_>) -> Read<SourceRegister> {
 }
 
 /// The letters behind a point, if there is one.
-fn modifier(parser: &mut Parser<'_>) -> Read<Option<Range<usize>>> {
+fn modifier(parser: &mut Parser<'_>) -> Read<Option<Span>> {
     if parser.sign('.').is_none() {
         return Ok(None);
     }
-    let place = parser.word();
-    if place.is_empty() { Err(parser.expected("components, such as `.xyz`")) } else { Ok(Some(place)) }
+    let span = parser.word();
+    if span.is_empty() { Err(parser.expected("components, such as `.xyz`")) } else { Ok(Some(span)) }
 }
 
 /// The number of a component.
@@ -188,20 +187,20 @@ fn component(letter: char) -> Option<usize> {
     "xyzw".find(letter.to_ascii_lowercase())
 }
 
-fn swizzle(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> Read<[usize; 4]> {
+fn swizzle(parser: &mut Parser<'_>, word: &str, span: Span) -> Read<[usize; 4]> {
     let components: Option<Vec<usize>> = word.chars().map(component).collect();
     match components.as_deref() {
         // Fewer than four: the last goes on.
         Some(list @ [.., last]) if list.len() <= 4 => Ok(std::array::from_fn(|k| *list.get(k).unwrap_or(last))),
-        _ => Err(letters(parser, word, place, "a swizzle", "one to four of x, y, z, w, such as `.yzxw` or `.x`")),
+        _ => Err(letters(parser, word, span, "a swizzle", "one to four of x, y, z, w, such as `.yzxw` or `.x`")),
     }
 }
 
-fn mask(parser: &mut Parser<'_>, word: &str, place: Range<usize>, register: DestinationRegister) -> Read<u8> {
+fn mask(parser: &mut Parser<'_>, word: &str, span: Span, register: DestinationRegister) -> Read<u8> {
     let components: Option<Vec<usize>> = word.chars().map(component).collect();
     let ascending = |list: &[usize]| list.windows(2).all(|pair| pair[0] < pair[1]);
     let Some(list) = components.filter(|list| !list.is_empty() && ascending(list)) else {
-        return Err(letters(parser, word, place, "a write mask", "some of x, y, z, w in this order, such as `.xyz`"));
+        return Err(letters(parser, word, span, "a write mask", "some of x, y, z, w in this order, such as `.xyz`"));
     };
     let mask = list.iter().fold(0, |mask, k| mask | 1 << k);
     let name = match register {
@@ -214,15 +213,15 @@ fn mask(parser: &mut Parser<'_>, word: &str, place: Range<usize>, register: Dest
         return Ok(mask);
     }
     let message = format!("{name} has one component");
-    Err(parser.refuse("NB0384", place, &message, "more than that", &format!("write `{name}.x`")))
+    Err(parser.refuse("NB0384", span, &message, "more than that", &format!("write `{name}.x`")))
 }
 
-fn letters(parser: &mut Parser<'_>, word: &str, place: Range<usize>, what: &str, help: &str) -> GivenUp {
+fn letters(parser: &mut Parser<'_>, word: &str, span: Span, what: &str, help: &str) -> GivenUp {
     let colors = word.chars().all(|c| "rgba".contains(c.to_ascii_lowercase()));
     let help = if colors {
         "components of vertex programs are x, y, z, w, in place of r, g, b, a".to_owned()
     } else {
         format!("write {help}")
     };
-    parser.refuse("NB0384", place, &format!("`.{}` is not {what}", shorten(word)), "these components", &help)
+    parser.refuse("NB0384", span, &format!("`.{}` is not {what}", shorten(word)), "these components", &help)
 }

@@ -1,9 +1,8 @@
 //! Lines of the language, one after the other. What cannot be read is recorded and passed over, so that one run shows all.
 
-use std::ops::Range;
-
 use super::check::natural;
 use super::{InstructionPlaces, Written, operand};
+use crate::Span;
 use crate::cursor::{Cursor, GivenUp, Read};
 use crate::finding::{finding, foreign, header, warning};
 use crate::lexer::{Kind, Language};
@@ -24,7 +23,7 @@ pub(super) struct Parser<'t> {
     written: Written,
     /// The first token of the line.
     start: usize,
-    version: Option<Range<usize>>,
+    version: Option<Span>,
 }
 
 /// Reads a program without a word about what it does: unwritten registers, too many slots and so on pass.
@@ -42,14 +41,14 @@ pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
         Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
     let cursor = Cursor::new(text, Language::ASSEMBLER);
     let mut parser = Parser { cursor, findings: Vec::new(), written, start: 0, version: None };
-    if let Some(place) = parser.cursor.unclosed.clone() {
-        parser.refuse("NB0108", place, "this comment does not end", "opened here", "close it with `*/`");
+    if let Some(span) = parser.cursor.unclosed.clone() {
+        parser.refuse("NB0108", span, "this comment does not end", "opened here", "close it with `*/`");
     }
     for comment in std::mem::take(&mut parser.cursor.comments) {
         parser.hidden(&comment);
     }
-    if let Some(place) = header(text) {
-        parser.findings.push(foreign(text, place, "NB0108", "a vertex program begins with `vs.1.1`"));
+    if let Some(span) = header(text) {
+        parser.findings.push(foreign(text, span, "NB0108", "a vertex program begins with `vs.1.1`"));
         return (parser.written, parser.findings);
     }
     while !parser.cursor.is_done()
@@ -70,27 +69,20 @@ fn opcode(word: &str) -> Option<Opcode> {
 
 impl Parser<'_> {
     /// Records an error and gives the line up.
-    pub(super) fn refuse(
-        &mut self,
-        code: &'static str,
-        place: Range<usize>,
-        message: &str,
-        label: &str,
-        help: &str,
-    ) -> GivenUp {
-        self.findings.push(finding(code, place, message, label, help));
+    pub(super) fn refuse(&mut self, code: &'static str, span: Span, message: &str, label: &str, help: &str) -> GivenUp {
+        self.findings.push(finding(code, span, message, label, help));
         GivenUp
     }
 
     /// Records that something else stands here.
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
-        let (place, found) = match self.is_done() {
+        let (span, found) = match self.is_done() {
             true => (self.line_end()..self.line_end(), "the end of the line".to_owned()),
-            false => (self.cursor.place(), self.cursor.found("")),
+            false => (self.cursor.span(), self.cursor.found("")),
         };
         let message = format!("expected {what}, found {found}");
         let help = "write lines such as `mul r0.xyz, r1, c4.x`";
-        self.refuse("NB0108", place, &message, "not an instruction from here", help)
+        self.refuse("NB0108", span, &message, "not an instruction from here", help)
     }
 
     /// Whether all of the line has been taken.
@@ -113,23 +105,23 @@ impl Parser<'_> {
     }
 
     /// Takes a word or a number, if one is at hand: its place, or an empty one.
-    pub(super) fn word(&mut self) -> Range<usize> {
-        let place = self.cursor.place();
+    pub(super) fn word(&mut self) -> Span {
+        let span = self.cursor.span();
         if self.is_done() || !matches!(self.cursor.kind(), Some(Kind::Word | Kind::Number)) {
-            return place.start..place.start;
+            return span.start..span.start;
         }
         self.cursor.advance();
-        place
+        span
     }
 
     /// Takes a sign of this line.
-    pub(super) fn sign(&mut self, sign: char) -> Option<Range<usize>> {
-        let place = self.cursor.place();
-        (!self.is_done() && self.cursor.take(sign)).then_some(place)
+    pub(super) fn sign(&mut self, sign: char) -> Option<Span> {
+        let span = self.cursor.span();
+        (!self.is_done() && self.cursor.take(sign)).then_some(span)
     }
 
     /// Warns of an instruction that a semicolon behind another one makes a comment.
-    fn hidden(&mut self, comment: &Range<usize>) {
+    fn hidden(&mut self, comment: &Span) {
         let inside = self.cursor.text(comment);
         let hidden = Cursor::new(inside, Language::ASSEMBLER);
         let register = |word: &str| {
@@ -140,21 +132,21 @@ impl Parser<'_> {
         let between = self.cursor.text(&(self.cursor.end_before(comment.start)..comment.start));
         if instruction && between.len() < comment.start && !between.contains('\n') {
             let message = "an instruction behind a semicolon, which begins a comment";
-            let place = comment.start + hidden.place().start..comment.start + inside.trim_end().len();
+            let span = comment.start + hidden.span().start..comment.start + inside.trim_end().len();
             let help = "write each instruction in a line of its own";
-            self.written.warnings.push(warning("NB0913", place, message, "left out", help));
+            self.written.warnings.push(warning("NB0913", span, message, "left out", help));
         }
     }
 
     fn line(&mut self) -> Read<()> {
-        let place = self.word();
-        let word = self.cursor.text(&place);
+        let span = self.word();
+        let word = self.cursor.text(&span);
         let lower = word.to_ascii_lowercase();
         if ["vs", "ps"].contains(&lower.split(['_', '.']).next().unwrap_or_default()) {
-            return self.version(place, &lower);
+            return self.version(span, &lower);
         }
         if lower == "def" {
-            return self.definition(place);
+            return self.definition(span);
         }
         if lower == "nop" && self.is_done() {
             return Ok(());
@@ -162,14 +154,14 @@ impl Parser<'_> {
         if lower == "dcl" || lower.starts_with("dcl_") {
             let help = "leave the line out, and name the attribute in the scene: `inputs: (v0: Position, v3: Normal)`";
             let message = "declarations are not part of vs.1.1 here";
-            return Err(self.refuse("NB0108", place, message, "a declaration", help));
+            return Err(self.refuse("NB0108", span, message, "a declaration", help));
         }
-        let Some(opcode) = opcode(word) else { return Err(self.unknown(place, word)) };
-        self.instruction(opcode, place)
+        let Some(opcode) = opcode(word) else { return Err(self.unknown(span, word)) };
+        self.instruction(opcode, span)
     }
 
-    fn version(&mut self, place: Range<usize>, word: &str) -> Read<()> {
-        let whole = place.start..self.skip_line();
+    fn version(&mut self, span: Span, word: &str) -> Read<()> {
+        let whole = span.start..self.skip_line();
         let written: String = (self.start..self.cursor.at).map(|at| self.cursor.text_at(at)).collect();
         let written = written.to_ascii_lowercase().replace('_', ".");
         if word.starts_with("ps") {
@@ -193,27 +185,27 @@ impl Parser<'_> {
     }
 
     /// `def c4, 0.5, 1, 2, 0`.
-    fn definition(&mut self, word: Range<usize>) -> Read<()> {
-        let (source, place) = operand::source(self)?;
+    fn definition(&mut self, word: Span) -> Read<()> {
+        let (source, span) = operand::source(self)?;
         let SourceRegister::Constant { index, relative: false } = source.register else {
             let help = "write `def c0, 0, 0, 0, 1`";
-            return Err(self.refuse("NB0380", place, "`def` defines a constant", "not one", help));
+            return Err(self.refuse("NB0380", span, "`def` defines a constant", "not one", help));
         };
         let mut values = Vec::new();
         while self.sign(',').is_some() {
-            let mut place = self.cursor.place();
+            let mut span = self.cursor.span();
             while !self.is_done() && !self.cursor.is(',') {
                 self.cursor.advance();
             }
-            place.end = self.cursor.end().max(place.start);
-            let number = self.cursor.text(&place).trim_end_matches(['f', 'F']);
+            span.end = self.cursor.end().max(span.start);
+            let number = self.cursor.text(&span).trim_end_matches(['f', 'F']);
             let plain = number.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
             match number.parse::<f32>() {
                 Ok(value) if plain && value.is_finite() => values.push(value),
                 _ => {
-                    let message = format!("`{}` is not a number", shorten(self.cursor.text(&place)));
+                    let message = format!("`{}` is not a number", shorten(self.cursor.text(&span)));
                     let help = "write four numbers, such as `def c4, 0.5, 1.0, 2.0, 0.0`";
-                    return Err(self.refuse("NB0205", place, &message, "not finite or no number", help));
+                    return Err(self.refuse("NB0205", span, &message, "not finite or no number", help));
                 }
             }
         }
@@ -227,22 +219,22 @@ impl Parser<'_> {
         let known = self.written.shader.definitions.iter().position(|(known, _)| *known == index);
         if let Some(first) = known.and_then(|at| self.written.definitions.get(at)).cloned() {
             let message = format!("c{index} is defined twice");
-            let finding = finding("NB0388", place, message, "again here", "keep one of them");
+            let finding = finding("NB0388", span, message, "again here", "keep one of them");
             self.findings.push(finding.related(first, "first here"));
             return Err(GivenUp);
         }
         self.written.shader.definitions.push((index, values));
-        self.written.definitions.push(place);
+        self.written.definitions.push(span);
         Ok(())
     }
 
-    fn instruction(&mut self, opcode: Opcode, place: Range<usize>) -> Read<()> {
+    fn instruction(&mut self, opcode: Opcode, span: Span) -> Read<()> {
         let (destination, written) = operand::destination(self)?;
         let (mut sources, mut places) = (Vec::new(), Vec::new());
         while self.sign(',').is_some() {
-            let (source, place) = operand::source(self)?;
+            let (source, span) = operand::source(self)?;
             sources.push(source);
-            places.push(place);
+            places.push(span);
         }
         if !self.is_done() {
             return Err(self.expected("`,` or the end of the line"));
@@ -251,18 +243,18 @@ impl Parser<'_> {
             let count = |n: usize| if n == 1 { "1 source".to_owned() } else { format!("{n} sources") };
             let message = format!("`{}` takes {}, not {}", opcode.word(), count(opcode.sources()), sources.len());
             let help = "a destination comes first, then the sources, with commas between them";
-            return Err(self.refuse("NB0211", place, &message, "this instruction", help));
+            return Err(self.refuse("NB0211", span, &message, "this instruction", help));
         }
         let mut destination = destination;
         if let (Some((rows, _)), 15) = (opcode.matrix(), destination.mask) {
             destination.mask = natural(rows);
         }
         self.written.shader.instructions.push(Instruction { opcode, destination, sources });
-        self.written.places.push(InstructionPlaces { opcode: place, destination: written, sources: places });
+        self.written.places.push(InstructionPlaces { opcode: span, destination: written, sources: places });
         Ok(())
     }
 
-    fn unknown(&mut self, place: Range<usize>, word: &str) -> GivenUp {
+    fn unknown(&mut self, span: Span, word: &str) -> GivenUp {
         if word.is_empty() {
             return self.expected("an instruction");
         }
@@ -276,6 +268,6 @@ impl Parser<'_> {
                 None => format!("vs.1.1 has {}, and def", list.join(", ")),
             }
         };
-        self.refuse("NB0204", place, &format!("there is no instruction `{}`", shorten(word)), "not known", &help)
+        self.refuse("NB0204", span, &format!("there is no instruction `{}`", shorten(word)), "not known", &help)
     }
 }

@@ -41,7 +41,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
         // A quotient by q magnifies what weights are off, as in TEX-15.
         Rule::Tsh7 if projects(plan) => None,
-        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan, SHORT), coordinate_slack(plan, SHORT))),
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan, SHORTFALL), coordinate_slack(plan, SHORTFALL))),
         Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
         Rule::Tsh9 => {
             let slack = number_slack(plan) + 255.0 / 4096.0;
@@ -93,7 +93,7 @@ fn weights(plan: &Plan) -> f64 {
 }
 
 /// INT-4t: how much of a weight is missing.
-const SHORT: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
+const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 
 /// How far weights that are off, and so much besides, move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle
 /// times their relative error, twice because their sum is off as well.

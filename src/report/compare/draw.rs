@@ -36,9 +36,9 @@ pub(super) struct State {
 
 /// Some rows of a target, as both sides hold them.
 pub(super) struct Band<'a, L> {
-    /// First row.
+    /// The band's first row on the target.
     pub(super) first_row: usize,
-    /// Columns.
+    /// Pixels across.
     pub(super) width: usize,
     /// The definition's words.
     pub(super) words: &'a mut [u32],
@@ -46,7 +46,7 @@ pub(super) struct Band<'a, L> {
     pub(super) depth: &'a mut [u32],
     /// What the lane holds.
     pub(super) held: &'a mut [[L; 4]],
-    /// The rest.
+    /// What else each pixel keeps.
     pub(super) states: &'a mut [State],
 }
 

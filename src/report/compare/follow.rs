@@ -23,8 +23,8 @@ impl Method for Follow {
     }
 
     fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
-        let settled = shown_as(shown, held, &mut Meter::<false>(counts));
-        (settled.ideal.real(), Some(settled.ideal.parts()))
+        let observed = shown_as(shown, held, &mut Meter::<false>(counts));
+        (observed.ideal.real(), Some(observed.ideal.parts()))
     }
 }
 

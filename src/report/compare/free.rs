@@ -13,7 +13,7 @@ use ninebit::raster::ideal::Outline;
 use ninebit::state::{Cull, FrontFace, Named};
 use ninebit::trace::{Decision, Observer, Part, Silent};
 
-/// Two evaluations.
+/// The definition and the ideal run each on its own, and meet in the picture.
 pub(super) struct Free;
 
 impl Method for Free {

@@ -6,7 +6,7 @@ use super::Comparison;
 /// A comparison that has no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HeatError {
-    /// Nothing differs.
+    /// No pixel differs, so there is nothing to scale by.
     #[error("there is nothing to show: no pixel of the frame differs from the ideal")]
     NoDifference,
     /// The mode has no errors of pixels.

@@ -8,7 +8,7 @@ use ninebit::trace::{Decision, Observer, Rule, Step};
 /// Counts of a band.
 #[derive(Clone)]
 pub(super) struct Counts {
-    /// By rule.
+    /// Errors of each rule, by its number.
     pub(super) rules: Vec<Statistics>,
     /// By decision: taken, differing.
     pub(super) decisions: Vec<[u64; 2]>,
@@ -79,7 +79,7 @@ impl<const RULES: bool> Observer for Meter<'_, RULES> {
 /// Notes the decisions of one fragment.
 #[derive(Default)]
 pub(super) struct Log<'a> {
-    /// In order.
+    /// Decisions of a pixel, in the order in which they were taken.
     pub(super) decisions: Vec<(Decision, i64)>,
     /// Pixels of the textures' surfaces that have diverged, by texture.
     pub(super) diverged: &'a [Option<super::draw::Seen<'a>>],

@@ -60,16 +60,16 @@ pub const ALL_CHANNELS: u8 = 15;
 pub struct ChannelError {
     /// R, G, B or A, as 0 to 3.
     pub channel: usize,
-    /// All errors.
+    /// Errors of the channel over all pixels.
     pub errors: Statistics,
-    /// The same in steps.
+    /// The same errors, counted in steps of a byte.
     pub histogram: Histogram,
 }
 
 /// What one rule did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RuleError {
-    /// The rule.
+    /// The rule that the errors arise in.
     pub rule: Rule,
     /// Its own errors, given exact inputs.
     pub errors: Statistics,
@@ -91,9 +91,9 @@ impl RuleError {
 /// How often something was decided, and how often the ideal would have decided otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decided {
-    /// What.
+    /// What is decided.
     pub decision: Decision,
-    /// How often.
+    /// How often it was decided.
     pub taken: u64,
     /// How often the two sides differ.
     pub differing: u64,
@@ -102,9 +102,9 @@ pub struct Decided {
 /// A pixel that is far off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstPixel {
-    /// Column.
+    /// Column, 0 on the left.
     pub x: u32,
-    /// Row.
+    /// Row, 0 at the top.
     pub y: u32,
     /// Channel R, G, B or A, as 0 to 3.
     pub channel: usize,
@@ -121,9 +121,9 @@ pub struct Comparison {
     pub mode: Mode,
     /// Name of the target.
     pub target: String,
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// Pixels that some fragment was stored to.
     pub drawn: u64,
@@ -131,13 +131,13 @@ pub struct Comparison {
     pub diverged: u64,
     /// Errors of R, G, B and A; without those that the surface does not keep. Empty for [`Mode::PerOp`].
     pub channels: Vec<ChannelError>,
-    /// What each part adds to those errors, in the order of `Part::ALL`: the sum over parts is the error. [`Mode::Follow`] only.
+    /// What each part contributes to those errors, in the order of `Part::ALL`. The parts add up to the error. [`Mode::Follow`] only.
     pub parts: Vec<(Part, Statistics)>,
     /// The largest amount by which the parts of a pixel miss its error: float64 rounding. [`Mode::Follow`] only.
     pub unexplained: f64,
     /// Each rule that was applied. [`Mode::PerOp`] only.
     pub rules: Vec<RuleError>,
-    /// Decisions.
+    /// Decisions of both, and how often they differ.
     pub decisions: Vec<Decided>,
     /// Pixels with the largest errors, largest first, one for each distance at most.
     pub worst: Vec<WorstPixel>,

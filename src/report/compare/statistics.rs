@@ -7,13 +7,13 @@ pub(super) const BINS: usize = 17;
 /// Count, extremes and moments of errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// How many.
+    /// How many errors were added.
     pub count: u64,
     /// The lowest; infinite of none.
     pub low: f64,
     /// The highest; minus infinite of none.
     pub high: f64,
-    /// Their sum.
+    /// The sum of the errors with their signs.
     pub sum: f64,
     /// The sum of their magnitudes.
     pub magnitude: f64,
@@ -101,7 +101,7 @@ impl Statistics {
 mod tests {
     use super::*;
 
-    fn of(errors: &[f64]) -> Statistics {
+    fn from_errors(errors: &[f64]) -> Statistics {
         let mut all = Statistics::default();
         errors.iter().for_each(|e| all.add(*e));
         all
@@ -109,24 +109,24 @@ mod tests {
 
     #[test]
     fn moments_by_hand() {
-        let all = of(&[-1.0, 0.5, 2.0, -9.0]);
+        let all = from_errors(&[-1.0, 0.5, 2.0, -9.0]);
         assert_eq!((all.count, all.low, all.high, all.max()), (4, -9.0, 2.0, 9.0));
         assert_eq!((all.bias(), all.mean(), all.squares), (-1.875, 3.125, 86.25));
         let mut bins = Histogram::default();
         [-1.0, 0.5, 2.0, -9.0].into_iter().for_each(|e| bins.add(e));
         assert_eq!((bins.0[0], bins.0[7], bins.0[9], bins.0[10]), (1, 1, 1, 1));
-        assert!((of(&[1.0]).psnr() - 48.130_803_608_679_1).abs() < 1e-9);
-        assert_eq!(of(&[0.0]).psnr(), f64::INFINITY);
+        assert!((from_errors(&[1.0]).psnr() - 48.130_803_608_679_1).abs() < 1e-9);
+        assert_eq!(from_errors(&[0.0]).psnr(), f64::INFINITY);
     }
 
     #[test]
     fn merging_is_adding() {
-        let mut halves = of(&[-1.0, 0.5]);
+        let mut halves = from_errors(&[-1.0, 0.5]);
         halves.merge(&Statistics::default());
-        halves.merge(&of(&[2.0, -9.0]));
-        assert_eq!(halves, of(&[-1.0, 0.5, 2.0, -9.0]));
+        halves.merge(&from_errors(&[2.0, -9.0]));
+        assert_eq!(halves, from_errors(&[-1.0, 0.5, 2.0, -9.0]));
         let mut empty = Statistics::default();
-        empty.merge(&of(&[3.0]));
-        assert_eq!(empty, of(&[3.0]));
+        empty.merge(&from_errors(&[3.0]));
+        assert_eq!(empty, from_errors(&[3.0]));
     }
 }

@@ -14,7 +14,7 @@ pub(super) type Amounts = [u64; Work::ALL.len()];
 /// What one fragment costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FragmentCost {
-    /// Every fragment.
+    /// What each fragment takes, whatever tests say.
     pub shaded: Amounts,
     /// On top of that, one that passes the tests.
     pub stored: Amounts,
@@ -31,7 +31,7 @@ pub struct Cost {
     pub kills: bool,
     /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
     pub lod_decides: bool,
-    /// Of one fragment.
+    /// The work of one fragment.
     pub fragment: FragmentCost,
     /// The draw is a pass over the target: something of it is drawn.
     pub seen: bool,

@@ -42,7 +42,7 @@ pub struct DrawExplanation {
     pub dropped: Vec<String>,
     /// What it will cost: what the plan has kept.
     pub cost: Cost,
-    /// What it would cost as the program asks for it, nothing left out: what a chip pays, which runs what it is told.
+    /// The cost of everything that the program asks for. A chip pays it, since it runs what it is told.
     pub asked: Cost,
 }
 

@@ -9,13 +9,13 @@
 pub struct Region {
     /// First column of the smallest rectangle around it.
     pub x: u32,
-    /// First row.
+    /// The first row of its frame.
     pub y: u32,
-    /// Columns.
+    /// Columns of its frame.
     pub width: u32,
-    /// Rows.
+    /// Rows of its frame.
     pub height: u32,
-    /// Its pixels.
+    /// How many pixels belong to it.
     pub pixels: u64,
     /// Column and row of its first pixel in reading order.
     pub first: (u32, u32),

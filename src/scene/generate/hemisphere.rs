@@ -24,7 +24,7 @@ pub struct Options {
     pub size: u32,
     /// The most that is added to a component of a normal of the sphere, up or down; every amount up to it is as likely. 0 is no noise.
     pub noise: f64,
-    /// Which noise.
+    /// Chooses the noise: equal seeds give equal pictures.
     pub seed: u64,
     /// Outside the circle is the zero vector, bytes of 128, in place of a flat surface: no light shows there.
     pub zero_outside: bool,

@@ -32,7 +32,7 @@ pub struct Options {
     /// The image repeats: the right neighbour of the last column is the first column, likewise for rows. Otherwise the last column
     /// and the first row take the slope of their inner neighbours.
     pub wrap: bool,
-    /// Where the height is.
+    /// The channel that holds the height.
     pub channel: HeightChannel,
 }
 

@@ -13,7 +13,7 @@ use crate::mesh::circle;
 const RAYS: u32 = 16;
 
 /// How far a ray goes, in texels.
-const REACH: u32 = 24;
+const MAX_RAY: u32 = 24;
 
 /// The share of the sky that each texel sees, 0 to 1, row by row from the top. `options` says how heights are read, as for a normal map.
 pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
@@ -25,7 +25,7 @@ pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
             let here = height_at(height, options, f64::from(x), f64::from(y));
             let share = |[sine, cosine]: &[f64; 2]| {
                 let mut steepest = 0.0_f64;
-                for step in 1..=REACH {
+                for step in 1..=MAX_RAY {
                     let distance = f64::from(step);
                     let (x, y) = (f64::from(x) + distance * cosine, f64::from(y) + distance * sine);
                     let rise = (height_at(height, options, x, y) - here) * scale;

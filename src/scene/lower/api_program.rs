@@ -5,15 +5,15 @@ use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
 use ninebit::vertex::texgen::CoordinateSet;
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
 use ninebit_program::texture_stages::{self as stages, TextureStages};
 
 /// A program of an API.
 pub(super) enum ApiProgram {
-    /// Direct3D.
+    /// Texture stages of Direct3D.
     Stages(TextureStages, Option<ProgramText>),
-    /// OpenGL.
+    /// Texture environments of OpenGL.
     Environment(TextureEnvironment, Option<ProgramText>),
     /// Direct3D, version 1.1 of pixel shaders.
     Shader(Box<ShaderProgram>),
@@ -121,8 +121,8 @@ fn generate(
     let written = around.sets;
     for (index, change) in changes.iter().enumerate() {
         let made = match (&change.generation, &change.transform) {
-            (Some(made), _) => Some((made.value.name(), "generates coordinates as well", &made.place)),
-            (None, Some(made)) => Some(("a transform of coordinates", "makes coordinates as well", &made.place)),
+            (Some(made), _) => Some((made.value.name(), "generates coordinates as well", &made.span)),
+            (None, Some(made)) => Some(("a transform of coordinates", "makes coordinates as well", &made.span)),
             (None, None) => None,
         };
         let Some((what, label, place)) = made else { continue };
@@ -154,19 +154,19 @@ fn objection(
     reader: &Reader<'_>,
     units: &Units,
     index: usize,
-    bump: &At<ShaderOperation>,
+    bump: &Spanned<ShaderOperation>,
     shader: bool,
 ) -> Option<Diagnostic> {
     if shader {
         let message = "a bump environment map beside a texture shader";
         let label = "becomes a texture shader itself";
         let help = "leave the draw's `texture_shader` out, or write a BumpEnvironment stage there and Disable here";
-        return Some(finding("NB0352", bump.place.clone(), message, label, help).rule("TSH-10"));
+        return Some(finding("NB0352", bump.span.clone(), message, label, help).rule("TSH-10"));
     }
     let texture = units.bound[index].and_then(|unit| reader.textures.list.get(unit.texture))?;
     (texture.kind == TextureKind::Cube).then(|| {
         let message = format!("texture {index} is a cube map, whose coordinates are not moved");
-        Diagnostic::error("NB0343", bump.place.clone(), message)
+        Diagnostic::error("NB0343", bump.span.clone(), message)
             .label("moves coordinates of the next texture")
             .rule("TSH-10")
             .help("bind a two-dimensional texture to the next unit")
@@ -177,11 +177,11 @@ fn objection(
 pub(super) fn name_at<'a, T: ninebit::state::Named>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, crate::reader::Name<T>>>,
-    slot: &mut At<T>,
+    slot: &mut Spanned<T>,
 ) {
     if let Some(raw) = raw
         && let Some(value) = reader.name(raw)
     {
-        *slot = At { value, place: reader.span(raw) };
+        *slot = Spanned { value, span: reader.span(raw) };
     }
 }

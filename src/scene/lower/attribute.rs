@@ -29,7 +29,7 @@ pub(super) enum Source {
     },
 }
 
-/// Object space.
+/// Where a light stands, in object space.
 #[derive(Clone, Copy)]
 pub(super) enum Light {
     Position([f32; 3]),

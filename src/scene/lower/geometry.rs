@@ -28,7 +28,7 @@ pub(super) struct Geometry {
 pub(super) enum Given {
     /// Of a mesh, and where that stands.
     Mesh(Arc<Mesh>, Span),
-    /// Listed.
+    /// Vertices that the scene lists.
     Listed(Rc<VertexData>),
 }
 
@@ -54,7 +54,7 @@ impl Given {
         if let Given::Mesh(mesh, _) = self { Some(mesh) } else { None }
     }
 
-    /// How many.
+    /// How many vertices there are.
     pub(super) fn count(&self) -> usize {
         match self {
             Given::Mesh(mesh, _) => mesh.positions.len(),
@@ -75,7 +75,7 @@ impl Given {
 pub(super) enum Objects {
     /// Of a mesh, and how many components each coordinate set has.
     Mesh(Arc<Mesh>, [usize; 4]),
-    /// Listed.
+    /// Vertices that the scene lists.
     Listed(Rc<VertexData>),
     /// What a vertex program made: its positions are those of the vertices, its fog coordinates these.
     Program(Vec<f32>),

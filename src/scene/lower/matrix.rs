@@ -8,16 +8,16 @@ pub(super) const IDENTITY: Rows =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 /// Deepest product of products: each level reads its text again.
-const DEEPEST: usize = 16;
+const MAX_PRODUCT_DEPTH: usize = 16;
 
 const KINDS: &[&str] =
     &["Identity", "Rows", "Product", "Transpose", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
 
 /// A matrix that is no name. Not a number anywhere in it is an error.
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
-    if reader.depth > DEEPEST {
+    if reader.depth > MAX_PRODUCT_DEPTH {
         let place = reader.opening(raw.text);
-        let message = format!("more than {DEEPEST} products inside each other");
+        let message = format!("more than {MAX_PRODUCT_DEPTH} products inside each other");
         let help = "a product takes any number of matrices: write them side by side";
         return reader.refuse(finding("NB0602", place, message, "one level too many", help));
     }

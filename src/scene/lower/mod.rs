@@ -32,6 +32,7 @@ mod unit_texture;
 mod vertex;
 mod vertex_program;
 
+use ninebit::place::Span;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
@@ -49,8 +50,6 @@ pub use program::ProgramLanguage;
 pub(super) use program_file::program_file;
 
 /// Bytes of the text.
-type Span = std::ops::Range<usize>;
-
 /// Where the draws of a scene stand in its text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawSpans {

@@ -68,7 +68,7 @@ pub(super) fn shader(
             let index = read.value;
             let help =
                 format!("write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it");
-            reader.push(text.place(warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help)));
+            reader.push(text.place(warning("NB0910", read.span, format!("c{index} has no value"), "is 0", help)));
         }
     }
     Some(ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
@@ -171,7 +171,7 @@ fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
 
 /// What keeps a unit from doing what the shader asks of it.
 fn objection(reader: &Reader<'_>, units: &Units, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
-    let place = using.place.clone();
+    let place = using.span.clone();
     if shader {
         let error = Diagnostic::error("NB0352", place, "texture instructions beside a texture shader")
             .label("becomes a texture shader itself")

@@ -1,4 +1,4 @@
-//! Render targets.
+//! Reads render targets: sizes, formats, clears.
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
 use super::*;

@@ -5,7 +5,7 @@ use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::reader::Name;
 use crate::source::List;
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 
 /// Reads the fields in the parentheses.
@@ -27,7 +27,7 @@ pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asid
 }
 
 fn unit<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, place: Span) -> Unit {
-    let mut unit = Unit { place, ..Unit::initial() };
+    let mut unit = Unit { span: place, ..Unit::initial() };
     unit.mode = fields.mode(reader);
     name_at(reader, &fields.combine_rgb, &mut unit.rgb.function);
     name_at(reader, &fields.combine_alpha, &mut unit.alpha.function);
@@ -47,7 +47,7 @@ fn unit<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, place
 fn list<'a, T: Named>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, List<'a, Name<T>>>>,
-    slots: &mut [At<T>; 4],
+    slots: &mut [Spanned<T>; 4],
     what: &str,
 ) {
     let Some(raw) = raw else { return };

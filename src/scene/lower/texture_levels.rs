@@ -9,7 +9,7 @@ use ninebit_files::texels;
 pub(super) enum Wanted {
     /// Not written: as many as the source has.
     Own,
-    /// So many.
+    /// As many as the scene says.
     Number(u32),
     /// Down to 1 x 1.
     All,

@@ -37,7 +37,7 @@ impl Given {
 /// What the texture wants of a source.
 #[derive(Clone, Copy)]
 pub(super) struct Request {
-    /// As written.
+    /// The format, if the scene names one.
     pub(super) format: Option<TextureFormat>,
     /// Faces that raw memory holds.
     pub(super) faces: u32,
@@ -56,15 +56,15 @@ ninebit::state::named! {
         File,
         /// A file of texels as they lie in memory.
         Raw,
-        /// Six sources.
+        /// A source for each face of a cube map.
         Faces,
         /// Sources of the layers of a volume.
         Layers,
         /// Words in hexadecimal.
         Texels,
-        /// One colour.
+        /// One colour for all texels.
         Solid,
-        /// Two colours.
+        /// Squares of two colours in turn.
         Checker,
         /// From one colour to another.
         Ramp,

@@ -3,7 +3,7 @@
 use super::api_program::{ApiProgram, name_at};
 use super::program::{Asides, calls, pasted};
 use super::*;
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
     TextureStages,
@@ -28,7 +28,7 @@ pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str, asides: &mut Asid
         for (index, raw) in list.iter().enumerate().take(STAGES) {
             let Some(fields) = reader.read(raw) else { continue };
             if let Some(stage) = program.stage_mut(index) {
-                stage.place = reader.opening(raw.text);
+                stage.span = reader.opening(raw.text);
                 self::stage(reader, &fields, stage);
             }
         }
@@ -63,7 +63,7 @@ fn arguments<'a>(reader: &mut Reader<'a>, fields: [&Option<Raw<'a, source::Stage
         if let Some(raw) = field
             && let Some(value) = argument(reader, raw)
         {
-            *slot = At { value, place: reader.span(raw) };
+            *slot = Spanned { value, span: reader.span(raw) };
         }
     }
 }
@@ -117,11 +117,11 @@ fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, s
             let generation = reader.variant(raw, "source of coordinates", Generation::NAMES);
             generation.map(|(index, _)| CoordinateIndex { set: 0, generation: 1 + index as u32 })
         };
-        stage.coordinate_index = value.map(|value| At { value, place });
+        stage.coordinate_index = value.map(|value| Spanned { value, span: place });
     }
     if let Some(raw) = &fields.texture_transform_flags
         && let Some(value) = transform_flags(reader, raw)
     {
-        stage.transform_flags = At { value, place: reader.span(raw) };
+        stage.transform_flags = Spanned { value, span: reader.span(raw) };
     }
 }

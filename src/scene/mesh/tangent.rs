@@ -9,11 +9,11 @@ use crate::vector::{Vector, cross, dot, minus, scaled, unit, wide};
 /// Vertices and triangles without tangents.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Object space.
+    /// x, y, z in object space.
     pub positions: Vec<[f32; 3]>,
     /// Of any length. Where one is zero the triangles around give it.
     pub normals: Vec<[f32; 3]>,
-    /// s, t.
+    /// s and t, along which tangents run.
     pub texture_coordinates: Vec<[f32; 2]>,
     /// Three a triangle, each below the number of vertices.
     pub indices: Vec<u32>,

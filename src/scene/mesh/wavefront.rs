@@ -228,7 +228,7 @@ fn upright(t: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Surface {
+    fn from_text(text: &str) -> Surface {
         read(text, 100, 100).unwrap_or_else(|findings| panic!("{findings:?}"))
     }
 
@@ -242,7 +242,7 @@ mod tests {
     fn faces_share_their_vertices() {
         let text = "# a square\r\no square\nv 0 0 0\r\nv 1 0 0 1.0\nv 1 1 0 # corner\nv 0 1 0\nvt 0 0\nvt 1 0 0\nvt 1 1\nvn 0 0 1\n\
                     usemtl stone\ns off\nf 1/1/1 2/2/1 3/3/1 4//1\nf -4/-3/-1 -2/-1/-1 3\n";
-        let surface = of(text);
+        let surface = from_text(text);
         assert_eq!(surface.positions.len(), 5);
         assert_eq!(surface.indices, [0, 1, 2, 0, 2, 3, 0, 2, 4]);
         assert_eq!(surface.texture_coordinates, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]);
@@ -284,7 +284,7 @@ mod tests {
         let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
         let text =
             format!("{triangle}usemtl a\nf 1 2 3\ng\no x\nusemtl b\nusemtl c\nf 3 2 1\ng y\nmtllib\nf 2 3 1\no\n");
-        assert_eq!(of(&text).indices, [0, 1, 2, 2, 1, 0, 1, 2, 0]);
+        assert_eq!(from_text(&text).indices, [0, 1, 2, 2, 1, 0, 1, 2, 0]);
     }
 
     fn sound(text: &str) -> Result<(), proptest::test_runner::TestCaseError> {
@@ -341,7 +341,7 @@ mod tests {
                 }
                 text.push('\n');
             }
-            let surface = of(&text);
+            let surface = from_text(&text);
             let vertex = |index: &u32| {
                 let n = *index as usize;
                 (surface.positions[n][0], surface.texture_coordinates[n][0], surface.normals[n][0])

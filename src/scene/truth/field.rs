@@ -3,9 +3,9 @@
 /// A picture of real numbers, `N` a texel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<const N: usize> {
-    /// Columns.
+    /// Texels across.
     pub width: u32,
-    /// Rows.
+    /// Texels down.
     pub height: u32,
     /// Row by row from the top.
     pub texels: Vec<[f64; N]>,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub use field::Field;
 pub(crate) use pixels::real_color;
-pub use pixels::{Pixel, TruthFrame, evaluate, evaluate_with_normals};
+pub use pixels::{Pixel, TruthFrame, Visible, evaluate};
 
 pub use crate::generate::sky::{HemisphereLight, Integral};
 use crate::mesh::Mesh;
@@ -34,7 +34,7 @@ named! {
     pub enum Space {
         /// Along tangent, binormal and normal of the mesh.
         Tangent,
-        /// That of the mesh's positions.
+        /// The space of the mesh's positions.
         Object,
     }
 }
@@ -56,19 +56,19 @@ named! {
     }
 }
 
-/// Where something is, in object space.
+/// The place of a light or an eye, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// There.
+    /// A point in object space.
     Position([f64; 3]),
     /// Far away in that direction; any length.
     Direction([f64; 3]),
 }
 
-/// A light.
+/// A light with its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is.
+    /// The point or direction from which it shines.
     pub place: Place,
     /// R, G, B; 1 is full.
     pub color: [f64; 3],
@@ -120,7 +120,7 @@ pub enum NormalSource {
 /// What is computed at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Equation {
-    /// Light.
+    /// Light on a material, by `lighting`.
     Lighting,
     /// (2s - 1)(2t - 1), negative products being 0.
     SignedProduct,
@@ -143,7 +143,7 @@ pub enum NormalHolder {
 /// Where a technique's normals are, and what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadingNormal {
-    /// Where they are.
+    /// What holds the normals.
     pub holder: NormalHolder,
     /// The space of the vectors.
     pub space: Space,
@@ -154,9 +154,9 @@ pub struct ShadingNormal {
 pub struct Truth {
     /// What is computed.
     pub equation: Equation,
-    /// The surface.
+    /// Where the surface's normals come from.
     pub normal: NormalSource,
-    /// Lights.
+    /// The lights, whose contributions are added.
     pub lights: Vec<Light>,
     /// The viewer, for highlights.
     pub eye: Option<Eye>,

@@ -13,7 +13,7 @@ use ninebit::state::{TriangleVertices, Vertex, VertexColor};
 use ninebit::trace::Silent;
 
 /// A given normal that is shorter stands for none: bytes of 128 are the zero vector, and half a step away from it.
-const SHORTEST: f64 = 1.0 / 64.0;
+const MIN_NORMAL_LENGTH: f64 = 1.0 / 64.0;
 
 /// What a pixel ought to show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,9 +39,9 @@ impl Pixel {
 /// What a target ought to show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruthFrame {
-    /// Columns.
+    /// Pixels across.
     pub width: u32,
-    /// Rows.
+    /// Pixels down.
     pub height: u32,
     /// Row by row; `None` where no draw with a truth is seen, or where a triangle was cut off behind the viewer.
     pub pixels: Vec<Option<Pixel>>,
@@ -49,49 +49,58 @@ pub struct TruthFrame {
 
 /// The truth of a target's pixels: of each, that of the last draw with a truth that stored a fragment there.
 pub fn evaluate(plan: &Plan, truth: &Truth, target: usize) -> TruthFrame {
-    evaluate_with_normals(plan, truth, target, |_| None)
+    Visible::new(plan, truth, target).evaluate(|_| None)
 }
 
-/// The same with normals of any length that are given by pixel, and the space that they stand in; where there is none the truth's own holds.
-pub fn evaluate_with_normals(
-    plan: &Plan,
-    truth: &Truth,
+/// Which triangle each pixel of a target shows. Its truth can be evaluated several times.
+#[derive(Clone, Debug)]
+pub struct Visible<'a> {
+    plan: &'a Plan,
+    truth: &'a Truth,
     target: usize,
-    given: impl Fn(usize) -> Option<(Vector, Space)>,
-) -> TruthFrame {
-    let (width, height) = (plan.targets[target].width, plan.targets[target].height);
-    let pixels = seen(plan, truth, target).into_iter().enumerate().map(|(at, place)| {
-        let (draw, triangle) = place?;
-        let planned = &plan.draws[draw];
-        let mesh = truth.meshes.get(draw)?.as_ref()?;
-        let point = point(planned, mesh, triangle, (at as u32 % width, at as u32 / width))?;
-        Some(shade(truth, &point, given(at)))
-    });
-    TruthFrame { width, height, pixels: pixels.collect() }
+    /// Draw and triangle, row by row.
+    shown: Vec<Option<(usize, usize)>>,
 }
 
-/// Draw and triangle that each pixel shows.
-fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>> {
-    // What other targets hold decides nothing here but what tests on alpha read.
-    let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
-    let others = reads.then(|| render(plan, &RenderOptions::default()));
-    let texture_words = TextureWords::new(plan, &plan.draws, others.as_ref().map_or(&[], |frames| &frames.surfaces));
-    let images = texture_words.images();
-    let mut surface = cleared(plan).surfaces.swap_remove(target);
-    let width = surface.width as usize;
-    let mut seen = vec![None; surface.words.len()];
-    let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
-    for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
-        let described = truth.meshes.get(number).is_some_and(Option::is_some);
-        let stores_all = planned.stores_all();
-        walk::covered(plan, planned, band.rows(), |context, i, j| {
-            let stored = stores_all || walk::pixel(context, &images, &mut band, i, j, &mut Silent);
-            if stored && described {
-                seen[j as usize * width + i as usize] = Some((number, context.number));
-            }
-        });
+impl<'a> Visible<'a> {
+    /// Finds the triangle of each pixel: of the last draw with a truth that stored a fragment there.
+    pub fn new(plan: &'a Plan, truth: &'a Truth, target: usize) -> Self {
+        // What other targets hold decides nothing here but what tests on alpha read.
+        let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
+        let others = reads.then(|| render(plan, &RenderOptions::default()));
+        let texture_words =
+            TextureWords::new(plan, &plan.draws, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+        let images = texture_words.images();
+        let mut surface = cleared(plan).surfaces.swap_remove(target);
+        let width = surface.width as usize;
+        let mut shown = vec![None; surface.words.len()];
+        let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
+        for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
+            let described = truth.meshes.get(number).is_some_and(Option::is_some);
+            let stores_all = planned.stores_all();
+            walk::covered(plan, planned, band.rows(), |context, i, j| {
+                let stored = stores_all || walk::pixel(context, &images, &mut band, i, j, &mut Silent);
+                if stored && described {
+                    shown[j as usize * width + i as usize] = Some((number, context.number));
+                }
+            });
+        }
+        Visible { plan, truth, target, shown }
     }
-    seen
+
+    /// The truth of the pixels. `given`: by pixel, a normal of any length and the space that it stands in; `None`: the truth's own holds.
+    pub fn evaluate(&self, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
+        let target = &self.plan.targets[self.target];
+        let (width, height) = (target.width, target.height);
+        let pixels = self.shown.iter().enumerate().map(|(at, shown)| {
+            let (draw, triangle) = (*shown)?;
+            let mesh = self.truth.meshes.get(draw)?.as_ref()?;
+            let pixel = (at as u32 % width, at as u32 / width);
+            let point = point(&self.plan.draws[draw], mesh, triangle, pixel)?;
+            Some(shade(self.truth, &point, given(at)))
+        });
+        TruthFrame { width, height, pixels: pixels.collect() }
+    }
 }
 
 /// A point of a mesh.
@@ -180,7 +189,7 @@ fn normal(truth: &Truth, point: &Point<'_>) -> Vector {
 fn shade(truth: &Truth, point: &Point<'_>, given: Option<(Vector, Space)>) -> Pixel {
     let mut pixel = Pixel { color: [0.0; 3], normal: [0.0; 3], basis: point.basis };
     pixel.normal = match given {
-        Some((vector, _)) if dot(vector, vector) < SHORTEST * SHORTEST => [0.0; 3],
+        Some((vector, _)) if dot(vector, vector) < MIN_NORMAL_LENGTH * MIN_NORMAL_LENGTH => [0.0; 3],
         Some((vector, space)) => unit_or_zero(pixel.object(vector, space)),
         None => normal(truth, point),
     };

@@ -33,7 +33,7 @@ pub struct Placement {
     pub sources: Vec<(&'static str, Vec<u8>)>,
 }
 
-/// One draw.
+/// One draw of a batch, with what is set before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// State of its own.
@@ -51,7 +51,7 @@ pub struct Read {
     pub column: String,
     /// R, G, B, A: 0 to 3.
     pub channel: usize,
-    /// By which the byte is multiplied.
+    /// The factor by which the byte is multiplied.
     pub weight: i64,
 }
 
@@ -68,7 +68,7 @@ named! {
     pub enum Path =>
     /// The word in a batch.
     word: &'static str {
-        /// `NV_register_combiners`.
+        /// General stages and a final combiner: `NV_register_combiners`.
         Combiners => "combiners",
         /// The texture environment, asked where there are no combiners.
         Environment => "environment",
@@ -84,9 +84,9 @@ pub struct Case<'r> {
     pub inputs: &'r [Column],
     /// Intermediates and results.
     pub results: &'r [Column],
-    /// The row.
+    /// The row that is to be drawn.
     pub row: &'r Row,
-    /// The chip.
+    /// The chip whose rules it follows.
     pub profile: Profile,
 }
 

@@ -30,17 +30,17 @@ pub const RECORD: &str = "ADOPTED.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Adopted {
-    /// [`FORMAT`].
+    /// The version of the format: [`FORMAT`].
     pub format: String,
     /// The card's name in this project: that of its folder.
     pub device: String,
-    /// As OpenGL names it.
+    /// The vendor, as OpenGL names it.
     pub vendor: String,
-    /// As OpenGL names it.
+    /// The renderer, as OpenGL names it.
     pub renderer: String,
-    /// As OpenGL names it.
+    /// The version, as OpenGL names it.
     pub version: String,
-    /// Of what is told here.
+    /// The grade of what is told here.
     pub grade: String,
     /// The chip of the pack.
     pub profile: String,
@@ -48,7 +48,7 @@ pub struct Adopted {
     pub pack: String,
     /// What the model has to say: the pack's behaviour, one more if the card contradicts it.
     pub behaviour_rev: u32,
-    /// By unit.
+    /// What was adopted, a unit each.
     pub units: Vec<AdoptedUnit>,
 }
 
@@ -56,7 +56,7 @@ pub struct Adopted {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AdoptedUnit {
-    /// The unit.
+    /// Name of the unit.
     pub unit: String,
     /// Rows that the card confirms.
     pub confirmed: usize,

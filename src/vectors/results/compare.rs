@@ -24,7 +24,7 @@ pub struct Comparison {
 /// How a unit differs. Rows are counted.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UnitComparison {
-    /// The unit.
+    /// Name of the unit.
     pub unit: &'static str,
     /// Rows with results.
     pub asked: usize,
@@ -57,14 +57,14 @@ pub struct UnitComparison {
 pub struct Share {
     /// Rows with results.
     pub asked: usize,
-    /// Those that differ.
+    /// Rows whose results differ.
     pub differ: usize,
 }
 
 /// What another value of a policy would do.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Explanation {
-    /// `CMB-3=literal`.
+    /// The policy and its value, as `CMB-3=literal`.
     pub policy: String,
     /// Rows that differ and would not.
     pub explains: usize,
@@ -82,7 +82,7 @@ impl Explanation {
 /// A row that differs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RowDifference {
-    /// The row.
+    /// Id of the row that differs.
     pub id: String,
     /// Its line in the results.
     pub line: usize,

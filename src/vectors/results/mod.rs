@@ -35,25 +35,25 @@ pub const DEVICE: &str = "device.json";
 /// What to do with results that are not whole.
 const AGAIN: &str = "draw the pack again";
 
-/// Who answered.
+/// The card and driver that answered, as the harness wrote them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Device {
-    /// [`DEVICE_FORMAT`].
+    /// The version of the format: [`DEVICE_FORMAT`].
     pub format: String,
     /// Root digest of the pack that was asked.
     pub pack: String,
-    /// As OpenGL names it.
+    /// The vendor, as OpenGL names it.
     pub vendor: String,
-    /// As OpenGL names it.
+    /// The renderer, as OpenGL names it.
     pub renderer: String,
-    /// As OpenGL names it.
+    /// The version, as OpenGL names it.
     pub version: String,
     /// What was drawn into.
     pub surface: String,
-    /// Its bits.
+    /// The bits of red, green, blue and alpha that the surface really has.
     pub surface_format: String,
-    /// Of OpenGL, with spaces between.
+    /// OpenGL's extensions, with spaces between.
     pub extensions: String,
 }
 
@@ -80,7 +80,7 @@ impl Device {
 /// A column that was observed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observed {
-    /// As the results name it: `out.u>>8`.
+    /// The column's name in the results: `out.u>>8`.
     pub name: String,
     /// Its place among the unit's results.
     pub column: usize,
@@ -91,9 +91,9 @@ pub struct Observed {
 /// The results of a unit.
 #[derive(Debug)]
 pub struct UnitResults {
-    /// The file.
+    /// The file that the answers were read from.
     pub path: PathBuf,
-    /// The unit.
+    /// The unit that was asked.
     pub unit: &'static dyn Unit,
     /// Chip, level, seed and behaviour of the table that was asked, as written.
     pub asked: [String; 4],
@@ -119,7 +119,7 @@ pub struct ResultRow {
 /// Everything that a device answered.
 #[derive(Debug)]
 pub struct Results {
-    /// Who.
+    /// The card and driver that answered.
     pub device: Device,
     /// By unit, in the order of their names.
     pub units: Vec<UnitResults>,

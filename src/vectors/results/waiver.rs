@@ -12,13 +12,13 @@ use ninebit_files::read::Kind;
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waiver {
-    /// The unit.
+    /// Name of the unit.
     pub unit: String,
     /// The largest difference of a number that is waived, in its column's steps.
     pub maximum: u64,
     /// The most rows that are waived.
     pub count: usize,
-    /// Why.
+    /// Why the difference is accepted.
     pub reason: String,
 }
 

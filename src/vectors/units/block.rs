@@ -37,7 +37,7 @@ impl Sixteen<'_> {
         self.numbers
     }
 
-    /// An input.
+    /// Input `n` of all rows of the block.
     #[inline(always)]
     pub(super) fn at(&self, n: usize) -> Lanes16<i32> {
         if n == self.varying { self.numbers } else { Lanes16::all(self.inputs[n] as i32) }

@@ -48,7 +48,7 @@ impl Unit for InputMapping {
     }
 }
 
-/// A B.
+/// The product of A and B, or of C and D (CMB-6).
 pub(super) struct Product;
 
 impl Unit for Product {
@@ -171,13 +171,13 @@ impl Unit for ScaleBias {
 /// Keeps what rules yield.
 #[derive(Debug, Default)]
 struct Tap {
-    settled: Vec<(Rule, i64)>,
+    observed: Vec<(Rule, i64)>,
 }
 
 impl Tap {
     /// What a rule has yielded last; 0 if it has not been applied.
     fn of(&self, rule: Rule) -> i64 {
-        self.settled.iter().rev().find(|(settled, _)| *settled == rule).map_or(0, |(_, value)| *value)
+        self.observed.iter().rev().find(|(observed, _)| *observed == rule).map_or(0, |(_, value)| *value)
     }
 }
 
@@ -188,7 +188,7 @@ impl Observer for Tap {
     fn step(&mut self, _: Step) {}
 
     fn observe<L: Lane>(&mut self, rule: Rule, value: L) -> L {
-        self.settled.push((rule, value.observe().0));
+        self.observed.push((rule, value.observe().0));
         value
     }
 }

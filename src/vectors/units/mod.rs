@@ -68,7 +68,7 @@ use super::unit::{Conditions, Reach, Unit};
 use ninebit::number::Paired;
 use ninebit::state::{Bias, Named, Scale};
 
-/// All units.
+/// Every unit of the catalogue.
 pub fn all() -> Vec<&'static dyn Unit> {
     vec![
         &number::VertexColor,

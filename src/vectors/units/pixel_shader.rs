@@ -3,7 +3,7 @@
 use super::program::{self, Through};
 use super::{CHANNELS, Column, Conditions, Reach, Unit, channels, named};
 use ninebit::state::{Combiners, Profile, Register, Scale};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
     TextureInstruction, TextureOperation, Version, lower,
@@ -16,16 +16,16 @@ pub(super) struct Instruction;
 const SOURCES: [(Bank, u8); 3] = [(Bank::Texture, 0), (Bank::Texture, 1), (Bank::Color, 0)];
 
 /// Columns before the sources' own.
-const FIRST: usize = 5;
+const FIRST_SOURCE: usize = 5;
 
 /// Columns of a source's configuration.
-const EACH: usize = 3;
+const COLUMNS_PER_SOURCE: usize = 3;
 
 /// Columns of configuration.
-const CONFIGURATION: usize = FIRST + 3 * EACH;
+const CONFIGURATION: usize = FIRST_SOURCE + 3 * COLUMNS_PER_SOURCE;
 
 /// The configuration of a source.
-fn configuration(name: &str) -> [Column; EACH] {
+fn configuration(name: &str) -> [Column; COLUMNS_PER_SOURCE] {
     [
         Column::names(&format!("cfg.selector_{name}"), &["own", "a", "b"]),
         Column::names(&format!("cfg.modifier_{name}"), &["plain", "bias", "bx2", "invert"]),
@@ -42,10 +42,10 @@ fn arithmetic(operation: Operation, target: Target, sources: Vec<Source>) -> Ari
         operation,
         scale: Scale::One,
         saturate: false,
-        target: At::default_of(target),
-        sources: sources.into_iter().map(At::default_of).collect(),
+        target: Spanned::default_of(target),
+        sources: sources.into_iter().map(Spanned::default_of).collect(),
         paired: false,
-        place: 0..0,
+        span: 0..0,
     }
 }
 
@@ -58,7 +58,7 @@ fn shader(inputs: &[i64]) -> PixelShader {
     let operation: Operation = named(inputs[0]);
     let r0 = register(Bank::Temporary, 0);
     let sources = (0..operation.sources()).map(|n| {
-        let own = &inputs[FIRST + EACH * n..];
+        let own = &inputs[FIRST_SOURCE + COLUMNS_PER_SOURCE * n..];
         let (bank, index) = SOURCES[n];
         // Only r0.a steers the choice.
         let is_condition = operation == Operation::Cnd && n == 0;
@@ -78,10 +78,10 @@ fn shader(inputs: &[i64]) -> PixelShader {
     let before = Target { register: r0, mask: Mask::All };
     let textures = [0, 1, 3].map(|unit| TextureInstruction {
         operation: TextureOperation::Tex,
-        unit: At::default_of(unit),
+        unit: Spanned::default_of(unit),
         source: None,
         eye: None,
-        place: 0..0,
+        span: 0..0,
     });
     PixelShader {
         version: Version::Ps11,
@@ -137,7 +137,7 @@ impl Unit for Instruction {
 
     fn fit(&self, inputs: &mut [i64]) {
         let operation: Operation = named(inputs[0]);
-        for (n, own) in inputs[FIRST..CONFIGURATION].chunks_exact_mut(EACH).enumerate() {
+        for (n, own) in inputs[FIRST_SOURCE..CONFIGURATION].chunks_exact_mut(COLUMNS_PER_SOURCE).enumerate() {
             if n >= operation.sources() || (n == 0 && operation == Operation::Cnd) {
                 own.fill(0);
             }
@@ -148,7 +148,7 @@ impl Unit for Instruction {
             values.iter_mut().filter(|value| **value < 0).for_each(|value| *value += 256);
         }
         let alpha_only = named::<Mask>(configuration[3]) == Mask::Alpha;
-        for own in configuration[FIRST..].chunks_exact_mut(EACH) {
+        for own in configuration[FIRST_SOURCE..].chunks_exact_mut(COLUMNS_PER_SOURCE) {
             if named::<Modifier>(own[1]) == Modifier::Invert {
                 own[2] = 0;
             }

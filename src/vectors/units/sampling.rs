@@ -11,8 +11,8 @@ use ninebit::state::{
     self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, Named, Profile, ShadowReference, TextureFormat,
     TextureKind, TextureUnit, Vertex, Vertices, depth_stencil, largest_anisotropy,
 };
+use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, wrapped};
 use ninebit::texture::fetch::Texel;
-use ninebit::texture::place::{Coordinates, Interpolated, Place, wrapped};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::unit::layer;
 use ninebit::texture::{anisotropy, color_key, shadow};

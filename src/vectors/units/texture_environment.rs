@@ -3,7 +3,7 @@
 use super::program::{self, RULES, Through};
 use super::{Column, Conditions, Kind, Reach, Unit, bytes, colors, named};
 use ninebit::state::{Combiners, Named, Profile, Register, Scale};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit as Environment,
     lower,
@@ -121,9 +121,9 @@ fn combine(inputs: &[i64], profile: Profile) -> Option<Combiners> {
     let (function, scale): (Function, Scale) = (named(inputs[1]), named(inputs[2]));
     let operands: [Operand; 4] = std::array::from_fn(|n| named(inputs[3 + n]));
     let half = |function, operands: [Operand; 4]| Half {
-        function: At::default_of(function),
-        sources: SOURCES.map(At::default_of),
-        operands: operands.map(At::default_of),
+        function: Spanned::default_of(function),
+        sources: SOURCES.map(Spanned::default_of),
+        operands: operands.map(Spanned::default_of),
         scale,
     };
     let alpha = if function.is_dot() { Function::Modulate } else { function };

@@ -4,7 +4,7 @@ use super::program::{self, RULES, Through};
 use super::texture_environment::some;
 use super::{Column, Conditions, Reach, Unit, bytes, colors, named};
 use ninebit::state::{Combiners, Named, Profile, Register};
-use ninebit_program::At;
+use ninebit_program::Spanned;
 use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
 };
@@ -18,7 +18,7 @@ fn combines(operation: Operation) -> bool {
 }
 
 fn half(operation: Operation, arguments: [StageArgument; 3]) -> Half {
-    Half { operation: At::default_of(operation), arguments: arguments.map(At::default_of) }
+    Half { operation: Spanned::default_of(operation), arguments: arguments.map(Spanned::default_of) }
 }
 
 fn copy(source: ArgumentSource) -> TextureStage {

@@ -1,4 +1,4 @@
-//! `ninebit op address`.
+//! The operation `ninebit op address`: one texture coordinate to a texel index, in an address mode.
 
 use clap::Args;
 use ninebit::state::{AddressMode, TextureFormat, TextureKind};

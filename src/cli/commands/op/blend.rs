@@ -1,4 +1,4 @@
-//! `ninebit op blend`.
+//! The operation `ninebit op blend`: a fragment blended with what a surface holds.
 
 use clap::Args;
 use ninebit::combiner::registers::channel_name;

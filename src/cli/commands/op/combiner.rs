@@ -1,4 +1,4 @@
-//! `ninebit op combiner`.
+//! The operation `ninebit op combiner`: one portion of a general stage.
 
 use clap::{Args, ValueEnum};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};

@@ -1,12 +1,12 @@
-//! `ninebit op cube`.
+//! The operation `ninebit op cube`: a direction to a face of a cube map and coordinates on it.
 
 use clap::Args;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::*;
 use ninebit::texture::address::address;
+use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, real_coordinate};
 use ninebit::texture::filter::{linear, nearest};
-use ninebit::texture::place::{Coordinates, Interpolated, Place, real_coordinate};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::report::Report;
 use ninebit::trace::Observer;
@@ -81,13 +81,13 @@ impl Operation for Cube {
             perspective: true,
         };
         let (level, face) = (&self.unit.levels[0], place.face());
-        let settled = place.on(level);
+        let floored = place.on(level);
         if O::ON {
             let ideal = place.real(Some(face)).st.map(|c| real_coordinate(c, level.width));
-            place.describe(&Report { unit: &self.unit, prefix: "" }, level, settled, ideal, observer);
+            place.describe(&Report { unit: &self.unit, prefix: "" }, level, floored, ideal, observer);
         }
         let inside = |i: i64| json!(address(AddressMode::ClampToEdge, i, level.width, false));
-        let [u, v] = settled.map(|c| c.value);
+        let [u, v] = floored.map(|c| c.value);
         let pair = |filter: Filter, c: i64| match filter {
             Filter::Nearest => inside(nearest(c)),
             Filter::Linear => json!([inside(linear(c).0), inside(linear(c).0 + 1)]),

@@ -1,4 +1,4 @@
-//! `ninebit op filter`.
+//! The operation `ninebit op filter`: four texels mixed, or one chosen.
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};

@@ -1,4 +1,4 @@
-//! `ninebit op final`.
+//! The operation `ninebit op final`: the final combiner on given registers.
 
 use clap::Args;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};

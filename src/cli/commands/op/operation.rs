@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use super::words::{self, number};
 use super::{Failure, Format, table};
 
-/// The chip.
+/// The option that chooses a chip.
 #[derive(Debug, Args)]
 pub(super) struct ProfileArgument {
     /// The chip: nv10 or nv2a
@@ -44,7 +44,7 @@ pub(super) struct Common {
 pub(super) struct Column {
     /// Its name in traces, and what it takes.
     pub(super) input: Input,
-    /// Another name.
+    /// A shorter name by which it may be given.
     pub(super) short: String,
     /// How many make 1.0; of a signed texel, in the ideal, 128 do (TEX-18).
     pub(super) per_one: i64,

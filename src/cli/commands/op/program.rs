@@ -1,4 +1,4 @@
-//! `ninebit op program`.
+//! The operation `ninebit op program`: a whole pixel program on given registers.
 
 use std::path::PathBuf;
 

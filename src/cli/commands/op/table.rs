@@ -148,7 +148,7 @@ fn row(
     setup.operation.check(values)
 }
 
-/// Broken rows.
+/// Rows that were refused: the first of them in words, and how many there were.
 struct Errors {
     shown: Vec<String>,
     rows: usize,

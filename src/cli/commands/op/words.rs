@@ -139,7 +139,7 @@ pub(super) fn mux_select(word: &str) -> Result<MuxSelect, String> {
     named("mux selection", word, &[])
 }
 
-/// A chip.
+/// Reads the name of a chip.
 pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     named("profile", word, &[])
 }

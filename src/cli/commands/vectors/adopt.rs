@@ -1,4 +1,4 @@
-//! `ninebit vectors adopt`.
+//! The command `ninebit vectors adopt`: puts what a card answered into the repository.
 
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `ninebit vectors check`.
+//! The command `ninebit vectors check`: compares tables and packs with what the model computes.
 
 use std::fmt::Write;
 use std::path::PathBuf;

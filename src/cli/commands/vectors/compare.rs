@@ -1,4 +1,4 @@
-//! `ninebit vectors compare`.
+//! The command `ninebit vectors compare`: holds the answers of a card to a pack.
 
 use std::fmt::Write;
 use std::path::PathBuf;

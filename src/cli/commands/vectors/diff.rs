@@ -1,4 +1,4 @@
-//! `ninebit vectors diff`.
+//! The command `ninebit vectors diff`: shows how two packs differ.
 
 use std::collections::HashMap;
 use std::fmt::Write;

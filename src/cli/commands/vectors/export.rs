@@ -1,4 +1,4 @@
-//! `ninebit vectors export`.
+//! The command `ninebit vectors export`: writes tables of units as a pack.
 
 use std::collections::HashSet;
 use std::fmt::Write;

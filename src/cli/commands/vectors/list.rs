@@ -1,4 +1,4 @@
-//! `ninebit vectors list`.
+//! The command `ninebit vectors list`: lists the units.
 
 use std::fmt::Write;
 

@@ -16,7 +16,7 @@ pub struct Traced<'t> {
 }
 
 impl<'t> Traced<'t> {
-    pub fn of(fragment: &'t DrawTrace) -> Traced<'t> {
+    pub fn from_fragment(fragment: &'t DrawTrace) -> Traced<'t> {
         let last = fragment.steps.iter().map(|step| (step.name.as_str(), (step.value, step.operation))).collect();
         let mut first: HashMap<&str, (i64, &str)> = HashMap::new();
         let mut combines = false;

@@ -407,19 +407,19 @@ fn mark(taken: &mut [u64], at: usize, count: usize) {
 }
 
 /// Pixels that are copied at once, where a run is shorter and there is room.
-const SHORT: usize = 16;
+const SHORT_RUN: usize = 16;
 
 /// Runs that are as long, more or less, are not copied: their words are made where they belong.
-const LONG: usize = 48;
+const LONG_RUN: usize = 48;
 
 /// Copies a run from one slice to another. Most are short: copied without a call. `MASKS`: lanes can be stored one by one, and what lies
 /// around a run need not be read, which would have to wait until its neighbours are written.
 #[inline(always)]
 fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
-    if count <= SHORT
-        && let (Some(from), Some(to)) = (from.first_chunk::<SHORT>(), to.first_chunk_mut::<SHORT>())
+    if count <= SHORT_RUN
+        && let (Some(from), Some(to)) = (from.first_chunk::<SHORT_RUN>(), to.first_chunk_mut::<SHORT_RUN>())
     {
-        for n in 0..SHORT {
+        for n in 0..SHORT_RUN {
             if MASKS {
                 if n < count {
                     to[n] = from[n];
@@ -510,7 +510,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     }
     // Most blocks lose no fragment.
     let merges = compiled.merges && !(compiled.writes_whole && all(&alive[..*used]));
-    if !merges && runs.len() * LONG <= *used {
+    if !merges && runs.len() * LONG_RUN <= *used {
         for run in runs.iter() {
             store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
         }

@@ -11,7 +11,7 @@ pub(super) const SIDE: i64 = 16;
 /// Most columns and rows of the box of a triangle that is cut into boxes.
 const WIDEST: i64 = 64;
 
-/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be settled.
+/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be corrected.
 const WIDEST_FLAT: i64 = SIDE;
 
 /// Most pixels of a box, and what whole steps write past them.
@@ -122,7 +122,7 @@ const MAGIC: f32 = 12_582_912.0;
 /// More than any floor.
 const BEYOND: i32 = 1 << 23;
 
-/// Limits the columns of each row of a box to those where a i + b j + e is not negative.
+/// Clips each row of a box to the columns i where a i + b j + e is not negative.
 ///
 /// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^22. (r + 1/2) / a is half an a-th from
 /// the next whole number at least, and in single precision off by less than that where it is below 32, as a is below 2^15; beyond that the

@@ -21,7 +21,7 @@ pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     }
 }
 
-/// Settled weights in 16 bits.
+/// Exact weights in 16 bits, 0..=256.
 #[inline(always)]
 pub(super) fn narrow_weights(
     batch: PixelBatch<'_>,

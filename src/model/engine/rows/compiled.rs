@@ -39,9 +39,9 @@ pub(crate) type Reasons = [u64; Reason::ALL.len()];
 pub(crate) struct Sampler {
     /// Its index among the draw's units.
     pub(super) index: usize,
-    /// Its number.
+    /// The number of its texture unit, 0 to 3.
     pub(super) unit: usize,
-    /// Bilinear.
+    /// It reads footprints of four texels.
     pub(super) filters: bool,
     pub(super) cube: bool,
     /// Texels of its sides; 1 where coordinates are texels.

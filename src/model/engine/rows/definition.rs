@@ -4,7 +4,7 @@ use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::kernels::{Lanes256, PerLane};
 use super::setup::{PixelBatch, Setup};
 use crate::combiner::registers::Registers;
-use crate::texture::place::Place;
+use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::planned::Image;
 use crate::trace::Silent;
 
@@ -34,7 +34,7 @@ impl Setup<'_> {
         self.tell(Reason::Coordinates, 1);
         let unit = &self.context.draw.units[sampler.index];
         let sample = self.sample(batch, n);
-        let Some(place) = self.context.place(unit, &sample, batch.pixel(n)) else { return };
+        let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
         let [u, v] = match sampler.third {
             Some(Third::Counts) => [place.layer(unit.layers); 2],
             _ => place.on(&unit.levels[0]),

@@ -20,7 +20,7 @@ use crate::raster::interpolate::Sample;
 use crate::state::*;
 use crate::texture::address::address;
 use crate::texture::anisotropy;
-use crate::texture::place::Place;
+use crate::texture::coordinates::SampleCoordinates;
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -294,7 +294,7 @@ fn compare_small<const FMA: bool>(
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
             let unit = &context.draw.units[sampler.index];
-            let place = context.place(unit, &sample, batch.pixel(n)).unwrap();
+            let place = context.sample_coordinates(unit, &sample, batch.pixel(n)).unwrap();
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
@@ -335,7 +335,7 @@ fn compare<const FMA: bool, const ROW: bool>(
         assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices());
         assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices());
         for (index, unit) in context.draw.units.iter().enumerate() {
-            let place = context.place(unit, &sample, (i, j)).unwrap();
+            let place = context.sample_coordinates(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
                 interpolators.setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);

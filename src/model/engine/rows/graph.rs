@@ -19,7 +19,7 @@ pub(super) struct Factor {
 /// A sum that has not been rounded.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Total {
-    /// Of products.
+    /// A sum of products.
     Products(Products),
     /// The first less the second.
     Difference([Factor; 4]),

@@ -10,8 +10,8 @@ use super::short::Short;
 use super::table::{Placed, Table};
 use super::{Reason, Sampler};
 use crate::state::Filter;
+use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::lod::{self, Quad};
-use crate::texture::place::Place;
 use crate::texture::planned::PlannedUnit;
 
 /// What the lanes of a block read of a texture whose levels count.
@@ -136,7 +136,7 @@ impl Setup<'_> {
                 };
                 for axis in 0..2 {
                     let g = planes[axis].g.map(|g| g >> shifts[axis]);
-                    read[axis][n] = self.settled(batch, n, &g, read[axis][n]);
+                    read[axis][n] = self.corrected(batch, n, &g, read[axis][n]);
                 }
             }
             let [u, v, entries] = read;
@@ -166,7 +166,7 @@ impl Setup<'_> {
     }
 
     /// The floor that an estimate less than one off stands for, by INT-4 and INT-4t.
-    fn settled(&self, batch: PixelBatch<'_>, n: usize, g: &[i64; 3], value: i32) -> i32 {
+    fn corrected(&self, batch: PixelBatch<'_>, n: usize, g: &[i64; 3], value: i32) -> i32 {
         let sample = self.sample(batch, n.min(batch.count - 1));
         let top = (0..3).fold(0_i64, |top, k| top.wrapping_add(g[k].wrapping_mul(sample.e[k])));
         let (floor, exact) = floor(top, sample.d, i64::from(value));
@@ -186,7 +186,7 @@ impl Setup<'_> {
         let unit = &self.context.draw.units[sampler.index];
         self.tell(Reason::Levels, 1);
         let (sample, lane) = (self.sample(batch, n), batch.lane + n);
-        let Some(place) = self.context.place(unit, &sample, batch.pixel(n)) else { return };
+        let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
         let (level, next, weight) = lod::levels(unit, lod.max(0));
         let filter = if lod <= 0 { unit.state.mag_filter } else { unit.state.min_filter };

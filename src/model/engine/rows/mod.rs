@@ -1,4 +1,4 @@
-//! The fast engine: blocks of 256 pixels instead of pixels, and rows of numbers, one a pixel, instead of registers.
+//! The fast engine evaluates 256 pixels at a time: every combiner register becomes a row of 256 16-bit numbers.
 //!
 //! | file | knows |
 //! |---|---|
@@ -78,7 +78,7 @@ use table::{Key, Table};
 const SPARE: usize = 4;
 
 /// Decoding so many texels costs no more than sampling a pixel by the definition.
-const PAYS: u64 = 16;
+const TEXELS_PER_PIXEL: u64 = 16;
 
 /// Most entries of all tables, of four bytes each.
 const MAX_ENTRIES: u64 = 1 << 25;
@@ -167,7 +167,7 @@ impl Tables {
     fn pays(&self, key: &Key, size: u64) -> bool {
         let pixels = self.wanted.iter().find(|(other, _)| other == key).map_or(0, |(_, pixels)| *pixels);
         let held: u64 = self.made.iter().map(|(_, table)| table.entries()).sum();
-        size <= PAYS * pixels && size + held <= MAX_ENTRIES
+        size <= TEXELS_PER_PIXEL * pixels && size + held <= MAX_ENTRIES
     }
 }
 

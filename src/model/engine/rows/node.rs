@@ -29,7 +29,7 @@ pub(super) const MAX_PRODUCTS: usize = 6;
 /// Pairs whose products are added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Pairs {
-    /// How many.
+    /// How many pairs there are.
     pub(super) count: usize,
     /// The pairs, first and second factor in turn; zeros past the end.
     pub(super) values: [Value; 2 * MAX_PRODUCTS],
@@ -92,7 +92,7 @@ pub(super) struct Mux(pub(super) MuxSelect, pub(super) MuxNegative);
 pub(super) enum Node {
     /// The same in every pixel.
     Constant(i16),
-    /// Given.
+    /// What the pixel brings.
     Input(Input),
     /// CMB-2 to CMB-5.
     Map(Mapping, Value),
@@ -118,9 +118,9 @@ pub(super) enum Node {
     Add(Value, Value),
     /// a - b.
     Minus(Value, Value),
-    /// The smaller.
+    /// The smaller of two values.
     Least(Value, Value),
-    /// The larger.
+    /// The larger of two values.
     Greatest(Value, Value),
     /// Limited to 0..=255.
     Clamp(Value),

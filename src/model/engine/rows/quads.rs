@@ -9,9 +9,9 @@ use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
 use super::{BLOCK, Reason, Sampler};
+use crate::texture::coordinates::{Coordinates, SampleCoordinates};
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
-use crate::texture::place::{Coordinates, Place};
 use crate::texture::planned::PlannedUnit;
 use std::ops::Range;
 
@@ -320,7 +320,7 @@ impl Setup<'_> {
     pub(super) fn defined_quad<T: Measure>(&self, batch: PixelBatch<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> T {
         self.tell(Reason::Levels, 1);
         let sample = self.sample(batch, 0);
-        T::defined(unit, self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
+        T::defined(unit, self.context.sample_coordinates(unit, &sample, pixel).and_then(|place| place.quad()))
     }
 }
 

@@ -1,5 +1,5 @@
 //! Quotients of linear functions for many pixels at once: estimated in floating point, proved by their distance from the next whole
-//! number, settled by exact remainders where that does not suffice. `docs/exactness.md` has the argument.
+//! number, corrected by exact remainders where that does not suffice. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;

@@ -31,7 +31,7 @@ pub(super) enum Number {
     Varying(usize),
 }
 
-/// A stage.
+/// A stage of a texture shader, compiled to rows.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) state: ShaderStage,

@@ -12,7 +12,7 @@ use crate::raster::setup::Triangle;
 use std::ops::Range;
 
 /// How much of a weight is missing.
-const PART: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
+const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 
 /// What a linear function loses of each unit of N_0 and of N_2, where those fall short.
 pub(super) type Losses = [f64; 2];
@@ -23,7 +23,7 @@ pub(super) struct Short {
     pub(super) dominance: Dominance,
     /// As sign bits: what is not proved of something.
     pub(super) close: PerLane<u64>,
-    /// Two quotients.
+    /// Room for two quotients with their fractions.
     pub(super) at: [PerLane<f64>; 2],
 }
 
@@ -67,7 +67,7 @@ pub(super) fn losses(triangle: &Triangle, inverse: &[f64; 3], g: &[f64; 3]) -> L
         return [0.0; 2];
     }
     let [a, b, c] = [g[0] * inverse[0], g[1] * inverse[1], g[2] * inverse[2]];
-    [(a - b) * PART, (c - b) * PART]
+    [(a - b) * SHORTFALL, (c - b) * SHORTFALL]
 }
 
 impl Setup<'_> {
@@ -153,13 +153,13 @@ impl Dominance {
             close[n] = near(a, d, error) | near(b, d, error) | near(c, d, error);
         }
         if any_negative(close) {
-            self.settle(triangle, batch, lanes);
+            self.correct(triangle, batch, lanes);
         }
     }
 
     /// Lanes that are too close to call: whole numbers tell.
     #[inline(never)]
-    fn settle(&mut self, triangle: &Triangle, batch: PixelBatch<'_>, lanes: Range<usize>) {
+    fn correct(&mut self, triangle: &Triangle, batch: PixelBatch<'_>, lanes: Range<usize>) {
         for n in lanes.filter(|n| self.close[*n] >> 63 != 0) {
             let sample = batch.sample(n.min(batch.count - 1), triangle);
             let [first, third] = sample.short();

@@ -33,10 +33,10 @@ struct Ground {
     e: [f64; 3],
     a: [f64; 3],
     b: [f64; 3],
-    /// The magnitudes of what is added to edge functions within the box, and theirs.
+    /// An upper bound of each |E_k| over the box, and of what is added to it there.
     terms: [f64; 3],
     p: [f64; 3],
-    /// 1/P_k.
+    /// 1 / P_k of the vertices.
     inverse: [f64; 3],
     denominator: Line,
     /// Of the first pixel's D.
@@ -190,7 +190,7 @@ fn divide<const FMA: bool>(
     let ground = Ground::new::<FMA>(&context.triangle, batch);
     varying.reciprocals.set::<FMA, false>(batch.at, ground.denominator);
     // Whether anything is close, apart: looking for it among them would wait until they are stored.
-    let (mut close, mut settles) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
+    let (mut close, mut corrects) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
     {
         let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
@@ -230,16 +230,16 @@ fn divide<const FMA: bool>(
                     *close = reciprocals.estimate::<FMA>(estimates, &mut w0[at.clone()], &mut w2[at]);
                 }
             }
-            settles |= close[0] | close[1];
+            corrects |= close[0] | close[1];
         }
     }
-    if settles {
+    if corrects {
         correct(context, compiled, batch, pairs, &close, varying, planes);
     }
     true
 }
 
-/// Settles the pairs of which some lane is not proved.
+/// Corrects the pairs of which some lane is not proved.
 #[inline(never)]
 fn correct(
     context: &mut TriangleContext<'_>,
@@ -273,7 +273,7 @@ fn correct(
             }
         }
     }
-    // Settling is no definition.
+    // A corrected estimate is not counted as one by the definition.
     *planes = functions.given_back(&mut Reasons::default());
 }
 

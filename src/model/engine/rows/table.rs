@@ -146,7 +146,7 @@ pub(super) struct Table {
     pub(super) pitch: i32,
     /// Entries of one face.
     pub(super) face: u32,
-    /// The texels.
+    /// The decoded texels.
     pub(super) texels: Texels,
     /// What its channels hold; signed ones with 128 added.
     pub(super) channels: [Channel; 4],

@@ -50,17 +50,17 @@ impl Footprints {
 }
 
 /// More than a coordinate, 1/256 texel.
-const FAR: u64 = 1 << 27;
+const BEYOND_COORDINATES: u64 = 1 << 27;
 
 /// An offset that has the same effect, in 32 bits: what is further away than all coordinates lies beyond the image, and counts but for repeats of it and
 /// of its mirror image.
 #[inline(always)]
 fn near(offset: i64, side: u32) -> i32 {
     let magnitude = offset.unsigned_abs();
-    if magnitude < FAR {
+    if magnitude < BEYOND_COORDINATES {
         return offset as i32;
     }
-    offset.signum() as i32 * (FAR + (magnitude - FAR) % (512 * u64::from(side))) as i32
+    offset.signum() as i32 * (BEYOND_COORDINATES + (magnitude - BEYOND_COORDINATES) % (512 * u64::from(side))) as i32
 }
 
 impl Measure for Taps {

@@ -14,7 +14,7 @@ use crate::engine::pixel::TriangleContext;
 use crate::raster::depth;
 use crate::raster::interpolate::Sample;
 use crate::state::DepthFormat;
-use crate::texture::place::{Place, layer_planes};
+use crate::texture::coordinates::{SampleCoordinates, layer_planes};
 use crate::texture::planned::PlannedUnit;
 
 /// What a sampler that is otherwise complete takes r for.
@@ -35,7 +35,7 @@ pub(super) enum ThirdPlanes {
     None,
     /// Layers: r twice.
     Layer(Planes),
-    /// Depths.
+    /// What is compared with depths (SHD-1).
     Reference(Reference),
 }
 
@@ -106,7 +106,7 @@ fn defined(
     sample: &Sample<'_>,
     pixel: (i64, i64),
 ) -> u32 {
-    context.place(unit, sample, pixel).map_or(0, |place| depth::word(format, place.reference()))
+    context.sample_coordinates(unit, sample, pixel).map_or(0, |place| depth::word(format, place.reference()))
 }
 
 impl Setup<'_> {

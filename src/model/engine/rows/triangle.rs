@@ -18,7 +18,7 @@ use super::taps::Footprints;
 use super::third::{ThirdPlanes, thirds};
 use crate::engine::pixel::TriangleContext;
 use crate::state::TEXTURE_UNITS;
-use crate::texture::place::Coordinates;
+use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::Image;
 
 /// Everything that varies across a triangle, as functions.
@@ -56,7 +56,7 @@ pub(super) struct Varying {
     pub(super) footprints: Vec<Footprints>,
     /// Of the row whose batches come now.
     pub(super) dda: DdaRow,
-    /// W0 and W2 while they are settled.
+    /// W0 and W2 while they are corrected.
     pub(super) weights: [PerLane<i32>; 2],
     /// The same in 16 bits.
     pub(super) narrow: [PerLane<u16>; 2],

@@ -74,9 +74,9 @@ opcodes! {
     M4x4 "m4x4" 2 4,
     /// s t + u.
     Mad "mad" 3 1,
-    /// The larger.
+    /// The larger of s and t.
     Max "max" 2 1,
-    /// The smaller.
+    /// The smaller of s and t.
     Min "min" 2 1,
     /// s.
     Mov "mov" 1 1,
@@ -188,18 +188,18 @@ pub enum DestinationRegister {
 /// What an instruction writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Destination {
-    /// The register.
+    /// The register that is written.
     pub register: DestinationRegister,
     /// Which components are written: bits 0 to 3 for x to w.
     pub mask: u8,
 }
 
-/// One instruction.
+/// An operation with its destination and sources.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
     /// What it computes.
     pub opcode: Opcode,
-    /// Where to.
+    /// The register and the components that are written.
     pub destination: Destination,
     /// From what: as many as the opcode takes.
     pub sources: Vec<Source>,
@@ -210,7 +210,7 @@ pub struct Instruction {
 pub struct VertexShader {
     /// Constants that the program brings: number and value.
     pub definitions: Vec<(usize, [f32; 4])>,
-    /// In their order.
+    /// The instructions, in the order in which they run.
     pub instructions: Vec<Instruction>,
 }
 

@@ -1,8 +1,7 @@
 //! Render states that the scene's draw has in fields of its own: what to write there.
 
-use std::ops::Range;
-
 use crate::Aside;
+use crate::Span;
 use crate::calls::{Part, PartKind, Value, without_prefix};
 use crate::finding::warning;
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
@@ -60,7 +59,7 @@ const GROUPS: [Group; 8] = [
     Group { field: "color_mask", states: &[("ColorWriteEnable", 168)], written: color_mask },
 ];
 
-/// Their names.
+/// The names of all states of a draw.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().flat_map(|group| group.states.iter().map(|(name, _)| *name))
 }
@@ -110,16 +109,16 @@ type Values = Vec<(&'static str, Told)>;
 #[derive(Debug, Default)]
 pub(super) struct DrawStates {
     /// Of each group the first place, and the values.
-    groups: [Option<(Range<usize>, Values)>; GROUPS.len()],
+    groups: [Option<(Span, Values)>; GROUPS.len()],
 }
 
 impl DrawStates {
     /// Takes a state if it is one of these.
-    pub(super) fn take(&mut self, name: &str, number: Option<u32>, place: &Range<usize>, value: &Value<'_>) -> bool {
+    pub(super) fn take(&mut self, name: &str, number: Option<u32>, span: &Span, value: &Value<'_>) -> bool {
         for (group, slot) in GROUPS.iter().zip(&mut self.groups) {
             let found = group.states.iter().find(|(known, n)| known.eq_ignore_ascii_case(name) || number == Some(*n));
             if let Some((name, _)) = found {
-                let (_, values) = slot.get_or_insert_with(|| (place.clone(), Vec::new()));
+                let (_, values) = slot.get_or_insert_with(|| (span.clone(), Vec::new()));
                 values.retain(|(known, _)| known != name);
                 values.push((*name, told(value)));
                 return true;
@@ -132,7 +131,7 @@ impl DrawStates {
     pub(super) fn asides(self) -> Vec<Aside> {
         let groups = GROUPS.iter().zip(self.groups);
         let asides = groups.filter_map(|(group, taken)| {
-            let (place, values) = taken?;
+            let (span, values) = taken?;
             let written = (group.written)(&values)?;
             let names: Vec<String> = values.iter().map(|(name, _)| name.to_uppercase()).collect();
             let (last, rest) = names.split_last()?;
@@ -141,7 +140,7 @@ impl DrawStates {
                 _ => format!("{} and {last} are states of the draw", rest.join(", ")),
             };
             let help = format!("write it in the draw: `{written}`");
-            let finding = warning("NB0918", place, message, "no part of a pixel program", help);
+            let finding = warning("NB0918", span, message, "no part of a pixel program", help);
             Some(Aside { finding, field: Some(group.field) })
         });
         asides.collect()

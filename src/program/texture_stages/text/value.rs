@@ -37,7 +37,7 @@ pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagno
     if let PartKind::Integer(number) = part.kind {
         let help = "operations are 1 to 26";
         return Operation::from_value(number)
-            .or_else(|| out_of_range(&part.place, "texture operation", number, help, findings));
+            .or_else(|| out_of_range(&part.span, "texture operation", number, help, findings));
     }
     let names: Vec<(&str, Operation)> = Operation::ALL.iter().map(|operation| (operation.name(), *operation)).collect();
     known(part, "texture operation", "D3DTOP_", call, &names, findings)
@@ -62,7 +62,7 @@ pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnos
         let number = match part.kind {
             PartKind::Integer(number) if StageArgument::from_value(number).is_none() => {
                 let help = "an argument is 0 to 6, plus 16 for the complement and 32 for alpha in all channels";
-                return out_of_range(&part.place, "texture argument", number, help, findings);
+                return out_of_range(&part.span, "texture argument", number, help, findings);
             }
             PartKind::Integer(number) => number,
             _ => known(part, "texture argument", "D3DTA_", call, WORDS, findings)?,
@@ -85,7 +85,7 @@ pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnosti
             5 => Some(ResultArgument::Temp),
             _ => {
                 let help = "a result is 1 (D3DTA_CURRENT) or 5 (D3DTA_TEMP)";
-                out_of_range(&part.place, "result argument", number, help, findings)
+                out_of_range(&part.span, "result argument", number, help, findings)
             }
         };
     }

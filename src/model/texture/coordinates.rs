@@ -6,7 +6,7 @@ use super::planned::PlannedUnit;
 use super::report::{Report, linear, shortfall};
 use crate::raster::attribute::Attribute;
 use crate::raster::depth::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
+use crate::raster::interpolate::{COORDINATE_LIMIT, Floored, Sample};
 use crate::raster::{ideal, setup::Triangle};
 use crate::state::{AddressMode, DepthFormat, Level, Named, TextureKind, TriangleVertices};
 use crate::trace::{Observer, Operand, Rule, Step, plain};
@@ -86,7 +86,7 @@ pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
     )
 }
 
-/// Real coordinates.
+/// The ideal's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Real {
     /// The face that they lie on.
@@ -96,11 +96,11 @@ pub struct Real {
 }
 
 /// Where a unit samples. Implementations differ in what the coordinates come from.
-pub trait Place {
+pub trait SampleCoordinates {
     /// The face of a cube map; [`Face::PositiveX`] of other kinds.
     fn face(&self) -> Face;
     /// u and v on a level, 1/256 texel.
-    fn on(&self, level: &Level) -> [Settled; 2];
+    fn on(&self, level: &Level) -> [Floored; 2];
     /// TEX-11: u and v at the quad, on the face of its top-left pixel. `None`: some of it lies behind the viewer.
     fn quad(&self) -> Option<Quad>;
     /// The ideal's coordinates, on a given face or on its own.
@@ -114,7 +114,7 @@ pub trait Place {
         &self,
         report: &Report<'_>,
         level: &Level,
-        settled: [Settled; 2],
+        floored: [Floored; 2],
         ideal: [f64; 2],
         observer: &mut O,
     );
@@ -122,15 +122,15 @@ pub trait Place {
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O);
 
     /// VOL-1: the place among so many layers, 1/256 layer. Only interpolated coordinates have one: 0.
-    fn layer(&self, _layers: u32) -> Settled {
-        Settled { value: 0, lowered: 0 }
+    fn layer(&self, _layers: u32) -> Floored {
+        Floored { value: 0, lowered: 0 }
     }
     /// The ideal's r/q, likewise.
     fn real_r(&self) -> f64 {
         0.0
     }
     /// Tells an observer where that comes from.
-    fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: Settled, _observer: &mut O) {}
+    fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: Floored, _observer: &mut O) {}
     /// SHD-1: r/q in steps of a depth buffer, likewise.
     fn reference(&self) -> Binary {
         Binary::default()
@@ -149,11 +149,11 @@ pub trait Place {
 /// Coordinates interpolated from the vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated<'a> {
-    /// The unit.
+    /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// Its coordinates.
+    /// Its coordinates, set up for the triangle.
     pub coordinates: &'a Coordinates,
-    /// The sample.
+    /// The pixel, or rather what interpolation takes of it.
     pub at: &'a Sample<'a>,
     /// Its column and row.
     pub pixel: (i64, i64),
@@ -247,7 +247,7 @@ pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
     Real { face, st }
 }
 
-impl Place for Interpolated<'_> {
+impl SampleCoordinates for Interpolated<'_> {
     fn face(&self) -> Face {
         match self.coordinates {
             Coordinates::Direction(direction) => Self::face_at(direction, self.at),
@@ -255,7 +255,7 @@ impl Place for Interpolated<'_> {
         }
     }
 
-    fn on(&self, level: &Level) -> [Settled; 2] {
+    fn on(&self, level: &Level) -> [Floored; 2] {
         let [width, height] = self.unit.scale(level);
         match self.coordinates {
             Coordinates::Plane(g) => {
@@ -306,7 +306,7 @@ impl Place for Interpolated<'_> {
         &self,
         report: &Report<'_>,
         level: &Level,
-        settled: [Settled; 2],
+        floored: [Floored; 2],
         ideal: [f64; 2],
         observer: &mut O,
     ) {
@@ -315,7 +315,7 @@ impl Place for Interpolated<'_> {
         let shifts = self.unit.plane_shifts(level);
         let direction = self.tell_direction(report, observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
-            let lowered = plain("lowered", settled[axis].lowered);
+            let lowered = plain("lowered", floored[axis].lowered);
             let size = plain("size", sides[axis]);
             let (rule, operation, mut inputs) = match self.coordinates {
                 Coordinates::Plane(g) => {
@@ -342,11 +342,11 @@ impl Place for Interpolated<'_> {
                 }
             }
             inputs.push(lowered);
-            report.coordinate(rule, letter, settled[axis], ideal[axis], (operation, inputs), observer);
+            report.coordinate(rule, letter, floored[axis], ideal[axis], (operation, inputs), observer);
         }
     }
 
-    fn layer(&self, layers: u32) -> Settled {
+    fn layer(&self, layers: u32) -> Floored {
         match self.layer_planes(layers) {
             (r, Some(q)) => self.at.ratio(&r, &q, layers),
             (r, None) => self.at.coordinate(&r),
@@ -359,7 +359,7 @@ impl Place for Interpolated<'_> {
         ideal::quotient(component(2), component(3))
     }
 
-    fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, settled: Settled, observer: &mut O) {
+    fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, floored: Floored, observer: &mut O) {
         let (r, q) = self.layer_planes(layers);
         let (rule, operation, mut inputs) = match q {
             None => ("INT-4", "floor_plane", report.planes("INT-4", "G_w", &r, observer)),
@@ -376,9 +376,9 @@ impl Place for Interpolated<'_> {
         } else {
             inputs.push(plain("D", self.at.d));
         }
-        inputs.push(plain("lowered", settled.lowered));
+        inputs.push(plain("lowered", floored.lowered));
         let ideal = real_coordinate(self.real_r(), layers);
-        report.coordinate(rule, "w", settled, ideal, (operation, inputs), observer);
+        report.coordinate(rule, "w", floored, ideal, (operation, inputs), observer);
     }
 
     fn reference(&self) -> Binary {
