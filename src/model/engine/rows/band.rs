@@ -5,8 +5,8 @@ use super::depth::depths;
 use super::fetch::{self, Workspace};
 use super::isa::Kernels;
 use super::kernels::{self, LANES, Lanes256};
-use super::levels::Reads;
-use super::quotient::{FEW, IOTA, Positions};
+use super::levels::MipFetches;
+use super::quotient::{IOTA, Positions, SMALL_BATCH};
 use super::setup::{PixelBatch, Planes, Run, whole_steps};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
@@ -78,7 +78,7 @@ pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Blo
     // Nor do entries of another table mean anything.
     block.varying.reads.clear();
     if compiled.samplers.iter().any(|sampler| sampler.mixes) {
-        block.varying.reads.resize(compiled.samplers.len(), Reads::default());
+        block.varying.reads.resize(compiled.samplers.len(), MipFetches::default());
     }
     // Lanes without a pixel are fetched too: the layers of an earlier volume may lie beyond the images of another texture.
     for (faces, sampler) in block.varying.faces.iter_mut().zip(&compiled.samplers) {
@@ -301,7 +301,11 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
 pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let all = batch(coverage, lane);
     let Positions { x, y, last } = all.at;
-    if all.count <= FEW { PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], last }, ..all } } else { all }
+    if all.count <= SMALL_BATCH {
+        PixelBatch { at: Positions { x: &x[..SMALL_BATCH], y: &y[..SMALL_BATCH], last }, ..all }
+    } else {
+        all
+    }
 }
 
 /// What varies along a batch of a row.

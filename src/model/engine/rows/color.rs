@@ -2,16 +2,17 @@
 
 use super::CompiledDraw;
 use super::kernels::{Lanes256, PerLane};
-use super::quotient::FEW;
+use super::quotient::SMALL_BATCH;
 use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
 
-/// Weights in 16 bits. [`FEW`] lanes apart, of which the compiler knows the number: one vector, and no loop around it.
+/// Weights in 16 bits. [`SMALL_BATCH`] lanes apart, of which the compiler knows the number: one vector, and no loop around it.
 #[inline(always)]
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
-    if let (Ok(wide), Ok(out)) = (<&[i32; FEW]>::try_from(wide), <&mut [u16; FEW]>::try_from(&mut *out)) {
-        for n in 0..FEW {
+    if let (Ok(wide), Ok(out)) = (<&[i32; SMALL_BATCH]>::try_from(wide), <&mut [u16; SMALL_BATCH]>::try_from(&mut *out))
+    {
+        for n in 0..SMALL_BATCH {
             out[n] = wide[n] as u16;
         }
         return;
@@ -56,13 +57,15 @@ pub(super) fn colors(
     }
 }
 
-/// INT-2 of a channel; [`FEW`] lanes apart, as in [`narrow`].
+/// INT-2 of a channel; [`SMALL_BATCH`] lanes apart, as in [`narrow`].
 #[inline(always)]
 fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
-    if let (Ok(w0), Ok(w2), Ok(out)) =
-        (<&[u16; FEW]>::try_from(w0), <&[u16; FEW]>::try_from(w2), <&mut [i16; FEW]>::try_from(&mut *out))
-    {
-        for n in 0..FEW {
+    if let (Ok(w0), Ok(w2), Ok(out)) = (
+        <&[u16; SMALL_BATCH]>::try_from(w0),
+        <&[u16; SMALL_BATCH]>::try_from(w2),
+        <&mut [i16; SMALL_BATCH]>::try_from(&mut *out),
+    ) {
+        for n in 0..SMALL_BATCH {
             out[n] = interpolate::color(corners, w0[n], w2[n]) as i16;
         }
         return;

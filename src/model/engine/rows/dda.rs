@@ -19,19 +19,19 @@ const MAX_QUOTIENT: f64 = (1_u32 << 29) as f64;
 const BITS: u32 = 29;
 
 /// A number that quotients are written as.
-pub(super) trait Written: Copy {
+pub(super) trait FromQuotient: Copy {
     /// Of a quotient that it holds.
     fn from_quotient(quotient: i32) -> Self;
 }
 
-impl Written for i32 {
+impl FromQuotient for i32 {
     #[inline(always)]
     fn from_quotient(quotient: i32) -> i32 {
         quotient
     }
 }
 
-impl Written for u16 {
+impl FromQuotient for u16 {
     #[inline(always)]
     fn from_quotient(quotient: i32) -> u16 {
         quotient as u16
@@ -141,7 +141,7 @@ impl Dda {
     /// Floors of `count` lanes; whole steps are written, whose later lanes repeat the last. Says whether a lane may be exact or, unless all
     /// are [right](Self::is_exact), one too large. Pieces begin at whole steps.
     #[inline(always)]
-    pub(super) fn run<T: Written + Default>(&mut self, count: usize, out: &mut [T]) -> bool {
+    pub(super) fn run<T: FromQuotient + Default>(&mut self, count: usize, out: &mut [T]) -> bool {
         if self.slope == 0 {
             let floor = T::from_quotient(self.here.quotient);
             for out in out {
@@ -196,7 +196,7 @@ impl Dda {
 
 /// Floors of steps of lanes, and the least of what remains, for each place in a step.
 #[inline(always)]
-fn floors<T: Written + Default>(
+fn floors<T: FromQuotient + Default>(
     starts: &[[i32; 2]; STEPS],
     quotients: &[i32; STEP],
     remainders: &[i32; STEP],

@@ -13,7 +13,7 @@ use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
 /// Bits of a double below the 24 that count.
-const BELOW: u64 = (1 << 29) - 1;
+const BELOW_24_BITS: u64 = (1 << 29) - 1;
 
 /// Sign and exponent of a double.
 const EXPONENT: u64 = 0xfff << 52;
@@ -541,7 +541,7 @@ fn power(n: f64) -> f64 {
 /// The first 24 bits.
 #[inline(always)]
 fn cut24(n: f64) -> f64 {
-    f64::from_bits(n.to_bits() & !BELOW)
+    f64::from_bits(n.to_bits() & !BELOW_24_BITS)
 }
 
 /// The largest whole number that is not above another number of less than 51 bits. `WIDE`: the instruction set has it as an instruction.

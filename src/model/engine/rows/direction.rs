@@ -59,26 +59,26 @@ pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 
 }
 
 /// A direction across a batch, or s, t and q.
-pub(super) struct Looking {
+pub(super) struct CubeDirection {
     /// x, y, z.
     pub(super) lines: [Line; 3],
     /// What each can be off by.
     error: f64,
 }
 
-impl Looking {
+impl CubeDirection {
     #[inline(always)]
-    pub(super) fn new(planes: &[Plane; 3], local: &BatchSetup) -> Looking {
-        Looking::around(planes, &local.real, local.columns, local.rows)
+    pub(super) fn new(planes: &[Plane; 3], local: &BatchSetup) -> CubeDirection {
+        CubeDirection::around(planes, &local.real, local.columns, local.rows)
     }
 
     /// That of so many columns and rows.
     #[inline(always)]
-    pub(super) fn around(planes: &[Plane; 3], e: &[f64; 3], columns: f64, rows: f64) -> Looking {
+    pub(super) fn around(planes: &[Plane; 3], e: &[f64; 3], columns: f64, rows: f64) -> CubeDirection {
         let lines = [planes[0].line(e), planes[1].line(e), planes[2].line(e)];
         let terms =
             [planes[0].terms(e, columns, rows), planes[1].terms(e, columns, rows), planes[2].terms(e, columns, rows)];
-        Looking { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
+        CubeDirection { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
     }
 
     /// More than a quotient of two of these times `scale` is off by, and more than its magnitude. `widest` is the reciprocal of the least divisor.
@@ -163,7 +163,7 @@ impl Setup<'_> {
                 true
             }
             Planes::Direction(planes, face) => {
-                let looking = Looking::new(planes, local);
+                let looking = CubeDirection::new(planes, local);
                 let face = if ROW && face.is_none() { looking.face::<FMA>(local.columns) } else { *face };
                 match face {
                     Some(face) => {
@@ -191,7 +191,7 @@ impl Setup<'_> {
         sampler: &Sampler,
         planes: &[Plane; 3],
         face: Face,
-        looking: &Looking,
+        looking: &CubeDirection,
         local: &BatchSetup,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
@@ -228,7 +228,7 @@ impl Setup<'_> {
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
-        let looking = Looking::new(planes, local);
+        let looking = CubeDirection::new(planes, local);
         let [s, t, q] = looking.lines;
         let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
@@ -304,7 +304,7 @@ impl Setup<'_> {
     }
 }
 
-/// The loop of [`Looking::directions`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
+/// The loop of [`CubeDirection::directions`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
 #[inline(always)]
 fn directions<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,

@@ -7,7 +7,7 @@
 use super::band::{batch, common, few};
 use super::boxes::{BoxCoverage, boxes, is_small};
 use super::kernels::Lanes256;
-use super::levels::Reads;
+use super::levels::MipFetches;
 use super::quotient::{self, IOTA};
 use super::setup::{PixelBatch, whole_steps};
 use super::taps::{Footprints, Pair};
@@ -322,7 +322,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
     interpolators.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
     super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
-    let (context, mut wanted, mut taps) = (&interpolators.setup.context, Reads::default(), Footprints::default());
+    let (context, mut wanted, mut taps) = (&interpolators.setup.context, MipFetches::default(), Footprints::default());
     for n in 0..batch.count {
         let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
@@ -339,7 +339,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
                 interpolators.setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
-                let of = |reads: &Reads| {
+                let of = |reads: &MipFetches| {
                     let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
                     (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
                 };
@@ -437,7 +437,7 @@ fn rows_interpolate(seed: u64) {
         let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Lanes256::from_value(0); compiled.rows.len()]);
-        varying.reads.resize(compiled.samplers.len(), Reads::default());
+        varying.reads.resize(compiled.samplers.len(), MipFetches::default());
         varying.footprints.resize(compiled.samplers.len(), Footprints::default());
         varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));
         let mut planes = Vec::new();

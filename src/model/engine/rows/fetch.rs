@@ -2,7 +2,7 @@
 
 use super::BLOCK;
 use super::kernels::{LANES, Lanes256, PerLane};
-use super::levels::Reads;
+use super::levels::MipFetches;
 use super::store;
 use super::table::{Axis, Table, Texels};
 use super::taps::Pair;
@@ -204,7 +204,7 @@ pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut 
 #[inline(always)]
 pub(super) fn sample_levels(
     table: &Table,
-    reads: &Reads,
+    reads: &MipFetches,
     both: bool,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
@@ -258,7 +258,7 @@ pub(super) fn sample_levels(
     load(signed, wanted, rows);
 }
 
-impl Reads {
+impl MipFetches {
     /// The entries of what is read of one of two levels, and the coordinates that weights come from.
     #[inline(always)]
     fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> Option<(&[i32; BLOCK], &[i32; BLOCK])> {

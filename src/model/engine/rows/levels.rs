@@ -16,10 +16,10 @@ use crate::texture::planned::PlannedUnit;
 
 /// What the lanes of a block read of a texture whose levels count.
 #[derive(Clone, Debug)]
-pub(super) struct Reads {
+pub(super) struct MipFetches {
     /// Entries of the table: of the nearer level, and of the next one.
     pub(super) entries: [PerLane<i32>; 2],
-    /// u and v there, of which the fraction of a texel counts.
+    /// u and v on that level; only the fraction of a texel is used.
     pub(super) coordinates: [[PerLane<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
     pub(super) weights: PerLane<i32>,
@@ -27,9 +27,9 @@ pub(super) struct Reads {
     pub(super) known: Known<i32>,
 }
 
-impl Default for Reads {
+impl Default for MipFetches {
     fn default() -> Self {
-        Reads {
+        MipFetches {
             entries: [[0; LANES]; 2],
             coordinates: [[[0; LANES]; 2]; 2],
             weights: [0; LANES],
@@ -70,7 +70,7 @@ impl Default for Placing {
 const FARTHEST: f64 = (1 << 26) as f64;
 
 /// Mantissas closer to a power of two than this are too close to call: seven squarings multiply roundings by 128.
-const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
+const LOG_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Setup<'_> {
     /// Everything that a unit whose levels count reads in a batch.
@@ -82,23 +82,23 @@ impl Setup<'_> {
         local: &BatchSetup,
         short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
-        reads: &mut Reads,
+        reads: &mut MipFetches,
     ) {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
-        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, local) else {
+        let Some(base) = self.base_level::<FMA, ROW>(sampler, planes, local) else {
             for n in 0..batch.count {
                 self.defined_reads(batch, n, sampler, table, reads);
             }
             return;
         };
         let lanes = batch.at.x.len();
-        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &ground), &local.e, quads, &mut reads.known);
+        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &base), &local.e, quads, &mut reads.known);
         spread.hand_out(&reads.known.each, batch.count, &mut placing.lods[..lanes]);
-        let (at, denominator) = (batch.at, ground.denominator);
+        let (at, denominator) = (batch.at, base.denominator);
         let [at_u, at_v] = &mut placing.at;
-        let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
-        match ground.losses {
+        let (lines, (u, v)) = ([base.along, base.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
+        match base.losses {
             Some(losses) => short.dominance.divide::<FMA, ROW>(at, lines, losses, [u, v]),
             None => quotients::<FMA, ROW>(at, lines, u, v),
         }
@@ -109,10 +109,10 @@ impl Setup<'_> {
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
         let mut raised = [0.0; 2];
         for axis in 0..2 {
-            let (gap, shared) = ground.gaps[axis];
+            let (gap, shared) = base.gaps[axis];
             // In steps of level 0: what is whole on a smaller level is whole there.
             let floors = read_levels.clone().map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
-            let off = ground.off + floors.max().map_or(0.0, |shift| ground.floors * f64::from(1 << shift));
+            let off = base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift));
             let (up, off) = parted(gap, off);
             raised[axis] = up;
             whole_on_none(&placing.at[axis][..lanes], up, off, &mut placing.close[axis][..lanes]);
@@ -130,7 +130,7 @@ impl Setup<'_> {
                 if levels[0][n] != level && levels[1][n] != level {
                     continue;
                 }
-                let Some(planes) = ground.planes else {
+                let Some(planes) = base.planes else {
                     (open[n], opens) = (true, true);
                     continue;
                 };
@@ -141,7 +141,7 @@ impl Setup<'_> {
             }
             let [u, v, entries] = read;
             let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
-            let placed = table.placed(level as usize, ground.face as u32);
+            let placed = table.placed(level as usize, base.face as u32);
             let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
             places(&placed, filters, &lods[..lanes], u, v, entries);
             for (which, [low, high]) in ranges.into_iter().enumerate() {
@@ -181,7 +181,7 @@ impl Setup<'_> {
         n: usize,
         sampler: &Sampler,
         table: &Table,
-        reads: &mut Reads,
+        reads: &mut MipFetches,
     ) {
         let unit = &self.context.draw.units[sampler.index];
         self.tell(Reason::Levels, 1);
@@ -236,10 +236,10 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
         for _ in 0..7 {
             power *= power;
         }
-        let power = if power > 1.0 + 2.0 * CLOSE { power } else { 1.0 + 2.0 * CLOSE };
+        let power = if power > 1.0 + 2.0 * LOG_MARGIN { power } else { 1.0 + 2.0 * LOG_MARGIN };
         let log = 128 * ((bits >> 52) as i32 - 1023) + (power.to_bits() >> 52) as i32 - 1023;
         let mantissa = f64::from_bits(power.to_bits() & ((1 << 52) - 1) | 1.0_f64.to_bits());
-        open |= (mantissa - (1.0 + CLOSE)).to_bits() | (2.0 - CLOSE - mantissa).to_bits();
+        open |= (mantissa - (1.0 + LOG_MARGIN)).to_bits() | (2.0 - LOG_MARGIN - mantissa).to_bits();
         lods[n] = if largest > 0.0 { log - 128 * 32 } else { lod::LEAST };
         unknown[n] |= open;
     }

@@ -1,7 +1,7 @@
 //! TEX-11 on rows: coordinates at the quads of a batch, exact, and what units take of them: a lod, or the taps of a footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::direction::Looking;
+use super::direction::CubeDirection;
 use super::kernels::LANES;
 use super::kernels::PerLane;
 use super::planes::Plane;
@@ -109,7 +109,7 @@ const MAX_COORDINATE: f64 = (1_u64 << 36) as f64;
 const COARSEST: f64 = 0.125;
 
 /// Coordinates of level 0 around a batch: two quotients.
-pub(super) struct Ground<'p> {
+pub(super) struct BaseLevel<'p> {
     pub(super) along: Line,
     pub(super) down: Line,
     pub(super) denominator: Line,
@@ -131,12 +131,12 @@ pub(super) struct Ground<'p> {
 impl Setup<'_> {
     /// The coordinates of level 0 around a batch. `None`: nothing would be proved.
     #[inline(always)]
-    pub(super) fn ground<'p, const FMA: bool, const ROW: bool>(
+    pub(super) fn base_level<'p, const FMA: bool, const ROW: bool>(
         &self,
         sampler: &Sampler,
         planes: &'p Planes,
         local: &BatchSetup,
-    ) -> Option<Ground<'p>> {
+    ) -> Option<BaseLevel<'p>> {
         // Pixels of a quad lie up to one outside of the batch.
         let (columns, rows) = (local.columns + 1.0, local.rows + 1.0);
         // None of them lies further to the left of a row's first pixel, or above a batch's.
@@ -144,7 +144,7 @@ impl Setup<'_> {
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
         let lowest = least(local.denominator);
-        let (ground, range) = match planes {
+        let (base, range) = match planes {
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
                 let ratio = self.denominator.terms(&local.real, columns, rows) * widest;
@@ -153,7 +153,7 @@ impl Setup<'_> {
                 let (one, other) = (most(&planes[0]), most(&planes[1]));
                 let range = (if one > other { one } else { other }) * (1.0 + ratio);
                 let p = &self.context.triangle.p;
-                let ground = Ground {
+                let base = BaseLevel {
                     along: planes[0].line(&local.real),
                     down: planes[1].line(&local.real),
                     denominator: local.denominator,
@@ -165,10 +165,10 @@ impl Setup<'_> {
                     losses: None,
                     gaps: [planes[0].gap(&self.context.triangle), planes[1].gap(&self.context.triangle)],
                 };
-                (ground, range)
+                (base, range)
             }
             Planes::Ratio(planes, _) => {
-                let looking = Looking::around(planes, &local.real, columns, rows);
+                let looking = CubeDirection::around(planes, &local.real, columns, rows);
                 let [s, t, q] = looking.lines;
                 let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
                 let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
@@ -183,10 +183,10 @@ impl Setup<'_> {
                 let face = Face::PositiveX;
                 let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
                 let (floors, planes, gaps) = (0.0, None, [(0.0, 0); 2]);
-                (Ground { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
+                (BaseLevel { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Direction(planes, face) => {
-                let looking = Looking::around(planes, &local.real, columns, rows);
+                let looking = CubeDirection::around(planes, &local.real, columns, rows);
                 let face = match face {
                     Some(face) => *face,
                     None if ROW => looking.face::<FMA>(local.columns)?,
@@ -204,17 +204,17 @@ impl Setup<'_> {
                 let [along, down] = lines;
                 let behind = false;
                 let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
-                (Ground { along, down, denominator: m, off, floors, face, behind, planes, losses, gaps }, range)
+                (BaseLevel { along, down, denominator: m, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Other | Planes::Shared => return None,
         };
         // Also refuses what is no number.
         let proves = lowest > 0.0
-            && least(ground.denominator) > 0.0
+            && least(base.denominator) > 0.0
             && range < MAX_COORDINATE
-            && ground.off < COARSEST / 256.0
-            && ground.floors < COARSEST;
-        proves.then_some(ground)
+            && base.off < COARSEST / 256.0
+            && base.floors < COARSEST;
+        proves.then_some(base)
     }
 
     /// What a unit takes of the quads of a batch, and which lanes belong to which.
@@ -222,7 +222,7 @@ impl Setup<'_> {
     pub(super) fn of_quads<const FMA: bool, const ROW: bool, T: Measure>(
         &self,
         batch: PixelBatch<'_>,
-        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
         e: &[i64; 3],
         quads: &mut Quads,
         known: &mut Known<T>,
@@ -231,7 +231,7 @@ impl Setup<'_> {
         let lanes = batch.at.x.len();
         let above = (j & !1) - j;
         let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind());
-        if ground.behind {
+        if base.behind {
             room(known, 1);
             (known.of, known.each[0]) = (None, T::behind());
             return Spread::default();
@@ -244,7 +244,7 @@ impl Setup<'_> {
             }
             room(known, LANES);
             known.of = None;
-            self.measured::<FMA, T>(batch, (unit, ground), e, batch.count, quads, &mut known.each);
+            self.measured::<FMA, T>(batch, (unit, base), e, batch.count, quads, &mut known.each);
             return Spread { last: lanes - 1, ..Spread::default() };
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
@@ -265,7 +265,7 @@ impl Setup<'_> {
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
             room(known, first + LANES);
-            self.measured::<FMA, T>(batch, (unit, ground), e, count, quads, &mut known.each[first..]);
+            self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
             known.columns.end += count as i64;
         }
         let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
@@ -277,7 +277,7 @@ impl Setup<'_> {
     fn measured<const FMA: bool, T: Measure>(
         &self,
         batch: PixelBatch<'_>,
-        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
         e: &[i64; 3],
         count: usize,
         quads: &mut Quads,
@@ -289,9 +289,9 @@ impl Setup<'_> {
         let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
         unknown.fill(0);
         for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
-            corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+            corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
         }
-        if let Some(planes) = ground.planes
+        if let Some(planes) = base.planes
             && any_negative(unknown)
         {
             for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
@@ -334,7 +334,7 @@ pub(super) fn parted(gap: f64, off: f64) -> (f64, f64) {
 /// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
 #[inline(always)]
 fn corners<const FMA: bool>(
-    ground: &Ground<'_>,
+    base: &BaseLevel<'_>,
     [xs, ys]: [&[f64]; 2],
     [right, below]: [f64; 2],
     u: &mut [f64],
@@ -343,9 +343,9 @@ fn corners<const FMA: bool>(
 ) {
     let lanes = u.len();
     let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
-    let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
-    let off = 256.0 * ground.off;
-    let [(up_p, off_p), (up_q, off_q)] = ground.gaps.map(|(gap, _)| parted(256.0 * gap, off));
+    let (along, down, denominator) = (base.along.times(256.0), base.down.times(256.0), base.denominator);
+    let off = 256.0 * base.off;
+    let [(up_p, off_p), (up_q, off_q)] = base.gaps.map(|(gap, _)| parted(256.0 * gap, off));
     for n in 0..lanes {
         let (x, y) = (xs[n] + right, ys[n] + below);
         let r = 1.0 / denominator.at::<FMA, false>(x, y);

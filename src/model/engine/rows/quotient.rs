@@ -40,7 +40,7 @@ pub(super) static IOTA_REAL: [f64; LANES] = {
 };
 
 /// Lanes of a batch of few pixels: fewer than a whole step. Code of its own for them has no loops.
-pub(super) const FEW: usize = 8;
+pub(super) const SMALL_BATCH: usize = 8;
 
 /// Where the pixels of a batch lie, relative to its first: columns and, unless all are on one row, rows.
 #[derive(Clone, Copy)]
@@ -283,14 +283,14 @@ impl Reciprocals {
             }
             return;
         }
-        if let (Ok(xs), Ok(ys)) = (<&[i32; FEW]>::try_from(at.x), <&[i32; FEW]>::try_from(at.y)) {
-            for n in 0..FEW {
+        if let (Ok(xs), Ok(ys)) = (<&[i32; SMALL_BATCH]>::try_from(at.x), <&[i32; SMALL_BATCH]>::try_from(at.y)) {
+            for n in 0..SMALL_BATCH {
                 self.x[n] = f64::from(xs[n]);
             }
-            for n in 0..FEW {
+            for n in 0..SMALL_BATCH {
                 self.y[n] = f64::from(ys[n]);
             }
-            for n in 0..FEW {
+            for n in 0..SMALL_BATCH {
                 self.r[n] = 1.0 / denominator.at::<FMA, false>(self.x[n], self.y[n]);
             }
             return;
@@ -319,8 +319,8 @@ impl Reciprocals {
         second: &mut [i32],
     ) -> [bool; 2] {
         let lanes = first.len();
-        if let (FEW, Some(first), Some(second)) =
-            (lanes, first.first_chunk_mut::<FEW>(), second.first_chunk_mut::<FEW>())
+        if let (SMALL_BATCH, Some(first), Some(second)) =
+            (lanes, first.first_chunk_mut::<SMALL_BATCH>(), second.first_chunk_mut::<SMALL_BATCH>())
         {
             return [self.few::<FMA>(one, first), self.few::<FMA>(other, second)];
         }
@@ -337,13 +337,13 @@ impl Reciprocals {
     }
 
     #[inline(always)]
-    fn few<const FMA: bool>(&self, numerator: QuotientEstimate, out: &mut [i32; FEW]) -> bool {
-        let (mut steps, mut close) = ([0; FEW], 0);
+    fn few<const FMA: bool>(&self, numerator: QuotientEstimate, out: &mut [i32; SMALL_BATCH]) -> bool {
+        let (mut steps, mut close) = ([0; SMALL_BATCH], 0);
         // Loops of their own: compilers take one apart that does both.
-        for n in 0..FEW {
+        for n in 0..SMALL_BATCH {
             steps[n] = numerator.step::<FMA, false>(self.x[n], self.y[n], self.r[n]);
         }
-        for n in 0..FEW {
+        for n in 0..SMALL_BATCH {
             let (value, is_close) = numerator.floor(steps[n]);
             out[n] = value;
             close |= is_close;
@@ -390,7 +390,7 @@ impl Exact {
     }
 }
 
-/// Makes floors of estimates that are off by one at most, and says where nothing remains.
+/// Corrects estimates that are at most one off, and marks lanes whose division is exact.
 ///
 /// The remainder lies within 1.25 denominators of 0, so it is known although numerators are known modulo 2^64 only.
 #[inline(always)]

@@ -28,7 +28,7 @@ enum Pair {
 }
 
 /// What all functions of a triangle share.
-struct Ground {
+struct EdgeSetup {
     /// Edge functions at the first pixel, and their slopes.
     e: [f64; 3],
     a: [f64; 3],
@@ -51,9 +51,9 @@ struct Ground {
     gap: f64,
 }
 
-impl Ground {
+impl EdgeSetup {
     #[inline(always)]
-    fn new<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>) -> Ground {
+    fn new<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>) -> EdgeSetup {
         let e = real(&triangle.edges(batch.first.0, batch.first.1));
         let (a, b, p) = (real(&triangle.a), real(&triangle.b), real(&triangle.p));
         let mut terms = [0.0; 3];
@@ -66,7 +66,7 @@ impl Ground {
         let widest = 1.0 / (least * triangle.doubled_area as f64);
         let ratio = sum::<FMA>(&p, &terms) * widest;
         let reciprocal = 1.0 / denominator.c;
-        Ground {
+        EdgeSetup {
             e,
             a,
             b,
@@ -88,8 +88,8 @@ impl Ground {
 
     /// How four quotients are estimated. `g`: their numerators, by vertex, before they are floored.
     #[inline(always)]
-    fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
-        let mut all = Four::default();
+    fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Estimates4 {
+        let mut all = Estimates4::default();
         let mut gaps = [0.0; FOUR];
         if self.gap > 0.0 {
             for n in 0..FOUR {
@@ -119,7 +119,7 @@ impl Ground {
 
 /// [`QuotientEstimate`] of four quotients.
 #[derive(Default)]
-struct Four {
+struct Estimates4 {
     c: [f64; FOUR],
     x: [f64; FOUR],
     y: [f64; FOUR],
@@ -130,7 +130,7 @@ struct Four {
     proves: [i32; FOUR],
 }
 
-impl Four {
+impl Estimates4 {
     #[inline(always)]
     fn of(&self, n: usize) -> QuotientEstimate {
         let line = Line { c: self.c[n], x: self.x[n], y: self.y[n] };
@@ -187,8 +187,8 @@ fn divide<const FMA: bool>(
     varying: &mut Varying,
     planes: &mut Vec<Planes>,
 ) -> bool {
-    let ground = Ground::new::<FMA>(&context.triangle, batch);
-    varying.reciprocals.set::<FMA, false>(batch.at, ground.denominator);
+    let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
+    varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
     // Whether anything is close, apart: looking for it among them would wait until they are stored.
     let (mut close, mut corrects) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
@@ -203,15 +203,15 @@ fn divide<const FMA: bool>(
                     let (sets, [width, height]) = (context.sampled_coordinates(sampler.index), sampler.sides);
                     let (width, height) = (f64::from(256 * width), f64::from(256 * height));
                     for k in 0..3 {
-                        g[k][u] = f64::from(sets[k][0]) * width * ground.p[k];
-                        g[k][v] = f64::from(sets[k][1]) * height * ground.p[k];
+                        g[k][u] = f64::from(sets[k][0]) * width * edges.p[k];
+                        g[k][v] = f64::from(sets[k][1]) * height * edges.p[k];
                     }
                     (bias[u], bias[v]) = (sampler.bias(), sampler.bias());
                 }
-                Pair::Weights => (g[0][u], g[2][v]) = (256.0 * ground.p[0], 256.0 * ground.p[2]),
+                Pair::Weights => (g[0][u], g[2][v]) = (256.0 * edges.p[0], 256.0 * edges.p[2]),
             }
         }
-        let estimates = ground.estimates::<FMA>(&g, &bias);
+        let estimates = edges.estimates::<FMA>(&g, &bias);
         if estimates.proves != [1; FOUR] {
             return false;
         }

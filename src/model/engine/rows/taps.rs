@@ -96,14 +96,14 @@ impl Setup<'_> {
         let unit = &self.context.draw.units[sampler.index];
         let sides = [unit.levels[0].width, unit.levels[0].height];
         let Footprints { pairs, known } = footprints;
-        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, local) else {
+        let Some(base) = self.base_level::<FMA, ROW>(sampler, planes, local) else {
             for n in 0..batch.count {
                 let taps = self.defined_quad::<Taps>(batch, unit, batch.pixel(n));
                 Footprints::set(pairs, batch.lane + n, &taps, sides);
             }
             return;
         };
-        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &ground), &local.e, quads, known);
+        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &base), &local.e, quads, known);
         for n in 0..batch.count {
             Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)], sides);
         }

@@ -3,7 +3,7 @@
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::depth::{UNKNOWN, floor, word};
-use super::direction::{Looking, positive};
+use super::direction::{CubeDirection, positive};
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
@@ -163,7 +163,7 @@ impl Setup<'_> {
                 ((plane.line(&local.real).times(*scale), local.denominator), off)
             }
             Reference::Ratio(planes, scale) => {
-                let looking = Looking::new(planes, local);
+                let looking = CubeDirection::new(planes, local);
                 let [r, _, q] = looking.lines;
                 let (off, _) = looking.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], local), *scale);
                 ((r.times(*scale), q), off)

@@ -8,7 +8,7 @@ use super::depth::Steps;
 use super::direction::{only_face, positive};
 use super::fog::Fog;
 use super::kernels::{LANES, Lanes256, PerLane};
-use super::levels::{Placing, Reads};
+use super::levels::{MipFetches, Placing};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
 use super::quotient::{Reciprocals, estimate_two};
@@ -49,7 +49,7 @@ pub(super) struct Varying {
     /// The texture shader lets the pixel live.
     pub(super) alive: PerLane<bool>,
     /// What samplers read whose levels count; as many as are wanted.
-    pub(super) reads: Vec<Reads>,
+    pub(super) reads: Vec<MipFetches>,
     pub(super) quads: Box<Quads>,
     pub(super) placing: Box<Placing>,
     /// The taps of samplers that have several; as many as are wanted.
