@@ -192,6 +192,32 @@ fn the_difference_is_drawn() {
     assert_eq!((&json["picture"]["path"], &json["picture"]["scale"]), (&"d.png".into(), &1.into()));
 }
 
+/// Two depths that differ in one step of the upper 16 bits, and the scene that has one of them.
+#[test]
+fn depth_buffers_are_compared() {
+    let bench = bench();
+    for (name, depth) in [("near", "0.25"), ("far", "0.75")] {
+        let scene = format!(
+            "(version: 1, profile: Nv10, targets: [(name: \"frame\", width: 8, height: 4, depth: Z24S8, clear: (depth: {depth}))], draws: [])"
+        );
+        bench.write(&format!("{name}.ron"), scene);
+        assert_eq!(bench.run(&format!("render {name}.ron -o {name}.png --depth {name}-depth.png")).status, 0);
+    }
+    assert_eq!(bench.run("diff near-depth.png near-depth.png --scene near.ron").status, 0);
+    let run = bench.run("diff near-depth.png far-depth.png --scene near.ron");
+    assert_eq!(run.status, 1);
+    let text = String::from_utf8(run.stdout).unwrap();
+    assert!(text.contains("A equals it\n  B differs from it in 32 pixels"), "{text}");
+    assert!(text.contains("R 128 G 0 B 0 A 0"), "{text}");
+    for (command, code) in
+        [("diff near-depth.png near.png", "NB0521"), ("diff near-depth.png near-depth.png --scene scene.ron", "NB0522")]
+    {
+        let run = bench.run(command);
+        assert_eq!(run.status, 3, "{command}: {}", run.stderr);
+        assert!(run.stderr.contains(code), "{command}: {}", run.stderr);
+    }
+}
+
 #[test]
 fn errors_say_what_to_do() {
     let bench = bench();

@@ -7,12 +7,13 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use ninebit::diagnostic::ErrorKind;
 use ninebit::frame::Surface;
 use ninebit::limits::{self, FileLimit};
-use ninebit_files::picture::digest;
+use ninebit_files::picture::{digest, hexadecimal};
 use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_scene::image::{self, ImageError, ImageLimits, Rgba};
 use ninebit_scene::path::{PathError, resolve};
@@ -34,6 +35,9 @@ pub struct Expectation {
     pub height: u32,
     /// [`digest`] of the picture, pixels that the mask leaves out taken as 0, 0, 0, 0.
     pub sha256: String,
+    /// SHA-256 of the words of the target's depth buffer, four bytes each, little-endian: 256 depth + stencil.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth: Option<String>,
     /// What picture that is, if it is not one of this program: the name of a capture. Such a digest is never written anew from
     /// what this program draws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -85,6 +89,12 @@ pub enum Mismatch {
     #[error("the picture's digest is {sha256}")]
     Digest {
         /// SHA-256 of the picture that was drawn, in hexadecimal.
+        sha256: String,
+    },
+    /// The digest of the depth buffer, as it is; the picture is the expected one.
+    #[error("the picture is as expected, the digest of its depths is {sha256}")]
+    Depth {
+        /// SHA-256.
         sha256: String,
     },
     /// More than is allowed.
@@ -237,7 +247,10 @@ impl Expectation {
         let compared = self.compared(folder)?;
         let sha256 = masked_digest(width, height, &mut pixels, &compared);
         if sha256 == self.sha256 {
-            return Ok(None);
+            let depth = self.depth.as_ref().map(|expected| (expected, depth_digest(surface)));
+            return Ok(depth
+                .filter(|(expected, sha256)| *expected != sha256)
+                .map(|(_, sha256)| Mismatch::Depth { sha256 }));
         }
         let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
         let expected = self.image(folder, &allowance.picture)?;
@@ -301,6 +314,12 @@ impl Expectation {
     }
 }
 
+/// What [`Expectation::depth`] is of a surface.
+pub fn depth_digest(surface: &Surface) -> String {
+    let words: Vec<u8> = surface.chip_depth_words().flat_map(u32::to_le_bytes).collect();
+    hexadecimal(&Sha256::digest(words))
+}
+
 /// Sets pixels that are not compared to 0, 0, 0, 0 and takes the [`digest`].
 pub fn masked_digest(width: u32, height: u32, pixels: &mut [[u8; 4]], compared: &[bool]) -> String {
     for (pixel, compared) in pixels.iter_mut().zip(compared) {
@@ -351,6 +370,20 @@ mod tests {
         assert_eq!(expectation.missing(folder.path()).expect("plain names"), ["captured/a.png", "b.png"]);
         assert!(needs(&["../here.png"]).missing(folder.path()).is_err());
         assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
+    }
+
+    #[test]
+    fn depths_are_compared_where_they_are_expected() {
+        let with = |depth: &[u32]| Surface { depth: depth.to_vec(), ..surface(&[1, 2]) };
+        let mut expectation = Expectation::from_surface("frame", &with(&[3, 4]));
+        let compare = |expectation: &Expectation, depth: &[u32]| expectation.compare(&with(depth), Path::new("."));
+        assert_eq!(compare(&expectation, &[5]).expect("compares"), None);
+        expectation.depth = Some(depth_digest(&with(&[3, 4])));
+        assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
+        assert_eq!(compare(&expectation, &[3, 4]).expect("compares"), None);
+        let sha256 = depth_digest(&with(&[3, 5]));
+        assert_eq!(compare(&expectation, &[3, 5]).expect("compares"), Some(Mismatch::Depth { sha256 }));
+        assert!(compare(&expectation, &[]).expect("compares").is_some());
     }
 
     #[test]

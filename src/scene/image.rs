@@ -187,6 +187,15 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
     decode(&bytes, path, limits)
 }
 
+/// Reads the PNG or TGA file at `path`, or a grey PNG of 16 bits, and says whether it is one: R is then the upper byte, G the lower, B 0.
+///
+/// # Errors
+/// See [`ImageError`]. No input makes this panic.
+pub fn load_words(path: &Path, limits: &ImageLimits) -> Result<(Rgba, bool), ImageError> {
+    let bytes = read(&Folder, path, limits.file())?;
+    picture(&bytes, path, limits, 16).map_err(|fault| fault.of(path))
+}
+
 /// Reads the PNG, TGA or DDS file at `path`. A DDS is known by its first four bytes, whatever its name.
 ///
 /// # Errors
@@ -203,7 +212,7 @@ pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Conte
     if bytes.starts_with(&dds::SIGNATURE) {
         return dds::decode(bytes, path, limits).map(Contents::Texture);
     }
-    picture(bytes, path, limits).map(Contents::Picture).map_err(|fault| match fault {
+    picture(bytes, path, limits, 8).map(|(picture, _)| Contents::Picture(picture)).map_err(|fault| match fault {
         ImageFault::Format(_) => ImageFault::Format("neither a PNG, a TGA nor a DDS file").of(path),
         fault => fault.of(path),
     })
@@ -214,10 +223,11 @@ pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Conte
 /// # Errors
 /// As [`load`], less those of reading.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
-    picture(bytes, path, limits).map_err(|fault| fault.of(path))
+    picture(bytes, path, limits, 8).map(|(picture, _)| picture).map_err(|fault| fault.of(path))
 }
 
-fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageFault> {
+/// The pixels, and whether they are words of 16 bits; `bits`: the most of a channel.
+fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits, bits: u8) -> Result<(Rgba, bool), ImageFault> {
     let damaged = |reason: &str| ImageFault::Damaged(reason.to_owned());
     let (format, header, bytes) = if bytes.starts_with(&png::SIGNATURE) {
         let reduced = png::essential(bytes).map_err(damaged)?;
@@ -229,6 +239,9 @@ fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, Imag
         return Err(ImageFault::Format("neither a PNG nor a TGA file"));
     };
     check_header(header, limits)?;
+    if header.bits > bits {
+        return Err(ImageFault::Depth(header.bits));
+    }
 
     let mut allowed = image::Limits::default();
     allowed.max_image_width = Some(limits.maximum_side);
@@ -242,7 +255,7 @@ fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, Imag
     })
     .map_err(|panic| damaged(&format!("the decoder gave up ({panic})")))?
     .map_err(|error| damaged(&error.to_string()))?;
-    to_rgba(decoded)
+    Ok((to_rgba(decoded)?, header.bits > 8))
 }
 
 /// What a header says, before anything is decoded.
@@ -262,7 +275,7 @@ fn tga_header(bytes: &[u8]) -> Option<Header> {
 }
 
 /// Holds a header against the limits.
-fn check_header(Header { width, height, bits }: Header, limits: &ImageLimits) -> Result<(), ImageFault> {
+fn check_header(Header { width, height, .. }: Header, limits: &ImageLimits) -> Result<(), ImageFault> {
     if width == 0 || height == 0 {
         return Err(ImageFault::Damaged(format!("it is {width} x {height}")));
     }
@@ -273,7 +286,7 @@ fn check_header(Header { width, height, bits }: Header, limits: &ImageLimits) ->
     if bytes > limits.maximum_decoded_bytes {
         return Err(ImageFault::DecodedBytes { bytes, limit: limits.maximum_decoded_bytes });
     }
-    if bits > 8 { Err(ImageFault::Depth(bits)) } else { Ok(()) }
+    Ok(())
 }
 
 /// Spreads what the decoder gave to R, G, B, A. Grey counts for all three colours.
@@ -284,7 +297,8 @@ fn to_rgba(decoded: DynamicImage) -> Result<Rgba, ImageFault> {
         DynamicImage::ImageLumaA8(grey) => grey.pixels().map(|p| [p[0], p[0], p[0], p[1]]).collect(),
         DynamicImage::ImageRgb8(color) => color.pixels().map(|p| [p[0], p[1], p[2], 255]).collect(),
         DynamicImage::ImageRgba8(color) => color.pixels().map(|p| p.0).collect(),
-        // The header was refused already; a decoder that widens must not slip through.
+        DynamicImage::ImageLuma16(grey) => grey.pixels().map(|p| [(p[0] >> 8) as u8, p[0] as u8, 0, 255]).collect(),
+        // Colours of 16 bits; a decoder that widens must not slip through.
         _ => return Err(ImageFault::Depth(16)),
     };
     Ok(Rgba { width, height, pixels })

@@ -17,7 +17,7 @@ use super::{Context, Failure, Format, picture, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The first picture, PNG or TGA
+    /// The first picture, PNG or TGA, or depths that `render --depth` wrote as PNG: R is then the upper byte, G the lower
     #[arg(value_name = "A.png")]
     a: PathBuf,
     /// The second picture; differences are B - A
@@ -76,11 +76,17 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let destination = arguments.output.as_ref();
     picture::beside_report(destination)?;
     let limits = ImageLimits::default();
-    let (a, b) = (image::load(&arguments.a, &limits)?, image::load(&arguments.b, &limits)?);
+    let ((a, of_depths), (b, other)) =
+        (image::load_words(&arguments.a, &limits)?, image::load_words(&arguments.b, &limits)?);
+    if of_depths != other {
+        let help = "compare two pictures, or two depth buffers that `ninebit render --depth` wrote as PNG";
+        return Err(Failure::invalid("NB0521", "one file has colours, the other words of 16 bits".to_owned(), help));
+    }
     let options = Options { ignore_alpha: arguments.ignore_alpha, regions: arguments.regions };
     let difference = diff::compare(&a, &b, &options).map_err(|_| different_sizes(arguments, &a, &b))?;
     let scene = arguments.scene.as_deref();
-    let scene = scene.map(|path| scene_findings(path, arguments, [&a, &b], &difference, context)).transpose()?;
+    let scene =
+        scene.map(|path| scene_findings(path, arguments, [&a, &b], of_depths, &difference, context)).transpose()?;
     let picture = destination.map(|destination| draw(destination, arguments, &a, &b)).transpose()?;
     let findings = Findings { arguments, difference, scene, picture };
     arguments.format.print(|| report::text(&findings), || format!("{:#}", report::json(&findings)))?;
@@ -92,6 +98,7 @@ fn scene_findings<'a>(
     path: &'a Path,
     arguments: &Arguments,
     pictures: [&Rgba; 2],
+    of_depths: bool,
     difference: &Difference,
     context: Context,
 ) -> Result<SceneFindings<'a>, Failure> {
@@ -113,7 +120,15 @@ fn scene_findings<'a>(
     }
     let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
     let surface = frames.surfaces.swap_remove(target);
-    let frame = Rgba { width, height, pixels: surface.rgba8() };
+    let shift = scene.targets[target].depth.map_or(0, |depth| depth.format.bits() - 16);
+    let bytes = |depth: u32| [(depth >> shift >> 8) as u8, (depth >> shift) as u8, 0, 255];
+    let depths: Vec<_> = surface.depths().map(bytes).collect();
+    let pixels = if of_depths { depths } else { surface.rgba8() };
+    let frame = Rgba { width, height, pixels };
+    if frame.pixels.is_empty() {
+        let help = "leave out `--scene`, or choose a target that has one with `--target`";
+        return Err(Failure::invalid("NB0522", format!("target `{name}` has no depth buffer"), help));
+    }
     let mut different = [0; 2];
     for (count, picture) in different.iter_mut().zip(pictures) {
         *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;

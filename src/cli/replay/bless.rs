@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::outcome::{Outcome, Problem, ProblemKind};
-use crate::expectation::{Expectation, ExpectationError, masked_digest};
+use crate::expectation::{Expectation, ExpectationError, depth_digest, masked_digest};
 use ninebit::frame::Surface;
 use ninebit::shown;
 use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_file};
@@ -31,6 +31,7 @@ pub(super) fn write(
     let pixels = surface.rgba8();
     let mut masked = pixels.clone();
     expectation.sha256 = masked_digest(surface.width, surface.height, &mut masked, &compared);
+    expectation.depth = expectation.depth.map(|_| depth_digest(surface));
     if let Some(picture) = &expectation.picture {
         let png = encode_png(surface.width, surface.height, &pixels, Compression::Small).map_err(unwritten)?;
         // The form of the name has been looked at even where there is no such file yet.

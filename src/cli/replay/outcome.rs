@@ -229,7 +229,7 @@ impl Difference {
                     text += &format!("\n{}", traces.text);
                 }
             }
-            None if matches!(self.mismatch, Mismatch::Size { .. }) => {}
+            None if matches!(self.mismatch, Mismatch::Size { .. } | Mismatch::Depth { .. }) => {}
             None => text += ONLY_DIGEST,
         }
         text

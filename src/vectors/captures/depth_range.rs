@@ -1,4 +1,4 @@
-//! DEP-4, DEP-5: depths beyond a range that are dropped or limited, triangles that are dropped whole.
+//! DEP-4 to DEP-6: depths beyond a range that are dropped or limited, triangles that are dropped whole.
 
 use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, nearest, placed};
 use super::images::{self, checker};
@@ -25,11 +25,11 @@ fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
 }
 
 /// Two upright quads and a floor through both, whose depths have the range.
-fn floor(canvas: &mut Canvas, range: DepthRange, bias: f32) {
+fn floor(canvas: &mut Canvas, w_buffer: bool, range: DepthRange, bias: f32) {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
     canvas.texture(&images::in_texels(images::texture(TextureFormat::A8R8G8B8, [256, 256], fields)));
-    let test = |range| in_steps(CompareFunction::Less, true, Some(range));
+    let test = |range| DepthTest { w_buffer, ..in_steps(CompareFunction::Less, true, Some(range)) };
     for (left, z) in [(-2.0, 2.0), (1.0, 10.0)] {
         let right = left + 1.0;
         let corners = [[left, 2.0, z], [right, 2.0, z], [right, -6.5, z], [left, -6.5, z]];
@@ -40,20 +40,19 @@ fn floor(canvas: &mut Canvas, range: DepthRange, bias: f32) {
     canvas.draw(textured(corners, DepthTest { offset, ..test(range) }));
 }
 
-/// Depth_Clamp: the frames of z buffers whose vertices lie before the eye.
+/// Depth_Clamp: the frames whose vertices lie before the eye.
 pub(super) fn clamped(frames: &mut Frames) {
-    for clamps in [false, true] {
-        for biased in [false, true] {
-            for whole in [false, true] {
-                let (lowest, highest) = if whole { (0.0, DEEPEST) } else { (14_988_020.0, 15_869_663.0) };
-                let range = DepthRange { lowest, highest, clamps, drops_triangles: false };
-                let bias = if biased { -500_000.0 } else { 0.0 };
-                let [clamps, biased, whole] = [clamps, biased, whole].map(u8::from);
-                // A vertex program puts the vertices where the fixed function does.
-                for program in [0, 1] {
-                    let name = format!("depth_clamp_W0_C{clamps}_ZB{biased}_FR{whole}_VSH{program}");
-                    frames.paint(name, 0xfe25_1135, move |canvas| floor(canvas, range, bias));
-                }
+    let buffers = [(false, [14_988_020.0, 15_869_663.0], -500_000.0), (true, [9.01, 16.49], -5.0)];
+    for (w_buffer, limits, offset) in buffers {
+        for [clamps, biased, whole] in [0, 1, 2, 3, 4, 5, 6, 7].map(|n: u8| [n & 4 != 0, n & 2 != 0, n & 1 != 0]) {
+            let [lowest, highest] = if whole { [0.0, DEEPEST] } else { limits };
+            let range = DepthRange { lowest, highest, clamps, drops_triangles: false };
+            let bias = if biased { offset } else { 0.0 };
+            let [w, clamps, biased, whole] = [w_buffer, clamps, biased, whole].map(u8::from);
+            // A vertex program puts the vertices where the fixed function does.
+            for program in [0, 1] {
+                let name = format!("depth_clamp_W{w}_C{clamps}_ZB{biased}_FR{whole}_VSH{program}");
+                frames.paint(name, 0xfe25_1135, move |canvas| floor(canvas, w_buffer, range, bias));
             }
         }
     }
@@ -119,7 +118,7 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
     }
 }
 
-/// ZMinMaxControl: the frames of z buffers whose vertices go straight to the window.
+/// ZMinMaxControl: the frames whose vertices go straight to the window.
 pub(super) fn controls(frames: &mut Frames) {
     let mut vertices = Vec::new();
     let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
@@ -134,15 +133,17 @@ pub(super) fn controls(frames: &mut Frames) {
     let quads = draw(Topology::Quads, vertices);
     for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
         for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
-            let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
-            let depth_test = Some(in_steps(CompareFunction::Always, false, Some(range)));
-            let mut canvas = Canvas::new(0xff22_2228);
-            canvas.frame_buffer().depth = Some(FAR_DEPTHS);
-            canvas.draw(Draw { depth_test, ..quads.clone() });
-            let drawn = canvas.colors();
-            // A bit about w changes nothing here.
-            for suffix in ["", "_IgnW"] {
-                frames.push(format!("Ctrl_{prefix}{mode}{suffix}"), drawn.clone());
+            for (buffer, w_buffer) in [("", false), ("WBuf_", true)] {
+                let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
+                let depth_test = in_steps(CompareFunction::Always, false, Some(range));
+                let mut canvas = Canvas::new(0xff22_2228);
+                canvas.frame_buffer().depth = Some(FAR_DEPTHS);
+                canvas.draw(Draw { depth_test: Some(DepthTest { w_buffer, ..depth_test }), ..quads.clone() });
+                let drawn = canvas.colors();
+                // A bit about w changes nothing here.
+                for suffix in ["", "_IgnW"] {
+                    frames.push(format!("Ctrl_{buffer}{prefix}{mode}{suffix}"), drawn.clone());
+                }
             }
         }
     }

@@ -178,14 +178,7 @@ pub(super) fn of_components(frames: &mut Frames) {
 
 /// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
 fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is_program: bool) -> [Vertex; 4] {
-    // The programs' inverse of their vertex program, and that, leave what lies before the centre before its pixel, a sixteenth after RAS-1.
-    let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
-    let [left, top, right, bottom] = edges;
-    let edges = if is_program {
-        [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
-    } else {
-        unprojected(edges)
-    };
+    let edges = if is_program { space::programmed_edges(edges) } else { unprojected(edges) };
     std::array::from_fn(|n| {
         let ([x, y], w) = (corners(edges)[n], [left_w, right_w, right_w, left_w][n]);
         Vertex { position: [x, y, 0.0, w], diffuse: VertexColor::Floats(colors[n]), ..Vertex::default() }

@@ -192,7 +192,7 @@ const SUITES: &[Suite] = &[
     ("Texture_palette", texel_formats::palettes),
     ("Texture_perspective", primitives::perspective),
     ("Texture_render_target", texel_formats::render_targets),
-    ("Texture_shadow_comparator", shadow::given),
+    ("Texture_shadow_comparator", shadow::frames),
     ("Texture_signed_component_tests", texel_formats::signed),
     ("Vertex_shader_rounding_tests", rounding::frames),
     ("Volume_texture", sampling::volumes),

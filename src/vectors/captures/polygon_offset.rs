@@ -1,6 +1,7 @@
-//! DEP-1, DEP-5 and DEP-6 on triangles of up to 3,000 pixels and depths beyond the buffer: the buffers of W_buffering.
+//! DEP-1, DEP-5 and DEP-6 on triangles of up to 3,000 pixels and depths beyond the buffer: W_buffering.
 
-use super::draws::{draw, frame_buffer, in_steps, scene};
+use super::draws::{argb, draw, fetching, frame_buffer, in_steps, nearest, placed, scene};
+use super::images::{self, checker};
 use super::{Drawn, Frames, SIZE, Shown};
 use ninebit::state::*;
 
@@ -18,88 +19,112 @@ const FACTOR: f32 = 16.0;
 /// The programs draw to the right of their text.
 const DRAWN: Rectangle = Rectangle { x: 150, y: 0, width: SIZE.0 - 150, height: SIZE.1 };
 
-/// The two depths of the long quads.
-const FAR: f32 = 16_809_768.0;
-const NEAR: f32 = 16_572_698.0;
+/// The two depths of the long quads, and w.
+const FAR: [f32; 2] = [16_809_768.0, 325.805_8];
+const NEAR: [f32; 2] = [16_572_698.0, 58.379_993];
 
-/// Shapes by name: quads, or triangles.
-fn shapes() -> [(&'static str, Topology, Vec<[f32; 3]>); 6] {
+/// Coordinates of a quad's corners, and those of one that begins below.
+const DOWN: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+const UP: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+
+/// A name, quads or triangles, positions and coordinates.
+type Shape = (&'static str, Topology, Vec<[f32; 4]>, [[f32; 2]; 4]);
+
+/// Triangles have a w of their z.
+fn shapes() -> [Shape; 6] {
     let quads = Topology::Quads;
     let (mut horizontal, mut vertical) = (Vec::new(), Vec::new());
     for n in 0..24_u8 {
         let (along, shift) = (20.0 * f32::from(n), f32::from(n));
         let x = 160.0 + along;
         horizontal.extend([
-            [x + 0.5, shift + 0.5, 325.0],
-            [x + 10.5, shift + 0.5, 325.0],
-            [x + 0.5, shift + 200.0, 58.0],
+            [x + 0.5, shift + 0.5, 325.0, 325.0],
+            [x + 10.5, shift + 0.5, 325.0, 325.0],
+            [x + 0.5, shift + 200.0, 58.0, 58.0],
         ]);
         let x = 160.0 + shift;
         vertical.extend([
-            [x + 0.5, along + 0.5, 325.0],
-            [x + 200.0, along + 0.5, 58.0],
-            [x + 0.5, along + 10.5, 325.0],
+            [x + 0.5, along + 0.5, 325.0, 325.0],
+            [x + 200.0, along + 0.5, 58.0, 58.0],
+            [x + 0.5, along + 10.5, 325.0, 325.0],
         ]);
     }
-    let floor =
-        [[53.1875, -34.3125, FAR], [586.75, -34.3125, FAR], [1808.6875, 453.0, NEAR], [-1168.6875, 453.0, NEAR]];
-    let roof = [[-1168.6875, 0.0, NEAR], [1808.6875, 0.0, NEAR], [586.75, 487.3125, FAR], [53.1875, 487.3125, FAR]];
-    let wall =
-        [[637.3125, -26.8125, FAR], [637.3125, 506.75, FAR], [150.0, 1728.6875, NEAR], [150.0, -1248.6875, NEAR]];
-    let large = 16_777_046.0;
-    let large = [[0.0, 0.0, large], [640.0, 0.0, large], [640.0, 480.0, large + 1.0], [0.0, 480.0, large + 1.0]];
+    let quad = |corners: [[f32; 2]; 4], depths: [[f32; 2]; 4]| {
+        corners.into_iter().zip(depths).map(|([x, y], [z, w])| [x, y, z, w]).collect::<Vec<_>>()
+    };
+    let (far_first, near_first) = ([FAR, FAR, NEAR, NEAR], [NEAR, NEAR, FAR, FAR]);
+    let floor = [[53.1875, -34.3125], [586.75, -34.3125], [1808.6875, 453.0], [-1168.6875, 453.0]];
+    let roof = [[-1168.6875, 0.0], [1808.6875, 0.0], [586.75, 487.3125], [53.1875, 487.3125]];
+    let wall = [[637.3125, -26.8125], [637.3125, 506.75], [150.0, 1728.6875], [150.0, -1248.6875]];
+    let (large, larger) = ([LARGE, LARGE / 32.0], [LARGE + 1.0, (LARGE + 1.0) / 32.0]);
+    let screen = [[0.0, 0.0], [640.0, 0.0], [640.0, 480.0], [0.0, 480.0]];
     [
-        ("FloorQuad", quads, floor.to_vec()),
-        ("LargeZ", quads, large.to_vec()),
-        ("RoofQuad", quads, roof.to_vec()),
-        ("TriH", Topology::Triangles, horizontal),
-        ("TriV", Topology::Triangles, vertical),
-        ("WallQuad", quads, wall.to_vec()),
+        ("FloorQuad", quads, quad(floor, far_first), DOWN),
+        ("LargeZ", quads, quad(screen, [large, large, larger, larger]), DOWN),
+        ("RoofQuad", quads, quad(roof, near_first), UP),
+        ("TriH", Topology::Triangles, horizontal, DOWN),
+        ("TriV", Topology::Triangles, vertical, DOWN),
+        ("WallQuad", quads, quad(wall, far_first), DOWN),
     ]
 }
 
-fn frame(
-    format: DepthFormat,
-    topology: Topology,
-    positions: &[[f32; 3]],
-    offset: PolygonOffset,
-    w_buffer: bool,
-) -> Drawn {
-    // w is z. It plays no part in z buffers, and some of the programs' are beyond what draws may have.
-    let vertex =
-        |[x, y, z]: &[f32; 3]| Vertex { position: [*x, *y, *z, if w_buffer { *z } else { 1.0 }], ..Vertex::default() };
+/// Almost the deepest depth. Its w is the same, beyond what draws may have; a 32nd of it has the same picture.
+const LARGE: f32 = 16_777_046.0;
+
+fn frame(format: DepthFormat, shape: &Shape, offset: PolygonOffset, w_buffer: bool, shown: Shown) -> Drawn {
+    let (_, topology, positions, coordinates) = shape;
+    let vertex = |(position, at): (&[f32; 4], &[f32; 2])| placed(*position, *at);
+    let vertices = positions.iter().zip(coordinates.iter().cycle()).map(vertex).collect();
     let mut target = frame_buffer(0xff25_1135);
     target.depth = Some(DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     let range = DepthRange { lowest: 0.0, highest: 16_777_215.0 * 16.0, clamps: true, drops_triangles: false };
     let depth_test = DepthTest { offset, w_buffer, ..in_steps(CompareFunction::LessOrEqual, true, Some(range)) };
-    let draw = draw(topology, positions.iter().map(vertex).collect());
+    let unit = TextureUnit { address_s: AddressMode::Wrap, address_t: AddressMode::Wrap, ..nearest(0) };
+    let draw = fetching(draw(*topology, vertices), 0, unit);
     let draw = Draw { scissor: Some(DRAWN), depth_test: Some(depth_test), blend: None, ..draw };
-    Drawn { scene: scene(vec![target], vec![], vec![draw]), before: None, view: None, shown: Shown::DepthStencil }
+    let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
+    let texture = images::texture(TextureFormat::A8R8G8B8, [256; 2], fields);
+    Drawn { scene: scene(vec![target], vec![texture], vec![draw]), before: None, view: None, shown }
 }
 
-/// W_buffering: words of the z buffers, and of w buffers where no w is beyond what draws may have.
+/// W_buffering: words, and colours where no line lies over them. A slope of w plays no part in colours: every depth passes.
 pub(super) fn buffers(frames: &mut Frames) {
+    let named =
+        |prefix: &str, name: &str, [biased, sloped]: [u8; 2]| format!("{prefix}_{name}_V1_ZB{biased}_ZS{sloped}");
     for (format, prefix) in FORMATS {
-        for (shape, topology, positions) in shapes() {
-            for (biased, sloped) in [(0_u8, 0_u8), (0, 1), (1, 0), (1, 1)] {
+        for shape in shapes() {
+            let name = shape.0;
+            let has_colors = !name.starts_with("Tri") && name != "WallQuad";
+            for [biased, sloped] in [[0_u8, 0_u8], [0, 1], [1, 0], [1, 1]] {
                 let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor: FACTOR * f32::from(sloped) };
-                let name = format!("{prefix}_{shape}_V1_ZB{biased}_ZS{sloped}_ZB");
-                frames.push(name, frame(format, topology, &positions, offset, false));
-                if sloped == 0 && shape.starts_with("Tri") {
-                    let name = format!("W{}_{shape}_V1_ZB{biased}_ZS0_ZB", &prefix[1..]);
-                    frames.push(name, frame(format, topology, &positions, offset, true));
+                let of_w = PolygonOffset { factor: 0.0, ..offset };
+                let (z, w) = (
+                    named(prefix, name, [biased, sloped]),
+                    named(&format!("W{}", &prefix[1..]), name, [biased, sloped]),
+                );
+                if has_colors {
+                    frames.push(z.clone(), frame(format, &shape, offset, false, Shown::Colors));
+                    frames.push(w.clone(), frame(format, &shape, of_w, true, Shown::Colors));
+                }
+                frames.push(format!("{z}_ZB"), frame(format, &shape, offset, false, Shown::DepthStencil));
+                if sloped == 0 && name != "LargeZ" {
+                    frames.push(format!("{w}_ZB"), frame(format, &shape, of_w, true, Shown::DepthStencil));
                 }
             }
         }
     }
     for (name, top) in [("Trunc0", -1.0 / 16.0 + 0.001), ("TruncNeg", -1.0 / 16.0)] {
-        let positions = [
-            [-1168.6875, top, 0.0],
-            [1808.6875, top, 0.0],
-            [586.75, 487.3125, 500_000.0],
-            [53.1875, 487.3125, 500_000.0],
+        let [near, far] = [NEAR[1], FAR[1]];
+        let positions = vec![
+            [-1168.6875, top, 0.0, near],
+            [1808.6875, top, 0.0, near],
+            [586.75, 487.3125, 500_000.0, far],
+            [53.1875, 487.3125, 500_000.0, far],
         ];
-        let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default(), false);
-        frames.push(format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn);
+        let shape = (name, Topology::Quads, positions, UP);
+        for (suffix, shown) in [("", Shown::Colors), ("_ZB", Shown::DepthStencil)] {
+            let drawn = frame(DepthFormat::Z24S8, &shape, PolygonOffset::default(), false, shown);
+            frames.push(format!("{}{suffix}", named("ZBuf24D", name, [0, 0])), drawn);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::draws::{
     Canvas, FETCHED, argb, corners, draw, fetching, nearest, pasted, placed, sized, unprojected, without_alpha,
 };
-use super::images::{checker, gradient};
+use super::images::{Image, checker, gradient};
 use super::{Frames, images, space, texel_formats};
 use ninebit::state::*;
 
@@ -11,8 +11,8 @@ const SIDE: u32 = 256;
 const LAYERS: u32 = 4;
 
 /// Layers one after the other as a volume.
-fn volume(format: TextureFormat, layers: impl Iterator<Item = Vec<u32>>) -> Texture {
-    let texture = images::of_words(TextureKind::ThreeDimensional, format, [SIDE; 2], 1, layers.flatten().collect());
+fn volume(format: TextureFormat, words: Vec<u32>) -> Texture {
+    let texture = images::of_words(TextureKind::ThreeDimensional, format, [SIDE; 2], 1, words);
     let TextureImage::Texels(texels) = texture.image else { return texture };
     Texture { image: TextureImage::Texels(Texels { layers: LAYERS, ..texels }), ..texture }
 }
@@ -51,23 +51,73 @@ fn pairs(unit: TextureUnit) -> Draw {
     fetching(draw(Topology::Triangles, vertices), 0, unit)
 }
 
-/// Formats whose layers the programs store as they convert them, in another order than the chip reads them: they are left out, as is DXT1.
-const CONVERTED: [&str; 9] = ["A8", "A8Y8", "AY8", "G8B8", "R16B16", "R6G5B5", "R8B8", "Y16", "Y8"];
+/// Where a texel of a volume lies in memory: bits of x, y and z in turn while they last.
+fn place(x: u32, y: u32, z: u32) -> usize {
+    let spread = |bits: u32, first: u32| {
+        (0..8).map(|bit| (bits >> bit & 1) << if bit < 2 { 3 * bit + first } else { 2 * bit + 2 + first }).sum::<u32>()
+    };
+    (spread(x, 0) + spread(y, 1) + spread(z, 2)) as usize
+}
 
-/// Volume_texture, ten formats.
+/// A layer of the gradient: all channels, blue, red, green.
+fn layer(z: u32) -> impl Image {
+    let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
+    let ([red, green, blue], image) = (masks[z as usize], gradient([SIDE; 2]));
+    move |x, y| {
+        let [r, g, b, a] = image(x, y);
+        [r & red, g & green, b & blue, a]
+    }
+}
+
+/// The words of a volume. Where the programs would have to convert, they store 32 bits a texel: alpha, blue, green, red from the lowest byte on,
+/// or alpha, red, green, blue for A8; the chip finds its texels in that memory.
+fn words(format: TextureFormat) -> Vec<u32> {
+    use TextureFormat::{A1R5G5B5, A8, A8L8, Dxt1, G8B8, I8, L8, R6G5B5, R8B8, R16B16, Y16};
+    let bytes = match format {
+        A8 | I8 | L8 => 1,
+        A8L8 | G8B8 | R8B8 | Y16 => 2,
+        R16B16 => 4,
+        Dxt1 => {
+            // Row by row. Of a block of 4 x 4 x 4 texels the layers lie one after another.
+            let image = layer(0);
+            let word = |texel: u32| {
+                let [r, g, b, a] = image(texel % SIDE, texel / SIDE);
+                u32::from_le_bytes([a, b, g, r])
+            };
+            let block = |(z, (x, y))| {
+                let block = (y * (SIDE / 4) + x) * LAYERS + z;
+                [word(2 * block), word(2 * block + 1)]
+            };
+            let blocks = |z| images::each_texel([SIDE / 4; 2]).map(move |at| (z, at));
+            return (0..LAYERS).flat_map(blocks).flat_map(block).collect();
+        }
+        other => {
+            let format = if other == R6G5B5 { A1R5G5B5 } else { other };
+            return (0..LAYERS).flat_map(|z| texel_formats::packed(format, [SIDE; 2], layer(z))).collect();
+        }
+    };
+    let mut memory = vec![0; (4 * SIDE * SIDE * LAYERS) as usize];
+    for z in 0..LAYERS {
+        let image = layer(z);
+        for (x, y) in images::each_texel([SIDE; 2]) {
+            let [r, g, b, a] = image(x, y);
+            memory[4 * place(x, y, z)..][..4].copy_from_slice(&if format == A8 { [a, r, g, b] } else { [a, b, g, r] });
+        }
+    }
+    let word = |at: usize| memory[at..at + bytes].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+    (0..LAYERS)
+        .flat_map(|z| images::each_texel([SIDE; 2]).map(move |(x, y)| bytes * place(x, y, z)))
+        .map(word)
+        .collect()
+}
+
+/// Volume_texture.
 pub(super) fn volumes(frames: &mut Frames) {
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
-    for variant in texel_formats::variants().filter(|v| !v.in_texels && !CONVERTED.contains(&v.base)) {
-        frames.paint(variant.base, 0xfe20_2020, move |canvas| {
-            let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
-            let layer = |[red, green, blue]: [u8; 3]| {
-                let image = move |x: u32, y: u32| {
-                    let [r, g, b, a] = gradient([SIDE; 2])(x, y);
-                    [r & red, g & green, b & blue, a]
-                };
-                texel_formats::packed(variant.format, [SIDE; 2], image)
-            };
-            canvas.texture(&volume(variant.format, masks.into_iter().map(layer)));
+    let formats = texel_formats::variants().filter(|variant| !variant.in_texels).map(|v| (v.base, v.format));
+    for (name, format) in formats.chain([("DXT1", TextureFormat::Dxt1)]) {
+        frames.paint(name, 0xfe20_2020, move |canvas| {
+            canvas.texture(&volume(format, words(format)));
             canvas.draw(pairs(unit));
         });
     }
@@ -78,8 +128,8 @@ pub(super) fn volumes(frames: &mut Frames) {
             0xff00_0000 + shown[(n / 64) as usize]
         };
         let palette = Some(canvas.palette((0..256).map(block)));
-        let layer = |layer: u32| (0..SIDE * SIDE).map(|n| (n / SIDE % 64 + layer * 64) & 255).collect();
-        canvas.texture(&volume(TextureFormat::P8, (0..LAYERS).map(layer)));
+        let layer = |layer: u32| (0..SIDE * SIDE).map(move |n| (n / SIDE % 64 + layer * 64) & 255);
+        canvas.texture(&volume(TextureFormat::P8, (0..LAYERS).flat_map(layer).collect()));
         canvas.draw(pairs(TextureUnit { palette, ..unit }));
     });
 }

@@ -1,7 +1,10 @@
-//! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two.
+//! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two. Its words are given, or
+//! drawn.
 
-use super::draws::{corners, nearest, quads, rectangle, textured, with_primary_alpha};
-use super::{Frames, SIZE, images, named};
+use super::draws::{
+    Canvas, corners, in_steps, nearest, quads, rectangle, target_texture, textured, unprojected, with_primary_alpha,
+};
+use super::{Frames, SIZE, images, named, space};
 use ninebit::state::*;
 
 /// Names of [`CompareFunction::ALL`] in those of frames.
@@ -64,39 +67,142 @@ fn color(word: u32) -> VertexColor {
     VertexColor::Bytes(word.to_le_bytes())
 }
 
-/// A small triangle in each special box.
-fn markers() -> Vec<Draw> {
+/// A small triangle in each special box, whose edges are moved.
+fn markers(moved: fn([f32; 4]) -> [f32; 4]) -> Vec<Draw> {
     let (across, down) = (WIDTH as f32 / 4.0, HEIGHT as f32 / 4.0);
     let marker = |(n, word): (u32, u32)| {
-        let left = (LEFT + n * STEP) as f32;
-        let (top, bottom) = (TOP as f32 + down, TOP as f32 + 2.0 * down);
-        let corners = [[left + across, bottom], [left + 2.0 * across, top], [left + 3.0 * across, bottom]];
+        let (left, top) = ((LEFT + n * STEP) as f32, TOP as f32 + down);
+        let [middle, ..] = moved([left + 2.0 * across, 0.0, 0.0, 0.0]);
+        let [left, top, right, bottom] = moved([left + across, top, left + 3.0 * across, top + down]);
+        let corners = [[left, bottom], [middle, top], [right, bottom]];
         Draw { topology: Topology::Triangles, ..quads(&corners, color(word), FinalRegister::PrimaryColor) }
     };
     (0..).zip(MARKERS).map(marker).collect()
 }
 
-/// Texture_shadow_comparator, the frames whose depths are given as they are.
-pub(super) fn given(frames: &mut Frames) {
+/// Compares the first texture with one r over a rectangle of the frame buffer, as if it were as large as that.
+fn compared(canvas: &mut Canvas, edges: [f32; 4], w: f32, shadow: ShadowComparison, r: f32) {
+    let unit = TextureUnit { shadow: Some(shadow), ..nearest(0) };
+    let draw = rectangle(edges, color(0xff22_77ff));
+    let mut draw = textured(draw, 0, unit, corners([0.0, 0.0, SIZE.0 as f32, SIZE.1 as f32]));
+    draw.vertices.update(|_, vertex| {
+        vertex.position[3] = w;
+        vertex.texture_coordinates.iter_mut().for_each(|at| at[2] = r);
+    });
+    draw.combiners = with_primary_alpha(FinalRegister::Texture0);
+    canvas.draw(draw);
+}
+
+/// What r is compared as, with the digit in names.
+const REFERENCES: [(ShadowReference, u8); 2] = [(ShadowReference::R, 3), (ShadowReference::Zero, 2)];
+
+/// The frames whose depths are given as they are.
+fn given(frames: &mut Frames) {
     for (format, bits, values) in RANGES {
         let memory = words(format, values);
         let texels = memory.iter().map(|word| if bits == 24 { word.rotate_right(8) } else { *word });
         let texture = images::of_words(TextureKind::Rectangle, format, [SIZE.0, SIZE.1], 1, texels.collect());
         for (name, function) in named(FUNCTIONS) {
-            for (reference, stage) in [(ShadowReference::R, 3), (ShadowReference::Zero, 2)] {
-                let unit = TextureUnit { shadow: Some(ShadowComparison { function, reference }), ..nearest(0) };
+            for (reference, stage) in REFERENCES {
                 let [least, greatest, r] = values;
-                let (width, height) = (SIZE.0 as f32, SIZE.1 as f32);
-                let draw = rectangle([0.0, 100.0, width, height - 100.0], color(0xff22_77ff));
-                let mut draw = textured(draw, 0, unit, corners([0.0, 0.0, width, height]));
-                draw.vertices.update(|_, vertex| vertex.texture_coordinates.iter_mut().for_each(|at| at[2] = r as f32));
-                draw.combiners = with_primary_alpha(FinalRegister::Texture0);
                 let (texture, name) = (texture.clone(), format!("{stage}R{bits}_{least:X}-{greatest:X}_{r:X}_{name}"));
                 frames.paint(name, 0xfe11_2233, move |canvas| {
                     canvas.texture(&texture);
-                    canvas.draw(draw.clone());
-                    markers().into_iter().for_each(|marker| canvas.draw(marker));
+                    let edges = [0.0, 100.0, SIZE.0 as f32, SIZE.1 as f32 - 100.0];
+                    compared(canvas, edges, 1.0, ShadowComparison { function, reference }, r as f32);
+                    markers(|edges| edges).into_iter().for_each(|marker| canvas.draw(marker));
                 });
+            }
+        }
+    }
+}
+
+/// Formats of depths that are drawn, their names, the deepest depth, and nearest, farthest and compared point of the world.
+const DRAWN: [(TextureFormat, &str, f32, [[f32; 3]; 2]); 3] = [
+    (TextureFormat::Z16, "16", 65535.0, [[-6.0, 193.0, -6.0 + 199.0 * 0.06], [10.0, 20.0, 15.0]]),
+    (TextureFormat::Z16F, "16f", 511.9375, [[-6.0, 193.0, -6.0 + 199.0 * 0.0531], [10.0, 20.0, 14.04]]),
+    (TextureFormat::Z24S8, "24", 16_777_215.0, [[-6.0, 193.0, 10.65], [10.0, 20.0, 11.47]]),
+];
+
+/// How far special boxes lie from the points of the world.
+const NEARBY: f32 = 0.0125;
+
+/// How depths come to be.
+#[derive(Clone, Copy)]
+struct Path {
+    deepest: f32,
+    is_program: bool,
+}
+
+impl Path {
+    /// Edges on the screen that went through the inverse of what is done to vertices.
+    fn moved(self) -> fn([f32; 4]) -> [f32; 4] {
+        if self.is_program { space::programmed_edges } else { unprojected }
+    }
+
+    /// The depth of a point of the world, and w. The chip cuts every product and sum; a vertex program first adds the viewer's distance.
+    fn depth(self, z: f32) -> [f32; 2] {
+        let window = space::window_to(f64::from(self.deepest));
+        let w = space::toward_zero(f64::from(z) + space::DISTANCE);
+        let (at, offset) = if self.is_program { (w, window) } else { (z, space::product(space::eye(), window)) };
+        let scaled = space::toward_zero(f64::from(at) * window[2][2]);
+        let depth = f64::from(space::toward_zero(f64::from(scaled) + offset[3][2]));
+        [space::toward_zero(depth * f64::from(space::toward_zero(1.0 / f64::from(w)))), w]
+    }
+
+    /// A rectangle, its depths those of points at its upper and lower edge.
+    fn slope(self, edges: [f32; 4], [top, bottom]: [f32; 2]) -> Draw {
+        let mut draw = rectangle(self.moved()(edges), color(0));
+        draw.vertices.update(|n, vertex| {
+            let at = self.depth(if n < 2 { top } else { bottom });
+            vertex.position[2..].copy_from_slice(&at);
+        });
+        let range = DepthRange { lowest: 0.0, highest: 16_777_216.0, clamps: false, drops_triangles: true };
+        Draw { depth_test: Some(in_steps(CompareFunction::Always, true, Some(range))), ..draw }
+    }
+
+    /// A slope over a picture and seven boxes on it, compared.
+    fn paint(self, canvas: &mut Canvas, format: TextureFormat, points: [f32; 3], shadow: ShadowComparison) {
+        let ([least, greatest, z], (width, height)) = (points, (SIZE.0 as f32, SIZE.1 as f32));
+        let depth = format.depth().map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
+        let target = canvas.target(Target { depth, ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::A8R8G8B8) });
+        let special = [least, least + NEARBY, z - NEARBY, z, z + NEARBY, greatest - NEARBY, greatest];
+        let boxes = (0..).zip(special).map(|(n, z)| {
+            let (left, top) = ((LEFT + n * STEP) as f32, TOP as f32);
+            self.slope([left, top, left + WIDTH as f32, top + HEIGHT as f32], [z; 2])
+        });
+        let slope = self.slope([0.8, 6.0, width - 0.8, height - 6.0], [least, greatest]);
+        canvas.draw_into(target, std::iter::once(slope).chain(boxes));
+        let image = TextureImage::Depth { target };
+        canvas.texture(&Texture { image, ..target_texture(format, target) });
+        // The programs' processor rounds every product and sum.
+        let scale = 200.0_f32 / 199.0 * self.deepest;
+        let distance = space::DISTANCE as f32;
+        let r = (scale * z + (distance * scale - scale)) / (z + distance);
+        compared(canvas, self.moved()([0.8, height * 0.2, width - 0.8, height * 0.8]), 8.5, shadow, r);
+        markers(self.moved()).into_iter().for_each(|marker| canvas.draw(marker));
+    }
+}
+
+/// Texture_shadow_comparator.
+pub(super) fn frames(frames: &mut Frames) {
+    given(frames);
+    for (format, bits, deepest, ranges) in DRAWN {
+        for (is_program, letter) in [(false, 'F'), (true, 'P')] {
+            for [least, greatest, mut z] in ranges {
+                if is_program && z == 11.47 {
+                    z = 11.45;
+                }
+                for (name, function) in named(FUNCTIONS) {
+                    for (reference, stage) in REFERENCES {
+                        let shadow = ShadowComparison { function, reference };
+                        let name = format!("{stage}{letter}{bits}_{least:.2}-{greatest:.2}_{z:.4}_{name}");
+                        let path = Path { deepest, is_program };
+                        frames.paint(name, 0xfe44_3333, move |canvas| {
+                            path.paint(canvas, format, [least, greatest, z], shadow);
+                        });
+                    }
+                }
             }
         }
     }

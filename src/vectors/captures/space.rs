@@ -11,7 +11,7 @@ pub(super) const IDENTITY: Matrix =
 /// 1 / tan(22.5 degrees), as the programs have it: half of 45 degrees in single precision.
 const COTANGENT: f32 = 2.414_213_4;
 /// How far the viewer stands back from the origin.
-const DISTANCE: f64 = 7.0;
+pub(super) const DISTANCE: f64 = 7.0;
 
 fn cut(matrix: Matrix) -> Matrix {
     matrix.map(|row| row.map(|value| f64::from(value as f32)))
@@ -81,13 +81,23 @@ pub(super) fn flat(point: [f32; 4]) -> [f32; 4] {
     without_depth(fixed_function(point))
 }
 
-/// A point of the world through the programs' vertex program, which multiplies by the reciprocal of w, cut to single precision.
+/// Cut to single precision.
+pub(super) fn toward_zero(value: f64) -> f32 {
+    let nearest = value as f32;
+    if f64::from(nearest).abs() > value.abs() { f32::from_bits(nearest.to_bits() - 1) } else { nearest }
+}
+
+/// A point of the world through the programs' vertex program, which multiplies by the reciprocal of w.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
     let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window())).map(|value| value as f32);
-    let exact = 1.0 / f64::from(w);
-    let nearest = exact as f32;
-    let reciprocal = if f64::from(nearest) > exact { f32::from_bits(nearest.to_bits() - 1) } else { nearest };
+    let reciprocal = toward_zero(1.0 / f64::from(w));
     [x * reciprocal, y * reciprocal, z * reciprocal, w]
+}
+
+/// Edges through the programs' inverse of their vertex program, and that: before the centre they lie before their pixel, a sixteenth after RAS-1.
+pub(super) fn programmed_edges([left, top, right, bottom]: [f32; 4]) -> [f32; 4] {
+    let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
+    [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
 }
 
 /// A point of the plane z = 0.1 as the programs' vertex program shows it, whose viewer stands 2.25 before the origin.

@@ -119,13 +119,9 @@ pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
 }
 
-/// A texture whose texels say where they are. Sizes are powers of two, whose coordinates are exact.
-pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
-    let size = case.number("cfg.size");
-    if case.number("cfg.border_texels") != 0 || size.count_ones() != 1 {
-        return None;
-    }
-    let (mode, needs) = match case.choice("cfg.mode") {
+/// OpenGL's word for an address mode, and what it needs.
+pub(super) fn wrap(mode: AddressMode) -> (&'static str, Vec<&'static str>) {
+    match mode {
         AddressMode::Wrap => ("REPEAT", vec![]),
         AddressMode::Mirror => {
             ("MIRRORED_REPEAT", vec!["GL_ARB_texture_mirrored_repeat|GL_IBM_texture_mirrored_repeat"])
@@ -133,17 +129,26 @@ pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
         AddressMode::ClampToEdge => ("CLAMP_TO_EDGE", vec![]),
         AddressMode::ClampToBorder => ("CLAMP_TO_BORDER", vec!["GL_ARB_texture_border_clamp"]),
         AddressMode::Clamp => ("CLAMP", vec![]),
-    };
+    }
+}
+
+/// The number of a texel that says which it is, and whether it is one.
+pub(super) fn numbered(column: &str) -> Vec<Read> {
+    vec![Read::byte("out.inside", 2), Read::byte(column, 0), Read { weight: 256, ..Read::byte(column, 1) }]
+}
+
+/// A texture whose texels say where they are. Sizes are powers of two, whose coordinates are exact.
+pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
+    let size = case.number("cfg.size");
+    if case.number("cfg.border_texels") != 0 || size.count_ones() != 1 {
+        return None;
+    }
+    let (mode, needs) = wrap(case.choice("cfg.mode"));
     let state = vec![format!("ramp 0 {size}"), format!("parameter 0 TEXTURE_WRAP_S {mode}")];
     // u is in 1/256 texel, s in textures.
     let s = scaled(case.number("in.u"), 8 + size.trailing_zeros());
     let sources = vec![("coordinates0", [s, scaled(1, 1), [0; 4]].concat())];
-    let reads = vec![
-        Read::byte("out.inside", 2),
-        Read::byte("out.texel", 0),
-        Read { weight: 256, ..Read::byte("out.texel", 1) },
-    ];
-    Some(drawn(Path::Common, needs, state, sources, reads))
+    Some(drawn(Path::Common, needs, state, sources, numbered("out.texel")))
 }
 
 /// Four texels, and weights as coordinates between them.
@@ -223,9 +228,12 @@ pub(super) fn compressed_block(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, needs, state, sources, colors()))
 }
 
+/// Functions of tests in the order of the model's.
+pub(super) const FUNCTIONS: &str = "NEVER LESS EQUAL LEQUAL GREATER NOTEQUAL GEQUAL ALWAYS";
+
 /// The fragment is the primary colour: 1 where it passes, 0 in the cleared buffer.
 pub(super) fn alpha_test(case: &Case) -> Option<Placement> {
-    let function = case.word("cfg.function", "NEVER LESS EQUAL LEQUAL GREATER NOTEQUAL GEQUAL ALWAYS");
+    let function = case.word("cfg.function", FUNCTIONS);
     let state = vec![format!("alpha_test {function} {}", case.number("cfg.reference"))];
     let sources = vec![("primary", vec![1, 1, 1, byte(case.number("in.alpha"))?])];
     Some(drawn(Path::Common, vec![], state, sources, vec![Read::byte("out.passes", 0)]))

@@ -5,8 +5,9 @@
 //! program under `vectors/harness/gl` draws batches and writes what it read back.
 //!
 //! [`recipes`] names what there is for a unit: `stages.rs` asks the register combiners, `environment.rs` whole texture environments, `fixed.rs` what
-//! else OpenGL has without them.
+//! else OpenGL has without them, `buffers.rs` stencil, fog, depths and volumes.
 
+mod buffers;
 pub mod combiners;
 mod environment;
 mod fixed;
@@ -49,7 +50,7 @@ pub struct Draw {
 pub struct Read {
     /// The column of the unit; `out.u>>8` is that column without its eight lowest bits.
     pub column: String,
-    /// R, G, B, A: 0 to 3.
+    /// R, G, B, A: 0 to 3; 4 is the stencil.
     pub channel: usize,
     /// The factor by which the byte is multiplied.
     pub weight: i64,
@@ -150,6 +151,10 @@ pub fn recipes(unit: &str) -> &'static [Recipe] {
         "texture-environment" => &[environment::texture_environment],
         "texture-combine" => &[environment::texture_combine],
         "alpha-test" => &[fixed::alpha_test],
+        "stencil-test" => &[buffers::stencil_test],
+        "fog-table" => &[buffers::fog_table],
+        "shadow-comparison" => &[buffers::shadow_comparison],
+        "volume-layer" => &[buffers::volume_layer],
         "blend" => &[fixed::blend],
         _ => &[],
     }

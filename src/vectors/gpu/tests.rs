@@ -85,6 +85,7 @@ fn the_model_answers_what_recipes_ask() {
 #[test]
 fn recipes_name_columns_that_exist() {
     let sources = concat!(include_str!("stages.rs"), include_str!("environment.rs"), include_str!("fixed.rs"));
+    let sources = [sources, include_str!("buffers.rs")].concat();
     let mut known: Vec<String> = Vec::new();
     for unit in units::all().into_iter().filter(|unit| !recipes(unit.name()).is_empty()) {
         known.extend(unit.inputs().into_iter().chain(unit.results()).map(|column| column.name));

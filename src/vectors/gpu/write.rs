@@ -169,7 +169,7 @@ fn text(writer: &Writer, batches: &[Batch]) -> String {
             lines.push("draw".to_owned());
             lines.extend_from_slice(&draw.state);
             for read in &draw.reads {
-                let channel = ["R", "G", "B", "A"][read.channel];
+                let channel = ["R", "G", "B", "A", "S"][read.channel];
                 lines.push(format!("read {} {channel} {}", read.column, read.weight));
             }
         }

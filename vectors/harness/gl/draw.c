@@ -36,9 +36,12 @@ int draw_supports(const batch_file *file, const batch *from, const char **missin
             if (!gl.ActiveTexture || !gl.MultiTexCoord2f || drawing_max(GL_MAX_TEXTURE_UNITS) <= unit_of(name)) return 0;
         }
     }
+    *missing = "eight bits of stencil beside a depth buffer";
+    if (batch_find(from, "stencil0") && (drawing_max(GL_STENCIL_BITS) < 8 || drawing_max(GL_DEPTH_BITS) < 1)) return 0;
     *missing = "a function that the extension should have";
     if (strcmp(from->path, "combiners") == 0 && !combiners()) return 0;
     if (batch_find(from, "secondary") && !gl.SecondaryColor3ub) return 0;
+    if (batch_find(from, "fog0") && !gl.FogCoordf) return 0;
     if (batch_find(from, "blocks0") && !gl.CompressedTexImage2D) return 0;
     if (batch_find(from, "blend_color") && !gl.BlendColor) return 0;
     return 1;
@@ -68,7 +71,8 @@ static void quad(const drawing *d, int x0, int y0, int x1, int y1, const GLfloat
         for (unit = 1; unit < UNITS; unit++) {
             if (d->enabled[unit]) gl.MultiTexCoord2f(GL_TEXTURE0 + (GLenum)unit, s, t);
         }
-        if (fixed) gl.TexCoord3f(fixed[0], fixed[1], fixed[2]);
+        if (fixed && fixed[3] != 0) gl.TexCoord4f(s * fixed[3], t * fixed[3], fixed[2], fixed[3]);
+        else if (fixed) gl.TexCoord3f(fixed[0], fixed[1], fixed[2]);
         else gl.TexCoord3f(s, t, 0);
         gl.Vertex2f((GLfloat)x / (BATCH_WIDTH / 2) - 1, (GLfloat)y / (BATCH_WIDTH / 2) - 1);
     }
@@ -83,14 +87,15 @@ static void draw_rows(const drawing *d)
     const batch_source *coordinates = batch_find(b, "coordinates0"), *corners = batch_find(b, "corners0");
     const batch_source *weights = batch_find(b, "weights0"), *blend_color = batch_find(b, "blend_color");
     const batch_source *environment_byte = batch_find(b, "environment");
-    int apart = environment || environment_byte || blend_color, n;
+    const batch_source *stencil = batch_find(b, "stencil0"), *fog = batch_find(b, "fog0"), *projected = batch_find(b, "projected0");
+    int apart = environment || environment_byte || blend_color || stencil, n;
     long row;
-    GLfloat at[3], color[4];
+    GLfloat at[4], color[4];
     long bytes[4];
     if (!apart) gl.Begin(GL_QUADS);
     for (row = 0; row < b->rows; row++) {
         int x = (int)(row % BATCH_WIDTH), y = (int)(row / BATCH_WIDTH);
-        const GLfloat *fixed = coordinates || corners || weights ? at : NULL;
+        const GLfloat *fixed = coordinates || corners || weights || projected ? at : NULL;
         const unsigned char *p;
         if (environment) {
             for (n = 0; n < 4; n++) color[n] = float_of(environment->bytes + 16 * row + 4 * n);
@@ -106,7 +111,14 @@ static void draw_rows(const drawing *d)
             drawing_color(bytes, color);
             gl.BlendColor(color[0], color[1], color[2], color[3]);
         }
+        if (stencil) {
+            p = stencil->bytes + 5 * row;
+            gl.StencilFunc(d->stencil, p[0], p[1]);
+            gl.StencilMask(p[2]);
+            gl.DepthFunc(d->depth && !p[4] ? GL_NEVER : GL_ALWAYS);
+        }
         if (apart) gl.Begin(GL_QUADS);
+        if (fog) gl.FogCoordf(float_of(fog->bytes + 4 * row));
         if (primary) {
             p = primary->bytes + 4 * row;
             gl.Color4ub(p[0], p[1], p[2], p[3]);
@@ -119,7 +131,7 @@ static void draw_rows(const drawing *d)
             p = secondary->bytes + secondary->size * row;
             gl.SecondaryColor3ub(p[0], p[1], p[2]);
         }
-        at[2] = 0;
+        at[2] = at[3] = 0;
         if (coordinates) {
             for (n = 0; n < 3; n++) at[n] = float_of(coordinates->bytes + 12 * row + 4 * n);
         } else if (corners) {
@@ -130,6 +142,8 @@ static void draw_rows(const drawing *d)
             p = weights->bytes + 2 * row;
             at[0] = ((GLfloat)(2 * x) + 0.5f + (GLfloat)p[0] / 256) / (2 * BATCH_WIDTH);
             at[1] = ((GLfloat)(2 * y) + 0.5f + (GLfloat)p[1] / 256) / (GLfloat)(2 * d->power);
+        } else if (projected) {
+            for (n = 0; n < 2; n++) at[2 + n] = float_of(projected->bytes + 8 * row + 4 * n);
         }
         quad(d, x, y, x + 1, y + 1, fixed);
         if (apart) gl.End();
@@ -149,6 +163,22 @@ static void draw_destination(const drawing *d, const batch_source *source)
         quad(d, x, y, x + 1, y + 1, NULL);
     }
     gl.End();
+}
+
+/* Puts bytes into the stencil buffer before the draw. */
+static void draw_stencil(const drawing *d, const batch_source *source)
+{
+    long row;
+    gl.StencilMask(255);
+    gl.DepthFunc(GL_ALWAYS);
+    for (row = 0; row < d->from->rows; row++) {
+        int x = (int)(row % BATCH_WIDTH), y = (int)(row / BATCH_WIDTH);
+        gl.StencilFunc(GL_ALWAYS, source->bytes[5 * row + 3], 255);
+        gl.Begin(GL_QUADS);
+        quad(d, x, y, x + 1, y + 1, NULL);
+        gl.End();
+    }
+    gl.Clear(GL_COLOR_BUFFER_BIT);
 }
 
 /* Whether rows differ in more than their texels. */
@@ -175,10 +205,14 @@ static int read_back(drawing *d, size_t *place, size_t end, const unsigned char 
             break;
         }
         column = count == 4 && strcmp(words[0], "read") == 0 ? batch_column(d->file, words[1]) : -1;
-        channel = column >= 0 && strlen(words[2]) == 1 ? (int)strcspn("RGBA", words[2]) : 4;
-        if (channel > 3) return drawing_fail(d, "not a line of a draw: ", words[0]);
+        channel = column >= 0 && strlen(words[2]) == 1 ? (int)strcspn("RGBAS", words[2]) : 5;
+        if (channel > 4) return drawing_fail(d, "not a line of a draw: ", words[0]);
         weight = strtol(words[3], NULL, 10);
-        for (row = 0; row < d->from->rows; row++) results[row * d->file->column_count + column] += weight * pixels[4 * row + channel];
+        for (row = 0; row < d->from->rows; row++) {
+            /* Behind the colors stand bytes of the stencil. */
+            long byte = channel == 4 ? pixels[4L * BATCH_WIDTH * d->height + row] : pixels[4 * row + channel];
+            results[row * d->file->column_count + column] += weight * byte;
+        }
     }
     return 1;
 }
@@ -187,11 +221,17 @@ static int read_back(drawing *d, size_t *place, size_t end, const unsigned char 
 static int draw_once(drawing *d, size_t *place, size_t end, unsigned char *pixels, long *results)
 {
     char line[LINE], *words[BATCH_WORDS];
-    const batch_source *destination = batch_find(d->from, "destination");
+    const batch_source *destination = batch_find(d->from, "destination"), *stencil = batch_find(d->from, "stencil0");
     size_t before = *place;
     gl.ClearColor(0, 0, 0, 0);
     gl.Clear(GL_COLOR_BUFFER_BIT);
     if (destination) draw_destination(d, destination);
+    if (stencil) {
+        gl.Enable(GL_STENCIL_TEST);
+        gl.Enable(GL_DEPTH_TEST);
+        gl.StencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
+        draw_stencil(d, stencil);
+    }
     if (d->combines) reset_final();
     while (*place < end) {
         int count = batch_words(d->file, place, line, words);
@@ -211,6 +251,7 @@ static int draw_once(drawing *d, size_t *place, size_t end, unsigned char *pixel
     }
     if (destination) gl.Disable(GL_BLEND);
     gl.ReadPixels(0, 0, BATCH_WIDTH, d->height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+    if (stencil) gl.ReadPixels(0, 0, BATCH_WIDTH, d->height, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, pixels + 4L * BATCH_WIDTH * d->height);
     return read_back(d, place, end, pixels, results);
 }
 
@@ -253,7 +294,7 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     d.combines = strcmp(from->path, "combiners") == 0;
     d.height = (int)((from->rows + BATCH_WIDTH - 1) / BATCH_WIDTH);
     for (d.power = 1; d.power < d.height;) d.power *= 2;
-    pixels = (unsigned char *)malloc((size_t)BATCH_WIDTH * (size_t)d.height * 4);
+    pixels = (unsigned char *)malloc((size_t)BATCH_WIDTH * (size_t)d.height * 8);
     if (!pixels) {
         drawing_fail(&d, "not enough memory", "");
         return DRAW_ERROR;
@@ -277,6 +318,9 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     }
     drawing_activate(0);
     gl.Disable(GL_ALPHA_TEST);
+    gl.Disable(GL_FOG);
+    gl.Disable(GL_STENCIL_TEST);
+    gl.Disable(GL_DEPTH_TEST);
     if (d.combines) end_combiners(from);
     if (batch_find(from, "secondary")) gl.Disable(GL_COLOR_SUM);
     free(pixels);

@@ -17,6 +17,9 @@ typedef struct drawing {
     GLenum enabled[UNITS];
     GLuint names[UNITS];
     int combines;
+    /* The function of the stencil test, and whether rows say what the depth test says. */
+    GLenum stencil;
+    int depth;
     char *message;
 } drawing;
 
@@ -45,6 +48,9 @@ int upload_blocks(drawing *d, GLint internal);
 
 /* A line of texels that say where they are: red and green the number of the column, blue 1. */
 int upload_ramp(drawing *d, int size);
+
+/* Layers of one texel that say where they are, as the columns of the line do. */
+int upload_layers(drawing *d, int layers);
 
 /* Six faces of texels that say where they are: red the column, green the row, blue the face. */
 int upload_cube(drawing *d, int size);

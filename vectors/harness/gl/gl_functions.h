@@ -19,6 +19,11 @@ GL_CALLED(Vertex2f, (GLfloat x, GLfloat y), ("Vertex2f %g %g", x, y), "glVertex2
 GL_CALLED(Color4ub, (GLubyte r, GLubyte g, GLubyte b, GLubyte a), ("Color4ub %d %d %d %d", r, g, b, a), "glColor4ub")
 GL_CALLED(Color4f, (GLfloat r, GLfloat g, GLfloat b, GLfloat a), ("Color4f %g %g %g %g", r, g, b, a), "glColor4f")
 GL_CALLED(TexCoord3f, (GLfloat s, GLfloat t, GLfloat r), ("TexCoord3f %g %g %g", s, t, r), "glTexCoord3f")
+GL_CALLED(TexCoord4f, (GLfloat s, GLfloat t, GLfloat r, GLfloat q), ("TexCoord4f %g %g %g %g", s, t, r, q), "glTexCoord4f")
+GL_CALLED(StencilFunc, (GLenum function, GLint reference, GLuint mask), ("StencilFunc %x %d %x", function, reference, mask), "glStencilFunc")
+GL_CALLED(StencilOp, (GLenum fail, GLenum zfail, GLenum zpass), ("StencilOp %x %x %x", fail, zfail, zpass), "glStencilOp")
+GL_CALLED(StencilMask, (GLuint mask), ("StencilMask %x", mask), "glStencilMask")
+GL_CALLED(DepthFunc, (GLenum function), ("DepthFunc %x", function), "glDepthFunc")
 GL_CALLED(AlphaFunc, (GLenum function, GLfloat reference), ("AlphaFunc %x %g", function, reference), "glAlphaFunc")
 GL_CALLED(BlendFunc, (GLenum source, GLenum destination), ("BlendFunc %x %x", source, destination), "glBlendFunc")
 GL_CALLED(Fogfv, (GLenum name, const GLfloat *v), ("Fogfv %x %g %g %g %g", name, v[0], v[1], v[2], v[3]), "glFogfv")
@@ -35,6 +40,9 @@ GL_CALLED(ReadPixels, (GLint x, GLint y, GLsizei w, GLsizei h, GLenum format, GL
 GL_CALLED(ActiveTexture, (GLenum unit), ("ActiveTexture %x", unit), "?glActiveTexture|glActiveTextureARB")
 GL_CALLED(MultiTexCoord2f, (GLenum unit, GLfloat s, GLfloat t), ("MultiTexCoord2f %x %g %g", unit, s, t), "?glMultiTexCoord2f|glMultiTexCoord2fARB")
 GL_CALLED(SecondaryColor3ub, (GLubyte r, GLubyte g, GLubyte b), ("SecondaryColor3ub %d %d %d", r, g, b), "?glSecondaryColor3ub|glSecondaryColor3ubEXT")
+GL_CALLED(FogCoordf, (GLfloat d), ("FogCoordf %g", d), "?glFogCoordf|glFogCoordfEXT")
+GL_CALLED(TexImage3D, (GLenum target, GLint level, GLint internal, GLsizei w, GLsizei h, GLsizei depth, GLint border, GLenum format, GLenum type, const void *texels),
+    ("TexImage3D %x %d %x %d %d %d %d %x %x %d", target, level, internal, w, h, depth, border, format, type, texels != 0), "?glTexImage3D|glTexImage3DEXT")
 GL_CALLED(BlendColor, (GLfloat r, GLfloat g, GLfloat b, GLfloat a), ("BlendColor %g %g %g %g", r, g, b, a), "?glBlendColor|glBlendColorEXT")
 GL_CALLED(BlendEquation, (GLenum mode), ("BlendEquation %x", mode), "?glBlendEquation|glBlendEquationEXT")
 GL_CALLED(CompressedTexImage2D, (GLenum target, GLint level, GLenum internal, GLsizei w, GLsizei h, GLint border, GLsizei size, const void *blocks),

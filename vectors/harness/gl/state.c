@@ -42,6 +42,20 @@ static int set_portion(const GLint *values)
     return 1;
 }
 
+/* Fog by a coordinate of each vertex, with a density of 1. */
+static void set_fog(GLfloat mode)
+{
+    GLfloat values[4] = { 0, 0, 0, 0 };
+    gl.Enable(GL_FOG);
+    gl.Fogfv(GL_FOG_COLOR, values);
+    values[0] = mode;
+    gl.Fogfv(GL_FOG_MODE, values);
+    values[0] = 1;
+    gl.Fogfv(GL_FOG_DENSITY, values);
+    values[0] = (GLfloat)GL_FOG_COORDINATE;
+    gl.Fogfv(GL_FOG_COORDINATE_SOURCE, values);
+}
+
 int set_state(drawing *d, char **words, int count)
 {
     GLint v[BATCH_WORDS];
@@ -61,6 +75,8 @@ int set_state(drawing *d, char **words, int count)
     } else if (strcmp(what, "ramp") == 0 && count == 3 && v[2] > 0) {
         if (v[2] > drawing_max(GL_MAX_TEXTURE_SIZE)) return drawing_fail(d, "the texture is too large", "");
         return upload_ramp(d, v[2]);
+    } else if (strcmp(what, "layers") == 0 && count == 3 && v[2] > 0 && v[2] <= 512) {
+        return upload_layers(d, v[2]);
     } else if (strcmp(what, "cube") == 0 && count == 3 && v[2] > 0 && v[2] <= 256) {
         return upload_cube(d, v[2]);
     } else if (strcmp(what, "texels") == 0 && count == 5) {
@@ -72,6 +88,13 @@ int set_state(drawing *d, char **words, int count)
     } else if (strcmp(what, "alpha_test") == 0 && count == 3) {
         gl.Enable(GL_ALPHA_TEST);
         gl.AlphaFunc((GLenum)v[1], (GLfloat)v[2] / 255.0f);
+    } else if (strcmp(what, "stencil") == 0 && count == 5) {
+        d->stencil = (GLenum)v[1];
+        gl.StencilOp((GLenum)v[2], (GLenum)v[3], (GLenum)v[4]);
+    } else if (strcmp(what, "depth_test") == 0 && count == 2) {
+        d->depth = v[1];
+    } else if (strcmp(what, "fog") == 0 && count == 2) {
+        set_fog((GLfloat)v[1]);
     } else if (strcmp(what, "blend") == 0 && count == 4) {
         if (gl.BlendEquation) gl.BlendEquation((GLenum)v[1]);
         else if (v[1] != GL_FUNC_ADD) return drawing_fail(d, "there is no glBlendEquation", "");

@@ -9,7 +9,7 @@ static Display *display;
 
 int surface_open(int width, int height)
 {
-    static int wanted[] = { GLX_RGBA, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_ALPHA_SIZE, 8, None };
+    static int wanted[] = { GLX_RGBA, GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_ALPHA_SIZE, 8, GLX_DEPTH_SIZE, 24, GLX_STENCIL_SIZE, 8, None };
     XVisualInfo *visual;
     XSetWindowAttributes attributes;
     XEvent event;

@@ -27,6 +27,8 @@ int surface_open(int width, int height)
     wanted.iPixelType = PFD_TYPE_RGBA;
     wanted.cColorBits = 32;
     wanted.cAlphaBits = 8;
+    wanted.cDepthBits = 24;
+    wanted.cStencilBits = 8;
     format = ChoosePixelFormat(device, &wanted);
     if (!format || !SetPixelFormat(device, format, &wanted)) {
         fprintf(stderr, "WGL: there is no pixel format of 8 bits a channel; set the desktop to 32 bits\n");

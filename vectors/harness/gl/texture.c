@@ -62,7 +62,8 @@ int upload_blocks(drawing *d, GLint internal)
     return 1;
 }
 
-int upload_ramp(drawing *d, int size)
+/* Texels that say which they are, along one axis. */
+static int upload_line(drawing *d, GLenum target, int size)
 {
     unsigned char *texels = (unsigned char *)calloc((size_t)size, 4);
     int column;
@@ -73,10 +74,21 @@ int upload_ramp(drawing *d, int size)
         texels[4 * column + 2] = 1;
         texels[4 * column + 3] = 255;
     }
-    bind(d, 0, GL_TEXTURE_2D, GL_NEAREST);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
+    bind(d, 0, target, GL_NEAREST);
+    if (target == GL_TEXTURE_3D) gl.TexImage3D(target, 0, GL_RGBA8, 1, 1, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
+    else gl.TexImage2D(target, 0, GL_RGBA8, size, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
     free(texels);
     return 1;
+}
+
+int upload_ramp(drawing *d, int size)
+{
+    return upload_line(d, GL_TEXTURE_2D, size);
+}
+
+int upload_layers(drawing *d, int layers)
+{
+    return gl.TexImage3D ? upload_line(d, GL_TEXTURE_3D, layers) : drawing_fail(d, "there is no glTexImage3D", "");
 }
 
 int upload_cube(drawing *d, int size)

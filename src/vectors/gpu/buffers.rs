@@ -1,0 +1,101 @@
+//! Recipes that ask what OpenGL has of stencil, fog, depths as textures and volumes.
+#![allow(clippy::float_arithmetic, reason = "coordinates that OpenGL is handed")]
+
+use super::fixed::drawn;
+use super::{Case, Draw, Path, Placement, Read, byte};
+use ninebit::state::{AddressMode, DepthFormat, ShadowReference, StencilOperation};
+use std::f32::consts::LN_2;
+
+/// The number of a word, if it is one.
+fn number(bits: i64) -> Option<f32> {
+    u32::try_from(bits).ok().map(f32::from_bits).filter(|value| value.is_finite())
+}
+
+/// r and q of the row, if r/q is a number that any card can make.
+fn projected(case: &Case) -> Option<[f32; 2]> {
+    let [r, q] = case.numbers(["in.r", "in.q"]).map(number);
+    let (r, q) = (r?, q?);
+    (q > 0.0 && (2.0_f32.powi(-20)..=2.0_f32.powi(20)).contains(&q) && (r / q).abs() <= 2.0_f32.powi(24))
+        .then_some([r, q])
+}
+
+fn bytes(values: [f32; 2]) -> Vec<u8> {
+    values.map(f32::to_le_bytes).concat()
+}
+
+/// The byte is read from the stencil, and whether the test passes from a second draw without a depth test, whose fragments have the colour 1.
+pub(super) fn stencil_test(case: &Case) -> Option<Placement> {
+    let function = case.word("cfg.function", super::fixed::FUNCTIONS);
+    let operations = ["cfg.fail", "cfg.depth_fail", "cfg.pass"];
+    let words = operations.map(|name| case.word(name, "KEEP ZERO REPLACE INCR DECR INVERT INCR_WRAP DECR_WRAP"));
+    let wraps = operations.map(|name| case.choice::<StencilOperation>(name));
+    let wraps = wraps.iter().any(|op| matches!(op, StencilOperation::Increment | StencilOperation::Decrement));
+    let names = ["in.reference", "in.mask", "in.write_mask", "in.stored", "in.depth_passes"];
+    let row = names.map(|name| byte(case.number(name)));
+    let row = row.into_iter().collect::<Option<Vec<u8>>>()?;
+    let draw = |depth_test: u8, read| Draw {
+        state: vec![format!("stencil {function} {}", words.join(" ")), format!("depth_test {depth_test}")],
+        reads: vec![read],
+        combiners: None,
+    };
+    let needs = if wraps { vec!["GL_EXT_stencil_wrap"] } else { vec![] };
+    let sources = vec![("primary", vec![1; 4]), ("stencil0", row)];
+    let draws = vec![draw(1, Read::byte("out.stored", 4)), draw(0, Read::byte("out.passes", 0))];
+    Some(Placement { draws, ..drawn(Path::Common, needs, vec![], sources, vec![]) })
+}
+
+/// White in black fog of a density of 1. The coordinate is that of the middle of the step, so that a driver's parameters may be a little off.
+pub(super) fn fog_table(case: &Case) -> Option<Placement> {
+    let steps = case.number("in.steps");
+    let below = f32::from(i16::try_from(-steps).ok()?);
+    let below = if steps == 0 { 0.0 } else { below - 0.5 };
+    let (mode, d) = match case.word("cfg.mode", "EXP EXP2") {
+        "EXP" => ("EXP", below * LN_2 / 256.0),
+        "EXP2" => ("EXP2", below / 4096.0 * (32.0 * LN_2).sqrt()),
+        _ => return None,
+    };
+    let sources = vec![("fog0", d.to_le_bytes().to_vec())];
+    let (needs, state) = (vec!["GL_EXT_fog_coord"], vec![format!("fog {mode}")]);
+    (steps <= 0).then(|| drawn(Path::Common, needs, state, sources, vec![Read::byte("out.byte", 0)]))
+}
+
+/// A depth as a texel. r is asked in fractions of the deepest one; where it is near a step, only what lies farther off is compared.
+pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
+    let ([r, q], depth) = (projected(case)?, case.number("in.depth"));
+    let (format, texel) = match case.choice("cfg.format") {
+        DepthFormat::Z16 => ("DEPTH_COMPONENT16 DEPTH_COMPONENT UNSIGNED_SHORT", (depth as u16).to_le_bytes().to_vec()),
+        DepthFormat::Z24S8 => {
+            ("DEPTH_COMPONENT24 DEPTH_COMPONENT UNSIGNED_INT", ((depth << 8) as u32).to_le_bytes().to_vec())
+        }
+        _ => return None,
+    };
+    let deepest = if texel.len() == 2 { 65_535.0 } else { 16_777_215.0 };
+    let (at, word) = (r / q, case.number("mid.reference"));
+    let is_clear = (0.125..=0.875).contains(&at.fract()) && at < 65_536.0 || (word - depth).abs() > 1;
+    if case.choice::<ShadowReference>("cfg.reference") != ShadowReference::R
+        || !(0.0..=deepest).contains(&at)
+        || !is_clear
+    {
+        return None;
+    }
+    let function = case.word("cfg.function", super::fixed::FUNCTIONS);
+    let mut needs = vec!["GL_ARB_depth_texture", "GL_ARB_shadow"];
+    if !matches!(function, "LEQUAL" | "GEQUAL") {
+        needs.push("GL_EXT_shadow_funcs");
+    }
+    let parameters = [("MODE", "COMPARE_R_TO_TEXTURE"), ("FUNC", function)];
+    let parameters = parameters.map(|(name, value)| format!("parameter 0 TEXTURE_COMPARE_{name} {value}"));
+    let state = [vec![format!("texels 0 {format}")], parameters.to_vec()].concat();
+    let sources = vec![("texture0", texel), ("projected0", bytes([r / deepest, q]))];
+    Some(drawn(Path::Common, needs, state, sources, vec![Read::byte("out.value", 0)]))
+}
+
+/// A volume whose layers say which they are, within the coordinates that the model takes.
+pub(super) fn volume_layer(case: &Case) -> Option<Placement> {
+    let (mode, mut needs) = super::fixed::wrap(case.choice::<AddressMode>("cfg.mode"));
+    needs.push("GL_EXT_texture3D");
+    let state = vec![format!("layers 0 {}", case.number("cfg.layers")), format!("parameter 0 TEXTURE_WRAP_R {mode}")];
+    let sources = vec![("projected0", bytes(projected(case)?))];
+    let is_limited = case.number("mid.w").abs() >= 1 << 24;
+    (!is_limited).then(|| drawn(Path::Common, needs, state, sources, super::fixed::numbered("out.layer")))
+}
