@@ -19,7 +19,7 @@ bless:
 bless-digests:
     cargo run --release -- replay --bless vectors/scenes
 
-# Make the module of `ninebit inspect` anew; `just module --check` compares
+# Make the module of `ninebit inspect` anew from HEAD; `just module --check` compares
 module *OPTIONS:
     src/web/build {{ OPTIONS }}
 
