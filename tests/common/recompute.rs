@@ -406,6 +406,9 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         }
         "depth_float_16" | "w_float_16" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 12, 7, 0xffff))),
         "depth_float_24" | "w_float_24" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 16, 127, 0xff_ffff))),
+        "depth_sum" | "depth_reciprocal" | "depth_weight" => {
+            depth_part(operation, &[0, 1, 2].map(|k| inputs.get(k).map_or(0.0, |(_, n)| real(*n))))
+        }
         "depth_inside" | "w_inside" => plain(depth(inputs, 0).is_some().into()),
         "drop_2_bits" => byte(v(0) >> 2 << 2),
         "depth_word" | "depth_word_of_ratio" => plain(shader::depth_word(inputs)),
@@ -702,23 +705,68 @@ fn real(n: Number) -> f64 {
     if n.per_one == 0 { f32::from_bits(n.value as u32).into() } else { n.value as f64 / n.per_one as f64 }
 }
 
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn cut(n: f64, step: f64) -> f64 {
+    (n / step).trunc() * step
+}
+
+/// The place of the first bit.
+fn power(n: f64) -> i32 {
+    (n.abs().to_bits() >> 52) as i32 - 1023
+}
+
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn two(power: i32) -> f64 {
+    2.0_f64.powi(power)
+}
+
+fn first_24(n: f64) -> f64 {
+    if n == 0.0 { 0.0 } else { cut(n, two(power(n) - 23)) }
+}
+
+/// S of DEP-1, of cut edge functions the largest of which before cutting is in `e`.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn depth_sum(edges: [f64; 3], e: [f64; 3]) -> f64 {
+    let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
+    edges.into_iter().map(|e| cut(e, two(most - 28))).sum()
+}
+
+/// R of DEP-1: 29 bits, 3/16 of the last low; powers of two have exact ones.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn depth_reciprocal(sum: f64) -> f64 {
+    let top = power(sum);
+    let whole = (sum / two(top - 30)) as i128;
+    let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
+    if whole == 1 << 30 { 1.0 / sum } else { low }
+}
+
+/// A step of DEP-1 on the way to a depth.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn depth_part(operation: &str, inputs: &[f64; 3]) -> Number {
+    let [first, second, _] = *inputs;
+    let of = |n: f64, bits: i32| (n / two(power(n) + 1 - bits)) as i128;
+    match operation {
+        "depth_sum" => plain(depth_sum(inputs.map(first_24), *inputs) as i128),
+        "depth_reciprocal" => plain(of(depth_reciprocal(first), 29)),
+        _ => {
+            let reciprocal = depth_reciprocal(second);
+            let weight = first_24(first_24(first) * reciprocal);
+            // The last bit of R.
+            let last = 28 - power(reciprocal);
+            match weight {
+                0.0 => Number { value: 0, per_one: 1 << last.min(62) },
+                weight => Number { value: of(weight, 24), per_one: 1 << (23 - power(weight)) },
+            }
+        }
+    }
+}
+
 /// DEP-1, DEP-4 and DEP-5, in doubles, which hold every one of these numbers. `None`: outside a range that does not clamp, which is what
 /// `depth_inside` asks.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
-    fn cut(n: f64, step: f64) -> f64 {
-        (n / step).trunc() * step
-    }
-    /// The place of the first bit.
-    fn power(n: f64) -> i32 {
-        (n.abs().to_bits() >> 52) as i32 - 1023
-    }
-    fn two(power: i32) -> f64 {
-        2.0_f64.powi(power)
-    }
     let number = |name: &str| inputs.iter().find(|(given, _)| given == name).map(|(_, n)| real(*n));
     let three = |name: &dyn Fn(usize) -> String| [0, 1, 2].map(|k| number(&name(k)).unwrap());
-    let first_24 = |n: f64| if n == 0.0 { 0.0 } else { cut(n, two(power(n) - 23)) };
     let of_w = number("vertex0.w").is_some();
     let z = three(&|k| format!("vertex{k}.{}", if of_w { "w" } else { "z" }));
     let mut e = three(&|k| format!("E{k}"));
@@ -728,12 +776,7 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
         e = edges;
     }
     let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
-    let sum: f64 = edges.into_iter().map(|e| cut(e, two(most - 28))).sum();
-    let top = power(sum);
-    // 29 bits, 3/16 of the last low; powers of two have exact ones.
-    let whole = (sum / two(top - 30)) as i128;
-    let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
-    let reciprocal = if whole == 1 << 30 { 1.0 / sum } else { low };
+    let reciprocal = depth_reciprocal(depth_sum(edges, e));
     let nearest = [1, 0, 2].into_iter().find(|k| e[*k] > 0.0 && power(e[*k]) == most).unwrap();
     let reference = if of_w { 1 } else { nearest };
     let mut weights = edges.map(|edge| first_24(edge * reciprocal));

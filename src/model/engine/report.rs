@@ -4,6 +4,7 @@ use super::pixel::{DepthStencil, TriangleContext};
 use crate::combiner::registers::{self, channel_name};
 use crate::number::{Lane, convert, light};
 use crate::plan::PlannedDraw;
+use crate::raster::depth::{DepthWeights, largest_edge};
 use crate::raster::fog::{FogFactor, FogPlane, FogStep};
 use crate::raster::interpolate::{Floored, Sample};
 use crate::raster::setup;
@@ -45,6 +46,22 @@ pub(super) fn setup<O: Observer>(
     let inputs =
         (0..3).flat_map(|k| [plain(format!("P{k}"), triangle.p[k]), plain(format!("E{k}"), sample.e[k])]).collect();
     observer.step(Step::given(RASTER, "INT-1", "D", sample.d).by("sum_of_products", inputs));
+}
+
+/// DEP-1's sum, reciprocal and weights.
+fn depth_weights<O: Observer>(e: [i64; 3], observer: &mut O) {
+    let weights = DepthWeights::from_edges(e);
+    let inputs = (0..3).map(|k| plain(format!("E{k}"), e[k])).collect();
+    let sum = observer.tell(Step::given(DEPTH, "DEP-1", "depth.sum", weights.sum).by("depth_sum", inputs));
+    let (mantissa, exponent) = weights.reciprocal;
+    let step = Step::given(DEPTH, "DEP-1", "depth.reciprocal", mantissa).by("depth_reciprocal", vec![sum.clone()]);
+    observer.step(step.note(format!("times 2^-{exponent}")));
+    for k in (0..3).filter(|k| *k != largest_edge(e)) {
+        let (mantissa, exponent) = weights.weight(k);
+        // Of a pixel on the edge it is 0 in any unit.
+        let step = Step::given(DEPTH, "DEP-1", format!("depth.weight{k}"), mantissa).per(1 << (-exponent).min(62));
+        observer.step(step.by("depth_weight", vec![plain(format!("E{k}"), e[k]), sum.clone()]));
+    }
 }
 
 /// CMB-13: what is read before anything wrote it.
@@ -289,6 +306,9 @@ impl TriangleContext<'_> {
             }));
         }
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
+        if !test.w_buffer {
+            depth_weights(sample.e, observer);
+        }
         if test.offset != PolygonOffset::default() {
             let triangle = sample.triangle;
             inputs.extend([float("bias", test.offset.bias), float("factor", test.offset.factor)]);

@@ -159,19 +159,50 @@ pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
 /// Bits that count of the largest edge number and of the largest term of a depth (DEP-1).
 const DEPTH_BITS: i32 = 29;
 
+/// DEP-1's sum, reciprocal and weights of edge numbers that are cut to 24 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthWeights {
+    edges: [i64; 3],
+    /// S.
+    pub sum: i64,
+    /// R as a mantissa of 29 bits, and s, by which 2^-s times that is meant.
+    pub reciprocal: (i64, i32),
+}
+
+impl DepthWeights {
+    /// Those of edge functions.
+    #[inline]
+    pub fn from_edges(e: [i64; 3]) -> DepthWeights {
+        DepthWeights::from_cut_edges(e.map(|e| significant(e, 24)))
+    }
+
+    fn from_cut_edges(edges: [i64; 3]) -> DepthWeights {
+        let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
+        let dropped = (top - DEPTH_BITS).max(0);
+        // Outside the triangle, where nothing is stored, numbers may be negative.
+        let sum = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
+        let (mantissa, exponent) = reciprocal(sum);
+        DepthWeights { edges, sum: sum << dropped, reciprocal: (mantissa, exponent + dropped) }
+    }
+
+    /// b_k: a mantissa of at most 24 bits, and the power of two by which it is multiplied.
+    #[inline]
+    pub fn weight(&self, k: usize) -> (i64, i32) {
+        let (mantissa, dropped) = first_24(i128::from(self.edges[k]) * i128::from(self.reciprocal.0));
+        (mantissa, dropped - self.reciprocal.1)
+    }
+}
+
 /// DEP-1: z_d + sum of b_k (z_k - z_d), each term cut; screen-linear.
 #[inline]
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
-    let reference = largest_edge(e);
-    let edges = e.map(|e| significant(e, 24));
-    let (reciprocal, exponent) = reciprocal(edges);
+    let (reference, weights) = (largest_edge(e), DepthWeights::from_edges(e));
     let terms: [(i64, i32); 3] = std::array::from_fn(|k| {
         if k == reference {
             return split(z[k]);
         }
-        let (mantissa, dropped) = first_24(i128::from(edges[k]) * i128::from(reciprocal));
-        let (by, power) = split(difference(z[k], z[reference]));
-        (mantissa * by, dropped - exponent + power)
+        let ((mantissa, exponent), (by, power)) = (weights.weight(k), split(difference(z[k], z[reference])));
+        (mantissa * by, exponent + power)
     });
     sum_of_terms(terms)
 }
@@ -185,11 +216,8 @@ pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
         (product, power + of_edge + more)
     });
     let (edges, _) = align(edges, 61);
-    let (reciprocal, exponent) = reciprocal(edges);
-    let mut weights = edges.map(|edge| {
-        let (mantissa, dropped) = first_24(i128::from(edge) * i128::from(reciprocal));
-        (mantissa, dropped - exponent)
-    });
+    let cut = DepthWeights::from_cut_edges(edges);
+    let mut weights = [0, 1, 2].map(|k| cut.weight(k));
     // INT-3: the dominant weight is what the others leave.
     let size = |(mantissa, exponent): (i64, i32)| {
         if mantissa > 0 { 64 - mantissa.leading_zeros() as i32 + exponent } else { i32::MIN }
@@ -264,18 +292,8 @@ fn significant(n: i64, bits: u32) -> i64 {
     n.signum() * (n.abs() >> dropped << dropped)
 }
 
-/// DEP-1: the reciprocal of the sum of three edge numbers as a mantissa of 29 bits, 3/16 of its last bit low, and s, by which 2^-s times that is meant.
-fn reciprocal(edges: [i64; 3]) -> (i64, i32) {
-    let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
-    let dropped = (top - DEPTH_BITS).max(0);
-    // Outside the triangle, where nothing is stored, numbers may be negative.
-    let sum: i64 = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
-    let (mantissa, exponent) = reciprocal_of(sum);
-    (mantissa, exponent + dropped)
-}
-
-/// That of a sum of 31 bits at most.
-pub fn reciprocal_of(sum: i64) -> (i64, i32) {
+/// DEP-1: the reciprocal of a sum of 31 bits at most as a mantissa of 29 bits, 3/16 of its last bit low, and s, by which 2^-s times that is meant.
+pub fn reciprocal(sum: i64) -> (i64, i32) {
     let length = 63 - sum.leading_zeros() as i32;
     if sum & (sum - 1) == 0 {
         return (1 << 28, 28 + length);

@@ -8,7 +8,7 @@ use super::kernels::PerLane;
 use super::quotient::{IOTA_REAL, Line, Positions, multiply_add, nearest, position, whole};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::depth::{difference, largest_edge, reciprocal_of, w_ratio};
+use crate::raster::depth::{difference, largest_edge, reciprocal, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
@@ -91,7 +91,7 @@ impl ReciprocalSeries {
         series.unit = power_of_two(-28 - bits as i32);
         let of = |sum: i64| {
             // As many bits as those that are not exact.
-            if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal_of(sum).0 as f64 }
+            if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal(sum).0 as f64 }
         };
         let (largest_loss, real) = (3 * ((1_i64 << bits.saturating_sub(24)) - 1), area as f64);
         let first = (1_u64 << (28 + bits)) as f64 / real;
