@@ -4,6 +4,7 @@
 use super::repository::at;
 use super::settings::bless;
 use std::fs;
+use std::path::Path;
 use std::sync::Mutex;
 
 /// The marker lines of a part: where it begins and where it ends.
@@ -13,6 +14,13 @@ pub fn markers(writer: &str) -> [String; 2] {
 
 /// Held while a page is written, since tests run side by side.
 pub static WRITING: Mutex<()> = Mutex::new(());
+
+/// Writes a page at once: who reads it meanwhile has the old one or the new one.
+pub fn write(path: &Path, text: &str) {
+    let new = path.with_extension("new");
+    fs::write(&new, text).unwrap();
+    fs::rename(&new, path).unwrap();
+}
 
 /// Compares a part of a page with what its writer makes of it, or writes it where `BLESS` is set.
 #[track_caller]
@@ -24,7 +32,7 @@ pub fn hold(page: &str, writer: &str, made: &str) {
     let from = text.find(&begin).unwrap_or_else(|| panic!("{page} has no line {begin}")) + begin.len();
     let to = from + text[from..].find(&end).unwrap_or_else(|| panic!("{page} has no line {end}"));
     if bless() {
-        fs::write(&path, format!("{}{made}{}", &text[..from], &text[to..])).unwrap();
+        write(&path, &format!("{}{made}{}", &text[..from], &text[to..]));
         return;
     }
     let differs =

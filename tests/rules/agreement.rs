@@ -1,5 +1,6 @@
 //! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
 
+use crate::catalogue;
 use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read};
 use crate::pages;
 use crate::repository;
@@ -99,16 +100,22 @@ fn pins_exist() {
     }
 }
 
-/// The file of `tests/rules` whose test opens the example of a rule: exactly one does.
+/// Where the example of a rule is computed: by units, in a file of `tests/rules` that opens it, or both.
 fn computed(entry: &Entry, examples: &[(String, String)]) -> String {
-    let opens = |source: &str| {
-        let literals = id_literals(source);
-        literals.iter().filter(|(before, id)| *id == entry.id && before.trim_end().ends_with("example(")).count()
+    let opens = |call: &str| {
+        let opened = |source: &str| {
+            let literals = id_literals(source);
+            literals.iter().filter(|(before, id)| *id == entry.id && before.trim_end().ends_with(call)).count()
+        };
+        examples.iter().flat_map(|(file, source)| std::iter::repeat_n(file.as_str(), opened(source))).collect()
     };
-    let computed: Vec<&str> =
-        examples.iter().flat_map(|(file, source)| std::iter::repeat_n(file.as_str(), opens(source))).collect();
-    let [file] = computed[..] else { panic!("{}: its example is computed in {computed:?}", entry.id) };
-    file.to_owned()
+    let [alone, beside]: [Vec<&str>; 2] = ["example(", "beside_rows("].map(opens);
+    match (catalogue::computes(&entry.id), &alone[..], &beside[..]) {
+        (false, [file], []) => (*file).to_owned(),
+        (true, [], []) => "catalogue".to_owned(),
+        (true, [], [file]) => format!("catalogue, {file}"),
+        _ => panic!("{}: its example is computed in {alone:?}, beside its rows in {beside:?}", entry.id),
+    }
 }
 
 /// The names of files, without their folder and ending, each with its text.

@@ -2,10 +2,10 @@
 //!
 //! A rule's entry is a heading `### ID title`, a block of text with its formula, and a list of fields, one a line: `- Grade: ...`.
 
+use crate::catalogue;
 use crate::pages;
 use crate::repository;
 use crate::settings::bless;
-use ninebit::state::Policies;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
@@ -114,13 +114,20 @@ pub fn example(rule: &'static str, text: &str) -> Example {
             start + page[start..].find("\n- Example: ").unwrap_or_else(|| panic!("{rule} has no line of its example"));
         let end = at + 1 + page[at + 1..].find('\n').unwrap();
         let written = format!("{}\n- Example: {text}{}", &page[..at], &page[end..]);
-        std::fs::write(repository::at(PAGE), written).unwrap();
+        pages::write(&repository::at(PAGE), &written);
     } else {
         assert!(
             line == text,
             "{rule}: the example of {PAGE} is\n{line}\nand the test computes\n{text}\nBLESS=1 writes it"
         );
     }
+    Example { rule }
+}
+
+/// Opens what else an example says whose sentence and rows are in `catalogue.txt`.
+#[track_caller]
+pub fn beside_rows(rule: &'static str) -> Example {
+    assert!(catalogue::computes(rule), "{rule} has no rows");
     Example { rule }
 }
 
@@ -137,14 +144,6 @@ impl Example {
     pub fn shows(&self, what: &str, got: f64, digits: usize, expected: &str) -> &Example {
         self.gives(what, format!("{got:.digits$}"), expected.to_string())
     }
-}
-
-/// Policies as `--policy` takes them; everything else is at its default.
-#[track_caller]
-pub fn policy(assignment: &str) -> Policies {
-    let mut policies = Policies::DEFAULT;
-    policies.set(assignment).unwrap_or_else(|e| panic!("{e}"));
-    policies
 }
 
 /// A text file of the repository.

@@ -2,8 +2,11 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 mod agreement;
+#[path = "../common/bench.rs"]
+mod bench;
 #[path = "../common/build.rs"]
 mod build;
+mod catalogue;
 mod handbook;
 #[path = "../common/pages.rs"]
 mod pages;

@@ -1,7 +1,7 @@
 //! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
 
 use super::raster::LARGE;
-use super::{Column, Conditions, Kind, Reach, Unit, named, put};
+use super::{Column, Conditions, Kind, Reach, Unit, float, named, put};
 use ninebit::number::light;
 use ninebit::raster::fog::{FogPlane, FogStep, exponential};
 use ninebit::raster::interpolate::Sample;
@@ -56,10 +56,9 @@ impl Unit for FogFactor {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let float = |n: usize| f32::from_bits(inputs[n] as u32);
-        let per_vertex = inputs[1] != 0;
-        let function = FogFunction { mode: named(inputs[0]), p0: float(2), p1: float(3), p2: float(4), per_vertex };
-        let value = passed(&function, conditions.profile, float(5));
+        let (per_vertex, [p0, p1, p2, coordinate]) = (inputs[1] != 0, [2, 3, 4, 5].map(|n| float(inputs[n])));
+        let function = FogFunction { mode: named(inputs[0]), p0, p1, p2, per_vertex };
+        let value = passed(&function, conditions.profile, coordinate);
         let Some(triangle) = Triangle::new(LARGE, true, Profile::Nv2a) else { return };
         let found = FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3]));
         results[0] = value.to_bits().into();

@@ -61,7 +61,7 @@ mod texture;
 mod texture_environment;
 mod texture_stage;
 
-pub use texture::planned;
+pub use texture::{LinearAddress, NearestAddress, planned};
 
 use super::column::{Column, Kind};
 use super::unit::{Conditions, Reach, Unit};

@@ -15,7 +15,7 @@ use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates
 use ninebit::texture::fetch::Texel;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::unit::layer;
-use ninebit::texture::{anisotropy, color_key, shadow};
+use ninebit::texture::{anisotropy, color_key, format, shadow};
 use ninebit::trace::Silent;
 
 /// Hands on a place inside a triangle whose vertices all have the coordinates (0, 0, r, q).
@@ -71,10 +71,7 @@ impl Unit for ColorKey {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let bytes = |word: i64| {
-            let [b, g, r, a] = (word as u32).to_le_bytes();
-            [r, g, b, a]
-        };
+        let bytes = |word: i64| format::expand(TextureFormat::A8R8G8B8, word as u32);
         let key = state::ColorKey { color: bytes(inputs[2]), mode: named(inputs[0]) };
         let unit = planned(TextureUnit { color_key: Some(key), ..TextureUnit::new(0) }, named(inputs[1]));
         let (keyed, dropped) = color_key::apply(&unit, &key, bytes(inputs[3]).map(i32::from), &mut Silent);

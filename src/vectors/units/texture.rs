@@ -56,7 +56,8 @@ fn place(inputs: &[i64], index: i64) -> [i64; 2] {
 }
 
 /// The nearest texel.
-pub(super) struct NearestAddress;
+#[derive(Debug)]
+pub struct NearestAddress;
 
 impl Unit for NearestAddress {
     known_as!(
@@ -81,7 +82,8 @@ impl Unit for NearestAddress {
 }
 
 /// The two texels of the linear filter along one axis.
-pub(super) struct LinearAddress;
+#[derive(Debug)]
+pub struct LinearAddress;
 
 impl Unit for LinearAddress {
     known_as!(

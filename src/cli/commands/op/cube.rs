@@ -4,15 +4,14 @@ use clap::Args;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::*;
-use ninebit::texture::address::address;
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, real_coordinate};
-use ninebit::texture::filter::{linear, nearest};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::report::Report;
 use ninebit::trace::Observer;
-use ninebit_vectors::units;
+use ninebit_vectors::units::{self, LinearAddress, NearestAddress};
 use serde_json::json;
 
+use super::address::addressed;
 use super::{
     Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, set, texture_checks,
 };
@@ -68,9 +67,8 @@ impl Operation for Cube {
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let [x, y, z] = [values[0], values[1], values[2]];
         let sample = Sample::new(&self.triangle, [1, 0, 0]);
-        let float = |n: i64| n as f32;
         let mut vertex = Vertex::default();
-        vertex.texture_coordinates[self.unit.stage.coordinate_set] = [float(x), float(y), float(z), 1.0];
+        vertex.texture_coordinates[self.unit.stage.coordinate_set] = [x as f32, y as f32, z as f32, 1.0];
         let vertices = Vertices::from(vec![vertex]);
         let place = Interpolated {
             unit: &self.unit,
@@ -86,21 +84,13 @@ impl Operation for Cube {
             let ideal = place.real(Some(face)).st.map(|c| real_coordinate(c, level.width));
             place.describe(&Report { unit: &self.unit, prefix: "" }, level, floored, ideal, observer);
         }
-        let inside = |i: i64| json!(address(AddressMode::ClampToEdge, i, level.width, false));
         let [u, v] = floored.map(|c| c.value);
-        let pair = |filter: Filter, c: i64| match filter {
-            Filter::Nearest => inside(nearest(c)),
-            Filter::Linear => json!([inside(linear(c).0), inside(linear(c).0 + 1)]),
-        };
-        vec![
-            ("face".to_owned(), json!(face.name())),
-            ("u".to_owned(), json!(u)),
-            ("v".to_owned(), json!(v)),
-            ("x".to_owned(), pair(Filter::Nearest, u)),
-            ("y".to_owned(), pair(Filter::Nearest, v)),
-            ("linear_x".to_owned(), pair(Filter::Linear, u)),
-            ("linear_y".to_owned(), pair(Filter::Linear, v)),
-        ]
+        let clamped = (AddressMode::ClampToEdge, level.width);
+        let [x, y] = [u, v].map(|c| addressed::<3>(&NearestAddress, clamped, c)[2]);
+        let linear = [u, v].map(|c| addressed::<6>(&LinearAddress, clamped, c)).map(|texels| [texels[3], texels[5]]);
+        let names = ["face", "u", "v", "x", "y", "linear_x", "linear_y"].map(str::to_owned);
+        let values = [json!(face.name()), json!(u), json!(v), json!(x), json!(y), json!(linear[0]), json!(linear[1])];
+        names.into_iter().zip(values).collect()
     }
 }
 

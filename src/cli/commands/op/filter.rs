@@ -10,7 +10,7 @@ use ninebit::trace::{Observer, Rule};
 use ninebit_vectors::units;
 use serde_json::json;
 
-use super::{COORDINATES, Column, Common, Failure, Operation, Results, Setup, set};
+use super::{COORDINATES, Column, Common, Failure, Operation, Results, Setup, set, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -87,12 +87,8 @@ impl Operation for Mix {
     }
 }
 
-fn numbers(text: &str) -> Option<Vec<i64>> {
-    text.split(',').map(|text| super::words::number(text.trim())).collect()
-}
-
 fn texels(text: &str) -> Result<[i64; 4], String> {
-    match numbers(text).as_deref() {
+    match words::numbers(text).as_deref() {
         Some([a, b]) => Ok([*a, *b, *a, *b]),
         Some([a, b, c, d]) => Ok([*a, *b, *c, *d]),
         _ => Err("not two or four whole numbers with commas between".to_owned()),
@@ -100,7 +96,7 @@ fn texels(text: &str) -> Result<[i64; 4], String> {
 }
 
 fn pair(text: &str) -> Result<[i64; 2], String> {
-    match numbers(text).as_deref() {
+    match words::numbers(text).as_deref() {
         Some([u]) => Ok([*u, 0]),
         Some([u, v]) => Ok([*u, *v]),
         _ => Err("not one or two whole numbers with a comma between".to_owned()),

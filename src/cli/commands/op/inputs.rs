@@ -103,8 +103,7 @@ pub(super) fn color(text: &str) -> Result<[i64; 4], String> {
 }
 
 fn numbers(text: &str) -> Result<Vec<i64>, String> {
-    let parsed: Option<Vec<i64>> = text.split(',').map(|text| words::number(text.trim())).collect();
-    parsed
+    words::numbers(text)
         .filter(|numbers| matches!(numbers.len(), 1 | 3 | 4))
         .ok_or_else(|| "not one, three or four whole numbers, such as 128 or 0x80, with commas between".to_owned())
 }

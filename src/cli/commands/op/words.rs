@@ -196,6 +196,11 @@ pub(super) fn number(text: &str) -> Option<i64> {
     }
 }
 
+/// Reads whole numbers with commas between.
+pub(super) fn numbers(text: &str) -> Option<Vec<i64>> {
+    text.split(',').map(|text| number(text.trim())).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

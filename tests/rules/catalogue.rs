@@ -1,0 +1,153 @@
+//! Examples that units of the catalogue compute, as `ninebit op unit` does: `catalogue.txt`.
+
+use crate::bench::Bench;
+use crate::handbook::{PAGE, built, example, read};
+use crate::pages;
+use ninebit_vectors::units;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
+
+/// Rules whose example is no row of a unit, and why.
+const WITHOUT: [(&str, &str); 9] = [
+    ("NUM-1", "what a number stands for: nothing is computed"),
+    ("RAS-4 RAS-5", "which vertices make a triangle"),
+    ("RAS-6 RAS-7", "a polygon in clip space, of any number of vertices"),
+    ("INT-6 DEP-5", "w and depths that no row of `color-weights` and `pixel-depth` takes"),
+    ("TEX-16 TEX-18 TSH-5 TSH-9 TSH-10", "texture stages that only a whole pixel runs"),
+    ("CMB-1 CMB-13", "both portions of a stage, and registers before the first: a whole pixel"),
+    ("CMB-12", "what is refused"),
+    ("ROP-6", "a mask that a draw has, whatever its pixels are"),
+    ("TSH-11 VTX-1 VTX-2 VTX-3 VTX-4", "the vertex side: floats, which are not modelled bit by bit"),
+];
+
+/// The table, read.
+static SENTENCES: LazyLock<Vec<Sentence>> = LazyLock::new(|| {
+    let mut sentences: Vec<Sentence> = Vec::new();
+    let table = include_str!("catalogue.txt");
+    for line in table.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        if let Some(row) = line.strip_prefix("    ") {
+            sentences.last_mut().unwrap().rows.push(Row::from_line(row));
+        } else {
+            let (rule, text) = line.split_once(": ").unwrap();
+            sentences.push(Sentence { rule, text, rows: Vec::new() });
+        }
+    }
+    sentences
+});
+
+/// The example of a rule.
+struct Sentence {
+    rule: &'static str,
+    text: &'static str,
+    rows: Vec<Row>,
+}
+
+/// A row of a unit that computes a part of it.
+struct Row {
+    command: String,
+    /// The columns that the sentence speaks of: name, number, and how the sentence writes it.
+    results: Vec<[&'static str; 3]>,
+}
+
+impl Row {
+    fn from_line(line: &'static str) -> Row {
+        let (call, results) = line.split_once(" => ").unwrap_or_else(|| panic!("no results: {line}"));
+        let mut words = call.split(' ');
+        let unit = units::by_name(words.next().unwrap()).unwrap_or_else(|| panic!("no unit: {line}"));
+        let (mut command, mut given) = (format!("ninebit op unit {}", unit.name()), BTreeMap::new());
+        while let Some(word) = words.next() {
+            match word.split_once('=') {
+                Some((name, value)) => assert!(given.insert(name, value).is_none(), "twice {name}: {line}"),
+                None => command += &format!(" {word} {}", words.next().unwrap()),
+            }
+        }
+        for column in unit.inputs() {
+            let (_, name) = column.name.split_once('.').unwrap();
+            let value = given.remove(name).map_or_else(|| column.kind.write(0), str::to_owned);
+            command += &format!(" --in {name}={value}");
+        }
+        assert!(given.is_empty(), "no inputs {given:?}: {line}");
+        let result = |word: &'static str| {
+            let (name, value) = word.split_once('=').unwrap_or_else(|| panic!("no result `{word}`: {line}"));
+            let (number, written) = value.split_once('~').unwrap_or((value, value));
+            [name, number, written]
+        };
+        Row { command, results: results.split(' ').map(result).collect() }
+    }
+
+    /// What is wrong with it.
+    fn errors(&self, bench: &Bench, text: &str) -> Vec<String> {
+        let run = bench.run(&format!("{} --format json", self.command.strip_prefix("ninebit ").unwrap()));
+        if run.status != 0 {
+            return vec![run.stderr];
+        }
+        let printed: Value = serde_json::from_slice(&run.stdout).unwrap();
+        let mut errors = Vec::new();
+        for [name, number, written] in &self.results {
+            let value = &printed["results"][name];
+            let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            if value != *number {
+                errors.push(format!("{name} is {value}, not {number}"));
+            }
+            if !written.is_empty() && !has(text, written) {
+                errors.push(format!("{name} is not written as `{written}`"));
+            }
+        }
+        errors
+    }
+}
+
+/// Whether a number or a word stands in a sentence, and is no part of a longer one.
+fn has(text: &str, word: &str) -> bool {
+    let joined = |c: char| c.is_alphanumeric() || c == '.' || c == '_' || c == '-' && !word.starts_with(['-', '+']);
+    text.match_indices(word).any(|(at, _)| {
+        let mut after = text[at + word.len()..].chars();
+        let next = after.next().filter(|c| *c != '.').or_else(|| after.next());
+        !text[..at].ends_with(joined) && next.is_none_or(|c| !c.is_alphanumeric())
+    })
+}
+
+/// Whether units compute the example of a rule.
+pub fn computes(rule: &str) -> bool {
+    SENTENCES.iter().any(|sentence| sentence.rule == rule)
+}
+
+#[test]
+fn sentences_say_what_units_compute() {
+    let (bench, mut wrong) = (Bench::new(), String::new());
+    for Sentence { rule, text, rows } in SENTENCES.iter() {
+        for row in rows {
+            let errors = row.errors(&bench, text);
+            wrong.extend(errors.iter().map(|error| format!("{rule}: {error}: {}\n", row.command)));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// The page has every sentence, and the command of each row below it.
+#[test]
+fn the_page_repeats_sentences() {
+    for Sentence { rule, text, rows } in SENTENCES.iter() {
+        example(rule, text);
+        let writer = format!("tests/rules ({rule})");
+        let lines: String = rows.iter().map(|row| format!("- Command: `{}`\n", row.command)).collect();
+        pages::hold(PAGE, &writer, &lines);
+        let [begin, _] = pages::markers(&writer);
+        let below = read(PAGE).contains(&format!("\n- Example: {text}\n{begin}"));
+        assert!(below, "{rule}: its commands do not stand below its example");
+    }
+    let commands: usize = SENTENCES.iter().map(|sentence| sentence.rows.len()).sum();
+    assert_eq!(read(PAGE).matches("\n- Command: ").count(), commands, "commands of a rule that has no rows");
+}
+
+/// What has no rows is known by name: a new rule has some. The decision says the same.
+#[test]
+fn rules_without_rows_are_named() {
+    let without: BTreeSet<&str> = WITHOUT.iter().flat_map(|(rules, _)| rules.split(' ')).collect();
+    assert_eq!(without, built().map(|entry| entry.id.as_str()).filter(|rule| !computes(rule)).collect());
+    let rows: String =
+        WITHOUT.iter().map(|(rules, why)| format!("| {} | {why} |\n", rules.replace(' ', ", "))).collect();
+    let table = format!("| rules | why |\n|---|---|\n{rows}");
+    pages::hold("docs/decisions/0057-operations-beside-units.md", "tests/rules (without)", &table);
+}
