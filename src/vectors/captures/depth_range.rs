@@ -1,10 +1,7 @@
 //! DEP-4 to DEP-6: depths beyond a range that are dropped or limited, triangles that are dropped whole.
 
-use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, nearest, placed};
-use super::images::{self, checker};
 use super::primitives::FAR_DEPTHS;
-use super::{Frames, space};
-use ninebit::state::*;
+use super::*;
 
 /// The deepest depth of 24 bits.
 const DEEPEST: f32 = 16_777_215.0;

@@ -1,9 +1,7 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::draws::{Canvas, corners, draw, in_steps, program, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
-use super::{Drawn, Frames, named, space};
-use ninebit::state::*;
+use super::*;
 use ninebit::vertex::fog::passed;
 
 /// Names of [`FogMode::ALL`] in those of frames.

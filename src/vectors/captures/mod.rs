@@ -27,13 +27,14 @@ mod stencil;
 mod texel_formats;
 mod texgen;
 
-use draws::Canvas;
+use draws::*;
+use images::checker;
 use ninebit::engine::{RenderOptions, Renderer, render};
 use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{Named, Rectangle, Scene, SurfaceFormat, Texture, TextureFormat, TextureKind};
+use ninebit::state::*;
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;

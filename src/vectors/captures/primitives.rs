@@ -1,10 +1,7 @@
 //! RAS-1 to RAS-5, INT-1, NUM-4: every topology smooth and flat, with and without perspective; colours of floats; many vertices.
 
-use super::draws::{Canvas, abgr, argb, corners, draw, fetching, nearest, placed, sized, vertex};
-use super::images::{self, checker};
-use super::space::{self, without_depth};
-use super::{Drawn, Frames};
-use ninebit::state::*;
+use super::space::without_depth;
+use super::*;
 
 /// Colours of the vertices, A8B8G8R8.
 const COLORS: [u32; 10] = [

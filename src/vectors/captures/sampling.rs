@@ -1,11 +1,7 @@
 //! VOL-1, TEX-17, CYL-1: volumes in all formats, anisotropy, and a coordinate that goes around a cylinder.
 
-use super::draws::{
-    Canvas, FETCHED, argb, corners, draw, fetching, nearest, pasted, placed, sized, unprojected, without_alpha,
-};
-use super::images::{Image, checker, gradient};
-use super::{Frames, images, space, texel_formats};
-use ninebit::state::*;
+use super::*;
+use images::{Image, gradient};
 
 const SIDE: u32 = 256;
 const LAYERS: u32 = 4;

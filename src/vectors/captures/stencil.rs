@@ -1,8 +1,6 @@
 //! STN-1: what is stored by zero and replace, with and without either test; stacks of operations, seen through all functions.
 
-use super::draws::{frame_buffer, rectangle, scene};
-use super::{Drawn, Frames, Shown, named};
-use ninebit::state::*;
+use super::*;
 
 fn target(stencil: u8) -> Target {
     let depth = DepthBuffer { format: DepthFormat::Z24S8, clear: 0xffff, clear_stencil: stencil };

@@ -1,12 +1,7 @@
 //! TEX-1 to TEX-4, TEX-9, TEX-18: formats of texels, palettes, signed channels, levels.
 
-use super::draws::{
-    Canvas, FETCHED, WHOLE, abgr, corners, draw, far, fetching, nearest, pasted, placed, places, program, sized,
-    unprojected, without_alpha,
-};
-use super::images::{self, Color, Image, bulge, checker, gradient, grey};
-use super::{Frames, assets, space};
-use ninebit::state::*;
+use super::*;
+use images::{Color, Image, bulge, gradient, grey};
 
 /// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {

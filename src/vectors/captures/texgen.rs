@@ -1,10 +1,8 @@
 //! TEX-15 and INT-4: coordinates that the fixed function makes, and matrices over them.
 
-use super::draws::{Canvas, FETCHED, WHOLE, corners, draw, fetching, nearest, without_alpha};
-use super::images::{self, gradient};
-use super::space::{self, DEGREES_90, IDENTITY, Matrix, STRAIGHT};
-use super::{Drawn, Frames};
-use ninebit::state::{TEXTURE_UNITS, Texture, TextureFormat, Topology, Vertex, VertexColor};
+use super::space::{DEGREES_90, IDENTITY, Matrix, STRAIGHT};
+use super::*;
+use images::gradient;
 
 /// What coordinates are made of.
 const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
