@@ -1,20 +1,15 @@
 //! The command `ninebit bench`: times of rendering scenes.
 #![allow(clippy::float_arithmetic, reason = "times")]
 
+use super::*;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Args;
 use ninebit::engine::{Reason, Renderer};
-use ninebit::shown;
-use ninebit::state::Named;
 use ninebit::threads;
 use ninebit_files::read::page;
-use serde::Serialize;
 
-use super::scene::{Failed, PolicyArguments, each, load};
-use super::{Context, EngineArguments, Failure, FormatArguments};
+use super::scene::{Failed, each};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
