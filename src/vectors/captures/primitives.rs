@@ -4,17 +4,9 @@ use super::space::without_depth;
 use super::*;
 
 /// Colours of the vertices, A8B8G8R8.
-const COLORS: [u32; 10] = [
-    0xffff_0000,
-    0xff00_ff00,
-    0xff00_00ff,
-    0xffcc_cccc,
-    0xffff_33cc,
-    0xffff_cc33,
-    0xffcc_ff33,
-    0xff33_ffcc,
-    0xff33_ccff,
-    0xffcc_33ff,
+const COLORS: [[u32; 5]; 2] = [
+    [0xffff_0000, 0xff00_ff00, 0xff00_00ff, 0xffcc_cccc, 0xffff_33cc],
+    [0xffff_cc33, 0xffcc_ff33, 0xff33_ffcc, 0xff33_ccff, 0xffcc_33ff],
 ];
 
 /// x, y, z in the world, red, green and blue, s and t; what no frame shows of a corner is 0.
@@ -130,9 +122,9 @@ pub(super) fn shade_model(frames: &mut Frames) {
             one(0xff2c_302e, Some(&texture), fetching(draw(topology, vertices.collect()), 0, nearest(0)))
         };
         let [program, flat_w, varying_w] = [programmed.clone(), fixed(1.0, 0.0), fixed(0.5, 0.05)].map(pictures);
-        let shaded = programmed.into_iter().zip(COLORS).map(|(position, color)| Vertex {
+        let shaded = programmed.into_iter().zip(COLORS.as_flattened()).map(|(position, color)| Vertex {
             position,
-            diffuse: VertexColor::Bytes(abgr(color)),
+            diffuse: VertexColor::Bytes(abgr(*color)),
             ..Vertex::default()
         });
         let shaded = draw(topology, shaded.collect());
