@@ -8,6 +8,9 @@ mod text;
 
 use crate::Span;
 use crate::Spanned;
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::TEXTURE_UNITS;
 use ninebit::state::{Scale, TextureFormat, named};
 
 pub use lower::{Context, lower};

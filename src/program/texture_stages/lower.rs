@@ -1,8 +1,6 @@
 //! From texture stages to general stages.
 
 use super::*;
-use crate::Span;
-use crate::Spanned;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;

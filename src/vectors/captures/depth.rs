@@ -85,9 +85,7 @@ pub(super) fn formats(frames: &mut Frames) {
             for compressed in ["n", "y"] {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
-                let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
-                frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
-                frames.push(name, drawn(Shown::Colors));
+                frames.both(&name, scene.clone());
             }
         }
     }

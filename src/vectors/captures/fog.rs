@@ -1,6 +1,5 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::primitives::FAR_DEPTHS;
 use super::*;
 use ninebit::vertex::fog::passed;
 
@@ -67,18 +66,11 @@ fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFun
     Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
 }
 
-fn one(clear: u32, draw: Draw) -> Drawn {
-    let mut canvas = Canvas::new(clear);
-    canvas.frame_buffer().depth = draw.depth_test.is_some().then_some(FAR_DEPTHS);
-    canvas.draw(draw);
-    canvas.colors()
-}
-
 fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) {
     for (name, mode) in named(MODES) {
         let function = function(mode, parameters(mode, 1.0));
         let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
-        frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
+        frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, None, draw));
     }
 }
 
@@ -134,14 +126,14 @@ pub(super) fn of_components(frames: &mut Frames) {
         for [x, y, z, w] in values {
             let draw = triangles(true, |_| taken(written, [*x, *y, *z, *w]), function, [0, 255, 0]);
             let name = format!("{written}-{x:.2}_{y:.2}_{z:.2}_{w:.2}");
-            frames.push(name, one(0xff30_3030, Draw { combiners: mixed("fog", "col0"), ..draw }));
+            frames.push(name, one(0xff30_3030, None, Draw { combiners: mixed("fog", "col0"), ..draw }));
         }
     }
     // Nothing is written: what the draws before have left.
     let draw = triangles(true, |_| 0.25, function, [0, 255, 0]);
     let text = "const0 = bytes(127, 0, 191, 255); out.rgb = lerp(fog.a, const0, col0); out.a = col0.a;";
     let combiners = program(text);
-    frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
+    frames.push("CoordNotSet", one(0xff34_1010, None, Draw { combiners, ..draw }));
 }
 
 /// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
@@ -190,7 +182,7 @@ pub(super) fn parameters_varied(frames: &mut Frames) {
                 let panels = places.flat_map(|(edges, d)| {
                     panel(edges, [7.0, 8.0], [[0.0, 0.0, 1.0, 1.0]; 4], false).map(|vertex| (vertex, d))
                 });
-                one(0xff23_1f23, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
+                one(0xff23_1f23, None, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
             });
         }
         frames.paint(format!("FogZeroBias-{name}"), 0xff23_1f23, move |canvas| {
@@ -251,7 +243,7 @@ pub(super) fn generated(frames: &mut Frames) {
                             (vertex, d)
                         })
                     });
-                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, [p0, p1]), RED))
+                    one(0xff23_2623, None, foggy(Topology::Quads, panels, function(mode, [p0, p1]), RED))
                 });
             }
         }
@@ -286,7 +278,7 @@ pub(super) fn exceptional(frames: &mut Frames) {
                     let coordinates = EXCEPTIONAL.as_flattened().iter().map(|word| f32::from_bits(*word));
                     let coordinates = coordinates.map(|d| if is_reciprocal { reciprocal(d) } else { d });
                     let panels = places().zip(coordinates).flat_map(|(edges, d)| exceptional_panel(edges, d));
-                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, parameters(mode, 1.0)), RED))
+                    one(0xff23_2623, None, foggy(Topology::Quads, panels, function(mode, parameters(mode, 1.0)), RED))
                 });
             }
             for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {

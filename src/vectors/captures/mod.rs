@@ -133,6 +133,12 @@ impl Frames {
         self.make(name, move || drawn.clone());
     }
 
+    /// The colours of a scene, and the words of depth and stencil.
+    fn both(&mut self, name: &str, scene: Scene) {
+        self.push(format!("{name}_ZB"), Drawn { shown: Shown::DepthStencil, ..Drawn::colors(scene.clone()) });
+        self.push(name, Drawn::colors(scene));
+    }
+
     /// A frame that is made when it is wanted.
     fn make(&mut self, name: impl Into<String>, make: impl Fn() -> Drawn + Send + Sync + 'static) {
         self.0.push((name.into(), Arc::new(make)));

@@ -96,15 +96,6 @@ const SHAPES: [Shape; 6] = [
     ("Poly", Topology::Polygon, POLYGON),
 ];
 
-fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
-    let mut canvas = Canvas::new(clear);
-    if let Some(texture) = texture {
-        canvas.texture(texture);
-    }
-    canvas.draw(draw);
-    canvas.colors()
-}
-
 /// Shade_model: colours, smooth and flat by either vertex, and textures, which do not heed it.
 pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
@@ -233,10 +224,6 @@ const SOLIDS: [Shape; 6] = [
     ("Polygon", Topology::Polygon, POLYGON),
 ];
 
-/// A depth buffer that is cleared to the farthest.
-pub(super) const FAR_DEPTHS: DepthBuffer =
-    DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
-
 /// 3D_primitive, however vertices reach the chip.
 pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
@@ -247,10 +234,7 @@ pub(super) fn solids(frames: &mut Frames) {
         };
         let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
         let shape = Draw { depth_test, ..draw(topology, vertices.iter().map(vertex).collect()) };
-        let mut canvas = Canvas::new(0xff30_3030);
-        canvas.frame_buffer().depth = Some(FAR_DEPTHS);
-        canvas.draw(shape);
-        let drawn = canvas.colors();
+        let drawn = one(0xff30_3030, None, shape);
         for kind in ["", "-inlinebuf", "-inlinearrays", "-inlineelements"] {
             frames.push(format!("{name}{kind}"), drawn.clone());
         }

@@ -1,6 +1,5 @@
 //! TSH-1 to TSH-9, TEX-12: cube maps, dot products, reflections, bump maps and their luminance, dependent reads.
 
-use super::primitives::FAR_DEPTHS;
 use super::space::{DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
 use super::texel_formats::{Variant, packed, texture, variants};
 use super::*;

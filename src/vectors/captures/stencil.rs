@@ -16,14 +16,6 @@ fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> Ste
     StencilTest { function, reference, mask: 255, write_mask: 255, fail: keep, depth_fail: keep, pass }
 }
 
-/// A frame as colours, and as words of depth and stencil.
-fn both(frames: &mut Frames, name: &str, target: Target, draws: Vec<Draw>) {
-    let scene = scene(vec![target], vec![], draws);
-    let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
-    frames.push(name, drawn(Shown::Colors));
-    frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
-}
-
 /// A square around the centre; the programs draw it as two triangles, which have no other pixels.
 fn square(side: f32, color: VertexColor) -> Draw {
     let half = side / 2.0;
@@ -47,7 +39,7 @@ pub(super) fn operations(frames: &mut Frames) {
                 if depth_on { "_DT" } else { "" }
             );
             let draws = vec![square(200.0, color(1.0, 0.0, 0.0)), second, third];
-            both(frames, &name, target(cleared), draws);
+            frames.both(&name, scene(vec![target(cleared)], vec![], draws));
         }
     }
 }
@@ -91,6 +83,6 @@ pub(super) fn functions(frames: &mut Frames) {
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));
         let draws = stacks.iter().cloned().chain([last]).collect();
-        both(frames, name, target(0), draws);
+        frames.both(name, scene(vec![target(0)], vec![], draws));
     }
 }

@@ -264,11 +264,9 @@ pub(super) fn signed(frames: &mut Frames) {
     );
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
-        let mut canvas = Canvas::new(0xfe20_2020);
-        canvas.texture(&texture);
         let draw = square(1.0, TextureUnit { signed, ..nearest(0) });
-        canvas.draw(Draw { combiners: combiners.clone(), ..draw });
-        frames.push(format!("A8R8G8B8_0x{flags:04X}"), canvas.colors());
+        let draw = Draw { combiners: combiners.clone(), ..draw };
+        frames.push(format!("A8R8G8B8_0x{flags:04X}"), one(0xfe20_2020, Some(&texture), draw));
     }
 }
 
@@ -310,11 +308,10 @@ pub(super) fn compressed(frames: &mut Frames) {
         let code = format.name();
         let of = |levels, words| images::of_words(TextureKind::TwoDimensional, format, size, levels, words);
         if size[0] == size[1] {
-            let mut canvas = Canvas::new(0xfe10_1010);
             let first = format.words(size[0], size[1]);
-            let texture = canvas.texture(&of(1, words[..first].to_vec()));
-            canvas.draw(pasted([192.0, 112.0, 448.0, 368.0], 0, nearest(texture), WHOLE));
-            frames.push(format!("{code}_{name}"), canvas.colors());
+            let texture = of(1, words[..first].to_vec());
+            let draw = pasted([192.0, 112.0, 448.0, 368.0], 0, nearest(0), WHOLE);
+            frames.push(format!("{code}_{name}"), one(0xfe10_1010, Some(&texture), draw));
         }
         let mut canvas = Canvas::new(0xfe10_1010);
         let texture = canvas.texture(&of(count, words));
