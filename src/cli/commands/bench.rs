@@ -100,7 +100,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ));
     }
     let measured = each(&scenes, context, |path| {
-        forget_peak_memory();
+        // The peak of resident memory starts anew, where the system allows it; where not, earlier scenes count.
+        let _ = std::fs::write("/proc/self/clear_refs", "5");
         let mut last = Instant::now();
         let mut lap = || {
             let now = Instant::now();
@@ -155,11 +156,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         arguments.format.get().print(|| text(&document), json)?;
     }
     end
-}
-
-/// Starts the peak of resident memory anew, where the system allows it; where not, earlier scenes count.
-fn forget_peak_memory() {
-    let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
 /// The most memory resident so far, in bytes.
