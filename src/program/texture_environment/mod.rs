@@ -6,12 +6,10 @@ mod combine;
 mod lower;
 mod text;
 
-use crate::Span;
-use crate::Spanned;
 use crate::finding::finding;
+use crate::{Span, Spanned};
 use ninebit::diagnostic::Diagnostic;
-use ninebit::state::TEXTURE_UNITS;
-use ninebit::state::{Scale, TextureFormat, named};
+use ninebit::state::{Scale, TEXTURE_UNITS, TextureFormat, named};
 
 pub use lower::{Context, lower};
 pub use text::parse;
