@@ -1,9 +1,8 @@
 //! The order of a pixel, read as lines: each operation of [`Algebra`] adds what the chip computes, under its rule and under the name that traces have for it.
 
 use ninebit::algebra::{Algebra, Site};
-use ninebit::combiner::mapping;
-use ninebit::combiner::output;
 use ninebit::combiner::registers::channel_name;
+use ninebit::combiner::{mapping, output};
 use ninebit::number::{Factor as _, Register as _, Sum as _};
 use ninebit::state::*;
 use ninebit::trace::Rule;

@@ -1,7 +1,7 @@
 //! TEX-1, TEX-6, TEX-7, TEX-9, TEX-18: from fetched words and weights to what a texture unit yields.
 
 use ninebit::number::Register as _;
-use ninebit::state::{AddressMode, Filter, MipFilter, TextureFormat, TextureKind};
+use ninebit::state::*;
 use ninebit::texture::filter::{bilinear, lerp};
 use ninebit::texture::format;
 use ninebit::texture::planned::PlannedUnit;
@@ -9,7 +9,6 @@ use ninebit::texture::planned::PlannedUnit;
 use crate::code::Code;
 use crate::input::{Input, Weight};
 use crate::number::{Number, Word};
-use ninebit::state::CompareFunction;
 
 /// What is asked of a unit that is sampled.
 #[derive(Clone, Copy, Debug)]

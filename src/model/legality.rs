@@ -8,10 +8,7 @@ pub mod texture;
 use super::place::{Part, Place, Places};
 use crate::diagnostic::{Diagnostic, only_nv2a};
 use crate::place::Span;
-use crate::state::{
-    Bias, Combiners, Component, FinalRegister, GeneralStage, InputMapping, Named, Portion, Profile, Register, Scale,
-    named,
-};
+use crate::state::*;
 
 /// What a language calls things.
 pub trait Notation {

@@ -42,7 +42,7 @@ pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expanded>,
         _ => None,
     };
     let inside = joined.as_ref().map_or(text, |joined| joined.text.as_str());
-    if style == Style::Combiners || !has_directive(inside) {
+    if style == Style::Combiners || !inside.lines().any(|line| line.trim_start().starts_with('#')) {
         return Ok(joined);
     }
     let place = |at: usize| joined.as_ref().map_or(at, |joined| joined.places.get(at).copied().unwrap_or(text.len()));
@@ -67,10 +67,6 @@ fn quoted(text: &str) -> bool {
         }
     }
     false
-}
-
-fn has_directive(text: &str) -> bool {
-    text.lines().any(|line| line.trim_start().starts_with('#'))
 }
 
 /// Bytes up to the end of the line.

@@ -6,10 +6,7 @@
 use super::finding::finding;
 use crate::Span;
 use ninebit::diagnostic::Diagnostic;
-use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Portion, Profile, Register, Scale, StageOrigin,
-};
+use ninebit::state::*;
 
 /// Where an argument comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,10 +7,7 @@ use super::{Part, Place, Places};
 use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::{Help, Notation, only_final};
-use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Portion, Profile, Register, Scale,
-};
+use ninebit::state::*;
 
 /// What is read of OpenGL for register combiners.
 static COMBINERS: Vocabulary = Vocabulary {

@@ -1,20 +1,15 @@
 //! The command `ninebit bench`: times of rendering scenes.
 #![allow(clippy::float_arithmetic, reason = "times")]
 
+use super::*;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Args;
 use ninebit::engine::{Reason, Renderer};
-use ninebit::shown;
-use ninebit::state::Named;
 use ninebit::threads;
 use ninebit_files::read::page;
-use serde::Serialize;
 
-use super::scene::{Failed, PolicyArguments, each, load};
-use super::{Context, EngineArguments, Failure, FormatArguments};
+use super::scene::{Failed, each};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -105,7 +100,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ));
     }
     let measured = each(&scenes, context, |path| {
-        forget_peak_memory();
+        // The peak of resident memory starts anew, where the system allows it; where not, earlier scenes count.
+        let _ = std::fs::write("/proc/self/clear_refs", "5");
         let mut last = Instant::now();
         let mut lap = || {
             let now = Instant::now();
@@ -160,11 +156,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         arguments.format.get().print(|| text(&document), json)?;
     }
     end
-}
-
-/// Starts the peak of resident memory anew, where the system allows it; where not, earlier scenes count.
-fn forget_peak_memory() {
-    let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
 /// The most memory resident so far, in bytes.

@@ -1,19 +1,12 @@
 //! The command `ninebit captures`: frames of the chip compared with what the model draws.
 
+use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
-use ninebit::engine::RenderOptions;
-use ninebit::shown;
-use ninebit_files::output::write_text;
-use ninebit_scene::image::{self, ImageLimits, Rgba};
 use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
-use serde_json::json;
 
-use super::{EngineArguments, Failure, Format};
 use ninebit_scene::diff::{self, Difference, Options};
 
 /// Frames of a real NV2A, drawn again.

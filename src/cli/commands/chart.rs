@@ -1,12 +1,10 @@
 //! The command `ninebit chart`: measures techniques and experiments, and writes their pages.
 
+use super::*;
 use std::cell::Cell;
-use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
 use ninebit::limits::EVALUATORS;
-use ninebit::shown;
-use ninebit_files::output::{OutputError, make_folder, write_below, write_file};
+use ninebit_files::output::{make_folder, write_below, write_file};
 use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_lab::chart::evaluators::Evaluator;
 use ninebit_lab::chart::page::{File, replace_section};
@@ -15,11 +13,8 @@ use ninebit_lab::chart::techniques::{self, TechniqueError};
 use ninebit_lab::chart::timing::Effort;
 use ninebit_lab::chart::{curves, evaluators, surfaces};
 use ninebit_lab::experiments;
-use ninebit_scene::SceneError;
 
 use super::scene::{apart, refused};
-use super::terminal::{self, Level, Progress};
-use super::{Context, Exit, Failure, Report};
 
 /// The page that sweeps share with what is not made here, and the markers of their section in it.
 const STABILITY: &str = "stability.md";

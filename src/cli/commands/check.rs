@@ -1,13 +1,7 @@
 //! The command `ninebit check`: reads scenes and prints every finding, without drawing.
 
+use super::*;
 use std::fmt::Write;
-
-use clap::Args;
-use ninebit::shown;
-use ninebit::state::{Named, Scene};
-use serde_json::json;
-
-use super::{Context, Cost, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

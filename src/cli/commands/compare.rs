@@ -1,14 +1,11 @@
 //! The command `ninebit compare`: a scene in integers against ideal arithmetic.
 
-use clap::{Args, ValueEnum};
-use ninebit_files::output::{Compression, Destination, encode_png};
+use super::*;
 use ninebit_report::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
 
 use super::engine::MAXIMUM_THREADS;
-use super::scene::{SceneArguments, chosen_target};
-use super::{Context, Exit, Failure, FormatArguments, Report, picture, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -2,18 +2,10 @@
 
 mod report;
 
-use std::path::{Path, PathBuf};
+use super::*;
 
-use clap::Args;
-use ninebit::engine::{self, FRAGMENTS, PixelTrace, RenderOptions};
-use ninebit::plan::Plan;
-use ninebit::shown;
-use ninebit_files::output::{Compression, Destination, encode_png};
+use ninebit::engine::{self, FRAGMENTS, PixelTrace};
 use ninebit_scene::diff::{self, Difference, Options};
-use ninebit_scene::image::{self, ImageLimits, Rgba};
-
-use super::scene::{PolicyArguments, chosen_target, load};
-use super::{Context, Failure, Format, picture, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

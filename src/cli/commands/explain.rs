@@ -1,10 +1,8 @@
 //! The command `ninebit explain`: a scene's program as equations, with its cost.
 
-use clap::Args;
+use super::*;
 use ninebit::engine;
 use ninebit_report::explain::{explain, explanation_json, explanation_text};
-
-use super::{Context, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -1,19 +1,13 @@
 //! The command `ninebit generate`: images that techniques need, as PNG files.
 
-use std::path::PathBuf;
+use super::*;
 
 use clap::builder::RangedI64ValueParser;
-use clap::{Args, Subcommand, ValueEnum};
-use ninebit_files::files;
-use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_scene::generate::cube::{self, Content};
 use ninebit_scene::generate::normal_map::{self, HeightChannel};
 use ninebit_scene::generate::sky::{self, HemisphereLight};
 use ninebit_scene::generate::{SIDES, dds, half_components, height_field, hemisphere, occlusion, power_table};
-use ninebit_scene::image::{self, ImageLimits, Rgba};
 use ninebit_scene::vector::{Vector, cross, dot, unit_or_zero};
-
-use super::{Failure, picture};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {

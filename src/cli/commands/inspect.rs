@@ -1,24 +1,17 @@
 //! The command `ninebit inspect`: a page that holds the model and a scene.
 
+use super::*;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use clap::Args;
-use ninebit::engine::{RenderOptions, render};
-use ninebit::limits::Limits;
-use ninebit::plan::Plan;
-use ninebit::shown;
-use ninebit::state::{POLICIES, Policies};
-use ninebit_files::output::{Compression, Destination, encode_png};
+use ninebit::engine::render;
+use ninebit::state::POLICIES;
 use ninebit_scene::assets::Gathered;
 use ninebit_scene::load_with;
-use serde_json::{Value, json};
+use serde_json::Value;
 
-use super::scene::{PolicyArguments, refused};
-use super::terminal::{self, Level};
-use super::{Context, Failure, Report, picture};
+use super::scene::refused;
 use crate::page;
 
 #[derive(Debug, Args)]

@@ -1,11 +1,9 @@
 //! The command `ninebit limits`: the sizes above which inputs are refused.
 
+use super::*;
 use std::fmt::Write;
 
-use ninebit::limits::{Limits, table};
-use ninebit_files::output::write_text;
-
-use super::exit::Failure;
+use ninebit::limits::table;
 
 /// Prints the limits, one a line: name, value, what is counted.
 pub(crate) fn run() -> Result<(), Failure> {

@@ -1,18 +1,14 @@
 //! The command `ninebit lower`: a program as a function of another language.
 
-use std::path::{Path, PathBuf};
+use super::*;
 
-use clap::{Args, ValueEnum};
-use ninebit::plan::{Plan, PlanOptions};
-use ninebit::shown;
-use ninebit::state::{Draw, Scene};
-use ninebit_files::output::{write_below, write_text};
+use ninebit::plan::PlanOptions;
+use ninebit_files::output::write_below;
 use ninebit_lower::{Function, Generic, Language, Named, Options, Sources, Textures};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
-use super::scene::{PolicyArguments, chosen_draws, load};
-use super::{Context, Failure, ProgramArguments};
+use super::scene::chosen_draws;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -1,18 +1,12 @@
 //! The command `ninebit measure`: how far pictures are from the ground truth.
 
-use std::path::{Path, PathBuf};
+use super::*;
 
-use clap::Args;
-use ninebit::plan::Plan;
-use ninebit::shown;
-use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_lab::accuracy::{accuracy_text, accuracy_value, measure};
 use ninebit_scene::generate::byte;
 use ninebit_scene::truth::{Truth, evaluate};
-use serde_json::json;
 
-use super::scene::{PolicyArguments, each, load_with_truth};
-use super::{Context, Failure, Format, picture};
+use super::scene::{each, load_with_truth};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -32,22 +32,31 @@ mod vectors;
 
 use std::ffi::OsString;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use ninebit::engine::RenderOptions;
+use ninebit::limits::Limits;
+use ninebit::plan::Plan;
 use ninebit::shown;
+use ninebit::state::{Draw, Named, Policies, Profile, Scene};
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
-use ninebit_files::output::OutputError;
+use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_json, write_text};
+use ninebit_scene::SceneError;
+use ninebit_scene::image::{self, ImageLimits, Rgba};
+use serde::Serialize;
+use serde_json::json;
 
 use arguments::{Context, Format, FormatArguments, named, one_of, up_to};
 use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
-use scene::{PolicyArguments, SceneArguments};
-use terminal::{ColorChoice, Level};
+use scene::{PolicyArguments, SceneArguments, chosen_target, load};
+use terminal::{ColorChoice, Level, Progress};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
 #[derive(Debug, Parser)]

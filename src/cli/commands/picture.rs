@@ -1,13 +1,9 @@
 //! Options that name an output of one format.
 
+use super::*;
 use std::ffi::OsStr;
-use std::path::Path;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use ninebit::shown;
-use ninebit_files::output::Destination;
-
-use super::exit::Failure;
 
 /// Endings that promise another format than the one that is written.
 const FORMATS: [&str; 27] = [

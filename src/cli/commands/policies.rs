@@ -1,11 +1,9 @@
 //! The command `ninebit policies`: rules with alternatives, and their values.
 
+use super::*;
 use std::fmt::Write;
 
 use ninebit::state::POLICIES;
-use ninebit_files::output::write_text;
-
-use super::exit::Failure;
 
 /// Prints every rule with alternatives; the default value is marked by a star.
 pub(crate) fn run() -> Result<(), Failure> {

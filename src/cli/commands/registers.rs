@@ -1,17 +1,12 @@
 //! The command `ninebit registers`: register words of a program, written and read.
 
+use super::*;
 use std::fmt::Write;
-use std::path::PathBuf;
 
-use clap::Args;
-use ninebit::shown;
-use ninebit::state::Named;
-use ninebit_files::output::{write_json, write_text};
 use ninebit_program::registers::{Description, describe, encode};
-use serde_json::{Value, json};
+use serde_json::Value;
 
-use super::scene::{PolicyArguments, chosen_draws, load};
-use super::{Context, Failure, Format, ProgramArguments};
+use super::scene::chosen_draws;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

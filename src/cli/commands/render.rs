@@ -1,18 +1,12 @@
 //! The command `ninebit render`: scenes to pictures.
 
+use super::*;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
 use ninebit::engine;
 use ninebit::frame::Surface;
-use ninebit::shown;
-use ninebit::state::{DepthFormat, Named};
-use ninebit_files::output::{Compression, Destination, OutputError, encode_grey_png, encode_png, write_json};
-use serde_json::json;
-
-use super::scene::{SceneArguments, chosen_target};
-use super::terminal::Progress;
-use super::{Context, Cost, EngineArguments, Failure, Format, picture};
+use ninebit::state::DepthFormat;
+use ninebit_files::output::encode_grey_png;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

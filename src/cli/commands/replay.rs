@@ -1,20 +1,12 @@
 //! The command `ninebit replay`: scenes against their expectations.
 
+use super::*;
 use std::ffi::OsStr;
 use std::fs::OpenOptions;
-use std::io::Write;
-use std::path::PathBuf;
 
 use crate::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
 use crate::shard::Shard;
-use clap::Args;
-use clap::builder::PossibleValuesParser;
-use ninebit::state::{Named, Policies, Profile};
-use ninebit_files::files;
-use ninebit_files::output::{Destination, OutputError, make_folder, write_stdout, write_text};
-
-use super::terminal::{self, Level, Progress};
-use super::{Context, EngineArguments, Exit, Failure, PolicyArguments, Report};
+use ninebit_files::output::{make_folder, write_stdout};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -7,8 +7,11 @@ pub(crate) fn install() {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    // Whoever starts the program may have it ignore some, as `nohup` does: these are left alone.
-    let ignored = ignored_signals();
+    // Whoever starts the program may have it ignore some, as `nohup` does: these are left alone. The first stands in the
+    // lowest bit; none where the system does not tell.
+    let status = ninebit_files::read::page(std::path::Path::new("/proc/self/status")).unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
     let wanted = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     // Without them the program works as well.
     let Ok(mut signals) = Signals::new(wanted) else { return };
@@ -20,14 +23,6 @@ pub(crate) fn install() {
         }
     };
     let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(wait);
-}
-
-/// The signals that this process ignores, the first in the lowest bit; none where the system does not tell.
-#[cfg(unix)]
-fn ignored_signals() -> u64 {
-    let status = ninebit_files::read::page(std::path::Path::new("/proc/self/status")).unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// Elsewhere temporary files of a program that is told to end stay: nobody reads them.

@@ -3,15 +3,11 @@
 mod layout;
 mod source;
 
-use std::ffi::OsString;
+use super::*;
 
-use clap::Args;
-use ninebit::shown;
-use ninebit::state::{BORDER_TEXELS, CUBE_FACES, Level, Named, Profile, TextureFormat, TextureKind};
-use ninebit_files::output::{Compression, Destination, encode_png, write_text};
+use ninebit::state::{BORDER_TEXELS, CUBE_FACES, Level, TextureFormat, TextureKind};
 use ninebit_scene::dds::FACES;
 
-use super::{Context, Failure, named, one_of, picture};
 use source::Opened;
 
 #[derive(Debug, Args)]

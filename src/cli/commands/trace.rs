@@ -1,12 +1,9 @@
 //! The command `ninebit trace`: every step that made a pixel.
 
-use clap::Args;
+use super::*;
 use ninebit::engine::{FRAGMENTS, TraceError, Tracer};
-use ninebit::state::Scene;
 use ninebit_files::output::write_stdout_with;
 use ninebit_report::{write_trace_json, write_trace_text, write_traces_json};
-
-use super::{Context, Failure, Format, SceneArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

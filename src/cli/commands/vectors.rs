@@ -8,13 +8,12 @@ mod export;
 mod list;
 mod sweep;
 
-use clap::Subcommand;
-use ninebit::state::{Named, Profile};
-use ninebit_vectors::error::VectorError;
-use ninebit_vectors::{Unit, units};
+use std::fmt::Write;
 
 use super::engine::MAXIMUM_THREADS;
-use super::{Exit, Failure, Format, Report, named, up_to};
+use super::*;
+use ninebit_vectors::error::VectorError;
+use ninebit_vectors::{BEHAVIOUR, Unit, pack, units};
 
 /// Conformance vectors: what the units of the chip yield, as tables.
 #[derive(Debug, Subcommand)]

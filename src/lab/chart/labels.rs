@@ -58,23 +58,11 @@ const MIN_LEADER: f64 = 14.0;
 /// Distances of a name from its mark.
 const DISTANCES: [f64; 8] = [8.0, 13.0, 20.0, 30.0, 42.0, 56.0, 74.0, 95.0];
 /// Directions, best first: right, left, above, below, and between them.
-const DIRECTIONS: [[f64; 2]; 16] = [
-    [1.0, 0.0],
-    [-1.0, 0.0],
-    [0.0, -1.0],
-    [0.0, 1.0],
-    [0.7, -0.7],
-    [0.7, 0.7],
-    [-0.7, -0.7],
-    [-0.7, 0.7],
-    [0.92, -0.38],
-    [0.92, 0.38],
-    [-0.92, -0.38],
-    [-0.92, 0.38],
-    [0.38, -0.92],
-    [0.38, 0.92],
-    [-0.38, -0.92],
-    [-0.38, 0.92],
+const DIRECTIONS: [[[f64; 2]; 4]; 4] = [
+    [[1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]],
+    [[0.7, -0.7], [0.7, 0.7], [-0.7, -0.7], [-0.7, 0.7]],
+    [[0.92, -0.38], [0.92, 0.38], [-0.92, -0.38], [-0.92, 0.38]],
+    [[0.38, -0.92], [0.38, 0.92], [-0.38, -0.92], [-0.38, 0.92]],
 ];
 /// Names are moved until nothing gets better, at most so often.
 const ROUNDS: usize = 12;
@@ -117,7 +105,7 @@ pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> 
             };
             let mut best: Option<(f64, Rect)> = None;
             for distance in DISTANCES {
-                for (direction, toward) in DIRECTIONS.iter().enumerate() {
+                for (direction, toward) in DIRECTIONS.as_flattened().iter().enumerate() {
                     let place = beside(&marks[n], *toward, distance);
                     let cost = cost(&place, distance, direction);
                     if best.is_none_or(|(least, _)| cost < least) {

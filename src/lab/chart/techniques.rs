@@ -1,8 +1,7 @@
 //! Scenes that say what their picture ought to show, found in folders: how exact each is, how fast, and at what cost.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::timing::{Effort, Spread, frames};
 use crate::accuracy::{self, Accuracy};

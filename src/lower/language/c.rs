@@ -1,9 +1,6 @@
 //! C99: how operations are written, and the helpers that they need.
 
-use super::{Call, Named, ROUNDING, Syntax, Text, comment, needs};
-use crate::code::{Kind, Line};
-use crate::input::Input;
-use crate::pixel::Result;
+use super::*;
 
 pub(super) struct C99;
 

@@ -1,9 +1,6 @@
 //! GLSL 3.30 and GLSL ES 3.00: how operations are written, and the helpers that they need.
 
-use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
-use crate::code::{Kind, Line};
-use crate::input::Input;
-use crate::pixel::Result;
+use super::*;
 
 pub(super) struct Glsl;
 

@@ -1,9 +1,7 @@
 //! Verilog-2001: a combinational module a function.
 
-use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter};
-use crate::code::{Kind, Line, Range};
-use crate::input::Input;
-use crate::pixel::Result;
+use super::*;
+use crate::code::Range;
 
 pub(super) struct Verilog;
 

@@ -1,9 +1,6 @@
 //! WGSL: how operations are written, and the helpers that they need.
 
-use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
-use crate::code::Line;
-use crate::input::Input;
-use crate::pixel::Result;
+use super::*;
 
 pub(super) struct Wgsl;
 

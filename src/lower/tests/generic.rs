@@ -419,22 +419,9 @@ fn rows() -> Result<(), Failed> {
     let text = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT };
     let folder = tempfile::tempdir()?;
     compile(&text, "-O1", |source| source, folder.path())?;
-    let units = [
-        "input-mapping",
-        "product",
-        "sum",
-        "dot-product",
-        "mux",
-        "scale-bias",
-        "general-stage",
-        "alpha-portion",
-        "two-stages",
-        "final-combiner",
-        "alpha-test",
-        "blend",
-        "surface-store",
-    ];
-    for name in units {
+    let units = "input-mapping product sum dot-product mux scale-bias general-stage alpha-portion two-stages \
+        final-combiner alpha-test blend surface-store";
+    for name in units.split(' ') {
         let unit = units::by_name(name).unwrap();
         let writer = Writer::new(Contents { unit, profile: text.chip, level, seed: 1 });
         let (mut pixels, mut checks, mut all) = (Vec::new(), Vec::new(), 0);

@@ -6,8 +6,7 @@ use super::registers::{self, Registers, channel_name};
 use crate::algebra::{Algebra, Site};
 use crate::number::Lane;
 use crate::state::{FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
-use crate::trace::Silent;
-use crate::trace::{Observer, Operand, Rule, Step, report};
+use crate::trace::{Observer, Operand, Rule, Silent, Step, report};
 
 /// The final combiner with what the plan found out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,9 +8,7 @@ use super::registers::Registers;
 use super::report;
 use crate::algebra::{Algebra, Site};
 use crate::number::{Factor, Lane};
-use crate::state::{
-    CombinerInput, Component, DotRounding, MuxSelect, OutputRounding, Policies, Portion, Register, SumRounding,
-};
+use crate::state::*;
 use crate::trace::{Decision, Observer, Rule};
 
 /// CMB-8: the sum of three full-width products, not yet rounded.

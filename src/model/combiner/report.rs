@@ -6,10 +6,7 @@ use super::mapping;
 use super::output::{biased, rounded_after, scaled};
 use super::registers::{self, Registers, channel_name};
 use crate::number::{Lane, Sum};
-use crate::state::{
-    Bias, DotRounding, MuxNegative, MuxSelect, Named, OutputRounding, Policies, Portion, Register, RegisterFloor,
-    Scale, SumRounding,
-};
+use crate::state::*;
 use crate::trace::{Observer, Step, plain, report};
 
 const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];

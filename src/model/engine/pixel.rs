@@ -12,10 +12,7 @@ use crate::raster::ideal;
 use crate::raster::interpolate::{self, Floored, Sample};
 use crate::raster::setup::{Triangle, centres};
 use crate::rop::{blend, stencil, surface};
-use crate::state::{
-    Cull, DepthTest, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor, depth_of, depth_stencil,
-    stencil_of,
-};
+use crate::state::*;
 use crate::texture::chain::Chain;
 use crate::texture::coordinates::{self, Coordinates, Interpolated};
 use crate::texture::planned::{Image, PlannedUnit};

@@ -9,10 +9,7 @@ use crate::raster::fog::{FogFactor, FogPlane, FogStep};
 use crate::raster::interpolate::{Floored, Sample};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
-use crate::state::{
-    DepthFormat, DepthTest, FogFunction, FogMode, Named, PolygonOffset, Profile, Register, StencilOperation,
-    StencilTest, VertexColor, VertexDepths,
-};
+use crate::state::*;
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, part, plain, report};
 use crate::vertex::fog as vertex_fog;
 

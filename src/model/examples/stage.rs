@@ -3,9 +3,7 @@
 //! `cargo run -p ninebit --example stage`
 
 use ninebit::combiner::registers::Registers;
-use ninebit::state::{
-    CombinerInput, Combiners, Component, FinalRegister, GeneralStage, InputMapping, Policies, Portion, Register,
-};
+use ninebit::state::*;
 
 fn main() {
     let input = |register| CombinerInput { register, mapping: InputMapping::ExpandNormal, component: Component::Rgb };

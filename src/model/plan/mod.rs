@@ -17,7 +17,6 @@ use crate::place::Span;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::{stencil, surface};
-use crate::state::named;
 use crate::state::*;
 use crate::texture::planned::PlannedUnit;
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};

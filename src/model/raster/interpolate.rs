@@ -94,7 +94,8 @@ impl<'a> Sample<'a> {
             _ => (ns * scale * nq.signum()).div_euclid(nq.abs()),
         };
         let (loss_s, loss_q) = (self.shortfall(s), self.shortfall(q));
-        let unit = self.short_unit();
+        // What a shortfall is divided by: P_1 2^24.
+        let unit = i128::from(self.triangle.p[1]) << SHORT_BITS;
         let (numerator, denominator) = (ns * unit - loss_s, nq * unit - loss_q);
         // Not far from the quotient, or beyond the limit as it is.
         let near = exact.clamp(-2 * limit, 2 * limit);
@@ -159,11 +160,6 @@ impl<'a> Sample<'a> {
     #[inline(always)]
     pub fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
         exact && !self.triangle.exact_reciprocal && shortfall() > 0
-    }
-
-    /// What a [shortfall](Self::shortfall) is divided by: P_1 2^24.
-    pub fn short_unit(&self) -> i128 {
-        i128::from(self.triangle.p[1]) << SHORT_BITS
     }
 }
 

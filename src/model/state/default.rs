@@ -1,10 +1,6 @@
 //! What is left out: the state that a scene file has without saying so, and a draw that code describes by what differs.
 
-use super::{
-    Combiners, Component, Cull, Draw, FinalCombiner, FinalInput, FinalRegister, Fog, FrontFace, GeneralStage,
-    MuxSelect, Positions, Profile, ProvokingVertex, Scene, ShadeModel, ShaderStage, SurfaceFormat, TEXTURE_UNITS,
-    Target, Topology, Vertices,
-};
+use super::*;
 use std::sync::Arc;
 
 impl Default for Scene {

@@ -1,7 +1,6 @@
 //! Policies: rules that no capture and no document decides, with the alternatives as selectable values.
 
-use super::Named;
-use super::named;
+use super::{Named, named};
 
 named! {
     /// NUM-3: the lowest value that a register holds.

@@ -2,14 +2,11 @@
 
 use super::coordinates::{Coordinates, Interpolated, quad_samples, real_coordinate};
 use super::dependent::{Dependent, Moved, QuadTargets, Target};
-use super::dot;
 use super::filter::nearest;
 use super::planned::{Image, PlannedUnit};
 use super::real::{self, RealColor, RealTarget};
-use super::shader;
-use super::shader_report as report;
 use super::stage::{Color, Dot, PlannedShader, ShaderSetup, StageSetup};
-use super::unit;
+use super::{dot, shader, shader_report as report, unit};
 use crate::number::{Lane, convert};
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;

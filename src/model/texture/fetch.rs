@@ -3,9 +3,8 @@
 //! A texel has up to four *lanes*: R, G, B, A, or the 16-bit halves of the formats that are filtered at 16 bits.
 
 use super::address::address;
-use super::compressed;
-use super::format;
 use super::planned::{Image, PlannedUnit};
+use super::{compressed, format};
 use crate::number::Lane;
 use crate::state::{AddressMode, BORDER_TEXELS, Level, Named, TextureFormat, TextureKind};
 use crate::trace::{Observer, Rule, Work};

@@ -10,10 +10,7 @@ use crate::number::Lane;
 use crate::raster::attribute::Attribute;
 use crate::raster::interpolate::{Floored, Sample};
 use crate::rop::blend::compare_operation;
-use crate::state::{
-    AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, ShadowComparison, ShadowReference,
-    TextureFormat, TextureKind, depth_of,
-};
+use crate::state::*;
 use crate::trace::{Observer, Operand, Step, TexelAddress, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.

@@ -40,16 +40,13 @@ pub fn level(
         (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect()
     } else if format == TextureFormat::P8 {
         let mask = palette.len().saturating_sub(1);
-        let entry = |index: &u32| palette.get(*index as usize & mask).map_or([0; 4], |word| of_palette(*word));
+        let color = |word: &u32| expand(TextureFormat::A8R8G8B8, *word);
+        let entry = |index: &u32| palette.get(*index as usize & mask).map_or([0; 4], color);
         words.iter().map(entry).collect()
     } else {
         words.iter().map(|word| expand(format, *word)).collect()
     };
     Some(Shown { width, height, pixels })
-}
-
-fn of_palette(word: u32) -> [u8; 4] {
-    expand(TextureFormat::A8R8G8B8, word)
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::address::address;
 use super::anisotropy::{self, MAX_TAPS};
-use super::color_key;
 use super::coordinates::{SampleCoordinates, real_coordinate};
 use super::cube::Face;
 use super::fetch::{Slice, Texel, lanes};
@@ -10,7 +9,7 @@ use super::filter::{bilinear, lerp, linear, nearest};
 use super::lod::{self, Choice};
 use super::planned::{Image, PlannedUnit};
 use super::report::{Report, filtered};
-use super::shadow;
+use super::{color_key, shadow};
 use crate::number::Lane;
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::{Filter, Level, TextureKind};

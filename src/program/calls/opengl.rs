@@ -94,11 +94,6 @@ pub(crate) fn is_vector(function: &str) -> bool {
     bare_call(function).ends_with('v')
 }
 
-/// Whether its values are whole numbers.
-fn is_integral(function: &str) -> bool {
-    bare_call(function).ends_with("iv")
-}
-
 fn bare_call(function: &str) -> &str {
     ["NV", "ARB", "EXT"].iter().find_map(|end| function.strip_suffix(end)).unwrap_or(function)
 }
@@ -113,7 +108,7 @@ pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) 
         reader.findings.push(finding("NB0205", value.span.clone(), message, "four numbers are needed", HELP));
         return None;
     };
-    let integral = is_integral(function);
+    let integral = bare_call(function).ends_with("iv");
     let bytes: Option<Vec<u8>> = values.iter().take(5).map(|value| byte(value, integral)).collect();
     match bytes.as_deref() {
         Some(&[r, g, b, a]) => Some([r, g, b, a]),

@@ -1,7 +1,6 @@
 //! The rules of the language, as its validator has them.
 
 use super::*;
-use crate::Span;
 use crate::finding::finding;
 
 /// Arithmetic instructions, or pairs of them, that a shader can have.

@@ -3,7 +3,6 @@
 use super::constants::{Pool, Signed, signed, values};
 use super::scratch::{Set, contains, hardware, live};
 use super::*;
-use crate::Span;
 use crate::cascade::{End, final_combiner, too_many_stages};
 use crate::finding::finding;
 use ninebit::state::{

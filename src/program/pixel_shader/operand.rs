@@ -1,9 +1,7 @@
 //! Operands of instructions: registers with what stands around them, and numbers.
 
 use super::parser::Parser;
-use super::words;
 use super::*;
-use crate::Span;
 use crate::lexer::Kind;
 use ninebit::diagnostic::shorten;
 

@@ -1,8 +1,7 @@
 //! From text to instructions.
 
-use super::words::{self, Word};
+use super::words::Word;
 use super::*;
-use crate::Span;
 use crate::cursor::Cursor;
 use crate::finding::{finding, foreign, header};
 use crate::lexer::{Kind, Language};

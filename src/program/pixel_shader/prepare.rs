@@ -3,9 +3,8 @@
 use super::constants::Pool;
 use super::factor::Need;
 use super::lower::{Lowering, TEXTURES, Written};
-use super::print;
 use super::scratch::{Set, free};
-use super::{Arithmetic, Operation};
+use super::{Arithmetic, Operation, print};
 use crate::Span;
 use crate::cascade::{one, too_many_constants};
 use crate::finding::finding;

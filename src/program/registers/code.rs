@@ -1,9 +1,7 @@
 //! Fields of single words: codes of registers, mappings and operations, and what a chip takes.
 
 use super::{Refusal, Word, layout};
-use ninebit::state::{
-    Bias, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Portion, Profile, Register, Scale,
-};
+use ninebit::state::*;
 
 /// The code of a register: its number among all, but for 6 and 7, which are none.
 pub fn register_code(register: impl Into<FinalRegister>) -> u32 {

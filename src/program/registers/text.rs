@@ -1,6 +1,6 @@
 //! Register words as text: lines of a name or a method and its words, as drivers, logs of pushbuffers and the Xbox's shader definitions have them.
 
-use crate::Span;
+use crate::{Part, Place, Places, Span};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Combiners, Named, Profile};
 
@@ -8,7 +8,6 @@ use super::{Refusal, RegisterWords, Word, decode, word_of};
 use crate::cursor::Cursor;
 use crate::finding::finding;
 use crate::lexer::{Kind, Language};
-use crate::{Part, Place, Places};
 
 /// Words, and where each stands in a text.
 #[derive(Clone, Debug)]

@@ -2,9 +2,8 @@
 
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{find, registers};
-use crate::Place;
-use crate::Span;
 use crate::finding::finding;
+use crate::{Place, Span};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 

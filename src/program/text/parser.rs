@@ -1,13 +1,12 @@
 //! What all statements of the language share: the place in the text, findings, registers, signs.
 
 use super::words::{find, registers};
-use crate::Places;
-use crate::Span;
 use crate::cursor::Cursor;
 pub(super) use crate::cursor::{GivenUp, Read};
 use crate::finding::{finding, foreign, header};
 use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
+use crate::{Places, Span};
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::state::{Component, FinalRegister};
 

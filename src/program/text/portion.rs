@@ -2,9 +2,8 @@
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, find, registers};
-use crate::Span;
 use crate::finding::finding;
-use crate::{Part, Place};
+use crate::{Part, Place, Span};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::only_final;
 use ninebit::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};

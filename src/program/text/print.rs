@@ -3,9 +3,7 @@
 use std::fmt::Write;
 
 use super::words::{final_operand, operand, register, scale};
-use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, GeneralStage, MuxSelect, Portion, Register,
-};
+use ninebit::state::*;
 
 /// The program as text. What it gives reads back as the same state, legal or not, if there is a general stage.
 pub fn print(combiners: &Combiners) -> String {

@@ -1,11 +1,9 @@
 //! Units in the modes Combine and Combine4.
 
 use super::lower::Own;
-use super::{BaseFormat, EnvironmentSource, Function, Half, Mode, Operand, Unit};
+use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, Equation, Source};
-use crate::finding::finding;
-use ninebit::diagnostic::Diagnostic;
-use ninebit::state::{Named, Scale, StageOrigin, TEXTURE_UNITS};
+use ninebit::state::{Named, StageOrigin};
 
 impl Function {
     /// Whether it is a dot product.

@@ -1,11 +1,8 @@
 //! From the texture environment to general stages: units, base formats and the modes that are older than combining.
 
-use super::combine;
-use super::{BaseFormat, Mode, TextureEnvironment, Unit};
+use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
-use crate::finding::finding;
-use ninebit::diagnostic::Diagnostic;
-use ninebit::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
+use ninebit::state::{Named, Profile, StageOrigin};
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,9 +6,10 @@ mod combine;
 mod lower;
 mod text;
 
-use crate::Span;
-use crate::Spanned;
-use ninebit::state::{Scale, TextureFormat, named};
+use crate::finding::finding;
+use crate::{Span, Spanned};
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Scale, TEXTURE_UNITS, TextureFormat, named};
 
 pub use lower::{Context, lower};
 pub use text::parse;

@@ -1,13 +1,8 @@
 //! The texture environment as pasted text: calls of glTexEnv, with the extensions ARB_texture_env_combine and NV_texture_env_combine4.
 
-use super::{Half, TextureEnvironment, Unit};
-use crate::Span;
-use crate::Spanned;
+use super::*;
 use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, table, whole};
 use crate::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
-use crate::finding::finding;
-use ninebit::diagnostic::Diagnostic;
-use ninebit::state::{Scale, TEXTURE_UNITS};
 
 /// What is read of OpenGL for the texture environment.
 static ENVIRONMENT: Vocabulary = Vocabulary {

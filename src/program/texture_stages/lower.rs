@@ -1,10 +1,6 @@
 //! From texture stages to general stages.
 
-use super::{
-    ArgumentSource, Generation, Half, Operation, PROJECTED, ResultArgument, StageArgument, TextureStage, TextureStages,
-};
-use crate::Span;
-use crate::Spanned;
+use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;

@@ -7,8 +7,7 @@ mod lower;
 mod operation;
 mod text;
 
-use crate::Span;
-use crate::Spanned;
+use crate::{Span, Spanned};
 use ninebit::state::named;
 
 pub use lower::{Context, Lowered, UnitChange, lower};

@@ -3,9 +3,7 @@
 mod draw_state;
 mod value;
 
-use super::{CoordinateIndex, STAGES, TextureStages};
-use crate::Span;
-use crate::Spanned;
+use super::*;
 use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary, out_of_range};
 use crate::finding::finding;
 use draw_state::{DrawStates, OTHER_STATES};

@@ -5,9 +5,7 @@ use super::{InstructionPlaces, Written, flow};
 use crate::Span;
 use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
-use ninebit::vertex::shader::{
-    CONSTANTS, DestinationRegister, INPUTS, Instruction, Opcode, SLOTS, SourceRegister, TEMPORARIES,
-};
+use ninebit::vertex::shader::*;
 
 /// What is wrong with instructions by themselves.
 pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {

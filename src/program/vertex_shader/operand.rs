@@ -5,9 +5,7 @@ use crate::Span;
 use crate::cursor::{GivenUp, Read};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
-use ninebit::vertex::shader::{
-    CONSTANTS, COORDINATES, Destination, DestinationRegister, INPUTS, Source, SourceRegister, TEMPORARIES,
-};
+use ninebit::vertex::shader::*;
 
 /// Registers by their letters in lower case: how the documents write them, how many there are, what they are.
 const FAMILIES: &[(&str, &str, usize, &str)] = &[

@@ -2,9 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "statistics of errors")]
 
 use super::meter::Counts;
-use super::{
-    ChannelError, CompareOptions, Comparison, Decided, Histogram, Mode, RuleError, Statistics, WorstPixel, bound,
-};
+use super::*;
 use ninebit::engine::pixel::DepthStencil;
 use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;

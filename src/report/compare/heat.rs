@@ -94,26 +94,14 @@ pub fn heat_classes() -> Vec<(&'static str, [u8; 3])> {
 impl Comparison {
     /// The colours of the pixels' errors, row by row, without a legend.
     pub fn heat(&self) -> Vec<[u8; 4]> {
-        let shown = |(at, errors): (usize, &[f32; 4])| {
-            let [r, g, b] = color(errors, self.diverged_at(at));
+        let shown = |errors: &[f32; 4]| {
+            let largest = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(e.abs())).reduce(f64::max);
+            // Infinite marks a pixel that was drawn and left out; NaN is one that nothing drew.
+            let [r, g, b] = if errors[0].is_infinite() { DIVERGED } else { largest.map_or(EMPTY, heat_color) };
             [r, g, b, 255]
         };
-        self.errors.iter().enumerate().map(shown).collect()
+        self.errors.iter().map(shown).collect()
     }
-
-    /// Whether the pixel was drawn and left out.
-    fn diverged_at(&self, at: usize) -> bool {
-        // Infinite marks it; NaN is a pixel that nothing drew.
-        self.errors[at][0].is_infinite()
-    }
-}
-
-fn color(errors: &[f32; 4], diverged: bool) -> [u8; 3] {
-    if diverged {
-        return DIVERGED;
-    }
-    let largest = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(e.abs())).reduce(f64::max);
-    largest.map_or(EMPTY, heat_color)
 }
 
 /// Digits and the few signs of the legend, 3 x 5 dots, row by row.

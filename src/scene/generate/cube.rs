@@ -4,11 +4,10 @@
 //! 0..255 for 0..1; alpha is 255.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
-use super::byte;
 use super::normal_map::encode;
 use super::sky::HemisphereLight;
-use crate::image::Rgba;
-use crate::vector::{Vector, minus, plus, unit_or_zero};
+use super::*;
+use crate::vector::{minus, plus, unit_or_zero};
 use ninebit::state::Named;
 use ninebit::texture::cube::Face;
 

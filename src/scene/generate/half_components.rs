@@ -4,9 +4,8 @@
 //! negative. All four channels of a texel hold the half component.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / in a fixed order, rounded")]
 
-use super::byte;
 use super::normal_map::decode;
-use crate::image::Rgba;
+use super::*;
 
 /// The half component of each texel of a normal map: `axis` is 0 for x, 1 for y, 2 for z.
 pub fn of_normals(normals: &Rgba, axis: usize, negative: bool) -> Rgba {

@@ -4,9 +4,8 @@
 //! rounding of their edges, and weathering (fractal value noise, which also bends the edges of the cells). All of it is
 //! periodic, so the image tiles without a seam.
 
-use super::SIDES;
 use super::hash::hash;
-use crate::image::Rgba;
+use super::*;
 
 /// One in the 16.16 fixed-point numbers used here.
 const ONE: i64 = 1 << 16;

@@ -9,10 +9,9 @@
 //! the sphere, before they are brought back to unit length and become bytes; the flat surface around it stays flat.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
-use super::SIDES;
 use super::hash::hash;
 use super::normal_map::encode;
-use crate::image::Rgba;
+use super::*;
 
 /// The strongest noise. No normal vanishes up to here: noise is at most 0.5 sqrt 3 < 1 long.
 pub const MAXIMUM_NOISE: f64 = 0.5;

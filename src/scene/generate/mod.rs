@@ -3,6 +3,8 @@
 //!
 //! Deterministic: the same arguments give the same bytes on every machine.
 
+use crate::image::Rgba;
+use crate::vector::Vector;
 pub mod cube;
 pub mod dds;
 pub mod half_components;

@@ -11,8 +11,7 @@
 //! the height.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
-use crate::image::Rgba;
-use crate::vector::Vector;
+use super::*;
 
 /// Which channel of the input is the height, 0 the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,9 +4,8 @@
 //! surface weighs the sky by the cosine, so what is left above a horizon at angle h is cos^2 h of a direction's share.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
-use super::byte;
 use super::normal_map::{Options, height_at};
-use crate::image::Rgba;
+use super::*;
 use crate::mesh::circle;
 
 /// Directions about a texel.

@@ -3,8 +3,7 @@
 //! R, G and B are v to the power n, alpha is u, taken at the centres of texels: u = (column + 1/2) / width, v = (row + 1/2) / height.
 #![allow(clippy::float_arithmetic, reason = "input data: f64 products in a fixed order, rounded")]
 
-use super::byte;
-use crate::image::Rgba;
+use super::*;
 
 /// Sides of a table.
 pub const TABLE_SIDES: std::ops::RangeInclusive<u32> = 1..=4096;

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "NUM-0: constants given as floats become bytes here")]
 
 use super::*;
-use crate::raw::{Few, Numbers, Tuple};
+use crate::raw::Few;
 
 /// A constant colour: four bytes.
 pub(super) fn constant<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<[u8; 4]> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::api_program::Around;
-use super::program::{Form, ProgramLanguage, in_file};
+use super::program::{Form, in_file};
 use super::unit::Units;
 use super::*;
 

@@ -1,7 +1,7 @@
 //! Textures: kind, format, and how faces and levels are put together.
 
-use super::texture_levels::{self, Wanted};
-use super::texture_source::{self, Given, Request, Variant, only};
+use super::texture_levels::Wanted;
+use super::texture_source::{Given, Request, Variant, only};
 use super::*;
 use crate::names::{Index, Textures};
 use crate::reader::Entry;

@@ -1,6 +1,6 @@
 //! Levels of a texture: those of its file, listed ones, or made from level 0.
 
-use super::texture_source::{self, Given, Request, Variant};
+use super::texture_source::{Given, Request, Variant};
 use super::*;
 use ninebit_files::texels;
 

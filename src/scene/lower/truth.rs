@@ -1,7 +1,7 @@
 //! What the picture ought to show: light, eye, material and surface of the scene's `truth`.
 #![allow(clippy::float_arithmetic, reason = "describes a float64 reference; nothing of this is stored")]
 
-use super::attribute::{self, Light as Place};
+use super::attribute::Light as Place;
 use super::draw::Drawn;
 use super::texture_source::only;
 use super::*;
@@ -11,7 +11,7 @@ use crate::image::{self, ImageLimits, Rgba};
 use crate::reader::Name;
 use crate::truth::{
     Equation, Eye, Field, HemisphereLight, Interpolated, Light, Material, NormalHolder, NormalSource, ShadingNormal,
-    Truth, real_color,
+    real_color,
 };
 use crate::vector::wide;
 

@@ -19,7 +19,9 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
     let mut viewport = viewport(reader, &fields.viewport, target);
     if fields.clip_depth(reader) == Some(1) {
-        depth_from_zero(&mut viewport);
+        // Depth 0 of normalised coordinates becomes `near`: the viewport begins as far before that as it ends behind it.
+        viewport.near = 2.0 * viewport.near - viewport.far;
+        viewport.clip_depth = ClipDepth::ZeroToOne;
     }
     let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let program = program(reader, &fields, opening);
@@ -50,12 +52,6 @@ fn origin(shader: &VertexShader) -> VertexProgram {
         slots: shader.slots(),
         writes_fog: shader.written(DestinationRegister::Fog) != 0,
     }
-}
-
-/// A viewport that maps depth 0 of normalised coordinates to `near`: it begins as far before that as it ends behind it.
-fn depth_from_zero(viewport: &mut Viewport) {
-    viewport.near = 2.0 * viewport.near - viewport.far;
-    viewport.clip_depth = ClipDepth::ZeroToOne;
 }
 
 fn program<'a>(

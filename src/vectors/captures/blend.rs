@@ -1,18 +1,7 @@
 //! ROP-1 to ROP-6: blend equations with all factors, surface formats, the alpha test and the colour mask.
 
-use super::draws::{
-    Canvas, OVER, WHOLE, abgr, corners, draw, nearest, pasted, places, rectangle, sized, unprojected, vertex,
-    without_alpha,
-};
-use super::images::{self, checker, four_gradients, solid};
-use super::{Drawn, Frames, named};
-use ninebit::rop::surface;
-use ninebit::state::Named as _;
-use ninebit::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, Draw, FinalRegister, SurfaceFormat, Target, Texture, TextureFormat,
-    TextureKind, Topology, VertexColor,
-};
-use std::sync::Arc;
+use super::*;
+use images::{four_gradients, solid};
 
 /// Names of [`BlendEquation::ALL`] in those of frames.
 const EQUATIONS: &str = "ADD SUB REVSUB MIN MAX SADD SREVSUB";

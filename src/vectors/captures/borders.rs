@@ -1,12 +1,8 @@
 //! TEX-7: addressing, border colours and border texels.
 
-use super::draws::{
-    Canvas, FETCHED, WHOLE, abgr, argb, far, nearest, pasted, places, sized, unprojected, without_alpha,
-};
-use super::images::{self, Color, Image, checker};
 use super::texel_formats::texture;
-use super::{Frames, space};
-use ninebit::state::*;
+use super::*;
+use images::{Color, Image};
 
 /// Eight colours that go on from row to row, in fields of so many texels.
 fn blocks(colors: [Color; 8], size: u32) -> impl Image {

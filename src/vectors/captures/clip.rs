@@ -1,8 +1,6 @@
 //! CLP-1, CLP-2: clips on the frame buffer, on a texture that is drawn into, and on narrower views of the frame buffer.
 
-use super::draws::{frame_buffer, nearest, pasted, rectangle, scene, target_texture, without_alpha};
-use super::{Drawn, Frames, SIZE, Shown};
-use ninebit::state::{Draw, FinalRegister, Rectangle, SurfaceFormat, Target, TextureFormat, VertexColor, WindowClip};
+use super::*;
 
 /// Column, row, width and height.
 type Area = [u32; 4];

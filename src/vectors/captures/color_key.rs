@@ -1,8 +1,6 @@
 //! KEY-1: four units, each with a key and with an opposite that shares its alpha, in every mode.
 
-use super::draws::{FETCHED, argb, corners, frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
-use super::{Drawn, Frames};
-use ninebit::state::*;
+use super::*;
 
 /// The keys of the four units, A8R8G8B8.
 const KEYS: [u32; 4] = [0xf000_00ff, 0xf1ff_00ff, 0xf280_0080, 0xf3ff_0000];

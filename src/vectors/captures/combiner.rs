@@ -1,11 +1,6 @@
 //! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of Combiner, in the combiner language. A part of a colour c is the byte that 255 c is cut to.
 
-use super::draws::{
-    Canvas, WHOLE, abgr, corners, draw, nearest, pasted, places, program, sized, unprojected, vertex, without_alpha,
-};
-use super::images::{self, checker};
-use super::{Frames, space};
-use ninebit::state::{Draw, FinalRegister, MuxSelect, TextureFormat, Topology, Vertex, VertexColor};
+use super::*;
 
 /// The draw with a program.
 fn with(draw: &Draw, text: &str) -> Draw {

@@ -1,8 +1,6 @@
 //! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, three large ones behind them, in four formats, over 49 cleared depths.
 
-use super::draws::{corners, draw, frame_buffer, in_steps, scene};
-use super::{Drawn, Frames, Shown};
-use ninebit::state::{CompareFunction, DepthBuffer, DepthFormat, DepthRange, Draw, Topology, Vertex, VertexColor};
+use super::*;
 
 /// Formats, the words of 16 or 24 in the names of frames, and the deepest word that the programs use.
 const FORMATS: [(DepthFormat, &str, u32); 4] = [
@@ -87,9 +85,7 @@ pub(super) fn formats(frames: &mut Frames) {
             for compressed in ["n", "y"] {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
-                let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
-                frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
-                frames.push(name, drawn(Shown::Colors));
+                frames.both(&name, scene.clone());
             }
         }
     }

@@ -1,10 +1,6 @@
 //! DEP-4 to DEP-6: depths beyond a range that are dropped or limited, triangles that are dropped whole.
 
-use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, nearest, placed};
-use super::images::{self, checker};
-use super::primitives::FAR_DEPTHS;
-use super::{Frames, space};
-use ninebit::state::*;
+use super::*;
 
 /// The deepest depth of 24 bits.
 const DEEPEST: f32 = 16_777_215.0;
@@ -136,10 +132,8 @@ pub(super) fn controls(frames: &mut Frames) {
             for (buffer, w_buffer) in [("", false), ("WBuf_", true)] {
                 let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
                 let depth_test = in_steps(CompareFunction::Always, false, Some(range));
-                let mut canvas = Canvas::new(0xff22_2228);
-                canvas.frame_buffer().depth = Some(FAR_DEPTHS);
-                canvas.draw(Draw { depth_test: Some(DepthTest { w_buffer, ..depth_test }), ..quads.clone() });
-                let drawn = canvas.colors();
+                let depth_test = Some(DepthTest { w_buffer, ..depth_test });
+                let drawn = one(0xff22_2228, None, Draw { depth_test, ..quads.clone() });
                 // A bit about w changes nothing here.
                 for suffix in ["", "_IgnW"] {
                     frames.push(format!("Ctrl_{buffer}{prefix}{mode}{suffix}"), drawn.clone());

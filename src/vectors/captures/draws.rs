@@ -143,6 +143,17 @@ pub(super) fn argb(word: u32) -> [u8; 4] {
     [r, g, b, a]
 }
 
+/// A depth buffer that is cleared to the farthest.
+pub(super) const FAR_DEPTHS: DepthBuffer =
+    DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
+
+/// A draw alone, and its texture. Depths that it tests begin as the farthest.
+pub(super) fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
+    let depth = draw.depth_test.is_some().then_some(FAR_DEPTHS);
+    let target = Target { depth, ..frame_buffer(clear) };
+    Drawn::colors(scene(vec![target], texture.into_iter().cloned().collect(), vec![draw]))
+}
+
 /// What is drawn, in which textures and targets stand under the numbers that they are given here.
 #[derive(Default)]
 pub(super) struct Canvas {

@@ -1,9 +1,6 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::draws::{Canvas, corners, draw, in_steps, program, sized, unprojected};
-use super::primitives::FAR_DEPTHS;
-use super::{Drawn, Frames, named, space};
-use ninebit::state::*;
+use super::*;
 use ninebit::vertex::fog::passed;
 
 /// Names of [`FogMode::ALL`] in those of frames.
@@ -46,19 +43,11 @@ fn foggy(
 }
 
 /// Four triangles, from near to far.
-const TRIANGLES: [[f32; 3]; 12] = [
-    [-1.5, -1.5, 0.0],
-    [-2.5, 0.6, 0.0],
-    [-0.5, 0.6, 0.0],
-    [0.0, -1.5, 5.0],
-    [-1.0, 0.75, 10.0],
-    [2.0, 0.75, 20.0],
-    [5.0, -2.0, 30.0],
-    [3.0, 2.0, 40.0],
-    [12.0, 2.0, 70.0],
-    [20.0, -10.0, 50.0],
-    [12.0, 10.0, 125.0],
-    [80.0, 10.0, 200.0],
+const TRIANGLES: [[[f32; 3]; 3]; 4] = [
+    [[-1.5, -1.5, 0.0], [-2.5, 0.6, 0.0], [-0.5, 0.6, 0.0]],
+    [[0.0, -1.5, 5.0], [-1.0, 0.75, 10.0], [2.0, 0.75, 20.0]],
+    [[5.0, -2.0, 30.0], [3.0, 2.0, 40.0], [12.0, 2.0, 70.0]],
+    [[20.0, -10.0, 50.0], [12.0, 10.0, 125.0], [80.0, 10.0, 200.0]],
 ];
 
 /// The farthest depth that is drawn, in the steps of [`space::window`].
@@ -68,8 +57,8 @@ const FARTHEST: DepthRange = DepthRange { lowest: 0.0, highest: 65535.0, clamps:
 /// lies beyond the farthest depth.
 fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFunction, color: [u8; 3]) -> Draw {
     let place = if is_program { space::programmed } else { space::fixed_function };
-    let vertices = TRIANGLES.into_iter().map(|[x, y, z]| {
-        let position = place([x, y, z, 1.0]);
+    let vertices = TRIANGLES.as_flattened().iter().map(|[x, y, z]| {
+        let position = place([*x, *y, *z, 1.0]);
         (Vertex { position, ..Vertex::default() }, coordinate(position[3]))
     });
     // The programs' own depths end farther away.
@@ -77,18 +66,11 @@ fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFun
     Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
 }
 
-fn one(clear: u32, draw: Draw) -> Drawn {
-    let mut canvas = Canvas::new(clear);
-    canvas.frame_buffer().depth = draw.depth_test.is_some().then_some(FAR_DEPTHS);
-    canvas.draw(draw);
-    canvas.colors()
-}
-
 fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) {
     for (name, mode) in named(MODES) {
         let function = function(mode, parameters(mode, 1.0));
         let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
-        frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
+        frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, None, draw));
     }
 }
 
@@ -109,47 +91,25 @@ pub(super) fn infinite(frames: &mut Frames) {
 
 /// Components that a vertex program writes, in its order, one instruction after the other, and the four values. An instruction that writes
 /// several counts as one: the first of them is the coordinate.
-const COMPONENTS: [(&str, [f32; 4]); 40] = [
-    ("W", [0.0, 0.25, 0.0, 0.0]),
-    ("W", [0.5, 0.5, 0.0, 0.0]),
-    ("W", [1.0, 0.0, 0.0, 0.5]),
-    ("W", [0.3, 0.3, 0.3, 1.0]),
-    ("W_X", [0.25, 0.0, 0.0, 0.5]),
-    ("W_X", [0.65, 0.0, 0.0, 0.0]),
-    ("W_Y", [1.0, 0.0, 1.0, 0.75]),
-    ("W_Y", [0.0, 0.75, 0.75, 0.25]),
-    ("W_Z_Y_X", [0.25, 0.5, 0.75, 1.0]),
-    ("W_Z_Y_X", [1.0, 0.75, 0.5, 0.25]),
-    ("X", [0.0, 0.0, 0.0, 0.0]),
-    ("X", [0.9, 0.0, 0.0, 0.0]),
-    ("X_Y_Z_W", [1.0, 0.25, 0.75, 0.5]),
-    ("X_Y_Z_W", [0.0, 0.33, 0.66, 0.9]),
-    ("Y", [0.0, 0.0, 0.0, 0.0]),
-    ("Y", [0.0, 0.1, 0.0, 0.0]),
-    ("Y", [0.0, 0.6, 0.0, 0.0]),
-    ("Z", [0.0, 0.0, 0.0, 0.0]),
-    ("Z", [0.0, 0.0, 0.2, 0.0]),
-    ("Z", [0.0, 0.0, 0.8, 0.0]),
-    ("XW", [0.25, 0.0, 0.0, 0.5]),
-    ("XW", [0.65, 0.0, 0.0, 0.0]),
-    ("XY", [0.25, 0.5, 0.0, 0.0]),
-    ("XY", [0.65, 0.75, 0.0, 0.0]),
-    ("XYZ", [0.25, 0.5, 0.75, 0.0]),
-    ("XYZ", [0.65, 0.75, 0.33, 0.0]),
-    ("XYZW", [0.25, 0.5, 0.75, 1.0]),
-    ("XYZW", [0.65, 0.75, 0.33, 0.0]),
-    ("XZ", [0.25, 0.0, 0.75, 0.0]),
-    ("XZ", [0.65, 0.0, 0.33, 0.0]),
-    ("XZW", [0.25, 0.0, 0.75, 1.0]),
-    ("XZW", [0.65, 0.0, 0.33, 0.0]),
-    ("YW", [0.0, 0.5, 0.0, 1.0]),
-    ("YW", [0.0, 0.75, 0.0, 0.0]),
-    ("YZ", [0.0, 0.5, 0.75, 0.0]),
-    ("YZ", [0.0, 0.75, 0.33, 0.0]),
-    ("YZW", [0.0, 0.5, 0.75, 1.0]),
-    ("YZW", [0.0, 0.75, 0.33, 0.0]),
-    ("ZW", [0.0, 0.0, 0.75, 1.0]),
-    ("ZW", [0.0, 0.0, 0.33, 0.0]),
+const COMPONENTS: [(&str, &[[f32; 4]]); 18] = [
+    ("W", &[[0.0, 0.25, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [1.0, 0.0, 0.0, 0.5], [0.3, 0.3, 0.3, 1.0]]),
+    ("W_X", &[[0.25, 0.0, 0.0, 0.5], [0.65, 0.0, 0.0, 0.0]]),
+    ("W_Y", &[[1.0, 0.0, 1.0, 0.75], [0.0, 0.75, 0.75, 0.25]]),
+    ("W_Z_Y_X", &[[0.25, 0.5, 0.75, 1.0], [1.0, 0.75, 0.5, 0.25]]),
+    ("X", &[[0.0, 0.0, 0.0, 0.0], [0.9, 0.0, 0.0, 0.0]]),
+    ("X_Y_Z_W", &[[1.0, 0.25, 0.75, 0.5], [0.0, 0.33, 0.66, 0.9]]),
+    ("Y", &[[0.0, 0.0, 0.0, 0.0], [0.0, 0.1, 0.0, 0.0], [0.0, 0.6, 0.0, 0.0]]),
+    ("Z", &[[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.2, 0.0], [0.0, 0.0, 0.8, 0.0]]),
+    ("XW", &[[0.25, 0.0, 0.0, 0.5], [0.65, 0.0, 0.0, 0.0]]),
+    ("XY", &[[0.25, 0.5, 0.0, 0.0], [0.65, 0.75, 0.0, 0.0]]),
+    ("XYZ", &[[0.25, 0.5, 0.75, 0.0], [0.65, 0.75, 0.33, 0.0]]),
+    ("XYZW", &[[0.25, 0.5, 0.75, 1.0], [0.65, 0.75, 0.33, 0.0]]),
+    ("XZ", &[[0.25, 0.0, 0.75, 0.0], [0.65, 0.0, 0.33, 0.0]]),
+    ("XZW", &[[0.25, 0.0, 0.75, 1.0], [0.65, 0.0, 0.33, 0.0]]),
+    ("YW", &[[0.0, 0.5, 0.0, 1.0], [0.0, 0.75, 0.0, 0.0]]),
+    ("YZ", &[[0.0, 0.5, 0.75, 0.0], [0.0, 0.75, 0.33, 0.0]]),
+    ("YZW", &[[0.0, 0.5, 0.75, 1.0], [0.0, 0.75, 0.33, 0.0]]),
+    ("ZW", &[[0.0, 0.0, 0.75, 1.0], [0.0, 0.0, 0.33, 0.0]]),
 ];
 
 /// The value that the chip takes: of the last instruction the first component.
@@ -163,17 +123,17 @@ fn taken(written: &str, values: [f32; 4]) -> f32 {
 pub(super) fn of_components(frames: &mut Frames) {
     let function = function(FogMode::Linear, [1.0, 1.0]);
     for (written, values) in COMPONENTS {
-        let draw = triangles(true, |_| taken(written, values), function, [0, 255, 0]);
-        let combiners = mixed("fog", "col0");
-        let [x, y, z, w] = values;
-        let name = format!("{written}-{x:.2}_{y:.2}_{z:.2}_{w:.2}");
-        frames.push(name, one(0xff30_3030, Draw { combiners, ..draw }));
+        for [x, y, z, w] in values {
+            let draw = triangles(true, |_| taken(written, [*x, *y, *z, *w]), function, [0, 255, 0]);
+            let name = format!("{written}-{x:.2}_{y:.2}_{z:.2}_{w:.2}");
+            frames.push(name, one(0xff30_3030, None, Draw { combiners: mixed("fog", "col0"), ..draw }));
+        }
     }
     // Nothing is written: what the draws before have left.
     let draw = triangles(true, |_| 0.25, function, [0, 255, 0]);
     let text = "const0 = bytes(127, 0, 191, 255); out.rgb = lerp(fog.a, const0, col0); out.a = col0.a;";
     let combiners = program(text);
-    frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
+    frames.push("CoordNotSet", one(0xff34_1010, None, Draw { combiners, ..draw }));
 }
 
 /// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
@@ -222,7 +182,7 @@ pub(super) fn parameters_varied(frames: &mut Frames) {
                 let panels = places.flat_map(|(edges, d)| {
                     panel(edges, [7.0, 8.0], [[0.0, 0.0, 1.0, 1.0]; 4], false).map(|vertex| (vertex, d))
                 });
-                one(0xff23_1f23, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
+                one(0xff23_1f23, None, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
             });
         }
         frames.paint(format!("FogZeroBias-{name}"), 0xff23_1f23, move |canvas| {
@@ -283,7 +243,7 @@ pub(super) fn generated(frames: &mut Frames) {
                             (vertex, d)
                         })
                     });
-                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, [p0, p1]), RED))
+                    one(0xff23_2623, None, foggy(Topology::Quads, panels, function(mode, [p0, p1]), RED))
                 });
             }
         }
@@ -291,28 +251,10 @@ pub(super) fn generated(frames: &mut Frames) {
 }
 
 /// Coordinates of every kind, as words.
-const EXCEPTIONAL: [u32; 21] = [
-    0,
-    0x3f80_0000,
-    0x4120_0000,
-    0x42c8_0000,
-    0x447a_0000,
-    0xbf9e_b852,
-    0xc12c_0000,
-    0x7f80_0000,
-    0xff80_0000,
-    0x7fc0_0000,
-    0xffc0_0000,
-    0x7f80_0001,
-    0xff80_0001,
-    0x7f7f_ffff,
-    0xff7f_ffff,
-    0x0080_0000,
-    0x8080_0000,
-    0x007f_ffff,
-    0x807f_ffff,
-    0x0000_0001,
-    0x8000_0001,
+const EXCEPTIONAL: [[u32; 7]; 3] = [
+    [0, 0x3f80_0000, 0x4120_0000, 0x42c8_0000, 0x447a_0000, 0xbf9e_b852, 0xc12c_0000],
+    [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0xffc0_0000, 0x7f80_0001, 0xff80_0001, 0x7f7f_ffff],
+    [0xff7f_ffff, 0x0080_0000, 0x8080_0000, 0x007f_ffff, 0x807f_ffff, 0x0000_0001, 0x8000_0001],
 ];
 
 /// The reciprocal as the vertex unit makes it: what is not normal is 0.
@@ -333,10 +275,10 @@ pub(super) fn exceptional(frames: &mut Frames) {
         for source in SOURCES.into_iter().filter(|source| *source != "radial") {
             for (prefix, is_reciprocal) in [("", false), ("RCP-", true)] {
                 frames.make(format!("{prefix}FogExc-{name}-{source}"), move || {
-                    let coordinates = EXCEPTIONAL.map(f32::from_bits);
+                    let coordinates = EXCEPTIONAL.as_flattened().iter().map(|word| f32::from_bits(*word));
                     let coordinates = coordinates.map(|d| if is_reciprocal { reciprocal(d) } else { d });
                     let panels = places().zip(coordinates).flat_map(|(edges, d)| exceptional_panel(edges, d));
-                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, parameters(mode, 1.0)), RED))
+                    one(0xff23_2623, None, foggy(Topology::Quads, panels, function(mode, parameters(mode, 1.0)), RED))
                 });
             }
             for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {

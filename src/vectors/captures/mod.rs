@@ -27,13 +27,14 @@ mod stencil;
 mod texel_formats;
 mod texgen;
 
-use draws::Canvas;
+use draws::*;
+use images::checker;
 use ninebit::engine::{RenderOptions, Renderer, render};
 use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{Named, Rectangle, Scene, SurfaceFormat, Texture, TextureFormat, TextureKind};
+use ninebit::state::*;
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -130,6 +131,12 @@ impl Frames {
     /// A frame that is there.
     fn push(&mut self, name: impl Into<String>, drawn: Drawn) {
         self.make(name, move || drawn.clone());
+    }
+
+    /// The colours of a scene, and the words of depth and stencil.
+    fn both(&mut self, name: &str, scene: Scene) {
+        self.push(format!("{name}_ZB"), Drawn { shown: Shown::DepthStencil, ..Drawn::colors(scene.clone()) });
+        self.push(name, Drawn::colors(scene));
     }
 
     /// A frame that is made when it is wanted.

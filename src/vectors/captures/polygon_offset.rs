@@ -1,9 +1,6 @@
 //! DEP-1, DEP-5 and DEP-6 on triangles of up to 3,000 pixels and depths beyond the buffer: W_buffering.
 
-use super::draws::{argb, draw, fetching, frame_buffer, in_steps, nearest, placed, scene};
-use super::images::{self, checker};
-use super::{Drawn, Frames, SIZE, Shown};
-use ninebit::state::*;
+use super::*;
 
 const FORMATS: [(DepthFormat, &str); 4] = [
     (DepthFormat::Z16, "ZBuf16D"),

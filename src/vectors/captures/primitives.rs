@@ -1,23 +1,12 @@
 //! RAS-1 to RAS-5, INT-1, NUM-4: every topology smooth and flat, with and without perspective; colours of floats; many vertices.
 
-use super::draws::{Canvas, abgr, argb, corners, draw, fetching, nearest, placed, sized, vertex};
-use super::images::{self, checker};
-use super::space::{self, without_depth};
-use super::{Drawn, Frames};
-use ninebit::state::*;
+use super::space::without_depth;
+use super::*;
 
 /// Colours of the vertices, A8B8G8R8.
-const COLORS: [u32; 10] = [
-    0xffff_0000,
-    0xff00_ff00,
-    0xff00_00ff,
-    0xffcc_cccc,
-    0xffff_33cc,
-    0xffff_cc33,
-    0xffcc_ff33,
-    0xff33_ffcc,
-    0xff33_ccff,
-    0xffcc_33ff,
+const COLORS: [[u32; 5]; 2] = [
+    [0xffff_0000, 0xff00_ff00, 0xff00_00ff, 0xffcc_cccc, 0xffff_33cc],
+    [0xffff_cc33, 0xffcc_ff33, 0xff33_ffcc, 0xff33_ccff, 0xffcc_33ff],
 ];
 
 /// x, y, z in the world, red, green and blue, s and t; what no frame shows of a corner is 0.
@@ -107,15 +96,6 @@ const SHAPES: [Shape; 6] = [
     ("Poly", Topology::Polygon, POLYGON),
 ];
 
-fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
-    let mut canvas = Canvas::new(clear);
-    if let Some(texture) = texture {
-        canvas.texture(texture);
-    }
-    canvas.draw(draw);
-    canvas.colors()
-}
-
 /// Shade_model: colours, smooth and flat by either vertex, and textures, which do not heed it.
 pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
@@ -133,9 +113,9 @@ pub(super) fn shade_model(frames: &mut Frames) {
             one(0xff2c_302e, Some(&texture), fetching(draw(topology, vertices.collect()), 0, nearest(0)))
         };
         let [program, flat_w, varying_w] = [programmed.clone(), fixed(1.0, 0.0), fixed(0.5, 0.05)].map(pictures);
-        let shaded = programmed.into_iter().zip(COLORS).map(|(position, color)| Vertex {
+        let shaded = programmed.into_iter().zip(COLORS.as_flattened()).map(|(position, color)| Vertex {
             position,
-            diffuse: VertexColor::Bytes(abgr(color)),
+            diffuse: VertexColor::Bytes(abgr(*color)),
             ..Vertex::default()
         });
         let shaded = draw(topology, shaded.collect());
@@ -244,10 +224,6 @@ const SOLIDS: [Shape; 6] = [
     ("Polygon", Topology::Polygon, POLYGON),
 ];
 
-/// A depth buffer that is cleared to the farthest.
-pub(super) const FAR_DEPTHS: DepthBuffer =
-    DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
-
 /// 3D_primitive, however vertices reach the chip.
 pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
@@ -258,10 +234,7 @@ pub(super) fn solids(frames: &mut Frames) {
         };
         let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
         let shape = Draw { depth_test, ..draw(topology, vertices.iter().map(vertex).collect()) };
-        let mut canvas = Canvas::new(0xff30_3030);
-        canvas.frame_buffer().depth = Some(FAR_DEPTHS);
-        canvas.draw(shape);
-        let drawn = canvas.colors();
+        let drawn = one(0xff30_3030, None, shape);
         for kind in ["", "-inlinebuf", "-inlinearrays", "-inlineelements"] {
             frames.push(format!("{name}{kind}"), drawn.clone());
         }

@@ -1,11 +1,6 @@
 //! RAS-1 to RAS-3: vertices on and beside sixteenths of a pixel, on the frame buffer and on textures; edges that meet pixels' centres.
 
-use super::Frames;
-use super::draws::{
-    Canvas, abgr, argb, draw, nearest, opaque, pasted, places, rectangle, sized, vertex, without_alpha,
-};
-use super::images;
-use ninebit::state::{Draw, FinalRegister, SurfaceFormat, Target, TextureFormat, TextureKind, Topology, VertexColor};
+use super::*;
 
 /// What is added to the positions, as the names of frames have it.
 const BIASES: [(&str, f32); 9] = [

@@ -1,11 +1,7 @@
 //! VOL-1, TEX-17, CYL-1: volumes in all formats, anisotropy, and a coordinate that goes around a cylinder.
 
-use super::draws::{
-    Canvas, FETCHED, argb, corners, draw, fetching, nearest, pasted, placed, sized, unprojected, without_alpha,
-};
-use super::images::{Image, checker, gradient};
-use super::{Frames, images, space, texel_formats};
-use ninebit::state::*;
+use super::*;
+use images::{Image, gradient};
 
 const SIDE: u32 = 256;
 const LAYERS: u32 = 4;
@@ -137,15 +133,14 @@ pub(super) fn volumes(frames: &mut Frames) {
 /// Texture_anisotropy: a floor to the horizon, with one to eight taps.
 pub(super) fn anisotropy(frames: &mut Frames) {
     for anisotropy in [1, 2, 4, 8] {
-        let mut canvas = Canvas::new(0xfe20_2020);
         let image = checker([0xffff_ff00, 0xff66_3333].map(argb), 4);
-        canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [128; 2], image));
+        let image = images::texture(TextureFormat::A8R8G8B8, [128; 2], image);
         let (address_s, address_t) = (AddressMode::Wrap, AddressMode::Wrap);
         let unit = TextureUnit { anisotropy, address_s, address_t, ..nearest(0) };
         let floor = corners([-4.0, 200.0, 4.0, 0.0]).into_iter().zip(corners([0.0, 0.0, 1.0, 32.0]));
         let floor = floor.map(|([x, z], texel)| placed(space::fixed_function([x, -1.5, z, 1.0]), texel));
-        canvas.draw(without_alpha(fetching(draw(Topology::Quads, floor.collect()), 0, unit), FETCHED[0]));
-        frames.push(format!("Anisotropy-{anisotropy}"), canvas.colors());
+        let floor = without_alpha(fetching(draw(Topology::Quads, floor.collect()), 0, unit), FETCHED[0]);
+        frames.push(format!("Anisotropy-{anisotropy}"), one(0xfe20_2020, Some(&image), floor));
     }
 }
 

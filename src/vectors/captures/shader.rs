@@ -1,15 +1,9 @@
 //! TSH-1 to TSH-9, TEX-12: cube maps, dot products, reflections, bump maps and their luminance, dependent reads.
 
-use super::draws::{
-    self, Canvas, FETCHED, WHOLE, abgr, draw, fetching, nearest, pasted, places, rectangle, sized, unprojected,
-};
-use super::images::{self, Color, checker, four_gradients, gradient, luminance, solid};
-use super::primitives::FAR_DEPTHS;
-use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
+use super::space::{DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
 use super::texel_formats::{Variant, packed, texture, variants};
-use super::{Frames, assets, named};
-use ninebit::state::*;
-use std::sync::Arc;
+use super::*;
+use images::{Color, four_gradients, gradient, luminance, solid};
 
 /// The corners of a cube's six faces.
 const CUBE: [[[f32; 3]; 4]; 6] = [

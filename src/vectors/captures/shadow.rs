@@ -1,11 +1,7 @@
 //! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two. Its words are given, or
 //! drawn.
 
-use super::draws::{
-    Canvas, corners, in_steps, nearest, quads, rectangle, target_texture, textured, unprojected, with_primary_alpha,
-};
-use super::{Frames, SIZE, images, named, space};
-use ninebit::state::*;
+use super::*;
 
 /// Names of [`CompareFunction::ALL`] in those of frames.
 const FUNCTIONS: &str = "N LT EQ LE GT NE GE A";

@@ -1,8 +1,6 @@
 //! STN-1: what is stored by zero and replace, with and without either test; stacks of operations, seen through all functions.
 
-use super::draws::{frame_buffer, rectangle, scene};
-use super::{Drawn, Frames, Shown, named};
-use ninebit::state::*;
+use super::*;
 
 fn target(stencil: u8) -> Target {
     let depth = DepthBuffer { format: DepthFormat::Z24S8, clear: 0xffff, clear_stencil: stencil };
@@ -16,14 +14,6 @@ fn color(r: f32, g: f32, b: f32) -> VertexColor {
 fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> StencilTest {
     let keep = StencilOperation::Keep;
     StencilTest { function, reference, mask: 255, write_mask: 255, fail: keep, depth_fail: keep, pass }
-}
-
-/// A frame as colours, and as words of depth and stencil.
-fn both(frames: &mut Frames, name: &str, target: Target, draws: Vec<Draw>) {
-    let scene = scene(vec![target], vec![], draws);
-    let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
-    frames.push(name, drawn(Shown::Colors));
-    frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
 }
 
 /// A square around the centre; the programs draw it as two triangles, which have no other pixels.
@@ -49,7 +39,7 @@ pub(super) fn operations(frames: &mut Frames) {
                 if depth_on { "_DT" } else { "" }
             );
             let draws = vec![square(200.0, color(1.0, 0.0, 0.0)), second, third];
-            both(frames, &name, target(cleared), draws);
+            frames.both(&name, scene(vec![target(cleared)], vec![], draws));
         }
     }
 }
@@ -93,6 +83,6 @@ pub(super) fn functions(frames: &mut Frames) {
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));
         let draws = stacks.iter().cloned().chain([last]).collect();
-        both(frames, name, target(0), draws);
+        frames.both(name, scene(vec![target(0)], vec![], draws));
     }
 }

@@ -1,12 +1,7 @@
 //! TEX-1 to TEX-4, TEX-9, TEX-18: formats of texels, palettes, signed channels, levels.
 
-use super::draws::{
-    Canvas, FETCHED, WHOLE, abgr, corners, draw, far, fetching, nearest, pasted, placed, places, program, sized,
-    unprojected, without_alpha,
-};
-use super::images::{self, Color, Image, bulge, checker, gradient, grey};
-use super::{Frames, assets, space};
-use ninebit::state::*;
+use super::*;
+use images::{Color, Image, bulge, gradient, grey};
 
 /// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {
@@ -269,11 +264,9 @@ pub(super) fn signed(frames: &mut Frames) {
     );
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
-        let mut canvas = Canvas::new(0xfe20_2020);
-        canvas.texture(&texture);
         let draw = square(1.0, TextureUnit { signed, ..nearest(0) });
-        canvas.draw(Draw { combiners: combiners.clone(), ..draw });
-        frames.push(format!("A8R8G8B8_0x{flags:04X}"), canvas.colors());
+        let draw = Draw { combiners: combiners.clone(), ..draw };
+        frames.push(format!("A8R8G8B8_0x{flags:04X}"), one(0xfe20_2020, Some(&texture), draw));
     }
 }
 
@@ -315,11 +308,10 @@ pub(super) fn compressed(frames: &mut Frames) {
         let code = format.name();
         let of = |levels, words| images::of_words(TextureKind::TwoDimensional, format, size, levels, words);
         if size[0] == size[1] {
-            let mut canvas = Canvas::new(0xfe10_1010);
             let first = format.words(size[0], size[1]);
-            let texture = canvas.texture(&of(1, words[..first].to_vec()));
-            canvas.draw(pasted([192.0, 112.0, 448.0, 368.0], 0, nearest(texture), WHOLE));
-            frames.push(format!("{code}_{name}"), canvas.colors());
+            let texture = of(1, words[..first].to_vec());
+            let draw = pasted([192.0, 112.0, 448.0, 368.0], 0, nearest(0), WHOLE);
+            frames.push(format!("{code}_{name}"), one(0xfe10_1010, Some(&texture), draw));
         }
         let mut canvas = Canvas::new(0xfe10_1010);
         let texture = canvas.texture(&of(count, words));

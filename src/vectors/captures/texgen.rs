@@ -1,10 +1,8 @@
 //! TEX-15 and INT-4: coordinates that the fixed function makes, and matrices over them.
 
-use super::draws::{Canvas, FETCHED, WHOLE, corners, draw, fetching, nearest, without_alpha};
-use super::images::{self, gradient};
-use super::space::{self, DEGREES_90, IDENTITY, Matrix, STRAIGHT};
-use super::{Drawn, Frames};
-use ninebit::state::{TEXTURE_UNITS, Texture, TextureFormat, Topology, Vertex, VertexColor};
+use super::space::{DEGREES_90, IDENTITY, Matrix, STRAIGHT};
+use super::*;
+use images::gradient;
 
 /// What coordinates are made of.
 const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
@@ -76,10 +74,7 @@ fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix
         Vertex { position: [x, y, 0.0, w], diffuse, texture_coordinates: [made; TEXTURE_UNITS], ..Vertex::default() }
     };
     let draw = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec());
-    let mut canvas = Canvas::new(0xfe20_2020);
-    canvas.texture(texture);
-    canvas.draw(without_alpha(fetching(draw, 0, nearest(0)), FETCHED[0]));
-    canvas.colors()
+    one(0xfe20_2020, Some(texture), without_alpha(fetching(draw, 0, nearest(0)), FETCHED[0]))
 }
 
 /// Texgen. The frame of SphereMap is not drawn: normals of no length have no rule there.

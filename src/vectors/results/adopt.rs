@@ -6,19 +6,16 @@
 //! vectors/results/DEVICE/UNIT.tsv       as the harness wrote it
 //! ```
 
-use std::path::{Path, PathBuf};
+use super::*;
 
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::compare::Comparison;
-use super::{DEVICE, Results};
 use crate::error::{VectorError, unread};
 use crate::pack::Manifest;
-use ninebit::limits;
 use ninebit_files::output::{PendingFolder, write_file};
 use ninebit_files::picture::hexadecimal;
-use ninebit_files::read::{self, Kind};
+use ninebit_files::read;
 
 /// `format` of the record.
 pub const FORMAT: &str = "ninebit-adopted-1";

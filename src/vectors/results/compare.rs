@@ -1,11 +1,9 @@
 //! Results held to a pack: by unit, by tag, by policy.
 
+use super::*;
 use std::collections::{BTreeMap, HashMap};
 
-use serde::Serialize;
-
 use super::waiver::Waiver;
-use super::{Observed, ResultRow, Results, UnitResults};
 use crate::read::TableRow;
 use crate::table::LAST;
 use crate::unit::other_policies;

@@ -1,9 +1,8 @@
 //! Tables of results out of text.
 
+use super::*;
 use std::collections::HashMap;
-use std::path::Path;
 
-use super::{AGAIN, Observed, ResultRow, UnitResults};
 use crate::read::header;
 use crate::{Column, Kind, VectorError, units};
 

@@ -1,12 +1,8 @@
 //! Waivers: differences that are known and named. There is no other tolerance.
 
-use std::path::Path;
-
-use serde::Deserialize;
+use super::*;
 
 use crate::{VectorError, read_text, units};
-use ninebit::limits;
-use ninebit_files::read::Kind;
 
 /// A difference that is known.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]

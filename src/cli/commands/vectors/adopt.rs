@@ -1,15 +1,8 @@
 //! The command `ninebit vectors adopt`: puts what a card answered into the repository.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use super::*;
 
-use clap::Args;
-use ninebit::shown;
-use ninebit_files::output::write_text;
 use ninebit_vectors::results::{self, adopt, compare};
-use ninebit_vectors::{BEHAVIOUR, pack};
-
-use super::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -1,15 +1,9 @@
 //! The command `ninebit vectors check`: compares tables and packs with what the model computes.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use super::*;
 
-use clap::Args;
-use ninebit_files::output::write_text;
 use ninebit_vectors::read::{Difference, Table};
-use ninebit_vectors::{BEHAVIOUR, pack};
 use rayon::prelude::*;
-
-use super::Failure;
 
 /// Rows of a unit that are shown.
 const SHOWN: usize = 5;

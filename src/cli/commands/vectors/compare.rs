@@ -1,16 +1,11 @@
 //! The command `ninebit vectors compare`: holds the answers of a card to a pack.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use super::*;
 
-use clap::Args;
-use ninebit::shown;
-use ninebit_vectors::pack::{self, Manifest};
+use ninebit_vectors::pack::Manifest;
 use ninebit_vectors::results::compare::{self, Comparison, Explanation, UnitComparison};
 use ninebit_vectors::results::{self, Device, waiver};
 use serde_json::json;
-
-use super::{Failure, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

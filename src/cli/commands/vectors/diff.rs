@@ -1,15 +1,9 @@
 //! The command `ninebit vectors diff`: shows how two packs differ.
 
+use super::*;
 use std::collections::HashMap;
-use std::fmt::Write;
-use std::path::PathBuf;
 
-use clap::Args;
-use ninebit_files::output::write_text;
-use ninebit_vectors::pack;
 use ninebit_vectors::read::{Table, TableRow};
-
-use super::Failure;
 
 /// Rows of a unit that are shown.
 const SHOWN: usize = 3;

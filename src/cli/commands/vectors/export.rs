@@ -1,19 +1,12 @@
 //! The command `ninebit vectors export`: writes tables of units as a pack.
 
+use super::*;
 use std::collections::HashSet;
-use std::fmt::Write;
-use std::path::PathBuf;
 
-use clap::Args;
-use ninebit::state::Profile;
-use ninebit_files::output::write_text;
 use ninebit_vectors::cases::Level;
 use ninebit_vectors::gpu::write::BATCHES;
-use ninebit_vectors::pack::{self, Options};
+use ninebit_vectors::pack::Options;
 use ninebit_vectors::view::View;
-use ninebit_vectors::{Unit, units};
-
-use super::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -1,13 +1,9 @@
 //! The command `ninebit vectors list`: lists the units.
 
-use std::fmt::Write;
+use super::*;
 
-use clap::Args;
-use ninebit::state::Named;
-use ninebit_vectors::{cases, handbook, units};
+use ninebit_vectors::{cases, handbook};
 use serde_json::json;
-
-use super::{Failure, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

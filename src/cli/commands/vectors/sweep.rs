@@ -1,22 +1,15 @@
 //! `ninebit vectors sweep`, `merge` and `digest`: every row of a unit as digests.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use super::*;
 
 use crate::shard::Shard;
-use clap::Args;
 use ninebit::random::Random;
-use ninebit::state::{Named, Profile};
 use ninebit::threads::on_threads;
-use ninebit_files::output::{Destination, make_folder, write_text};
-use ninebit_vectors::error::VectorError;
+use ninebit_files::output::make_folder;
 use ninebit_vectors::exhaustive::{Exhaustive, MAX_ROWS};
 use ninebit_vectors::part::Part;
 use ninebit_vectors::tree::{self, Of, Tree};
-use ninebit_vectors::{BEHAVIOUR, Unit};
 use rayon::prelude::*;
-
-use super::{Failure, MAXIMUM_THREADS, named, up_to};
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {

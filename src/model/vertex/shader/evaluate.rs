@@ -2,10 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "vertex programs are single precision by rule")]
 
 use super::function::{exponential, logarithm, parts, power};
-use super::{
-    CONSTANTS, COORDINATES, Constants, DestinationRegister, Inputs, Instruction, Opcode, Source, SourceRegister,
-    TEMPORARIES, VertexShader,
-};
+use super::*;
 
 /// Output registers. Components that nothing wrote are 0, 0, 0, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

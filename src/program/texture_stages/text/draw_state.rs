@@ -1,9 +1,8 @@
 //! Render states that the scene's draw has in fields of its own: what to write there.
 
-use crate::Aside;
-use crate::Span;
 use crate::calls::{Part, PartKind, Value, without_prefix};
 use crate::finding::warning;
+use crate::{Aside, Span};
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
 /// A field of the draw, and the states that it holds: name and D3DRS value.

@@ -1,6 +1,6 @@
 //! What the input registers of a vertex program hold.
 
-use super::super::attribute::{self, Source};
+use super::super::attribute::Source;
 use super::*;
 use ninebit::vertex::shader::INPUTS;
 
