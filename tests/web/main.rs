@@ -91,6 +91,14 @@ fn digests(plan: &Plan) -> Vec<String> {
     render(plan, &RenderOptions::default()).surfaces.iter().map(surface_digest).collect()
 }
 
+/// The digests of a scene's targets, and what the library answers when asked for a pixel in the middle of the first.
+fn drawn(path: &Path) -> (Vec<String>, Value) {
+    let loaded = load(path).unwrap().0;
+    let [width, height] = [loaded.scene.targets[0].width, loaded.scene.targets[0].height];
+    let request = json!({ "do": "trace", "target": 0, "pixel": [width >> 1, height >> 1], "until": null });
+    (digests(&loaded.plan), Native::from_path(path).ask(request))
+}
+
 fn frames() -> Result<(), Failed> {
     let wanted = std::env::var("NINEBIT_WEB_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(40_usize);
     let all: Vec<(PathBuf, Vec<String>)> = files(Path::new("vectors/scenes"), ".ron")
@@ -104,12 +112,14 @@ fn frames() -> Result<(), Failed> {
     // Both draw at once.
     let (answers, drawn) = std::thread::scope(|scope| {
         let answers = scope.spawn(|| node("frames", &scenes));
-        let drawn: Vec<_> = scenes.iter().map(|(path, _)| digests(&load(path).unwrap().0.plan)).collect();
+        let drawn: Vec<_> = scenes.iter().map(|(path, _)| drawn(path)).collect();
         (answers.join().unwrap(), drawn)
     });
     assert_eq!(answers.len(), scenes.len());
-    for (((path, _), answer), digests) in scenes.iter().zip(answers).zip(drawn) {
+    for (((path, _), answer), (digests, trace)) in scenes.iter().zip(answers).zip(drawn) {
         assert_eq!(answer["digests"], json!(digests), "{}: {answer}", path.to_str().unwrap());
+        let differs = format!("{}: the page traces {}, the program {trace}", path.to_str().unwrap(), answer["trace"]);
+        assert!(answer["trace"] == trace, "{differs}\nIf that is meant, make the module anew: src/web/build");
     }
     println!("{} scenes", scenes.len());
     Ok(())

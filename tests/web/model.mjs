@@ -1,4 +1,4 @@
-// The module in node. `frames` draws scenes and prints the digest of each target; `findings` reads scenes and prints what is wrong with them.
+// The module in node. `frames` draws scenes and prints the digest of each target and the trace of a pixel in the middle of the first; `findings` reads scenes and prints what is wrong with them.
 // On standard input: one line a scene, its path; on standard output: one JSON line each.
 import { readFileSync } from "node:fs";
 import { dirname, basename, join } from "node:path";
@@ -29,7 +29,11 @@ for await (const line of createInterface({ input: process.stdin })) {
     for (const name of files) model({ do: "file", name }, readFileSync(join(dirname(path), name)));
     const opened = model({ do: "open", text: readFileSync(path, "utf8"), name: basename(path) });
     if (what === "findings") answer.rendered = opened.rendered ?? opened.findings.map((finding) => finding.rendered).join("\n");
-    else if (opened.scene) answer.digests = opened.scene.targets.map((_, target) => model({ do: "draw", target, until: null }).digest);
+    else if (opened.scene) {
+      answer.digests = opened.scene.targets.map((_, target) => model({ do: "draw", target, until: null }).digest);
+      const [{ width, height }] = opened.scene.targets;
+      answer.trace = model({ do: "trace", target: 0, pixel: [width >> 1, height >> 1], until: null });
+    }
     else answer.refused = opened.rendered;
   } catch (error) {
     answer.fault = String(error);

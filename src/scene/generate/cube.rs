@@ -1,6 +1,6 @@
 //! Cube maps: of the direction itself, brought to unit length, of half vectors, and of the light of a sky.
 //!
-//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`](super::normal_map), colours as
+//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`], colours as
 //! 0..255 for 0..1; alpha is 255.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 

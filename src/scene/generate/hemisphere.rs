@@ -2,7 +2,7 @@
 //!
 //! The image is the square from -1 to 1 along x and y, and a texel's normal is taken at the texel's centre: (x, y,
 //! sqrt(1 - x^2 - y^2)) inside the unit circle, outside (0, 0, 1), or the zero vector if asked for. Orientation and bytes are those of
-//! [`normal_map`](super::normal_map), with 255 in alpha.
+//! [`normal_map`], with 255 in alpha.
 //!
 //! A hemisphere holds every direction that a surface can face, so it shows what a light does to all of them; and its normals turn
 //! slowly and evenly, so it shows every step of the bytes. Noise breaks the steps up: it is added to the exact normals of
