@@ -187,13 +187,18 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
     decode(&bytes, path, limits)
 }
 
-/// Reads the PNG or TGA file at `path`, or a grey PNG of 16 bits, and says whether it is one: R is then the upper byte, G the lower, B 0.
+/// Reads the PNG or TGA file at `path`, or a grey PNG of 16 bits, and says whether it is one: its pixels are then [`pixel_of_word`].
 ///
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
 pub fn load_words(path: &Path, limits: &ImageLimits) -> Result<(Rgba, bool), ImageError> {
     let bytes = read(&Folder, path, limits.file())?;
     picture(&bytes, path, limits, 16).map_err(|fault| fault.of(path))
+}
+
+/// The pixel that stands for a word of 16 bits.
+pub fn pixel_of_word(word: u16) -> [u8; 4] {
+    [(word >> 8) as u8, word as u8, 0, 255]
 }
 
 /// Reads the PNG, TGA or DDS file at `path`. A DDS is known by its first four bytes, whatever its name.
@@ -297,7 +302,7 @@ fn to_rgba(decoded: DynamicImage) -> Result<Rgba, ImageFault> {
         DynamicImage::ImageLumaA8(grey) => grey.pixels().map(|p| [p[0], p[0], p[0], p[1]]).collect(),
         DynamicImage::ImageRgb8(color) => color.pixels().map(|p| [p[0], p[1], p[2], 255]).collect(),
         DynamicImage::ImageRgba8(color) => color.pixels().map(|p| p.0).collect(),
-        DynamicImage::ImageLuma16(grey) => grey.pixels().map(|p| [(p[0] >> 8) as u8, p[0] as u8, 0, 255]).collect(),
+        DynamicImage::ImageLuma16(grey) => grey.pixels().map(|p| pixel_of_word(p[0])).collect(),
         // Colours of 16 bits; a decoder that widens must not slip through.
         _ => return Err(ImageFault::Depth(16)),
     };

@@ -92,11 +92,11 @@ fn digests(plan: &Plan) -> Vec<String> {
 }
 
 /// The digests of a scene's targets, and what the library answers when asked for a pixel in the middle of the first.
-fn drawn(path: &Path) -> (Vec<String>, Value) {
+fn drawn(path: &Path, files: &[String]) -> (Vec<String>, Value) {
     let loaded = load(path).unwrap().0;
     let [width, height] = [loaded.scene.targets[0].width, loaded.scene.targets[0].height];
     let request = json!({ "do": "trace", "target": 0, "pixel": [width >> 1, height >> 1], "until": null });
-    (digests(&loaded.plan), Native::from_path(path).ask(request))
+    (digests(&loaded.plan), Native::with_scene(path, files).ask(request))
 }
 
 /// Whether two documents say the same. What a script writes of a large float is not read as the very same.
@@ -128,7 +128,7 @@ fn frames() -> Result<(), Failed> {
     // Both draw at once.
     let (answers, drawn) = std::thread::scope(|scope| {
         let answers = scope.spawn(|| node("frames", &scenes));
-        let drawn: Vec<_> = scenes.iter().map(|(path, _)| drawn(path)).collect();
+        let drawn: Vec<_> = scenes.iter().map(|(path, files)| drawn(path, files)).collect();
         (answers.join().unwrap(), drawn)
     });
     assert_eq!(answers.len(), scenes.len());
@@ -159,7 +159,12 @@ impl Native {
 
     /// With that scene open.
     fn from_path(path: &Path) -> Native {
-        let mut native = Native::with(path, &load(path).unwrap().1);
+        Native::with_scene(path, &load(path).unwrap().1)
+    }
+
+    /// With that scene open, which needs those files beside it.
+    fn with_scene(path: &Path, files: &[String]) -> Native {
+        let mut native = Native::with(path, files);
         native.open(&std::fs::read_to_string(path).unwrap());
         native
     }

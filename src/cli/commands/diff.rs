@@ -112,15 +112,15 @@ fn scene_findings<'a>(
     }
     let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
     let surface = frames.surfaces.swap_remove(target);
-    let shift = scene.targets[target].depth.map_or(0, |depth| depth.format.bits() - 16);
-    let bytes = |depth: u32| [(depth >> shift >> 8) as u8, (depth >> shift) as u8, 0, 255];
-    let depths: Vec<_> = surface.depths().map(bytes).collect();
-    let pixels = if of_depths { depths } else { surface.rgba8() };
+    let pixels = match scene.targets[target].depth {
+        _ if !of_depths => surface.rgba8(),
+        Some(depth) => picture::upper_depths(&surface, depth.format).into_iter().map(image::pixel_of_word).collect(),
+        None => {
+            let help = "leave out `--scene`, or choose a target that has one with `--target`";
+            return Err(Failure::invalid("NB0522", format!("target `{name}` has no depth buffer"), help));
+        }
+    };
     let frame = Rgba { width, height, pixels };
-    if frame.pixels.is_empty() {
-        let help = "leave out `--scene`, or choose a target that has one with `--target`";
-        return Err(Failure::invalid("NB0522", format!("target `{name}` has no depth buffer"), help));
-    }
     let mut different = [0; 2];
     for (count, picture) in different.iter_mut().zip(pictures) {
         *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;

@@ -4,6 +4,8 @@ use super::*;
 use std::ffi::OsStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
+use ninebit::frame::Surface;
+use ninebit::state::DepthFormat;
 
 /// Endings that promise another format than the one that is written.
 const FORMATS: [&str; 27] = [
@@ -19,6 +21,11 @@ pub(crate) fn output(format: &'static str) -> impl TypedValueParser<Value = Dest
 /// Reads the name of a file of depths: a PNG, or stored words; `-` is stdout.
 pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(|name| from_name(&name, if is_png(Path::new(&name)) { "png" } else { "raw" }))
+}
+
+/// The upper 16 bits of each depth: what a PNG of depths holds.
+pub(crate) fn upper_depths(surface: &Surface, format: DepthFormat) -> Vec<u16> {
+    surface.depths().map(|depth| (depth >> (format.bits() - 16)) as u16).collect()
 }
 
 /// Refuses a picture on stdout, where the report goes.

@@ -121,8 +121,7 @@ fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> 
     let bits = format.bits();
     match destination {
         Destination::File(path) if picture::is_png(path) => {
-            let grey: Vec<u16> = surface.depths().map(|depth| (depth >> (bits - 16)) as u16).collect();
-            encode_grey_png(surface.width, surface.height, &grey)
+            encode_grey_png(surface.width, surface.height, &picture::upper_depths(surface, format))
         }
         _ if bits == 24 => Ok(little_endian(&surface.chip_depth_words().collect::<Vec<_>>(), 4)),
         _ => Ok(little_endian(&surface.depth, 2)),

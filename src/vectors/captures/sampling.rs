@@ -47,14 +47,6 @@ fn pairs(unit: TextureUnit) -> Draw {
     fetching(draw(Topology::Triangles, vertices), 0, unit)
 }
 
-/// Where a texel of a volume lies in memory: bits of x, y and z in turn while they last.
-fn place(x: u32, y: u32, z: u32) -> usize {
-    let spread = |bits: u32, first: u32| {
-        (0..8).map(|bit| (bits >> bit & 1) << if bit < 2 { 3 * bit + first } else { 2 * bit + 2 + first }).sum::<u32>()
-    };
-    (spread(x, 0) + spread(y, 1) + spread(z, 2)) as usize
-}
-
 /// A layer of the gradient: all channels, blue, red, green.
 fn layer(z: u32) -> impl Image {
     let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
@@ -92,6 +84,7 @@ fn words(format: TextureFormat) -> Vec<u32> {
             return (0..LAYERS).flat_map(|z| texel_formats::packed(format, [SIDE; 2], layer(z))).collect();
         }
     };
+    let place = |x, y, z| texel_formats::swizzled([x, y, z], [8, 8, 2]);
     let mut memory = vec![0; (4 * SIDE * SIDE * LAYERS) as usize];
     for z in 0..LAYERS {
         let image = layer(z);

@@ -88,16 +88,17 @@ fn unit(canvas: &mut Canvas, (texture, palette): Pictured) -> (TextureUnit, f32)
     (TextureUnit { palette, ..nearest(canvas.texture(&texture)) }, side)
 }
 
-/// Where a texel of a swizzled square lies in memory.
-fn swizzled(x: u32, y: u32) -> u32 {
-    (0..8).map(|bit| (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1)).sum()
+/// Where a texel of a swizzled texture lies in memory: bits of its coordinates, of so many each, in turn while they last.
+pub(super) fn swizzled<const N: usize>(at: [u32; N], bits: [u32; N]) -> usize {
+    let in_turn = (0..8).flat_map(|bit| (0..N).filter(move |n| bit < bits[*n]).map(move |n| at[n] >> bit & 1));
+    in_turn.enumerate().map(|(place, bit)| (bit as usize) << place).sum()
 }
 
 /// The gradient of 32 bits, whose memory is read as if every byte were a texel; as alpha, in the lowest byte, red, green and blue.
 fn bytes_of_gradient(is_swizzled: bool) -> Vec<u32> {
     let mut memory = vec![0; (4 * SIDE * SIDE) as usize];
     let image = gradient(SIZE);
-    let place = |(x, y)| if is_swizzled { swizzled(x, y) } else { y * SIDE + x } as usize;
+    let place = |(x, y)| if is_swizzled { swizzled([x, y], [8; 2]) } else { (y * SIDE + x) as usize };
     for (x, y) in images::each_texel(SIZE) {
         let [r, g, b, a] = image(x, y).map(u32::from);
         memory[4 * place((x, y))..][..4].copy_from_slice(&[a, r, g, b]);

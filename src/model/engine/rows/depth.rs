@@ -160,9 +160,6 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     // What nobody reads yet may follow a row's lanes.
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
     let along_row = (e, triangle.a, batch.count);
-    if ROW && steps.series.area != triangle.doubled_area {
-        steps.series = ReciprocalSeries::new::<FMA>(triangle.doubled_area);
-    }
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
@@ -240,11 +237,17 @@ impl Depths<'_> {
         out: &mut [u32],
     ) -> bool {
         let mut unknown = false;
+        let is_plain_row = ROW && !GENERAL && !W;
+        // No edge function is left out: their sum is the doubled area.
+        let area = row.0.iter().sum();
+        if is_plain_row && steps.series.area != area {
+            steps.series = ReciprocalSeries::new::<FMA>(area);
+        }
         let (mut first, count) = (0, if ROW { row.2 } else { out.len() });
         let (mut reference, mut until) = (0, 0);
         while first < count {
             let mut pixels = (count - first).min(CHUNK);
-            if ROW && !GENERAL && !W && steps.series.tells {
+            if is_plain_row && steps.series.tells {
                 if first == until {
                     (reference, until) = same_reference(row, first);
                 }

@@ -115,7 +115,7 @@ impl Setup<'_> {
             let off = base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift));
             let (up, off) = parted(gap, off);
             raised[axis] = up;
-            whole_on_none(&placing.at[axis][..lanes], up, off, &mut placing.close[axis][..lanes]);
+            mark_unproved(&placing.at[axis][..lanes], up, off, &mut placing.close[axis][..lanes]);
         }
         let some = any_negative(&placing.close[0][..lanes]) | any_negative(&placing.close[1][..lanes]);
         let close_lanes = if some { batch.count } else { 0 };
@@ -265,7 +265,7 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
 
 /// As sign bits: which coordinates of level 0 are so close to a whole number that their floors are not proved, on it or on smaller levels.
 #[inline(always)]
-fn whole_on_none(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
+fn mark_unproved(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
     let close = &mut close[..at.len()];
     for n in 0..at.len() {
         let t = at[n] + up;
