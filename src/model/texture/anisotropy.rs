@@ -6,7 +6,7 @@ use super::lod::Quad;
 pub const MAX_TAPS: usize = 8;
 
 /// One level-0 texel in the coordinates of a [`Quad`].
-const TEXEL: u32 = 65536;
+pub(crate) const TEXEL: u32 = 65536;
 
 /// Taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]

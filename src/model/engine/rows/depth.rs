@@ -559,7 +559,7 @@ pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
 
 /// Cut toward zero.
 #[inline(always)]
-fn cut<const WIDE: bool>(n: f64) -> f64 {
+pub(super) fn cut<const WIDE: bool>(n: f64) -> f64 {
     if WIDE {
         return n.trunc();
     }

@@ -39,8 +39,8 @@ fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option
     Some((m.signum() * (s + m) * i64::from(128 * size)).div_euclid(m.abs()) as f64)
 }
 
-/// s, t and q, so that q is positive, and more than the magnitudes of s/q and t/q. `None`: q has no sign, or coordinates reach the limit.
-pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 3]; 3], f64)> {
+/// Returns s, t and q with such signs that q is positive, and the largest magnitude of s/q and t/q. `None` if q has no sign.
+pub(super) fn positive(mut g: [[i64; 3]; 3]) -> Option<([[i64; 3]; 3], f64)> {
     if g[2].iter().all(|q| *q < 0) {
         g = [g[0].map(|n| -n), g[1].map(|n| -n), g[2].map(|n| -n)];
     }
@@ -54,8 +54,12 @@ pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 
             reach = magnitude;
         }
     }
-    let most = 512.0 * f64::from(sides[0].max(sides[1])) * reach;
-    (most < COORDINATE_LIMIT as f64).then_some((g, reach))
+    Some((g, reach))
+}
+
+/// Whether coordinates of that magnitude, in images, may be limited (TEX-15).
+pub(super) fn reaches_limit(reach: f64, sides: [u32; 2]) -> bool {
+    512.0 * f64::from(sides[0].max(sides[1])) * reach >= COORDINATE_LIMIT as f64
 }
 
 /// A direction across a batch, or s, t and q.
@@ -236,7 +240,7 @@ impl Setup<'_> {
         // The error of s or t, that of q as often as it is in the quotient, once more what is taken off, and as much again.
         let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
-        if self.context.triangle.exact_reciprocal {
+        if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
             return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
         }
         // Also refuses what is no number.

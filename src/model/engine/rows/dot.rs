@@ -3,7 +3,6 @@
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
 
 use super::BLOCK;
-use super::kernels::LANES;
 use super::quotient::{nearest, nearest_32, whole};
 use crate::state::DotMapping;
 use crate::texture::cube::Face;
@@ -112,25 +111,19 @@ pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mu
     }
 }
 
-/// What the dot unit may move coordinates by, images times 128: more is the definition's.
-const FARTHEST: f32 = (1 << 23) as f32;
-
-/// TSH-7: what blue and green, whose registers may hold twice the byte, move a coordinate by. What is too large, or no number, is 0 and left open.
+/// TSH-7: computes by what blue and green, whose registers may hold twice the byte, move both coordinates, in 1/128 image.
 #[inline(always)]
 pub(super) fn moved(
-    entries: [f32; 2],
+    [m0, m1, m2, m3]: [f32; 4],
     (blue, blue_doubled): (&[i16; BLOCK], bool),
     (green, green_doubled): (&[i16; BLOCK], bool),
-    out: &mut Floats,
-    open: &mut [i32; LANES],
+    along: &mut Floats,
+    down: &mut Floats,
 ) {
     let (down_blue, down_green) = (u32::from(blue_doubled), u32::from(green_doubled));
     for n in 0..BLOCK {
-        let (b, g) = ((blue[n] >> down_blue) as i8, (green[n] >> down_green) as i8);
-        let f = dot::moved(entries, [f32::from(b), f32::from(g)]);
-        let known = f.abs() < FARTHEST;
-        out[n] = if known { f } else { 0.0 };
-        open[n] |= i32::from(!known);
+        let (b, g) = (f32::from((blue[n] >> down_blue) as i8), f32::from((green[n] >> down_green) as i8));
+        (along[n], down[n]) = (dot::moved([m0, m3], [b, g]), dot::moved([m1, m2], [b, g]));
     }
 }
 

@@ -8,9 +8,10 @@ use super::band::{batch, common, few};
 use super::boxes::{BoxCoverage, boxes, is_small};
 use super::kernels::Lanes256;
 use super::levels::MipFetches;
+use super::quads::Measure;
 use super::quotient::{self, IOTA};
 use super::setup::{PixelBatch, whole_steps};
-use super::taps::{Footprints, Pair};
+use super::taps::{Footprints, Pair, PairsOfQuad};
 use super::triangle::{Interpolators, Varying};
 use super::{BLOCK, Isa, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
@@ -19,7 +20,6 @@ use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
 use crate::texture::address::address;
-use crate::texture::anisotropy;
 use crate::texture::coordinates::SampleCoordinates;
 
 const WIDTH: u32 = 640;
@@ -353,9 +353,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
             if sampler.pairs > 0 {
                 taps.begin(sampler);
-                let sides = [unit.levels[0].width, unit.levels[0].height];
-                let quad = anisotropy::taps(place.quad(), unit.state.anisotropy);
-                Footprints::set(&mut taps.pairs, 0, &quad, sides);
+                Footprints::set(&mut taps.pairs, 0, &PairsOfQuad::defined(unit, place.quad()));
                 for (got, wanted) in varying.footprints[index].pairs.iter().zip(&taps.pairs) {
                     let of =
                         |pair: &Pair, lane: usize| (pair.weights[lane], [0, 1].map(|n: usize| pair.offsets[n][lane]));

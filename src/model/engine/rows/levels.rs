@@ -204,12 +204,12 @@ impl Setup<'_> {
 }
 
 impl Measure for i32 {
-    fn behind() -> i32 {
+    fn behind(_: &PlannedUnit) -> i32 {
         lod::LEAST
     }
 
     #[inline(always)]
-    fn measure(_: &PlannedUnit, at: &AtQuads, _: usize, out: &mut [i32], unknown: &mut [u64]) {
+    fn measure<const WIDE: bool>(_: &PlannedUnit, at: &AtQuads, _: usize, out: &mut [i32], unknown: &mut [u64]) {
         log_ratios(at, out.len(), out, unknown);
     }
 

@@ -1,7 +1,7 @@
 //! TEX-11 on rows: coordinates at the quads of a batch, exact, and what units take of them: a lod, or the taps of a footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::direction::CubeDirection;
+use super::direction::{CubeDirection, reaches_limit};
 use super::kernels::LANES;
 use super::kernels::PerLane;
 use super::planes::Plane;
@@ -21,10 +21,10 @@ pub(super) type AtQuads = [[PerLane<f64>; 2]; 3];
 /// What a unit takes of a quad.
 pub(super) trait Measure: Copy {
     /// Where a pixel of the quad lies behind the viewer.
-    fn behind() -> Self;
+    fn behind(unit: &PlannedUnit) -> Self;
 
     /// That of the first `count` quads. Sign bits of `unknown` say of which coordinates do not tell it; more can be set.
-    fn measure(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], unknown: &mut [u64]);
+    fn measure<const WIDE: bool>(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], unknown: &mut [u64]);
 
     /// That of one quad, by the definition.
     fn defined(unit: &PlannedUnit, quad: Option<Quad>) -> Self;
@@ -167,6 +167,7 @@ impl Setup<'_> {
                 };
                 (base, range)
             }
+            Planes::Ratio(_, reach) if reaches_limit(*reach, sampler.sides) => return None,
             Planes::Ratio(planes, _) => {
                 let looking = CubeDirection::around(planes, &local.real, columns, rows);
                 let [s, t, q] = looking.lines;
@@ -230,10 +231,10 @@ impl Setup<'_> {
         let (i, j) = batch.first;
         let lanes = batch.at.x.len();
         let above = (j & !1) - j;
-        let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind());
+        let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind(unit));
         if base.behind {
             room(known, 1);
-            (known.of, known.each[0]) = (None, T::behind());
+            (known.of, known.each[0]) = (None, T::behind(unit));
             return Spread::default();
         }
         if !ROW {
@@ -305,7 +306,7 @@ impl Setup<'_> {
             }
             unknown.fill(0);
         }
-        T::measure(unit, coordinates, count, &mut out[..rounded], unknown);
+        T::measure::<FMA>(unit, coordinates, count, &mut out[..rounded], unknown);
         if !any_negative(unknown) {
             return;
         }

@@ -47,10 +47,20 @@ pub(super) struct Stage {
     pub(super) doubled: [bool; 4],
     /// Of bump stages, which of the moved coordinates are its own.
     pub(super) moved: usize,
-    /// TSH-8: what a channel is multiplied by for each red of the earlier unit, so that the product is in 4096ths.
+    /// TSH-8: what a channel is multiplied by for each red of the earlier unit, so that the product is in 2^-20.
     pub(super) luminance: Vec<f32>,
     /// TSH-6: u and v of each byte, less what is taken off coordinates.
     pub(super) dependent: [Vec<i32>; 2],
+}
+
+/// A stage that moves coordinates (TSH-7).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bump {
+    pub(super) stage: usize,
+    /// Sides of its image.
+    pub(super) sides: [u32; 2],
+    /// The furthest that it moves u and v, 1/256 texel.
+    pub(super) most: [f64; 2],
 }
 
 /// A texture shader compiled to rows.
@@ -61,12 +71,15 @@ pub(super) struct Shader {
     pub(super) varying: Vec<(usize, usize, Purpose)>,
     /// Numbers that do not.
     pub(super) same: Vec<f32>,
-    /// The bump stages, and the sides of their images.
-    pub(super) moved: Vec<(usize, [u32; 2])>,
+    /// The bump stages.
+    pub(super) moved: Vec<Bump>,
     /// Earlier unit, channels whose registers hold twice the byte, and mapping of each remapped colour.
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
     pub(super) kills: bool,
 }
+
+/// The furthest that a stage may move coordinates, 1/256 texel: no coordinate comes that far before it reaches its limit.
+const FARTHEST_MOVE: f64 = (1_u32 << 30) as f64;
 
 /// The largest scale and offset whose sums are known to within what a `luminance` of the stages may be off by.
 const LARGEST_LUMINANCE: f32 = (1 << 20) as f32;
@@ -88,7 +101,7 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
 }
 
 impl Shader {
-    /// The shader of a draw whose units rows sample. `None`: a dependent read has levels, or luminance is scaled too far.
+    /// The shader of a draw whose units rows sample. `None`: a dependent read has levels, or coordinates are moved or luminance is scaled too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -161,18 +174,26 @@ impl Shader {
                     stage.numbers[n] = self.number(draw, index, &state, n, Purpose::Sign);
                 }
             }
-            ShaderOperation::BumpEnvironment { luminance, .. } => {
+            ShaderOperation::BumpEnvironment { matrix, luminance } => {
+                let [m0, m1, m2, m3] = matrix.map(|entry| f64::from(entry.abs()));
+                let sides = samplers[sampler?].sides;
+                let [width, height] = sides.map(|side| 256.0 * f64::from(side));
+                let most = [(m0 + m3) * width, (m1 + m2) * height];
+                // Also refuses what is no number.
+                if !(most[0] < FARTHEST_MOVE && most[1] < FARTHEST_MOVE) {
+                    return None;
+                }
                 stage.moved = self.moved.len();
-                self.moved.push((index, samplers[sampler?].sides));
+                self.moved.push(Bump { stage: index, sides, most });
                 if let Some([scale, offset]) = luminance {
                     // Sums of larger ones lose too many bits.
                     if scale.abs().max(offset.abs()) > LARGEST_LUMINANCE {
                         return None;
                     }
-                    // Nearest to (R / 255 scale + offset) 4096 / 255.
+                    // Nearest to 2^20 (R / 255 scale + offset) / 255.
                     let of = |red: u8| {
                         let factor = f64::from(red) * f64::from(scale) + 255.0 * f64::from(offset);
-                        (factor * (4096.0 / 65025.0)).clamp(-1e30, 1e30) as f32
+                        (factor * (f64::from(1 << 20) / 65025.0)).clamp(-1e30, 1e30) as f32
                     };
                     stage.luminance = (0..=255).map(of).collect();
                 }

@@ -7,7 +7,7 @@ use super::kernels::{LANES, STEP};
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
-use crate::raster::interpolate::{SHORT_BITS, most_dominant};
+use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
 
@@ -111,21 +111,14 @@ impl Dominance {
             return;
         }
         // Everything is linear along a row: what lies between two pixels is classed as both are.
-        let mut before = classes::<FMA>(functions, 0.0, error);
+        let ends = classes_at_ends::<FMA>(functions, f64::from(batch.at.last), error);
         for step in 0..lanes / STEP {
-            let end = f64::from(batch.at.last).min(((step + 1) * STEP) as f64);
-            let after = classes::<FMA>(functions, end, error);
-            self.steps[step] = match (before, after) {
-                (Some(before), Some(after)) if before == after => {
-                    let [first, third] = most_dominant(before);
-                    Some([!first, !third])
-                }
-                _ => {
-                    self.lanes::<FMA, true>(triangle, batch, functions, error, step * STEP..(step + 1) * STEP);
-                    None
-                }
-            };
-            before = after;
+            let (before, after) = (ends[step], ends[step + 1]);
+            self.steps[step] = (before == after && before >= 0)
+                .then_some([before & FIRST_DOMINATES == 0, before & THIRD_DOMINATES == 0]);
+            if self.steps[step].is_none() {
+                self.lanes::<FMA, true>(triangle, batch, functions, error, step * STEP..(step + 1) * STEP);
+            }
         }
     }
 
@@ -184,6 +177,8 @@ impl Dominance {
             return;
         }
         let mut known = (None, functions);
+        // One division serves a row on which the denominator neither varies nor loses anything.
+        let is_constant = functions[2].x == 0.0 && losses[2] == [0.0; 2];
         let steps = u.as_chunks_mut::<STEP>().0.iter_mut().zip(v.as_chunks_mut::<STEP>().0).zip(&self.steps);
         for (step, ((u, v), short)) in steps.enumerate() {
             let lanes = step * STEP..(step + 1) * STEP;
@@ -201,9 +196,17 @@ impl Dominance {
                         *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
                     }
                 }
+                if is_constant {
+                    let reciprocal = 1.0 / lines[2].c;
+                    lines = [lines[0].times(reciprocal), lines[1].times(reciprocal), lines[2]];
+                }
                 known = (Some(short), lines);
             }
-            [*u, *v] = linear::<FMA>(known.1, lanes.start, last);
+            [*u, *v] = if is_constant {
+                linear::<FMA, false>(known.1, lanes.start, last)
+            } else {
+                linear::<FMA, true>(known.1, lanes.start, last)
+            };
         }
     }
 }
@@ -222,14 +225,32 @@ impl Short {
     }
 }
 
-/// Classes of the weights at a pixel of a row. `None`: one of them is too close to call.
+/// Ends of a batch's steps, rounded up to whole vectors.
+const ENDS: usize = BLOCK / STEP + 8;
+
+/// Bits of what [`classes_at_ends`] returns.
+const FIRST_DOMINATES: i64 = 1 << 6;
+const THIRD_DOMINATES: i64 = 1 << 7;
+
+/// Computes the classes of the three weights at the first pixel of each step of a row, packed into one number with the bits that tell which weight
+/// dominates. Negative where a weight is too close to the border of a class.
 #[inline(always)]
-fn classes<const FMA: bool>([first, third, denominator]: [Line; 3], x: f64, error: f64) -> Option<[f64; 3]> {
-    let at = |line: Line| line.at::<FMA, true>(x, 0.0);
-    let (a, c, d) = (at(first), at(third), at(denominator));
-    let b = d - a - c;
-    let close = near(a, d, error) | near(b, d, error) | near(c, d, error);
-    (close >> 63 == 0).then_some([class(a, d), class(b, d), class(c, d)])
+fn classes_at_ends<const FMA: bool>([first, third, denominator]: [Line; 3], last: f64, error: f64) -> [i64; ENDS] {
+    let mut out = [0; ENDS];
+    for n in 0..ENDS {
+        let x = IOTA_REAL[n] * STEP as f64;
+        let x = if x < last { x } else { last };
+        let at = |line: Line| line.at::<FMA, true>(x, 0.0);
+        let (a, c, d) = (at(first), at(third), at(denominator));
+        let b = d - a - c;
+        let close = (near(a, d, error) | near(b, d, error) | near(c, d, error)) & 1 << 63;
+        let class = |n: f64| i64::from(4.0 * n > d) + i64::from(2.0 * n > d);
+        let (a, b, c) = (class(a), class(b), class(c));
+        let [is_first, is_third] = most_dominant([a, b, c]);
+        let dominance = (i64::from(is_first) << 6) | (i64::from(is_third) << 7);
+        out[n] = a << 4 | b << 2 | c | dominance | close as i64;
+    }
+    out
 }
 
 /// 2 above half of d, 1 above a quarter.
@@ -268,9 +289,14 @@ fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it.
+/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it. `DIVIDES`: otherwise the two lines are divided
+/// already.
 #[inline(always)]
-fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, last: f64) -> [[f64; STEP]; 2] {
+fn linear<const FMA: bool, const DIVIDES: bool>(
+    [along, down, denominator]: [Line; 3],
+    first: usize,
+    last: f64,
+) -> [[f64; STEP]; 2] {
     let (mut u, mut v, mut x) = ([0.0; STEP], [0.0; STEP], [0.0; STEP]);
     let first = first as f64;
     for n in 0..STEP {
@@ -278,9 +304,11 @@ fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, 
         x[n] = if at < last { at } else { last };
     }
     for n in 0..STEP {
-        let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
-        u[n] = along.at::<FMA, true>(x[n], 0.0) * r;
-        v[n] = down.at::<FMA, true>(x[n], 0.0) * r;
+        (u[n], v[n]) = (along.at::<FMA, true>(x[n], 0.0), down.at::<FMA, true>(x[n], 0.0));
+        if DIVIDES {
+            let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
+            (u[n], v[n]) = (u[n] * r, v[n] * r);
+        }
     }
     [u, v]
 }
@@ -290,13 +318,17 @@ fn lost(losses: Losses, weights: [f64; 2]) -> f64 {
     losses[0] * weights[0] + losses[1] * weights[1]
 }
 
-/// Floors, less a bias, of numbers that are off by less than `off`, and as sign bits which are not proved, besides those that were not.
+/// Floors, less a bias, of numbers that are off by less than `off`, limited as TEX-15 says, and as sign bits which are not proved, besides those that were
+/// not.
 #[inline(always)]
 pub(super) fn floors(at: &[f64], off: f64, bias: i32, close: &mut [u64], out: &mut [i32]) {
     let lanes = at.len();
     let (close, out) = (&mut close[..lanes], &mut out[..lanes]);
     for n in 0..lanes {
-        let t = at[n] - 0.5;
+        // Far from where a floor changes.
+        let (low, high) = (0.5 - COORDINATE_LIMIT as f64, COORDINATE_LIMIT as f64 + 0.5);
+        let limited = if at[n] > low { at[n] } else { low };
+        let t = if limited < high { limited } else { high } - 0.5;
         out[n] = nearest(t).wrapping_sub(bias);
         close[n] |= (0.5 - off - (t - whole(t)).abs()).to_bits();
     }

@@ -6,11 +6,11 @@
 
 use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
-use super::kernels::{LANES, Lanes256, PerLane};
+use super::kernels::{LANES, Lanes256, PerLane, STEP};
 use super::planes::{RealPlane, inverse};
-use super::quotient::{Line, Reciprocals, any_negative, floor_of_factor, nearest, nearest_32};
+use super::quotient::{Line, Reciprocals, any_negative, floor_of_factor, nearest, nearest_32, whole};
 use super::setup::{BatchSetup, PixelBatch, Run};
-use super::shader::{Number, Purpose, Shader, byte_of};
+use super::shader::{Bump, Number, Purpose, Shader, byte_of};
 use super::short::{Dominance, Losses, losses};
 use super::triangle::Varying;
 use super::{BLOCK, CompiledDraw, Job, Sampler};
@@ -20,6 +20,7 @@ use crate::engine::walk::Band;
 use crate::number::convert::factor;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
 use crate::state::{MipFilter, ShaderOperation, TEXTURE_UNITS};
+use crate::texture::shader;
 use crate::trace::Silent;
 
 /// A number across a triangle.
@@ -44,6 +45,8 @@ struct Attributes {
     moved: Vec<[RealPlane; 2]>,
     /// What those lose where weights fall short.
     losses: Vec<[Losses; 2]>,
+    /// Whether u and v stay below what they are limited to, wherever the stage moves them.
+    within_limits: Vec<bool>,
     /// More than u and v change where the definition floors the numerators of the vertices.
     floors: f64,
 }
@@ -75,7 +78,8 @@ impl Attributes {
         }
         self.moved.clear();
         self.losses.clear();
-        for (stage, sides) in &shader.moved {
+        self.within_limits.clear();
+        for Bump { stage, sides, most } in &shader.moved {
             let set = context.coordinate_set(shader.stages[*stage].state.coordinate_set);
             let plane = |axis: usize| {
                 let side = f64::from(256 * sides[axis]);
@@ -85,17 +89,20 @@ impl Attributes {
             let planes = [plane(0), plane(1)];
             let losses = |plane: &RealPlane| losses(triangle, &inverse, plane.g());
             self.losses.push([losses(&planes[0]), losses(&planes[1])]);
+            self.within_limits.push((0..2).all(|axis| planes[axis].reach + most[axis] < FARTHEST));
             self.moved.push(planes);
         }
     }
 }
 
-/// Coordinates that a stage moves, 1/256 texel, and more than they are off by.
+/// Coordinates that a stage moves.
 #[derive(Clone, Debug)]
 struct Moved {
+    /// Estimates, 1/256 texel.
     u: [f64; LANES],
     v: [f64; LANES],
-    off: [f64; LANES],
+    /// Half a step less what estimates may be off by: a moved coordinate that is no further from the middle of a step has a proved floor.
+    room: [f64; LANES],
 }
 
 /// Lanes that are the definition's.
@@ -169,7 +176,7 @@ impl Workshop {
         self.numbers.resize(shader.varying.len(), [0.0; LANES]);
         self.same.clear();
         self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
-        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], off: [0.0; LANES] });
+        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES] });
         self.attributes.triangle = None;
         *self.open = Open::default();
         self.triangles.clear();
@@ -192,8 +199,8 @@ const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 /// What the coordinate of a bump stage may be off by besides: its offset is floored at 2^-24 of 1/256 texel.
 const OFFSET: f64 = 1.0 / (1 << 23) as f64;
 
-/// What estimates of coordinates and offsets stay below, 1/256 texel; coordinates are limited beyond.
-const FARTHEST: f64 = (COORDINATE_LIMIT - 1) as f64;
+/// Coordinates reach no limit below this, 1/256 texel.
+const FARTHEST: f64 = (COORDINATE_LIMIT - 16) as f64;
 
 impl Workshop {
     /// What the vertices give the stages of a texture shader, for a batch.
@@ -241,16 +248,17 @@ impl Workshop {
         if !attributes.moved.is_empty() {
             dominance.set::<FMA, ROW>(triangle, batch, &local);
         }
-        for ((planes, losses), moved) in attributes.moved.iter().zip(&attributes.losses).zip(moved) {
+        let Attributes { moved: all, losses, within_limits, floors, .. } = attributes;
+        for (((planes, losses), within_limits), moved) in all.iter().zip(losses).zip(within_limits).zip(moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
             let offs = [margin(&planes[0]), margin(&planes[1])];
-            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + attributes.floors + OFFSET;
+            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + *floors + OFFSET;
             // Also refuses what is no number.
             let proves = (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
-            if !proves {
+            if !(proves & *within_limits) {
                 narrow.fill(1);
             }
-            moved.off[batch.lanes()].fill(if proves { off } else { 0.0 });
+            moved.room[batch.lanes()].fill(0.5 - if proves { off } else { 0.0 });
             let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
             dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], at);
         }
@@ -355,8 +363,9 @@ pub(super) fn run(
                         let [_, green, blue, _] = earlier.map(|slot| slot.map(|slot| rows[usize::from(slot)].block()));
                         if let (Some(blue), Some(green)) = (blue, green) {
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
-                            let [along, ..] = &mut workshop.dot.scratch;
-                            bump(sampler, matrix, blue, green, moved, along, numbers, &mut workshop.open);
+                            let [along, down, _] = &mut workshop.dot.scratch;
+                            dot::moved(matrix, blue, green, along, down);
+                            place(sampler, moved, [along, down], numbers, &mut workshop.open.wide);
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -402,15 +411,19 @@ pub(super) fn run(
                 fetch::locate(table, &mut varying.coordinates[at], faces, work);
                 let (at, references) = (&varying.coordinates[at], &varying.references[at]);
                 fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
-                if let Some(factors) = stage.luminance.first_chunk::<256>()
+                if let ShaderOperation::BumpEnvironment { luminance: Some(state), .. } = operation
+                    && let Some(factors) = stage.luminance.first_chunk::<256>()
                     && let Some(red) = earlier[0]
                 {
                     let [products, ..] = &mut workshop.dot.scratch;
                     let doubled = shader.stages[stage.state.previous].doubled[0];
-                    look_up(factors, rows[usize::from(red)].block(), doubled, products);
+                    let red = *rows[usize::from(red)].block();
+                    let red = |n: usize| (red[n] >> u32::from(doubled)) as u8;
+                    for n in 0..BLOCK {
+                        products[n] = factors[usize::from(red(n))];
+                    }
                     for slot in wanted[..3].iter().flatten() {
-                        let channel = rows[usize::from(*slot)].block_mut();
-                        luminance(products, channel, &mut workshop.open.narrow);
+                        luminance(state, products, red, rows[usize::from(*slot)].block_mut());
                     }
                 }
             }
@@ -476,76 +489,52 @@ fn dot_product(
     }
 }
 
-/// TSH-7: coordinates moved by blue and green; lanes that are not proved are left open.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
-fn bump(
-    sampler: &Sampler,
-    [m0, m1, m2, m3]: [f32; 4],
-    blue: (&[i16; BLOCK], bool),
-    green: (&[i16; BLOCK], bool),
-    moved: &Moved,
-    along: &mut Floats,
-    [u, v]: &mut [PerLane<i32>; 2],
-    open: &mut Open,
-) {
-    let (Some(u), Some(v)) = (u.first_chunk_mut(), v.first_chunk_mut()) else { return };
-    for (entries, side, at, out) in
-        [([m0, m3], sampler.sides[0], &moved.u, u), ([m1, m2], sampler.sides[1], &moved.v, v)]
-    {
-        dot::moved(entries, blue, green, along, &mut open.narrow);
-        place(along, side, (at, &moved.off), sampler.bias(), &mut open.wide, out);
-    }
-}
-
-/// What estimates are of which numbers are to be moved, less a bias: floors, and as sign bits which are not proved.
+/// TSH-7: the floors, less the sampler's bias, of the estimates of `moved`, moved by so many 128ths of the image. Sets the sign bits of the lanes whose
+/// floors are not proved.
 #[inline(always)]
 fn place(
-    along: &Floats,
-    side: u32,
-    (at, off): (&[f64; LANES], &[f64; LANES]),
-    bias: i32,
+    sampler: &Sampler,
+    moved: &Moved,
+    [along, down]: [&Floats; 2],
+    [u, v]: &mut [PerLane<i32>; 2],
     open: &mut [u64; LANES],
-    out: &mut [i32; BLOCK],
 ) {
-    // A side of the image is 256 times its texels, and bytes are 128ths.
-    let side = 2.0 * f64::from(side);
+    // A side of the image is 256 times its texels.
+    let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
     for n in 0..BLOCK {
-        let at = at[n] + f64::from(along[n]) * side;
-        let t = at - 0.5;
-        let near = (t - super::quotient::whole(t)).abs();
-        open[n] |= (0.5 - off[n] - near).to_bits() | (FARTHEST - at.abs()).to_bits();
-        out[n] = nearest(t).wrapping_sub(bias);
-    }
-}
-
-/// More than a product in 4096ths below 4,097 is off by.
-const PRODUCT: f32 = 1.0 / 1024.0;
-
-/// TSH-8: what the channels of each pixel are multiplied by.
-#[inline(always)]
-fn look_up(factors: &[f32; 256], red: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
-    for n in 0..BLOCK {
-        out[n] = factors[usize::from((red[n] >> u32::from(doubled)) as u8)];
+        let at_u = moved.u[n] + f64::from(along[n]) * width - 0.5;
+        let at_v = moved.v[n] + f64::from(down[n]) * height - 0.5;
+        let near = |t: f64| (t - whole(t)).abs();
+        open[n] |= (moved.room[n] - near(at_u)).to_bits() | (moved.room[n] - near(at_v)).to_bits();
+        u[n] = nearest(at_u).wrapping_sub(bias);
+        v[n] = nearest(at_v).wrapping_sub(bias);
     }
 }
 
 /// TSH-8 of a channel.
 #[inline(always)]
-fn luminance(factors: &Floats, channel: &mut [i16; BLOCK], open: &mut [i32; LANES]) {
-    for n in 0..BLOCK {
-        let product = f32::from(channel[n].max(0)) * factors[n];
-        let product = if product < 4097.0 { product } else { 4097.0 };
-        let (low, high) = (byte(product - PRODUCT), byte(product + PRODUCT));
-        open[n] |= low ^ high;
-        channel[n] = low as i16;
+fn luminance(state: [f32; 2], factors: &Floats, red: impl Fn(usize) -> u8, channel: &mut [i16; BLOCK]) {
+    const ONE: f32 = (1 << 20) as f32;
+    let steps = channel.as_chunks_mut::<STEP>().0.iter_mut().zip(factors.as_chunks::<STEP>().0);
+    for (step, (channel, factors)) in steps.enumerate() {
+        let (before, mut differ) = (*channel, [0; STEP]);
+        for n in 0..STEP {
+            let product = f32::from(before[n].max(0)) * factors[n];
+            let product = if product > 0.0 { product } else { 0.0 };
+            // Rounded to a multiple of 2^-20, which is less than one such step off.
+            let product = nearest_32(if product < ONE { product } else { ONE });
+            let byte = |product: i32| factor(product >> 8);
+            let (low, high) = (byte(product - 1), byte(product + 1));
+            channel[n] = low as i16;
+            differ[n] = low ^ high;
+        }
+        if differ.iter().fold(0, |all, differ| all | differ) != 0 {
+            for n in (0..STEP).filter(|n| differ[*n] != 0) {
+                let v = shader::luminance(i32::from(before[n]), red(step * STEP + n), state);
+                channel[n] = i16::from(shader::luminance_byte(v));
+            }
+        }
     }
-}
-
-/// TSH-8: 4096ths, floored (one less where nothing remains, perhaps), as a byte, saturated.
-#[inline(always)]
-fn byte(product: f32) -> i32 {
-    factor(nearest_32(if product > 0.5 { product - 0.5 } else { 0.0 }).min(4096))
 }
 
 /// The open lanes, by the definition; how many they are.

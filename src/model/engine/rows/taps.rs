@@ -1,16 +1,48 @@
 //! TEX-17 on rows: the taps of each pixel, two and two to both sides of it.
+#![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, and quotients of them that are floored")]
 
 use super::Sampler;
-use super::kernels::LANES;
-use super::kernels::PerLane;
+use super::depth::{cut, floor};
+use super::kernels::{LANES, PerLane, STEP};
 use super::quads::{AtQuads, Known, Measure, Quads};
+use super::quotient::nearest;
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
 
-/// The taps of a quad's footprint.
-pub(super) type Taps = anisotropy::Taps<i64, i32>;
+/// Most pairs of taps of a footprint.
+const MAX_PAIRS: usize = anisotropy::MAX_TAPS / 2;
+
+/// The taps of a quad's footprint, two and two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct PairsOfQuad {
+    /// As in [`Pair`].
+    offsets: [[i32; 2]; MAX_PAIRS],
+    weights: [i32; MAX_PAIRS],
+}
+
+impl PairsOfQuad {
+    /// Those of the definition's taps, on a level of so many texels.
+    fn from_taps(taps: &anisotropy::Taps<i64, i32>, sides: [u32; 2]) -> PairsOfQuad {
+        // A single tap is two halves in the same place.
+        let weight = |n: usize| match taps.count {
+            1 => {
+                if n == 0 {
+                    128
+                } else {
+                    0
+                }
+            }
+            _ => taps.weights[2 * n],
+        };
+        let pairs = [0, 1, 2, 3];
+        PairsOfQuad {
+            offsets: pairs.map(|n: usize| [0, 1].map(|axis: usize| near(taps.offsets[2 * n][axis], sides[axis]))),
+            weights: pairs.map(weight),
+        }
+    }
+}
 
 /// Two taps of the lanes of a block, at equal distances from them.
 #[derive(Clone, Debug)]
@@ -26,7 +58,7 @@ pub(super) struct Pair {
 pub(super) struct Footprints {
     /// As many as the unit can have.
     pub(super) pairs: Vec<Pair>,
-    known: Known<Taps>,
+    known: Known<PairsOfQuad>,
 }
 
 impl Footprints {
@@ -35,16 +67,12 @@ impl Footprints {
         self.pairs.resize(sampler.pairs, Pair { offsets: [[0; LANES]; 2], weights: [0; LANES] });
     }
 
-    /// The taps of a lane, on a level of so many texels.
+    /// Sets the taps of a lane.
     #[inline(always)]
-    pub(super) fn set(pairs: &mut [Pair], lane: usize, taps: &Taps, sides: [u32; 2]) {
-        for (n, pair) in pairs.iter_mut().enumerate() {
-            // A single tap is two halves in the same place.
-            let weight = if taps.count == 1 { if n == 0 { 128 } else { 0 } } else { taps.weights[2 * n] };
-            pair.weights[lane] = weight as u16;
-            for axis in 0..2 {
-                pair.offsets[axis][lane] = near(taps.offsets[2 * n][axis], sides[axis]);
-            }
+    pub(super) fn set(pairs: &mut [Pair], lane: usize, quad: &PairsOfQuad) {
+        for (n, pair) in pairs.iter_mut().enumerate().take(MAX_PAIRS) {
+            pair.weights[lane] = quad.weights[n] as u16;
+            (pair.offsets[0][lane], pair.offsets[1][lane]) = (quad.offsets[n][0], quad.offsets[n][1]);
         }
     }
 }
@@ -63,23 +91,99 @@ fn near(offset: i64, side: u32) -> i32 {
     offset.signum() as i32 * (BEYOND_COORDINATES + (magnitude - BEYOND_COORDINATES) % (512 * u64::from(side))) as i32
 }
 
-impl Measure for Taps {
-    fn behind() -> Taps {
-        anisotropy::taps(None, 1)
+/// Pixels of a quad that are further apart than this have their taps from whole numbers, 1/65536 texel: the quotients of smaller ones, in double
+/// precision, are never rounded to a whole number that they are not.
+const FARTHEST: f64 = (1 << 24) as f64;
+
+impl Measure for PairsOfQuad {
+    fn behind(unit: &PlannedUnit) -> PairsOfQuad {
+        PairsOfQuad::defined(unit, None)
     }
 
     #[inline(always)]
-    fn measure(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Taps], unknown: &mut [u64]) {
-        for n in (0..count).filter(|n| unknown[*n] >> 63 == 0) {
-            // Whole numbers below 2^53.
-            let quad = [0, 1, 2].map(|pixel: usize| [0, 1].map(|axis: usize| at[pixel][axis][n] as i64));
-            out[n] = anisotropy::taps(Some(quad), unit.state.anisotropy);
+    fn measure<const WIDE: bool>(
+        unit: &PlannedUnit,
+        at: &AtQuads,
+        count: usize,
+        out: &mut [PairsOfQuad],
+        unknown: &mut [u64],
+    ) {
+        let limit = f64::from(unit.state.anisotropy);
+        for (step, out) in out.as_chunks_mut::<STEP>().0.iter_mut().enumerate() {
+            let lanes = step * STEP..(step + 1) * STEP;
+            let mut deltas = [[0.0; STEP]; 4];
+            let mut far = 0;
+            for n in 0..4 {
+                let (from, to) = (&at[0][n % 2][lanes.clone()], &at[1 + n / 2][n % 2][lanes.clone()]);
+                for k in 0..STEP {
+                    deltas[n][k] = to[k] - from[k];
+                    far |= (FARTHEST - deltas[n][k].abs()).to_bits();
+                }
+            }
+            pairs_of_near::<WIDE>(&deltas, limit, out);
+            if far >> 63 == 0 {
+                continue;
+            }
+            let is_far =
+                |n: usize| !(0..4).all(|delta: usize| deltas[delta][n] <= FARTHEST && deltas[delta][n] >= -FARTHEST);
+            for n in (0..STEP).filter(|n| lanes.start + n < count && unknown[lanes.start + n] >> 63 == 0 && is_far(*n))
+            {
+                // Whole numbers below 2^53.
+                let quad =
+                    [0, 1, 2].map(|pixel: usize| [0, 1].map(|axis: usize| at[pixel][axis][lanes.start + n] as i64));
+                out[n] = PairsOfQuad::defined(unit, Some(quad));
+            }
         }
     }
 
-    fn defined(unit: &PlannedUnit, quad: Option<Quad>) -> Taps {
-        anisotropy::taps(quad, unit.state.anisotropy)
+    fn defined(unit: &PlannedUnit, quad: Option<Quad>) -> PairsOfQuad {
+        let taps = anisotropy::taps(quad, unit.state.anisotropy);
+        PairsOfQuad::from_taps(&taps, [unit.levels[0].width, unit.levels[0].height])
     }
+}
+
+/// [`anisotropy::taps`] of quads whose pixels are so far apart: u and v to the right one, u and v to the lower one.
+#[inline(always)]
+fn pairs_of_near<const WIDE: bool>(deltas: &[[f64; STEP]; 4], limit: f64, out: &mut [PairsOfQuad; STEP]) {
+    let least = f64::from(anisotropy::TEXEL);
+    let floor = floor::<WIDE>;
+    let ceiling = |n: f64| -floor(-n);
+    let [mut u, mut v, mut long, mut step, mut pairs, mut inner] = [[0.0; STEP]; 6];
+    for n in 0..STEP {
+        let [a, b, c, d] = [deltas[0][n], deltas[1][n], deltas[2][n], deltas[3][n]];
+        let (right, lower) = (floor((a * a + b * b).sqrt()), floor((c * c + d * d).sqrt()));
+        let is_right = right >= lower;
+        (u[n], v[n]) = if is_right { (a, b) } else { (c, d) };
+        let short = if is_right { lower } else { right };
+        long[n] = if is_right { right } else { lower };
+        let width = larger(larger(short, ceiling(long[n] / limit)), least);
+        pairs[n] = if long[n] <= width { 0.0 } else { ceiling(long[n] / (2.0 * width)) };
+        step[n] = if pairs[n] == 1.0 { long[n] - width } else { width };
+        inner[n] = floor((floor(512.0 * width / long[n]) + 1.0) * 0.5);
+    }
+    for pair in 0..MAX_PAIRS.min(limit as usize / 2) {
+        let (mut offsets, mut weights) = ([[0; STEP]; 2], [0; STEP]);
+        for n in 0..STEP {
+            let (reach, divisor) = ((2 * pair + 1) as f64 * step[n], 512.0 * long[n]);
+            let (is_tap, is_last) = ((pair as f64) < pairs[n], (pair + 1) as f64 == pairs[n]);
+            let most = floor(128.0 / larger(pairs[n] - 1.0, 1.0));
+            let inner = if inner[n] < most { inner[n] } else { most };
+            let weight = if is_last { 128.0 - (pairs[n] - 1.0) * inner } else { inner };
+            let single = if (pair == 0) & (pairs[n] == 0.0) { 128.0 } else { 0.0 };
+            weights[n] = nearest(if is_tap { weight } else { single });
+            let offset = |n: f64| nearest(if is_tap { cut::<WIDE>(n * reach / divisor) } else { 0.0 });
+            (offsets[0][n], offsets[1][n]) = (offset(u[n]), offset(v[n]));
+        }
+        for n in 0..STEP {
+            out[n].offsets[pair] = [offsets[0][n], offsets[1][n]];
+            out[n].weights[pair] = weights[n];
+        }
+    }
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 impl Setup<'_> {
@@ -94,18 +198,60 @@ impl Setup<'_> {
         footprints: &mut Footprints,
     ) {
         let unit = &self.context.draw.units[sampler.index];
-        let sides = [unit.levels[0].width, unit.levels[0].height];
         let Footprints { pairs, known } = footprints;
         let Some(base) = self.base_level::<FMA, ROW>(sampler, planes, local) else {
             for n in 0..batch.count {
-                let taps = self.defined_quad::<Taps>(batch, unit, batch.pixel(n));
-                Footprints::set(pairs, batch.lane + n, &taps, sides);
+                let quad = self.defined_quad::<PairsOfQuad>(batch, unit, batch.pixel(n));
+                Footprints::set(pairs, batch.lane + n, &quad);
             }
             return;
         };
-        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &base), &local.e, quads, known);
+        let spread = self.of_quads::<FMA, ROW, PairsOfQuad>(batch, (unit, &base), &local.e, quads, known);
         for n in 0..batch.count {
-            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)], sides);
+            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Taps in double precision against whole numbers: lengths of all magnitudes, squares and what is hardly less, whole quotients.
+    #[test]
+    fn doubles_hold_what_whole_numbers_say() {
+        let mut random = crate::random::Random::seeded(0x6a09_e667_f3bc_c908);
+        let mut several = 0;
+        for round in 0..40_000 {
+            let limit = 2 << (round % 3);
+            let mut deltas = [[0_i64; STEP]; 4];
+            for n in 0..STEP {
+                let bits = 14 + random.bits() % 11;
+                for delta in &mut deltas {
+                    delta[n] = (random.bits() % (2 << bits)) as i64 - (1 << bits);
+                }
+                // A length that is whole, and which a multiple of a texel or of the other one divides.
+                match n % 4 {
+                    0 => (deltas[0][n], deltas[2][n]) = (0, (random.bits() % (1 << (bits - 4))) as i64),
+                    1 => (deltas[0][n], deltas[1][n], deltas[2][n]) = (0, deltas[3][n] / 8 * 3, deltas[3][n] / 8),
+                    2 => (deltas[0][n], deltas[1][n]) = (65_536 * (random.bits() % 256) as i64, 0),
+                    _ => {}
+                }
+            }
+            let mut got = [PairsOfQuad::default(); STEP];
+            let reals = deltas.map(|delta| delta.map(|n| n as f64));
+            if round % 2 == 0 {
+                pairs_of_near::<true>(&reals, f64::from(limit), &mut got);
+            } else {
+                pairs_of_near::<false>(&reals, f64::from(limit), &mut got);
+            }
+            for n in 0..STEP {
+                let quad = [[0, 0], [deltas[0][n], deltas[1][n]], [deltas[2][n], deltas[3][n]]];
+                let taps = anisotropy::taps(Some(quad), limit);
+                assert_eq!(got[n], PairsOfQuad::from_taps(&taps, [256; 2]), "{quad:?}, {limit}");
+                several += usize::from(taps.count > 1);
+            }
+        }
+        assert!(several > 300_000, "{several}");
     }
 }

@@ -70,7 +70,7 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
         (Some(Third::Layer(..)), Some(coordinates)) => {
             ThirdPlanes::Layer(match layer_planes(triangle, coordinates, [r, q], unit.layers) {
                 (r, None) => Planes::Plane([Plane::new(triangle, inverse, r); 2]),
-                (r, Some(q)) => match positive([r, r, q], [unit.layers; 2]) {
+                (r, Some(q)) => match positive([r, r, q]) {
                     Some((g, reach)) => Planes::Ratio(Plane::three(triangle, inverse, &g), reach),
                     None => Planes::Other,
                 },
@@ -88,7 +88,7 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
             } else {
                 let ((above, over), (below, by)) =
                     (Plane::number(triangle, inverse, r), Plane::number(triangle, inverse, q));
-                match positive([above.g, above.g, below.g], [0; 2]) {
+                match positive([above.g, above.g, below.g]) {
                     Some((g, _)) => Reference::Ratio(Plane::three(triangle, inverse, &g), over / by),
                     None => Reference::Other,
                 }
