@@ -9,10 +9,10 @@ use crate::raster::setup::Triangle;
 pub(super) const SIDE: i64 = 16;
 
 /// Most columns and rows of the box of a triangle that is cut into boxes.
-const WIDEST: i64 = 64;
+const WIDEST: i64 = 8 * SIDE;
 
 /// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be corrected.
-const WIDEST_FLAT: i64 = SIDE;
+const WIDEST_FLAT: i64 = 2 * SIDE;
 
 /// Most pixels of a box, and what whole steps write past them.
 const MAX_LANES: usize = (SIDE * SIDE) as usize + 2 * STEP;

@@ -80,6 +80,12 @@ impl Line {
         Line { c: self.c + other.c, x: self.x + other.x, y: self.y + other.y }
     }
 
+    /// The least value so many columns to both sides and so many rows below.
+    #[inline(always)]
+    pub(super) fn least(self, columns: f64, rows: f64) -> f64 {
+        self.c - self.x.abs() * columns + if self.y < 0.0 { self.y * rows } else { 0.0 }
+    }
+
     /// So many times as much.
     #[inline(always)]
     pub(super) fn times(self, by: f64) -> Line {

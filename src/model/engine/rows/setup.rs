@@ -282,6 +282,9 @@ impl BatchSetup {
             return BatchSetup { e, real, denominator, ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
         }
         let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
+        // No sample lies outside of the triangle, but the box does.
+        let here = 1.0 / denominator.least(columns, rows);
+        let widest = if here > 0.0 && here < widest { here } else { widest };
         BatchSetup { e, real, denominator, ratio: terms(columns, rows) * widest, reciprocal, widest, columns, rows }
     }
 

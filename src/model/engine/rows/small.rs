@@ -63,7 +63,9 @@ impl EdgeSetup {
         let denominator = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
         let least = if p[0] < p[1] { p[0] } else { p[1] };
         let least = if least < p[2] { least } else { p[2] };
-        let widest = 1.0 / (least * triangle.doubled_area as f64);
+        let (least_here, least_of_all) =
+            (denominator.least(SIDE as f64, SIDE as f64), least * triangle.doubled_area as f64);
+        let widest = 1.0 / if least_here > least_of_all { least_here } else { least_of_all };
         let ratio = sum::<FMA>(&p, &terms) * widest;
         let reciprocal = 1.0 / denominator.c;
         EdgeSetup {
