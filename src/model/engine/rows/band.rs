@@ -501,13 +501,13 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
         }
         if draw.stencil_test.is_some() || draw.depth_test.is_some() {
-            for run in runs.iter() {
-                depth[run.lane..][..run.count].copy_from_slice(&band.depth[run.at..][..run.count]);
+            if let Some(depth) = depth.first_chunk_mut() {
+                read::<MASKS>(band.depth, runs, depth);
             }
             let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
             if store::test_depth_stencil(draw, incoming, depth, alive) {
                 for run in runs.iter() {
-                    band.depth[run.at..][..run.count].copy_from_slice(&depth[run.lane..][..run.count]);
+                    copy::<MASKS>(&depth[run.lane..], &mut band.depth[run.at..], run.count);
                 }
             }
         }
@@ -534,7 +534,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     *used = 0;
 }
 
-/// What the surface holds of some runs.
+/// What the surface or its depth buffer holds of some runs.
 #[inline(always)]
 fn read<const MASKS: bool>(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
     for run in runs {

@@ -281,7 +281,7 @@ impl Table {
         let linear = linear(unit);
         let beyond = i32::from(linear);
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
-        let mut all = Vec::new();
+        let mut all = Vec::with_capacity(size(unit, levels) as usize);
         let mut placed = Vec::new();
         for (n, number) in images.iter().enumerate() {
             let start = all.len();
@@ -300,13 +300,15 @@ impl Table {
                 }
             }
         }
-        let mut facts = Facts::new(all.first().copied().unwrap_or(0));
-        all.iter().for_each(|texel| facts.see(*texel));
         let comparison = compares_r(unit);
         let channels = match comparison {
             // What comes of a comparison is the same in all of them.
             Some(_) if folds => [Channel::Of(0); 4],
-            None if folds && !unit.is_wide() => facts.channels(unit.state.signed),
+            None if folds && !unit.is_wide() => {
+                let mut facts = Facts::new(all.first().copied().unwrap_or(0));
+                all.iter().for_each(|texel| facts.see(*texel));
+                facts.channels(unit.state.signed)
+            }
             _ => [0, 1, 2, 3].map(Channel::Of),
         };
         let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
