@@ -177,8 +177,6 @@ impl Dominance {
             return;
         }
         let mut known = (None, functions);
-        // One division serves a row on which the denominator neither varies nor loses anything.
-        let is_constant = functions[2].x == 0.0 && losses[2] == [0.0; 2];
         let steps = u.as_chunks_mut::<STEP>().0.iter_mut().zip(v.as_chunks_mut::<STEP>().0).zip(&self.steps);
         for (step, ((u, v), short)) in steps.enumerate() {
             let lanes = step * STEP..(step + 1) * STEP;
@@ -196,17 +194,9 @@ impl Dominance {
                         *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
                     }
                 }
-                if is_constant {
-                    let reciprocal = 1.0 / lines[2].c;
-                    lines = [lines[0].times(reciprocal), lines[1].times(reciprocal), lines[2]];
-                }
                 known = (Some(short), lines);
             }
-            [*u, *v] = if is_constant {
-                linear::<FMA, false>(known.1, lanes.start, last)
-            } else {
-                linear::<FMA, true>(known.1, lanes.start, last)
-            };
+            [*u, *v] = linear::<FMA>(known.1, lanes.start, last);
         }
     }
 }
@@ -289,14 +279,9 @@ fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it. `DIVIDES`: otherwise the two lines are divided
-/// already.
+/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it.
 #[inline(always)]
-fn linear<const FMA: bool, const DIVIDES: bool>(
-    [along, down, denominator]: [Line; 3],
-    first: usize,
-    last: f64,
-) -> [[f64; STEP]; 2] {
+fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, last: f64) -> [[f64; STEP]; 2] {
     let (mut u, mut v, mut x) = ([0.0; STEP], [0.0; STEP], [0.0; STEP]);
     let first = first as f64;
     for n in 0..STEP {
@@ -304,11 +289,9 @@ fn linear<const FMA: bool, const DIVIDES: bool>(
         x[n] = if at < last { at } else { last };
     }
     for n in 0..STEP {
-        (u[n], v[n]) = (along.at::<FMA, true>(x[n], 0.0), down.at::<FMA, true>(x[n], 0.0));
-        if DIVIDES {
-            let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
-            (u[n], v[n]) = (u[n] * r, v[n] * r);
-        }
+        let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
+        u[n] = along.at::<FMA, true>(x[n], 0.0) * r;
+        v[n] = down.at::<FMA, true>(x[n], 0.0) * r;
     }
     [u, v]
 }
