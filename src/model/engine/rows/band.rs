@@ -154,7 +154,8 @@ fn draw_window<T: Kernels>(
                         let lanes = whole_steps(count);
                         let last = count as i32 - 1;
                         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
-                        let batch = PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
+                        let batch =
+                            PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0), runs: &[] };
                         T::row(&interpolators, batch, job, block);
                         if compiled.shader.is_some() {
                             T::row_attributes(context, batch, job, block);
@@ -293,7 +294,8 @@ pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<
 pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let lanes = whole_steps(coverage.count);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
-    PixelBatch { first: coverage.first, at, count: coverage.count, lane, extent: (SIDE as i32, SIDE as i32) }
+    let (first, count, runs) = (coverage.first, coverage.count, &coverage.runs[..coverage.filled]);
+    PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs }
 }
 
 /// The same, of fewer than a whole step where those suffice.

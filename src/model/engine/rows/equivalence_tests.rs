@@ -483,7 +483,7 @@ fn rows_interpolate(seed: u64) {
                         let lanes = whole_steps(count);
                         let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
-                        let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0) };
+                        let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0), runs: &[] };
                         if round.is_multiple_of(4) {
                             compare::<true, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
                         } else {

@@ -94,7 +94,7 @@ impl Setup<'_> {
         };
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &base), &local.e, quads, &mut reads.known);
-        spread.hand_out(&reads.known.each, batch.count, &mut placing.lods[..lanes]);
+        spread.hand_out(quads, &reads.known.each, batch.count, &mut placing.lods[..lanes]);
         let (at, denominator) = (batch.at, base.denominator);
         let [at_u, at_v] = &mut placing.at;
         let (lines, (u, v)) = ([base.along, base.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));

@@ -38,11 +38,57 @@ pub(super) struct Quads {
     coordinates: AtQuads,
     /// Of quads: negative, as the bits of doubles, where nothing is known.
     unknown: PerLane<u64>,
+    /// Of a box: how many quads it has, and which of them each lane belongs to.
+    count: usize,
+    of_lanes: PerLane<u8>,
 }
 
 impl Default for Quads {
     fn default() -> Self {
-        Quads { origins: [[0.0; LANES]; 2], coordinates: [[[0.0; LANES]; 2]; 3], unknown: [0; LANES] }
+        Quads {
+            origins: [[0.0; LANES]; 2],
+            coordinates: [[[0.0; LANES]; 2]; 3],
+            unknown: [0; LANES],
+            count: 0,
+            of_lanes: [0; LANES],
+        }
+    }
+}
+
+impl Quads {
+    /// Finds the quads of a box.
+    #[inline(always)]
+    pub(super) fn begin_box(&mut self, batch: PixelBatch<'_>) {
+        let ((i, j), [xs, ys]) = (batch.first, &mut self.origins);
+        let (mut quads, mut lane) = (0, 0);
+        let mut runs = batch.runs;
+        while let Some((row, ..)) = runs.first() {
+            let rows = runs.iter().take(2).take_while(|(other, ..)| other >> 1 == row >> 1).count();
+            let (pair, later) = runs.split_at(rows);
+            runs = later;
+            let (mut low, mut high) = (i64::MAX, i64::MIN);
+            for (_, first, count) in pair {
+                (low, high) = (low.min(first >> 1), high.max((first + *count as i64 - 1) >> 1));
+            }
+            for (_, first, count) in pair {
+                for n in 0..*count as i64 {
+                    self.of_lanes[lane] = (quads as i64 + ((first + n) >> 1) - low) as u8;
+                    lane += 1;
+                }
+            }
+            for column in low..=high {
+                (xs[quads], ys[quads]) = ((2 * column - i) as f64, ((row & !1) - j) as f64);
+                quads += 1;
+            }
+        }
+        if let (Some(last), Some(last_lane)) = (quads.checked_sub(1), lane.checked_sub(1)) {
+            let (x, y, of) = (xs[last], ys[last], self.of_lanes[last_lane]);
+            let beyond = whole_steps(quads);
+            xs[quads..beyond].fill(x);
+            ys[quads..beyond].fill(y);
+            self.of_lanes[lane..whole_steps(lane)].fill(of);
+        }
+        self.count = quads;
     }
 }
 
@@ -64,41 +110,46 @@ impl<T> Default for Known<T> {
 }
 
 /// Which of the [known](Known) quads the lanes of a batch belong to.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Spread {
-    first: usize,
-    odd: usize,
-    shift: u32,
-    last: usize,
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Spread {
+    /// All to the first.
+    First,
+    /// Pixels side by side: two to a quad, but the first one alone to its quad where `odd` is 1. Number of the first quad, and how many come after it.
+    Row { first: usize, odd: usize, last: usize },
+    /// A box: as [`Quads`] say.
+    Box,
 }
 
 impl Spread {
     /// The quad of a lane.
     #[inline(always)]
-    pub(super) fn quad(&self, lane: usize) -> usize {
-        self.first + ((lane + self.odd) >> self.shift).min(self.last)
+    pub(super) fn quad(&self, quads: &Quads, lane: usize) -> usize {
+        match self {
+            Spread::First => 0,
+            Spread::Row { first, odd, last } => first + ((lane + odd) >> 1).min(*last),
+            Spread::Box => usize::from(quads.of_lanes[lane]),
+        }
     }
 
     /// What is known of the quads of all lanes, of which the first `count` have pixels; the others repeat the last one's.
     #[inline(always)]
-    pub(super) fn hand_out<T: Copy>(&self, known: &[T], count: usize, out: &mut [T]) {
-        let known = &known[self.first..];
-        if self.shift == 0 || count == 0 {
-            match self.last {
-                0 => out.fill(known[0]),
-                _ => out.copy_from_slice(&known[..out.len()]),
+    pub(super) fn hand_out<T: Copy>(&self, quads: &Quads, known: &[T], count: usize, out: &mut [T]) {
+        let Spread::Row { first, odd, last } = *self else {
+            for (n, out) in out.iter_mut().enumerate() {
+                *out = known[self.quad(quads, n)];
             }
             return;
-        }
+        };
+        let known = &known[first..];
         let (out, beyond) = out.split_at_mut(count);
-        let (head, pairs) = out.split_at_mut(self.odd);
+        let (head, pairs) = out.split_at_mut(odd.min(count));
         head.fill(known[0]);
         let mut pairs = pairs.chunks_exact_mut(2);
-        for (pair, known) in (&mut pairs).zip(&known[self.odd..]) {
+        for (pair, known) in (&mut pairs).zip(&known[odd..]) {
             [pair[0], pair[1]] = [*known; 2];
         }
-        pairs.into_remainder().fill(known[self.last]);
-        beyond.fill(known[self.last]);
+        pairs.into_remainder().fill(known[last]);
+        beyond.fill(known[last]);
     }
 }
 
@@ -229,24 +280,18 @@ impl Setup<'_> {
         known: &mut Known<T>,
     ) -> Spread {
         let (i, j) = batch.first;
-        let lanes = batch.at.x.len();
         let above = (j & !1) - j;
         let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind(unit));
         if base.behind {
             room(known, 1);
             (known.of, known.each[0]) = (None, T::behind(unit));
-            return Spread::default();
+            return Spread::First;
         }
         if !ROW {
-            let [xs, ys] = &mut quads.origins;
-            for n in 0..lanes {
-                let (x, y) = (i64::from(batch.at.x[n]), i64::from(batch.at.y[n]));
-                (xs[n], ys[n]) = ((((i + x) & !1) - i) as f64, (((j + y) & !1) - j) as f64);
-            }
             room(known, LANES);
             known.of = None;
-            self.measured::<FMA, T>(batch, (unit, base), e, batch.count, quads, &mut known.each);
-            return Spread { last: lanes - 1, ..Spread::default() };
+            self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, &mut known.each);
+            return Spread::Box;
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
         let row = Some((self.context.number, j >> 1));
@@ -270,7 +315,7 @@ impl Setup<'_> {
             known.columns.end += count as i64;
         }
         let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
-        Spread { first, odd, shift: 1, last: (batch.count - 1 + odd) >> 1 }
+        Spread::Row { first, odd, last: (batch.count - 1 + odd) >> 1 }
     }
 
     /// That of some quads, whose first pixels are [known](Quads::origins).

@@ -40,6 +40,8 @@ pub(super) struct PixelBatch<'a> {
     pub(super) lane: usize,
     /// Columns and rows that none of them is further away from it.
     pub(super) extent: (i32, i32),
+    /// Of a box: row, first column and number of the pixels of each of its rows.
+    pub(super) runs: &'a [(i64, i64, usize)],
 }
 
 impl PixelBatch<'_> {

@@ -208,7 +208,7 @@ impl Setup<'_> {
         };
         let spread = self.of_quads::<FMA, ROW, PairsOfQuad>(batch, (unit, &base), &local.e, quads, known);
         for n in 0..batch.count {
-            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)]);
+            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(quads, n)]);
         }
     }
 }

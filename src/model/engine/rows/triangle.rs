@@ -246,6 +246,9 @@ impl<'a> Interpolators<'a> {
         {
             varying.short.dominance.set::<FMA, ROW>(&setup.context.triangle, batch, local);
         }
+        if !ROW && compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0) {
+            varying.quads.begin_box(batch);
+        }
         // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
