@@ -357,9 +357,9 @@ pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: 
 
 /// The stages of a texture shader.
 #[inline(always)]
-pub(super) fn shade<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+pub(super) fn shade<const FMA: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Block { rows, varying, work, workshop, runs, defined, .. } = block;
-    let open = stages::run(job, runs, varying, workshop, (work, rows), band);
+    let open = stages::run::<FMA>(job, runs, varying, workshop, (work, rows), band);
     defined[Reason::Shader as usize] += open;
 }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
 
 use super::BLOCK;
-use super::quotient::{nearest, nearest_32, whole};
+use super::quotient::{nearest, nearest_32, whole, whole_32};
 use crate::state::DotMapping;
 use crate::texture::cube::Face;
 use crate::texture::dot;
@@ -27,12 +27,17 @@ impl Remap {
 
     /// The fractions of registers, R, G, B, A, of which some may hold twice the byte.
     #[inline(always)]
-    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: &mut [Floats; 3]) {
+    pub(super) fn run<const FMA: bool>(
+        self,
+        registers: [Option<&[i16; BLOCK]>; 4],
+        doubled: [bool; 4],
+        out: &mut [Floats; 3],
+    ) {
         match self {
             Remap::Bytes(linear) => {
                 for n in 0..3 {
                     if let Some(register) = registers[n] {
-                        linear.run(register, doubled[n], &mut out[n]);
+                        linear.run::<FMA>(register, doubled[n], &mut out[n]);
                     }
                 }
             }
@@ -85,10 +90,18 @@ impl Linear {
 
     /// The fractions of a channel, which may hold twice the byte.
     #[inline(always)]
-    fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+    fn run<const FMA: bool>(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
         let whole = f32::from(self.whole);
+        let reciprocal = 1.0 / whole;
         for n in 0..BLOCK {
-            out[n] = f32::from(self.numerator(register[n] >> u32::from(doubled))) / whole;
+            let numerator = f32::from(self.numerator(register[n] >> u32::from(doubled)));
+            out[n] = if FMA {
+                // The quotient: what remains of a product by the reciprocal corrects it. Tested for all bytes.
+                let near = numerator * reciprocal;
+                near.mul_add(-whole, numerator).mul_add(reciprocal, near)
+            } else {
+                numerator / whole
+            };
         }
     }
 }
@@ -149,11 +162,10 @@ fn floor(t: f64) -> i32 {
 
 /// TEX-12 and TEX-13 of vectors: the face, and u and v on it, floors in 1/256 texel less `bias`.
 ///
-/// With the major component m, K = 128 `size` and n the whole number nearest to K (s + m) / m, however roughly that is computed, the floor is
-/// n or n - 1: n if s K is not below (n - K) m. Both products have at most 44 bits, so the comparison is exact. The fourth argument is a place to
-/// work in.
+/// With the major component m, K = 128 `size`, a power of two, and n the whole number nearest to K s / m, however roughly that is computed, the floor
+/// is K + n, or one less if s is [below](is_below) m n / K. The fourth argument is a place to work in.
 #[inline(always)]
-pub(super) fn on_faces(
+pub(super) fn on_faces<const FMA: bool>(
     [x, y, z]: [&Floats; 3],
     size: u32,
     bias: i32,
@@ -162,7 +174,7 @@ pub(super) fn on_faces(
     v: &mut [i32; BLOCK],
     faces: &mut [u32; BLOCK],
 ) {
-    let k = 128.0 * f64::from(size);
+    let k = (128 * size) as f32;
     for n in 0..BLOCK {
         let (x, y, z) = (x[n], y[n], z[n]);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
@@ -188,19 +200,29 @@ pub(super) fn on_faces(
         let kept = if finite { u32::MAX } else { 0 };
         let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
         faces[n] = nearest_32(kept(face)) as u32;
-        (along[n], down[n], majors[n]) = (kept(s), kept(t), kept(major.abs()));
+        let m = major.abs();
+        let scale = if m < TINY { 1.0 / TINY } else { 1.0 };
+        (along[n], down[n], majors[n]) = (kept(s) * scale, kept(t) * scale, kept(m) * scale);
     }
     for n in 0..BLOCK {
-        let (s, t, m) = (f64::from(along[n]), f64::from(down[n]), f64::from(majors[n]));
+        let (s, t, m) = (along[n], down[n], majors[n]);
         // The zero vector lies at 0.
         let center = if m > 0.0 { k } else { 0.0 };
         let r = center / (if m > 0.0 { m } else { 1.0 });
-        let (near_u, near_v) = (whole(s * r), whole(t * r));
-        let below_u = if s * k < near_u * m { 1.0 } else { 0.0 };
-        let below_v = if t * k < near_v * m { 1.0 } else { 0.0 };
-        u[n] = nearest(near_u + center - below_u) - bias;
-        v[n] = nearest(near_v + center - below_v) - bias;
+        let (near_u, near_v) = (whole_32(s * r), whole_32(t * r));
+        let below = |s: f32, near: f32| if is_below::<FMA>(s, m, near * (1.0 / k)) { 1.0 } else { 0.0 };
+        u[n] = nearest_32(near_u + center - below(s, near_u)) - bias;
+        v[n] = nearest_32(near_v + center - below(t, near_v)) - bias;
     }
+}
+
+/// Vectors whose components are all smaller are multiplied by its reciprocal, so that no difference of [`is_below`] is lost.
+const TINY: f32 = f32::from_bits((127 - 100) << 23);
+
+/// Whether s < m f: exactly, since the fused difference keeps its sign, and since the product has fewer than 53 bits.
+#[inline(always)]
+fn is_below<const FMA: bool>(s: f32, m: f32, f: f32) -> bool {
+    if FMA { f.mul_add(m, -s) > 0.0 } else { f64::from(s) < f64::from(f) * f64::from(m) }
 }
 
 #[cfg(test)]
@@ -229,7 +251,11 @@ mod tests {
                 };
                 let registers = [register(0), register(1), register(2), register(3)];
                 let mut out = [[0.0; BLOCK]; 3];
-                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, &mut out);
+                if round % 2 == 0 {
+                    Remap::new(*mapping).run::<true>(registers.each_ref().map(Some), doubled, &mut out);
+                } else {
+                    Remap::new(*mapping).run::<false>(registers.each_ref().map(Some), doubled, &mut out);
+                }
                 for n in 0..BLOCK {
                     let got = out.each_ref().map(|out| out[n]);
                     assert_eq!(got, dot::remap(*mapping, bytes(n)), "{mapping:?} {:?}", bytes(n));
@@ -262,7 +288,11 @@ mod tests {
             let vector = [floats(&mut state), floats(&mut state), floats(&mut state)];
             let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
-            on_faces(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
+            if round % 4 < 2 {
+                on_faces::<true>(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
+            } else {
+                on_faces::<false>(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
+            }
             let mut plain = [0; BLOCK];
             coordinate(&vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
             for n in 0..BLOCK {

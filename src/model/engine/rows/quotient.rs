@@ -216,6 +216,12 @@ pub(super) fn whole(q: f64) -> f64 {
     (q + MAGIC) - MAGIC
 }
 
+/// The same in single precision.
+#[inline(always)]
+pub(super) fn whole_32(q: f32) -> f32 {
+    (q + MAGIC_32) - MAGIC_32
+}
+
 /// The nearest whole number.
 #[inline(always)]
 pub(super) fn nearest(q: f64) -> i32 {
@@ -284,8 +290,14 @@ impl Reciprocals {
             let (last, iota) = (f64::from(at.last), &IOTA_REAL[..lanes]);
             let (to_x, to_r) = (&mut self.x[..lanes], &mut self.r[..lanes]);
             for n in 0..lanes {
-                let x = if iota[n] < last { iota[n] } else { last };
-                (to_x[n], to_r[n]) = (x, 1.0 / denominator.at::<FMA, true>(x, 0.0));
+                to_x[n] = if iota[n] < last { iota[n] } else { last };
+            }
+            if denominator.x == 0.0 {
+                to_r.fill(1.0 / denominator.c);
+                return;
+            }
+            for n in 0..lanes {
+                to_r[n] = 1.0 / denominator.at::<FMA, true>(to_x[n], 0.0);
             }
             return;
         }

@@ -294,7 +294,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
 
 /// Runs the stages of a block's pixels, which leave their registers in their rows; how many pixels were the definition's.
 #[inline(always)]
-pub(super) fn run(
+pub(super) fn run<const FMA: bool>(
     job: Job<'_>,
     runs: &[Run],
     varying: &mut Varying,
@@ -311,7 +311,7 @@ pub(super) fn run(
     }
     for (index, stage) in shader.stages.iter().enumerate().filter(|(_, stage)| stage.runs) {
         if stage.dots {
-            dot_product(job.compiled, shader, index, &mut dotted, workshop, rows);
+            dot_product::<FMA>(job.compiled, shader, index, &mut dotted, workshop, rows);
         }
         let wanted = job.compiled.textures[index];
         match stage.state.operation {
@@ -382,7 +382,7 @@ pub(super) fn run(
                     }
                     ShaderOperation::DotProduct2D => {
                         for n in 0..2 {
-                            dot_product(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
+                            dot_product::<FMA>(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
                             let Some(out) = numbers[n].first_chunk_mut() else { continue };
                             let limit = COORDINATE_LIMIT as i32;
                             dot::coordinate(
@@ -396,14 +396,14 @@ pub(super) fn run(
                     }
                     _ => {
                         for n in 1..4 {
-                            dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
+                            dot_product::<FMA>(job.compiled, shader, n, &mut dotted, workshop, rows);
                         }
                         let Some((vector, scratch)) = workshop.vector(shader, &operation) else { continue };
                         let [u, v] = numbers;
                         if let (Some(u), Some(v), Some(faces)) =
                             (u.first_chunk_mut(), v.first_chunk_mut(), faces.first_chunk_mut())
                         {
-                            dot::on_faces(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
+                            dot::on_faces::<FMA>(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
                         }
                     }
                 }
@@ -464,7 +464,7 @@ impl Workshop {
 
 /// TSH-4: the dot product of a stage, once.
 #[inline(always)]
-fn dot_product(
+fn dot_product<const FMA: bool>(
     compiled: &CompiledDraw,
     shader: &Shader,
     index: usize,
@@ -481,7 +481,7 @@ fn dot_product(
         let [r, g, b, a] = &compiled.textures[*previous];
         let register = |slot: &Option<u16>| slot.map(|slot| rows[usize::from(slot)].block());
         let registers = [register(r), register(g), register(b), register(a)];
-        remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
+        remap.run::<FMA>(registers, *doubled, &mut work.vectors[stage.vector]);
     }
     let Workshop { numbers, same, vectors, dot, .. } = work;
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
