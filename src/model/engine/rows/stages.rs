@@ -8,7 +8,7 @@ use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
 use super::kernels::{LANES, Lanes256, PerLane, STEP};
 use super::planes::{RealPlane, inverse};
-use super::quotient::{Line, Reciprocals, any_negative, floor_of_factor, nearest, nearest_32, whole};
+use super::quotient::{Line, Reciprocals, floor_of_factor, nearest, nearest_32, whole};
 use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Bump, Number, Purpose, Shader, byte_of};
 use super::short::{Dominance, Losses, losses};
@@ -105,33 +105,6 @@ struct Moved {
     room: [f64; LANES],
 }
 
-/// Lanes that are the definition's.
-#[derive(Clone, Debug)]
-struct Open {
-    /// Not 0.
-    narrow: [i32; LANES],
-    /// Negative, as the bits of doubles.
-    wide: [u64; LANES],
-}
-
-impl Default for Open {
-    fn default() -> Self {
-        Open { narrow: [0; LANES], wide: [0; LANES] }
-    }
-}
-
-impl Open {
-    fn is(&self, lane: usize) -> bool {
-        self.narrow[lane] != 0 || self.wide[lane] >> 63 != 0
-    }
-
-    /// Whether there are some among the first lanes.
-    fn any(&self, lanes: usize) -> bool {
-        let narrow = self.narrow[..lanes].iter().fold(0, |all, open| all | open);
-        narrow != 0 || any_negative(&self.wide[..lanes])
-    }
-}
-
 /// What the dot unit works in.
 #[derive(Clone, Debug)]
 struct DotUnit {
@@ -162,7 +135,8 @@ pub(super) struct Workshop {
     attributes: Attributes,
     reciprocals: Box<Reciprocals>,
     dominance: Box<Dominance>,
-    open: Box<Open>,
+    /// Not 0: the lane is the definition's.
+    open: Vec<i32>,
     /// First lane and number of the block's triangles.
     triangles: Vec<(usize, usize)>,
     vectors: Vec<[Floats; 3]>,
@@ -178,7 +152,8 @@ impl Workshop {
         self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
         self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES] });
         self.attributes.triangle = None;
-        *self.open = Open::default();
+        self.open.clear();
+        self.open.resize(LANES, 0);
         self.triangles.clear();
         self.vectors.resize(shader.vectors.len(), [[0.0; BLOCK]; 3]);
         self.is_remapped.resize(shader.vectors.len(), false);
@@ -217,9 +192,8 @@ impl Workshop {
             attributes.set(context, shader);
         }
         triangles.push((batch.lane, context.number));
-        let narrow = &mut open.narrow[batch.lanes()];
-        narrow.fill(0);
-        open.wide[batch.lanes()].fill(0);
+        let open = &mut open[batch.lanes()];
+        open.fill(0);
         let e = triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = attributes.denominator.line(&real);
@@ -238,9 +212,9 @@ impl Workshop {
                     let (line, off) = (plane.line(&real), margin(plane) + floors);
                     match purpose {
                         Purpose::Float | Purpose::Sign => {
-                            rounded::<FMA, ROW, false>(reciprocals, line, off, out, narrow);
+                            rounded::<FMA, ROW, false>(reciprocals, line, off, out, open);
                         }
-                        Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, line, off, out, narrow),
+                        Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, line, off, out, open),
                     }
                 }
             }
@@ -256,7 +230,7 @@ impl Workshop {
             // Also refuses what is no number.
             let proves = (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
             if !(proves & *within_limits) {
-                narrow.fill(1);
+                open.fill(1);
             }
             moved.room[batch.lanes()].fill(0.5 - if proves { off } else { 0.0 });
             let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
@@ -365,7 +339,7 @@ pub(super) fn run<const FMA: bool>(
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
                             let [along, down, _] = &mut workshop.dot.scratch;
                             dot::moved(matrix, blue, green, along, down);
-                            place(sampler, moved, [along, down], numbers, &mut workshop.open.wide);
+                            place(sampler, moved, [along, down], numbers, &mut workshop.open);
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -489,23 +463,25 @@ fn dot_product<const FMA: bool>(
     }
 }
 
-/// TSH-7: the floors, less the sampler's bias, of the estimates of `moved`, moved by so many 128ths of the image. Sets the sign bits of the lanes whose
-/// floors are not proved.
+/// TSH-7: the floors, less the sampler's bias, of the estimates of `moved`, moved by so many 128ths of the image. Lanes whose floors are not proved are
+/// left open.
 #[inline(always)]
 fn place(
     sampler: &Sampler,
     moved: &Moved,
     [along, down]: [&Floats; 2],
     [u, v]: &mut [PerLane<i32>; 2],
-    open: &mut [u64; LANES],
+    open: &mut [i32],
 ) {
+    let open = &mut open[..BLOCK];
     // A side of the image is 256 times its texels.
     let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
     for n in 0..BLOCK {
         let at_u = moved.u[n] + f64::from(along[n]) * width - 0.5;
         let at_v = moved.v[n] + f64::from(down[n]) * height - 0.5;
         let near = |t: f64| (t - whole(t)).abs();
-        open[n] |= (moved.room[n] - near(at_u)).to_bits() | (moved.room[n] - near(at_v)).to_bits();
+        let room = (moved.room[n] - near(at_u)).to_bits() | (moved.room[n] - near(at_v)).to_bits();
+        open[n] |= (room >> 63) as i32;
         u[n] = nearest(at_u).wrapping_sub(bias);
         v[n] = nearest(at_v).wrapping_sub(bias);
     }
@@ -550,11 +526,12 @@ fn define(
     let mut count = 0;
     let lanes = runs.last().map_or(0, |run| run.lane + run.count);
     // Most blocks have none.
-    let runs = if work.open.any(lanes) { runs } else { &[] };
+    let any = work.open[..lanes].iter().fold(0, |all, open| all | open) != 0;
+    let runs = if any { runs } else { &[] };
     let mut known: Option<(usize, TriangleContext<'_>)> = None;
     let height = job.plan.targets[job.draw.target].height;
     for run in runs {
-        for n in (0..run.count).filter(|n| work.open.is(run.lane + n)) {
+        for n in (0..run.count).filter(|n| work.open[run.lane + n] != 0) {
             let lane = run.lane + n;
             let at = work.triangles.partition_point(|(first, _)| *first <= lane);
             let Some((_, number)) = at.checked_sub(1).map(|at| work.triangles[at]) else { continue };
