@@ -62,7 +62,7 @@ impl Asked {
         });
         fs::write(self.results().join("device.json"), device.to_string()).unwrap();
         for table in &self.tables {
-            let unit = table.contents.unit;
+            let unit = table.writer.contents().unit;
             let columns = unit.results();
             let out: Vec<usize> = (0..columns.len()).filter(|n| columns[*n].name.starts_with("out.")).collect();
             let names: Vec<&str> = out.iter().map(|n| columns[*n].name.as_str()).collect();
@@ -249,7 +249,8 @@ fn a_unit_that_a_card_cannot_show_was_not_asked() {
     assert!(!asked.folder.path().join("adopted/geforce-256/product.tsv").exists(), "nothing was asked of it");
 
     // A row that shows nothing confirms nothing.
-    let id = asked.tables.iter().find(|table| table.contents.unit.name() == "product").unwrap().rows[0].id.clone();
+    let id =
+        asked.tables.iter().find(|table| table.writer.contents().unit.name() == "product").unwrap().rows[0].id.clone();
     for (columns, row) in [
         ("id\tstatus", format!("{id}\tok\n")),
         ("idstatus", String::new()),
@@ -318,7 +319,7 @@ fn batches_ask_rows_of_their_table() {
     for unit in ["compressed-block", "mux", "product"] {
         let text = fs::read_to_string(pack.join(format!("units/{unit}.gpu.txt"))).unwrap();
         let raw = fs::read(pack.join(format!("units/{unit}.gpu.raw"))).unwrap();
-        let table = tables.iter().find(|table| table.contents.unit.name() == unit).unwrap();
+        let table = tables.iter().find(|table| table.writer.contents().unit.name() == unit).unwrap();
         let (mut place, mut rows, mut asked) = (0, 0, 0);
         for line in text.lines() {
             let words: Vec<&str> = line.split(' ').collect();

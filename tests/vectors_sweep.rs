@@ -243,22 +243,22 @@ fn committed_trees_of_parts_are_what_the_model_says() {
     let mut large: BTreeMap<String, Vec<(Tree, Exhaustive)>> = BTreeMap::new();
     for path in trees() {
         let (tree, sweep) = Tree::read(&path).unwrap();
-        if tree.of.only.is_empty() {
+        if tree.header.only.is_empty() {
             continue;
         }
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
-        assert_eq!(path.parent().unwrap().file_name().unwrap().to_str().unwrap(), tree.of.unit);
+        assert_eq!(path.parent().unwrap().file_name().unwrap().to_str().unwrap(), tree.header.unit);
         if sweep.size <= 1 << 16 {
             assert_eq!(sweep.leaf(0), tree.leaf[0], "{}", path.display());
-        } else if QUICK.contains(&tree.of.unit.as_str()) {
-            large.entry(tree.of.unit.clone()).or_default().push((tree, sweep));
+        } else if QUICK.contains(&tree.header.unit.as_str()) {
+            large.entry(tree.header.unit.clone()).or_default().push((tree, sweep));
         }
     }
     large.into_par_iter().for_each(|(unit, trees)| {
         let mut random = Random::new(13, &unit);
         let (tree, sweep) = &trees[random.below(trees.len() as u128) as usize];
         let leaf = random.below(u128::from(sweep.leaves)) as u64;
-        assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.of.name());
+        assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.header.name());
     });
 }
 
@@ -288,8 +288,8 @@ fn parts_by_configuration_are_whole() {
         for place in 0..values.size() {
             let (value, text) = (values.nth(place), values.kind.write(values.nth(place)));
             let (tree, sweep) = Tree::read(&at(format!("vectors/digests/{name}/{text}.json"))).unwrap();
-            assert_eq!(tree.of.only[0], format!("{configuration}={text}"));
-            let mut random = Random::new(17, &tree.of.name());
+            assert_eq!(tree.header.only[0], format!("{configuration}={text}"));
+            let mut random = Random::new(17, &tree.header.name());
             for _ in 0..500 {
                 let mut row: Vec<i64> = unit.inputs().iter().map(|c| c.nth(random.below(c.size()))).collect();
                 row[0] = value;
@@ -297,7 +297,7 @@ fn parts_by_configuration_are_whole() {
                 let columns = sweep.part.columns();
                 let kept: Vec<i64> =
                     row.iter().zip(columns).map(|(value, c)| c.nth(*value as u128 % c.size())).collect();
-                assert_eq!(outputs(unit, &row), outputs(unit, &kept), "{} {row:?}", tree.of.name());
+                assert_eq!(outputs(unit, &row), outputs(unit, &kept), "{} {row:?}", tree.header.name());
             }
         }
     }
@@ -315,19 +315,19 @@ fn committed_trees_are_what_the_model_says() {
     let mut names = Vec::new();
     for path in trees() {
         let (tree, sweep) = Tree::read(&path).unwrap();
-        if !tree.of.only.is_empty() {
+        if !tree.header.only.is_empty() {
             continue;
         }
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
-        assert_eq!(path.file_stem().unwrap().to_str().unwrap(), tree.of.unit);
-        names.push(tree.of.unit.clone());
-        let drawn = Random::new(11, &tree.of.unit).below(u128::from(sweep.leaves)) as u64;
+        assert_eq!(path.file_stem().unwrap().to_str().unwrap(), tree.header.unit);
+        names.push(tree.header.unit.clone());
+        let drawn = Random::new(11, &tree.header.unit).below(u128::from(sweep.leaves)) as u64;
         let chosen: Vec<u64> = if sweep.size <= 1 << 23 { (0..sweep.leaves).collect() } else { vec![drawn] };
         let nv10 = Exhaustive::new(sweep.unit, Profile::Nv10).unwrap();
         chosen.into_par_iter().for_each(|leaf| {
-            assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.of.unit);
+            assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.header.unit);
             if sweep.size <= 1 << 23 {
-                assert_eq!(nv10.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf} of nv10", tree.of.unit);
+                assert_eq!(nv10.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf} of nv10", tree.header.unit);
             }
         });
     }

@@ -155,7 +155,8 @@ impl Corpus {
         fs::create_dir_all(self.folder.join("results")).expect("a folder");
         fs::write(self.folder.join("results/device.json"), device.to_string()).expect("a file");
         for table in &tables {
-            let (unit, contents) = (table.contents.unit, &table.contents);
+            let contents = table.writer.contents();
+            let unit = contents.unit;
             let columns = unit.results();
             let out: Vec<usize> = (0..columns.len()).filter(|n| columns[*n].name.starts_with("out.")).collect();
             let names: Vec<&str> = out.iter().map(|n| columns[*n].name.as_str()).collect();

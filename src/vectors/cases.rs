@@ -1,4 +1,4 @@
-//! Which rows a table has: those that are always there, boundaries, and seeded random ones.
+//! Selection of a table's rows: regressions, boundaries and seeded random rows.
 
 use std::collections::HashSet;
 
@@ -7,27 +7,27 @@ use ninebit::random::{Random, mix};
 use ninebit::state::{Profile, named};
 
 named! {
-    /// The number of rows that a table has.
+    /// Size class of a table.
     pub enum Level =>
-    /// The most rows of a table.
+    /// Returns the maximum number of rows of a table.
     rows: usize {
-        /// Committed, checked in a second.
+        /// Small: committed to the repository, and checked in a second.
         L0 => 1_000,
-        /// Boundaries crossed, and random rows.
+        /// Medium: combinations of boundaries, and random rows.
         L1 => 60_000,
-        /// More of these.
+        /// Large: more rows of the same kinds.
         L2 => 5_000_000,
     }
 }
 
 named! {
-    /// Why a row is there.
+    /// Reason why a table has a row.
     pub enum Origin =>
-    /// The word in the table.
+    /// Returns the tag in the table.
     word: &'static str {
-        /// An example, or something that was once wrong.
+        /// An example of the handbook, or a case that was once wrong.
         Regression => "regression",
-        /// The table has every row that there is.
+        /// The table has every possible row.
         Exhaustive => "exhaustive",
         /// Every input is at a boundary of its column.
         Boundary => "boundary",
@@ -36,12 +36,12 @@ named! {
     }
 }
 
-/// How many rows there are at all.
+/// Returns the number of possible rows of these columns, saturated.
 pub fn size(columns: &[Column]) -> u128 {
     columns.iter().fold(1, |size, column| size.saturating_mul(column.size()))
 }
 
-/// The row of that place among all; the last column counts fastest.
+/// Writes the row of index `place` in the enumeration of all rows, in which the last column varies fastest.
 pub fn nth(columns: &[Column], mut place: u128, row: &mut [i64]) {
     for (column, value) in columns.iter().zip(row).rev() {
         let size = column.size();
@@ -50,7 +50,7 @@ pub fn nth(columns: &[Column], mut place: u128, row: &mut [i64]) {
     }
 }
 
-/// Calls `each` with the inputs of every row of a table, in its order, which depends on nothing but the arguments.
+/// Calls `each` with the inputs of every row of a table, in the table's order. Rows and order depend on nothing but the arguments.
 pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: impl FnMut(&[i64], Origin)) {
     let columns = unit.inputs();
     let rows = level.rows();
@@ -85,7 +85,7 @@ pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: i
         });
     }
     sieve.draw(rows, &mut row, Origin::Random, |row| {
-        // Where most columns are anything, one at a boundary tells more than none.
+        // A column at its boundary among arbitrary ones tells more than none, so each is at a boundary one time in four.
         for ((column, values), value) in columns.iter().zip(&boundaries).zip(row) {
             *value =
                 if random.once_in(4) { random.pick(values).unwrap_or_default() } else { draw(column, &mut random) };
@@ -93,10 +93,10 @@ pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: i
     });
 }
 
-/// A number of a column.
+/// Draws a number of a column.
 fn draw(column: &Column, random: &mut Random) -> i64 {
     match column.domain {
-        // Half of the floats are spread over 0..1, the others over the exponents.
+        // Half of the floats are spread evenly over 0..1, the others over the exponents.
         Some(Domain::Float(negative, limit)) => {
             let sign = if negative { (random.bits() as u32) & 0x8000_0000 } else { 0 };
             let exponent = match random.once_in(2) {
@@ -109,7 +109,7 @@ fn draw(column: &Column, random: &mut Random) -> i64 {
     }
 }
 
-/// Lets rows through that make sense and were not there yet.
+/// Filter that passes each row once, if the unit accepts it, up to a number of rows.
 struct Sieve<'u, F> {
     unit: &'u dyn Unit,
     profile: Profile,
@@ -128,7 +128,7 @@ impl<F: FnMut(&[i64], Origin)> Sieve<'_, F> {
         }
     }
 
-    /// Draws rows until there are so many, or no new ones come.
+    /// Draws rows until `rows` have passed, or 20 times as many draws have been made.
     fn draw(&mut self, rows: usize, row: &mut [i64], origin: Origin, mut draw: impl FnMut(&mut [i64])) {
         for _ in 0..rows.saturating_mul(20) {
             if self.seen.len() >= rows {

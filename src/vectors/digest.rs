@@ -1,25 +1,25 @@
-//! The digest of rows under way: which of their results are hashed, and as how many bytes.
+//! Incremental digest of rows: selects the results that are hashed and their widths in bytes.
 
 use sha2::{Digest, Sha256};
 
 use super::Column;
 
-/// Bytes that are hashed at once.
+/// Number of bytes that are hashed at once.
 pub(super) const BUFFER: usize = 1 << 16;
 
 /// A result column that is hashed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Output {
-    /// Its place among the results.
+    /// Index among the results.
     pub(super) index: usize,
-    /// How many bytes a number takes.
+    /// Size of a number in bytes.
     pub(super) bytes: usize,
     least: i64,
     greatest: i64,
 }
 
 impl Output {
-    /// Those of a unit with these results.
+    /// Returns the hashed columns among a unit's result columns: those named `out.`.
     pub(super) fn from_columns(results: &[Column]) -> Vec<Output> {
         let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
         let output = |(index, column): (usize, &Column)| {
@@ -29,26 +29,27 @@ impl Output {
         outputs.map(output).collect()
     }
 
-    /// A number out of its bytes.
+    /// Decodes a number from its little-endian bytes.
     pub(super) fn read(&self, bytes: &[u8]) -> i64 {
         let negative = self.least < 0 && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
         bytes.iter().rev().fold(if negative { -1 } else { 0 }, |number, byte| number << 8 | i64::from(*byte))
     }
 }
 
-/// A digest under way.
+/// An incremental digest of rows.
 #[derive(Debug)]
 pub struct Digesting<'s> {
     outputs: &'s [Output],
     hash: Sha256,
-    /// Longer than [`BUFFER`] by a row, each number of which is written as eight bytes.
+    /// Bytes to be hashed. It has room for one row more than [`BUFFER`], because every number is written as eight bytes.
     buffer: Vec<u8>,
-    /// Bytes of it that wait for the hash.
+    /// Number of bytes in `buffer` that are not hashed yet.
     filled: usize,
-    /// Bytes of a row.
+    /// Size of a row in bytes.
     pub(super) width: usize,
+    /// Number of rows so far.
     pub(super) rows: u64,
-    /// Rows at the lower and at the upper end.
+    /// Number of rows with an output that is the least, and with one that is the greatest, of its column's type.
     pub(super) ends: [u64; 2],
 }
 
@@ -65,8 +66,8 @@ impl<'s> Digesting<'s> {
         }
     }
 
-    /// The results of the next rows, no more than [`BUFFER`] has room for, in the bytes that `write` fills; it says how many rows are at the lower and at
-    /// the upper end. `false`: it has written none.
+    /// Appends the results of the next rows, at most as many as fit into [`BUFFER`]. `write` fills in their bytes and returns the numbers of rows at
+    /// the lower and upper end. Returns `false` if `write` returned `None` and nothing was appended.
     pub(super) fn take_block(&mut self, rows: u64, write: impl FnOnce(&mut [u8]) -> Option<[u64; 2]>) -> bool {
         let bytes = self.width * rows as usize;
         if self.filled + bytes > BUFFER {
@@ -79,7 +80,7 @@ impl<'s> Digesting<'s> {
         true
     }
 
-    /// The results of the next row.
+    /// Appends the results of the next row.
     #[inline]
     pub fn take(&mut self, results: &[i64]) {
         let (mut low, mut high) = (false, false);
@@ -87,7 +88,7 @@ impl<'s> Digesting<'s> {
             let value = results[output.index];
             low |= value == output.least;
             high |= value == output.greatest;
-            // Eight bytes whatever the width: what is too much is written over by the next number.
+            // Always eight bytes: the next number overwrites the excess.
             self.buffer[self.filled..self.filled + 8].copy_from_slice(&value.to_le_bytes());
             self.filled += output.bytes;
         }

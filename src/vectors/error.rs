@@ -1,4 +1,4 @@
-//! What can be wrong with tables and packs.
+//! Errors of tables, packs, sweeps and results.
 
 use std::path::{Path, PathBuf};
 
@@ -8,15 +8,15 @@ use ninebit::limits::FileLimit;
 use ninebit_files::output::OutputError;
 use ninebit_files::read::{self, Kind, ReadError};
 
-/// Why a table or a pack cannot be used.
+/// Reason why a file of this crate cannot be used or written.
 #[derive(Debug, Error)]
 pub enum VectorError {
-    /// A file is not there.
+    /// A file does not exist.
     #[error("`{}` does not exist", ninebit::shown::path(path))]
     Missing {
         /// The file that was looked for.
         path: PathBuf,
-        /// What to do.
+        /// Advice to the user.
         help: &'static str,
     },
     /// A file cannot be read.
@@ -24,29 +24,29 @@ pub enum VectorError {
     Unreadable {
         /// The file that was opened.
         path: PathBuf,
-        /// What the file system said.
+        /// Message of the file system.
         reason: String,
     },
-    /// A file has more bytes than it may.
+    /// A file exceeds its size limit.
     #[error("`{}` is larger than {limit}", ninebit::shown::path(path))]
     TooLarge {
         /// The file that was opened.
         path: PathBuf,
-        /// How many it may have.
+        /// The limit.
         limit: FileLimit,
     },
-    /// A file does not say what it should.
+    /// The content of a file is not valid.
     #[error("{}: {message}", place(path, *line))]
     Invalid {
-        /// The code of `docs/errors.md`.
+        /// Error code, as `docs/errors.md` lists it.
         code: &'static str,
         /// The file that was read.
         path: PathBuf,
-        /// Line, counted from 1; 0 for the file as a whole.
+        /// Line number from 1; 0 means the file as a whole.
         line: usize,
         /// What is wrong.
         message: String,
-        /// What to do.
+        /// Advice to the user.
         help: &'static str,
     },
     /// An output was not written.
@@ -63,27 +63,33 @@ fn place(path: &Path, line: usize) -> String {
 }
 
 impl VectorError {
-    /// A line, counted from 1, that does not say what it should.
-    pub fn line(code: &'static str, path: &Path, line: usize, message: String, help: &'static str) -> VectorError {
+    /// Returns the error for an invalid line, counted from 1.
+    pub(crate) fn line(
+        code: &'static str,
+        path: &Path,
+        line: usize,
+        message: String,
+        help: &'static str,
+    ) -> VectorError {
         VectorError::Invalid { code, path: path.to_path_buf(), line, message, help }
     }
 
     /// A file that does not say what it should.
-    pub fn file(code: &'static str, path: &Path, message: impl Into<String>, help: &'static str) -> VectorError {
+    pub(crate) fn file(code: &'static str, path: &Path, message: impl Into<String>, help: &'static str) -> VectorError {
         VectorError::line(code, path, 0, message.into(), help)
     }
 
-    /// A file or folder that is not there.
-    pub fn missing(path: impl Into<PathBuf>, help: &'static str) -> VectorError {
+    /// Returns the error for a file or folder that does not exist.
+    pub(crate) fn missing(path: impl Into<PathBuf>, help: &'static str) -> VectorError {
         VectorError::Missing { path: path.into(), help }
     }
 
-    /// A file or folder that cannot be read.
-    pub fn unreadable(path: &Path, reason: impl ToString) -> VectorError {
+    /// Returns the error for a file or folder that cannot be read.
+    pub(crate) fn unreadable(path: &Path, reason: impl ToString) -> VectorError {
         VectorError::Unreadable { path: path.to_path_buf(), reason: reason.to_string() }
     }
 
-    /// The code of `docs/errors.md`.
+    /// Returns the error code, as `docs/errors.md` lists it.
     pub fn code(&self) -> &'static str {
         match self {
             VectorError::Missing { .. } => "NB1001",
@@ -94,7 +100,7 @@ impl VectorError {
         }
     }
 
-    /// What to do.
+    /// Returns the advice to the user.
     pub fn help(&self) -> &'static str {
         match self {
             VectorError::Missing { help, .. } | VectorError::Invalid { help, .. } => help,
@@ -105,8 +111,8 @@ impl VectorError {
     }
 }
 
-/// Why a file could not be read, as an error about it; `missing` says what to do if it is not there.
-pub fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorError {
+/// Converts a read error of `path`. `missing` is the advice for a file that does not exist.
+pub(crate) fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorError {
     match error {
         ReadError::Missing => VectorError::missing(path, missing),
         ReadError::TooLarge(limit) => VectorError::TooLarge { path: path.to_path_buf(), limit },
@@ -114,11 +120,16 @@ pub fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorErr
     }
 }
 
-/// Reads a text file.
+/// Reads a text file. `missing` is the advice for a file that does not exist.
 ///
 /// # Errors
-/// It does not exist, is larger than the limit, cannot be read, or is not UTF-8.
-pub fn read_text(path: &Path, kind: Kind, limit: FileLimit, missing: &'static str) -> Result<String, VectorError> {
+/// Returns an error if the file does not exist, is larger than the limit, cannot be read, or is not UTF-8.
+pub(crate) fn read_text(
+    path: &Path,
+    kind: Kind,
+    limit: FileLimit,
+    missing: &'static str,
+) -> Result<String, VectorError> {
     let bytes = read::bytes(path, kind, limit).map_err(|error| unread(error, path, missing))?;
     String::from_utf8(bytes).map_err(|_| VectorError::unreadable(path, "it is not UTF-8 text"))
 }

@@ -1,8 +1,8 @@
-//! Exhaustive vectors: every row of a unit, as digests. `ninebit vectors sweep` writes them, so one run is called a sweep.
+//! Exhaustive vectors: digests of every row of a unit. `ninebit vectors sweep` computes them; one such run is a sweep.
 //!
-//! All rows of a unit, in the order of [`cases::nth`], are cut into leaves: ranges whose number depends on nothing but the
-//! unit. A leaf is the SHA-256 of the rows' `out.` columns, each number in as many whole bytes as its bits need, low byte first; rows whose
-//! inputs do not go together have none.
+//! All rows of a unit, in the order of [`cases::nth`], are divided into leaves: ranges whose number depends only on the unit. A leaf is the SHA-256
+//! of the rows' `out.` columns. Each number takes as many whole bytes as its bits need, low byte first. Rows that the unit does not accept are left
+//! out.
 
 use std::ops::Range;
 
@@ -14,32 +14,32 @@ use super::{Conditions, Part, Unit, cases};
 use ninebit::state::{Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
-/// Rows of a leaf, unless the sweep has more than [`MAX_LEAVES`] times as many.
+/// Number of rows in a leaf, unless the sweep has more than [`MAX_LEAVES`] times as many.
 const LEAF_ROWS: u64 = 1 << 23;
 
-/// The most leaves.
-pub const MAX_LEAVES: u64 = 1024;
+/// Maximum number of leaves.
+const MAX_LEAVES: u64 = 1024;
 
-/// The most rows that a sweep may have: beyond it nobody waits for the end.
+/// Maximum number of rows of a sweep; more would take too long.
 pub const MAX_ROWS: u64 = 1 << 40;
 
 /// The digest of a range of rows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Leaf {
-    /// Its place among the leaves, from 0.
+    /// Index of the leaf, from 0.
     pub index: u64,
-    /// Rows whose inputs go together.
+    /// Number of rows that the unit accepts.
     pub rows: u64,
-    /// Rows of which some `out.` number is the least that its type holds.
+    /// Number of rows with an `out.` number that is the least of its type.
     pub low: u64,
-    /// Rows of which some `out.` number is the greatest that its type holds.
+    /// Number of rows with an `out.` number that is the greatest of its type.
     pub high: u64,
     /// SHA-256 of the rows' `out.` columns.
     pub sha256: String,
 }
 
-/// All rows of a unit, or of a part of it, on a chip.
+/// All rows of a unit, or of a part of it, on one chip.
 #[derive(Debug)]
 pub struct Exhaustive {
     /// The unit whose inputs are all tried.
@@ -57,12 +57,12 @@ pub struct Exhaustive {
 }
 
 impl Exhaustive {
-    /// Of a whole unit; `None` if it has more than [`MAX_ROWS`] rows.
+    /// Returns the sweep of a whole unit, or `None` if it has more than [`MAX_ROWS`] rows.
     pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Exhaustive> {
         Exhaustive::from_part(unit, profile, Part::whole(unit))
     }
 
-    /// Of a part of a unit; `None` if that has more than [`MAX_ROWS`] rows.
+    /// Returns the sweep of a part of a unit, or `None` if the part has more than [`MAX_ROWS`] rows.
     pub fn from_part(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Exhaustive> {
         let results = unit.results();
         let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MAX_ROWS)?;
@@ -78,25 +78,26 @@ impl Exhaustive {
         })
     }
 
-    /// The rows of a leaf, by their places among all.
+    /// Returns the range of row indices in a leaf.
     pub fn range(&self, leaf: u64) -> Range<u64> {
         let at = |leaf: u64| (u128::from(self.size) * u128::from(leaf) / u128::from(self.leaves)) as u64;
         at(leaf)..at(leaf + 1)
     }
 
-    /// Computes a leaf.
+    /// Computes the digest of a leaf.
     pub fn leaf(&self, index: u64) -> Leaf {
         let digest = self.rows(self.range(index), true);
         let [low, high] = digest.ends;
         Leaf { index, rows: digest.rows, low, high, sha256: hexadecimal(&digest.finish()) }
     }
 
-    /// The SHA-256 of a range of rows.
+    /// Returns the SHA-256 of a range of rows.
     pub fn digest(&self, range: Range<u64>) -> [u8; 32] {
         self.rows(range, true).finish()
     }
 
-    /// Goes over a range in runs of which only one input varies: the last that has more than one number. `blocks`: in block lanes where the unit has them.
+    /// Digests a range in runs in which only one input varies: the last that has more than one value. `blocks` allows block lanes where the unit has
+    /// them.
     fn rows(&self, range: Range<u64>, blocks: bool) -> Digesting<'_> {
         let (mut digest, columns) = (Digesting::new(&self.outputs), self.part.columns());
         let Some(varying) = columns.iter().rposition(|column| column.size() > 1).or(columns.len().checked_sub(1))
@@ -105,7 +106,7 @@ impl Exhaustive {
         };
         let column = &columns[varying];
         let conditions = Conditions { profile: self.profile, policies: Policies::DEFAULT };
-        // A column that others follow is set together with them, row by row.
+        // If other columns are tied to this one, they have to be set row by row.
         let most = if self.part.is_followed(varying) { 1 } else { (BUFFER / digest.width) as u64 };
         let length = column.size() as u64;
         let mut inputs = vec![0; columns.len()];
@@ -124,7 +125,7 @@ impl Exhaustive {
         digest
     }
 
-    /// A run in block lanes, if the unit has them, and no row that has no results.
+    /// Digests a run in block lanes. Returns `false` if the unit has none for it, or if it does not accept all its rows.
     fn block(
         &self,
         inputs: &mut [i64],
@@ -162,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Block lanes yield what the definition yields, row by row, over ranges that begin and end anywhere.
+    /// Checks that block lanes yield what the definition yields, row by row, over ranges at arbitrary positions.
     fn compare(sweep: &Exhaustive, starts: usize) {
         let mut random = Random::new(3, sweep.unit.name());
         let rows = sweep.size.min(700);
@@ -187,7 +188,7 @@ mod tests {
         }
     }
 
-    /// Every committed tree of a part is swept as it is here: in lanes where there are some.
+    /// Checks every committed tree of a part in the way that sweeps compute it: in lanes where there are some.
     #[test]
     fn committed_parts_in_blocks_are_the_definition() {
         let digests = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/digests");

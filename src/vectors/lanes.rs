@@ -1,15 +1,16 @@
-//! Rows of a table in block lanes, where the unit has them: what sweeps are made of is held to the same rows.
+//! Rows of a table in block lanes: checks the code that sweeps use against the same rows.
 
 use super::digest::Output;
 use super::{Column, Conditions, Unit};
 
-/// Rows that are computed together, the wanted one among them: more than two groups of sixteen.
+/// Number of rows that are computed together. It is more than two groups of sixteen.
 const RUN: i64 = 40;
 
-/// The `out.` numbers of a row in block lanes, and the places of their columns among the results; `None` if the unit has no such form of it.
+/// Computes the `out.` numbers of a row in block lanes. Returns pairs of a result column's index and its number, or `None` if the unit has no block
+/// form of the row.
 ///
-/// The row is computed in a run along one of its inputs: the last for which there is a form. `turn`, any number, says where in the run the row lies.
-pub fn outputs(
+/// The row is computed in a run along the last input for which there is a form. `turn` may be any number; it chooses the row's position in the run.
+pub(crate) fn outputs(
     unit: &dyn Unit,
     [columns, results]: [&[Column]; 2],
     row: &[i64],
@@ -29,7 +30,7 @@ pub fn outputs(
             inputs[varying] = number;
             unit.accepts(&inputs, conditions.profile)
         };
-        // Alone, where its neighbours do not go together.
+        // The row is computed alone if the unit does not accept its neighbours.
         let [first, last] = if goes(first) && goes(last) { [first, last] } else { [row[varying]; 2] };
         inputs[varying] = first;
         let mut bytes = vec![0; width * (last - first + 1) as usize];

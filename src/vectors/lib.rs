@@ -1,7 +1,7 @@
-//! Conformance vectors: what the units of the chip yield, as tables that other implementations are held to.
+//! Conformance vectors: the results of the chip's units, as tables against which other implementations are tested.
 //!
-//! A [`Unit`] is a function of the model between named columns of integers. [`cases`] chooses rows, [`table`] writes and reads them,
-//! [`pack`] puts the tables of many units into a folder with a manifest and checks one.
+//! A [`Unit`] is a function of the model between named columns of integers. [`cases`] selects rows, [`table`] writes tables and [`read`] reads them,
+//! and [`pack`] exports the tables of many units to a folder with a manifest and opens such a folder.
 
 pub mod captures;
 pub mod cases;
@@ -11,7 +11,7 @@ pub mod error;
 pub mod exhaustive;
 pub mod gpu;
 pub mod handbook;
-pub mod lanes;
+mod lanes;
 pub mod pack;
 pub mod part;
 pub mod read;

@@ -27,24 +27,24 @@ use ninebit_files::output::{OutputError, PendingFile, is_leftover, make_folder, 
 use ninebit_files::picture::hexadecimal;
 use ninebit_files::read::{self, Kind, ReadError};
 
-/// `format` of a manifest.
-pub const FORMAT: &str = "ninebit-vectors-1";
+/// Value of `format` in a manifest.
+const FORMAT: &str = "ninebit-vectors-1";
 
 /// Folders of a pack.
 const FOLDERS: [&str; 2] = ["schema", "units"];
 
-/// Name of the manifest.
-pub const MANIFEST: &str = "MANIFEST.json";
+/// File name of the manifest.
+const MANIFEST: &str = "MANIFEST.json";
 
-/// What a pack has.
+/// Manifest of a pack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// The version of the format: [`FORMAT`].
+    /// Version of the format: `ninebit-vectors-1`.
     pub format: String,
-    /// Version of the program.
+    /// Version of the program that wrote it.
     pub version: String,
-    /// What the program computes: goes up when any output bit of any row changes.
+    /// The model's [`BEHAVIOUR`] when it was written.
     pub behaviour_rev: u32,
     /// Name of the chip.
     pub profile: String,
@@ -52,13 +52,13 @@ pub struct Manifest {
     pub level: String,
     /// The seed of the random rows.
     pub seed: u64,
-    /// Only rows that a policy changes.
+    /// Whether the tables have only rows that a policy changes.
     pub deciding: bool,
-    /// What may be done with it.
+    /// SPDX identifier of the licence.
     pub license: String,
-    /// The files, by path.
+    /// The files, sorted by path.
     pub files: Vec<File>,
-    /// SHA-256 of the digests and paths of all files, one a line as in SHA256SUMS.
+    /// SHA-256 of the lines of SHA256SUMS, in hexadecimal.
     pub root: String,
 }
 
@@ -66,15 +66,15 @@ pub struct Manifest {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct File {
-    /// Inside the pack, with `/`.
+    /// Path inside the pack, with `/` as separator.
     pub path: String,
-    /// The unit; empty for licence and schemas.
+    /// Name of the unit; empty for the licence and schemas.
     pub unit: String,
     /// Size of the file in bytes.
     pub bytes: u64,
-    /// Rows in it.
+    /// Number of rows.
     pub rows: usize,
-    /// Rows that could be drawn and are not in it: a unit has at most [`BATCHES`](super::gpu::write::BATCHES).
+    /// Number of rows that could be drawn and are left out: a unit has at most [`BATCHES`](super::gpu::write::BATCHES).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub left_out: usize,
     /// SHA-256 of the file, in hexadecimal.
@@ -85,24 +85,24 @@ fn is_zero(rows: &usize) -> bool {
     *rows == 0
 }
 
-/// What is to be exported.
+/// Options of an export.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The chip whose rules the tables follow.
     pub profile: Profile,
-    /// The number of rows in each table.
+    /// The level, which limits the rows of each table.
     pub level: Level,
     /// The seed of the random rows.
     pub seed: u64,
     /// The units whose tables are written.
     pub units: Vec<&'static dyn Unit>,
-    /// Only rows that a policy changes.
+    /// Whether to write only rows that a policy changes.
     pub deciding: bool,
-    /// What is written beside the tables.
+    /// The views that are written beside the tables.
     pub views: Vec<View>,
 }
 
-/// A file of a pack under construction: hashes and counts what goes through.
+/// A file of a pack that is being written; it hashes and counts its bytes.
 struct Hashing {
     path: String,
     file: PendingFile,
@@ -123,7 +123,7 @@ impl Hashing {
         Ok(self.file.write_all(bytes).map_err(|error| self.file.refused(error))?)
     }
 
-    /// Puts the file in its place.
+    /// Renames the file to its final name.
     fn finish(self, unit: &str, rows: usize) -> Result<File, VectorError> {
         self.file.commit()?;
         let sha256 = hexadecimal(&self.hash.finalize());
@@ -131,7 +131,7 @@ impl Hashing {
     }
 }
 
-/// What every pack has besides tables: path and text.
+/// Path and text of the files that every pack has besides its tables.
 const ALWAYS: [(&str, &str); 6] = [
     ("LICENSE", include_str!("../../vectors/LICENSE")),
     ("schema/layout.schema.json", include_str!("../../vectors/schema/layout.schema.json")),
@@ -141,15 +141,15 @@ const ALWAYS: [(&str, &str); 6] = [
     ("schema/sweep.schema.json", include_str!("../../vectors/schema/sweep.schema.json")),
 ];
 
-/// Lines as `sha256sum` writes them.
+/// Returns the digests as lines of `sha256sum`.
 fn sums(files: &[File]) -> String {
     files.iter().map(|file| format!("{}  {}\n", file.sha256, file.path)).collect()
 }
 
-/// Writes a pack into `folder`, which is made. The manifest comes last: a pack that was broken off has none.
+/// Writes a pack into `folder`, which is created. The manifest is written last, so an interrupted export leaves none.
 ///
 /// # Errors
-/// The folder or a file in it cannot be written.
+/// Returns an error if the folder or a file in it cannot be written.
 pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
     for part in FOLDERS {
         make_folder(&folder.join(part))?;
@@ -158,7 +158,7 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
     remove_leftovers(folder)?;
     let manifest_path = folder.join(MANIFEST);
     if manifest_path.exists() {
-        // What an earlier export left is no pack from now on.
+        // From now on the files of an earlier export are no pack.
         std::fs::remove_file(&manifest_path)
             .map_err(|source| OutputError::Write { path: manifest_path.clone(), source })?;
     }
@@ -189,7 +189,7 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
     Ok(manifest)
 }
 
-/// A unit's table and its views; each row is computed once.
+/// Writes a unit's table and views. Each row is computed once.
 fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Result<Vec<File>, VectorError> {
     let Options { profile, level, seed, deciding, .. } = *options;
     let writer = Writer::new(Contents { unit, profile, level, seed });
@@ -215,7 +215,7 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
         }
         Ok::<(), VectorError>(())
     })?;
-    // A view without rows has none of its own.
+    // A file without rows counts none.
     let own = |content| if matches!(content, Content::Rows(..)) { rows } else { 0 };
     let files = files.into_iter().map(|(file, content)| file.finish(unit.name(), own(content)));
     let mut files = files.collect::<Result<Vec<File>, _>>()?;
@@ -232,7 +232,7 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
 /// Reads the manifest of a pack.
 ///
 /// # Errors
-/// There is none, or it is not one.
+/// Returns an error if it does not exist or is not valid.
 pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     let path = folder.join(MANIFEST);
     let missing = "name the folder of a pack; an export that was broken off leaves no manifest: export again";
@@ -263,15 +263,15 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     Ok(manifest)
 }
 
-/// A pack whose files are what the manifest says, with its tables read.
+/// Opens a pack: checks its files against the manifest, and reads its tables.
 ///
 /// # Errors
-/// A file is missing, was changed, or is too many; a table cannot be read or is of another chip, level, seed or behaviour.
+/// Returns an error if a file is missing, changed or not listed, or if a table cannot be read or is of another chip, level, seed or behaviour.
 pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     let manifest = manifest(folder)?;
     let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
     for (file, path) in manifest.files.iter().zip(&listed) {
-        // No byte more than the manifest lists is looked at.
+        // No more bytes are read than the manifest lists.
         let listed = FileLimit { name: "bytes", bytes: file.bytes, counted: "bytes that the manifest lists" };
         let mut digest = Sha256::new();
         let length = match read::parts(path, Kind::Regular, listed, |part| digest.update(part)) {
@@ -304,7 +304,7 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
         .filter(|(path, _)| path.extension().is_some_and(|extension| extension == "tsv"))
         .map(|(path, file)| {
             let table = parse(&read_text(path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?, path)?;
-            let Contents { profile, level, seed, .. } = table.contents;
+            let Contents { profile, level, seed, .. } = table.writer.contents();
             let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
             let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;
             if own != (profile.as_str(), level.as_str(), *seed, *behaviour_rev, file.rows) {

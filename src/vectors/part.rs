@@ -1,31 +1,31 @@
-//! A part of a unit's rows: those of which some input columns are one number, or lie in a range.
+//! A part of a unit's rows: those in which some input columns are restricted.
 //!
-//! It is written as `cfg.format=R5G6B5`, or `in.word=00000000..00ffffff`: the numbers as tables have them, both ends included; words also as
-//! `in.word0=00000000/f800f800`: those that differ from the first in no bits but those of the second. `in.texture.g=in.texture.r`: the number of the other
-//! column.
+//! `cfg.format=R5G6B5` restricts a column to one number, and `in.word=00000000..00ffffff` to a range with both ends included; numbers are written as
+//! in tables. `in.word0=00000000/f800f800` restricts it to words that differ from the first in no bits but those of the second.
+//! `in.texture.g=in.texture.r` ties it to the number of another column.
 
 use super::{Column, Domain, Unit};
 
-/// Which rows of a unit.
+/// A subset of a unit's rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     columns: Vec<Column>,
     texts: Vec<String>,
-    /// Columns that have the number of another: which, and of which.
+    /// Ties: index of the tied column, and index of the column whose number it has.
     ties: Vec<[usize; 2]>,
 }
 
 impl Part {
-    /// The part that holds all rows.
+    /// Returns the part with all rows.
     pub fn whole(unit: &dyn Unit) -> Part {
         Part { columns: unit.inputs(), texts: Vec::new(), ties: Vec::new() }
     }
 
-    /// The rows that all of these allow.
+    /// Returns the part that satisfies all restrictions in `texts`.
     ///
     /// # Errors
-    /// What is wrong with one of them, in a sentence: it is none, names no input column, or one that was named before, or numbers that the column
-    /// does not take.
+    /// Returns a sentence that says what is wrong with a restriction: it cannot be parsed, names no input column, names a column twice, or has
+    /// numbers that the column does not take.
     pub fn new<T: AsRef<str>>(unit: &dyn Unit, texts: &[T]) -> Result<Part, String> {
         let mut columns = unit.inputs();
         let mut found: Vec<Option<String>> = vec![None; columns.len()];
@@ -46,7 +46,7 @@ impl Part {
             }
             let column = &columns[index];
             if let Some(other) = columns.iter().position(|column| column.name == numbers) {
-                // It takes no numbers of its own any more.
+                // A tied column has only one value of its own.
                 let own = column.narrowed(column.nth(0), column.nth(0));
                 let Some(own) = own.filter(|_| other != index && columns[other].kind == column.kind) else {
                     return Err(format!("`{name}` cannot have the number of `{numbers}`: it takes others"));
@@ -67,7 +67,7 @@ impl Part {
             let Some(narrowed) = narrowed else {
                 return Err(format!("`{name}` does not take `{numbers}`: {}", takes(column)));
             };
-            // A range that is the whole column says nothing.
+            // A range that covers the whole column is no restriction.
             if narrowed.size() < column.size() {
                 found[index] = Some(written(&narrowed));
                 columns[index] = narrowed;
@@ -88,30 +88,30 @@ impl Part {
         Ok(Part { columns, texts, ties })
     }
 
-    /// The input columns, with the numbers that they take here.
+    /// Returns the input columns, with their domains restricted.
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// Gives columns that have the number of another that number.
-    pub fn tie(&self, inputs: &mut [i64]) {
+    /// Sets the tied columns of a row.
+    pub(crate) fn tie(&self, inputs: &mut [i64]) {
         for [tied, other] in &self.ties {
             inputs[*tied] = inputs[*other];
         }
     }
 
-    /// Whether some column has the number of this one.
-    pub fn is_followed(&self, index: usize) -> bool {
+    /// Returns whether another column is tied to this one.
+    pub(crate) fn is_followed(&self, index: usize) -> bool {
         self.ties.iter().any(|[_, other]| *other == index)
     }
 
-    /// What holds, one a column, in the columns' order; empty for all rows.
+    /// Returns the restrictions in canonical form, in the order of the columns; empty for all rows.
     pub fn texts(&self) -> &[String] {
         &self.texts
     }
 }
 
-/// `NAME=FIRST..LAST`, or `NAME=NUMBER` if it takes but one, or `NAME=WORD/MASK`.
+/// Writes a restriction in canonical form: `NAME=FIRST..LAST`, `NAME=NUMBER` for a single number, or `NAME=WORD/MASK`.
 fn written(column: &Column) -> String {
     if let Some(Domain::Bits(word, mask)) = column.domain {
         let [word, mask] = [word, mask].map(|word| column.kind.write(word.into()));
@@ -122,7 +122,7 @@ fn written(column: &Column) -> String {
     if size == 1 { format!("{}={first}", column.name) } else { format!("{}={first}..{last}", column.name) }
 }
 
-/// What a column takes, for a reader.
+/// Describes the numbers that a column takes, for a message.
 fn takes(column: &Column) -> String {
     let size = column.size();
     if size <= 32 {
@@ -199,7 +199,7 @@ mod tests {
         part("product", &["in.b=in.a"]).expect("a part").tie(&mut row);
         assert_eq!(row, [7, 7]);
         assert!(part("scale-bias", &["in.b=cfg.scale"]).is_err_and(|error| error.contains("cannot have")));
-        // A mask that is a range, or of bits that the word has, or too wide; and numbers have none.
+        // Masks that are a range, cover bits that the word has, or are too wide; and columns of numbers, which take no masks.
         for text in ["00000000/000000ff", "00000000/00000000", "00000010/000000f0", "00000000/ff", "00000000/1ffffffff"]
         {
             assert!(

@@ -1,4 +1,4 @@
-//! Tables out of text, and whether the model still says what they say.
+//! Reads tables, and compares them with the model.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -12,11 +12,9 @@ const AGAIN: &str = "export the pack again";
 /// A table that was read.
 #[derive(Debug)]
 pub struct Table {
-    /// What it is of.
-    pub contents: Contents,
     /// The behaviour of the model that wrote it.
     pub behaviour: u32,
-    /// The columns, as the file's head declares them.
+    /// Writer of the same table; it has the columns.
     pub writer: Writer,
     /// The rows, in the file's order.
     pub rows: Vec<TableRow>,
@@ -25,40 +23,40 @@ pub struct Table {
 /// A row of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableRow {
-    /// Its line in the file, from 1.
+    /// Line number in the file, from 1.
     pub line: usize,
-    /// The row's id, in its first column.
+    /// The row's id.
     pub id: String,
-    /// Configuration and inputs.
+    /// Values of the input columns.
     pub inputs: Vec<i64>,
-    /// Intermediates and results as they stand there.
+    /// Values of the result columns, as the file has them.
     pub results: Vec<i64>,
-    /// Why it is there.
+    /// Reason why the table has it.
     pub origin: Origin,
-    /// The whole line.
+    /// The line without its end.
     pub text: String,
 }
 
-/// Where a row and the model differ.
+/// The first difference between a row and the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Line in the file.
+    /// Line number in the file, from 1.
     pub line: usize,
     /// Id of the row that differs.
     pub id: String,
     /// The first column that differs.
     pub column: String,
-    /// What the table says.
+    /// Value in the table.
     pub table: String,
-    /// What the model says.
+    /// Value of the model.
     pub model: String,
-    /// The table and the model agree: it is the model's block lanes that say this.
+    /// Whether only the model's block lanes differ; then the fault is the program's.
     pub in_lanes: bool,
-    /// The row as the model has it.
+    /// The row as the model computes it.
     pub row: Row,
 }
 
-/// Reads lines one after the other, with their numbers.
+/// Iterates over lines and their numbers.
 struct Lines<'t> {
     path: &'t Path,
     lines: std::iter::Enumerate<std::str::Split<'t, char>>,
@@ -71,7 +69,7 @@ impl<'t> Lines<'t> {
         found.map(|(n, line)| (n + 1, line)).ok_or_else(|| VectorError::file("NB1004", self.path, message(), AGAIN))
     }
 
-    /// The value of a header line.
+    /// Reads the next line as a header line. Returns its line number and value.
     fn field(&mut self, name: &str) -> Result<(usize, &'t str), VectorError> {
         let (line, text) = self.next(&format!("`# {name}`"))?;
         let expected = || format!("`# {name} ...` is expected here");
@@ -80,16 +78,16 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// The value of the header line of that name.
+/// Returns the value of a header line, or `None` if the line does not have that name.
 pub(super) fn header<'t>(line: &'t str, name: &str) -> Option<&'t str> {
     line.strip_prefix("# ")?.strip_prefix(name)?.strip_prefix(' ')
 }
 
-/// Reads a table. `path` is for messages only.
+/// Reads a table. `path` is used for messages only.
 ///
 /// # Errors
-/// Not a table, another version, an unknown unit, a line that this program would not have written, a row that is there twice or whose id is
-/// not that of its inputs, an end in the middle of a line.
+/// Returns an error if the text is not a table, is of another version or an unknown unit, has a line that this program would not have written, has a
+/// row twice, has a row whose id is not that of its inputs, or ends in the middle of a line.
 pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
     let invalid = |code, line, message: String, help| VectorError::line(code, path, line, message, help);
     if text.contains('\r') {
@@ -150,10 +148,10 @@ pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
         return Err(VectorError::file("NB1007", path, "the file ends in the middle of a line: it is cut off", AGAIN));
     }
     let rows = rows.rows;
-    Ok(Table { contents: writer.contents(), behaviour: u32::try_from(behaviour).unwrap_or(u32::MAX), writer, rows })
+    Ok(Table { behaviour: u32::try_from(behaviour).unwrap_or(u32::MAX), writer, rows })
 }
 
-/// The rows so far.
+/// The rows that have been read so far.
 struct Rows<'t> {
     path: &'t Path,
     writer: &'t Writer,
@@ -198,12 +196,12 @@ impl Rows<'_> {
 }
 
 impl Table {
-    /// Whether this program behaves as the one that wrote the table.
+    /// Returns whether this program has the behaviour of the one that wrote the table.
     pub fn is_current(&self) -> bool {
         self.behaviour == BEHAVIOUR
     }
 
-    /// The rows of which the model says something else, row by row or in the block lanes of its sweeps.
+    /// Returns the rows for which the model, or the block lanes of its sweeps, computes something else.
     pub fn differences(&self) -> Vec<Difference> {
         self.rows.iter().filter_map(|row| self.difference(row)).collect()
     }
@@ -223,7 +221,7 @@ impl Table {
     }
 
     fn difference_of_lanes(&self, read: &TableRow, row: Row) -> Option<Difference> {
-        let Contents { unit, profile, .. } = self.contents;
+        let Contents { unit, profile, .. } = self.writer.contents();
         let conditions = Conditions { profile, policies: Policies::DEFAULT };
         let columns = [self.writer.inputs(), self.writer.results()];
         let found = lanes::outputs(unit, columns, &read.inputs, read.line, &conditions)?;
@@ -240,7 +238,7 @@ mod tests {
     use crate::column::Kind;
     use crate::unit::Unit;
 
-    /// Twice a number; in lanes 9 becomes 19.
+    /// Doubles a number. Its block lanes have a fault: 9 becomes 19.
     struct Twice;
 
     impl Unit for Twice {
@@ -284,7 +282,7 @@ mod tests {
             TableRow { line: n as usize, id, inputs: row.inputs, results: row.results, origin: row.origin, text }
         });
         let rows = rows.collect();
-        let table = Table { contents, behaviour: BEHAVIOUR, writer, rows };
+        let table = Table { behaviour: BEHAVIOUR, writer, rows };
         let found = table.differences();
         let told: Vec<_> =
             found.iter().map(|d| (d.line, d.column.as_str(), d.table.as_str(), d.model.as_str())).collect();

@@ -1,4 +1,4 @@
-//! Tables as text: tab separated, one row a line, numbers as their columns write them.
+//! Writes tables as text: tab-separated, one row per line, each number in the format of its column.
 //!
 //! ```text
 //! # ninebit-vectors 1
@@ -13,50 +13,50 @@
 //! id  in.a  in.b  mid.product  out.ab  tags  grade  reach  alternatives
 //! ```
 //!
-//! A reader skips what begins with `#`, takes the names from the next line, and finds its columns by them.
+//! A reader skips lines that begin with `#`, reads the column names from the next line, and finds its columns by name.
 
 use sha2::{Digest, Sha256};
 
-/// The revision of what the model computes. It goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
+/// Revision of the model's results. It is increased when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
 pub const BEHAVIOUR: u32 = 1;
 
 use super::{Column, Conditions, Level, Origin, Unit, cases, handbook, unit};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
-/// First line of a table.
-pub const FORMAT: &str = "# ninebit-vectors 1";
+/// First line of a table: the version of the format.
+pub(crate) const FORMAT: &str = "# ninebit-vectors 1";
 
-/// Columns after the unit's own.
-pub const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
+/// Names of the columns after those of the unit.
+pub(crate) const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 
-/// What a table is of.
+/// The unit, chip, level and seed that determine a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents {
-    /// The unit whose rows these are.
+    /// The unit.
     pub unit: &'static dyn Unit,
     /// The chip whose rules they follow.
     pub profile: Profile,
-    /// The number of rows.
+    /// The level, which limits the number of rows.
     pub level: Level,
     /// The seed of the random rows.
     pub seed: u64,
 }
 
-/// A row with everything that is written of it.
+/// A row with everything that is written about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// Numbers of the input columns.
+    /// Values of the input columns.
     pub inputs: Vec<i64>,
-    /// Numbers of the result columns.
+    /// Values of the result columns.
     pub results: Vec<i64>,
-    /// Why it is there.
+    /// Reason why the table has it.
     pub origin: Origin,
-    /// What it would yield under other policies.
+    /// Results under those other policies that change them.
     pub alternatives: Vec<unit::Alternative>,
 }
 
-/// The columns of a unit, looked up once for a whole table.
+/// Writer of a table. It looks up the unit's columns once.
 #[derive(Debug)]
 pub struct Writer {
     contents: Contents,
@@ -66,29 +66,29 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A writer of the table of a unit on a chip.
+    /// Returns a writer for a table.
     pub fn new(contents: Contents) -> Writer {
         let unit = contents.unit;
         let (inputs, results) = (unit.inputs(), unit.results());
         Writer { contents, inputs, results, grade: handbook::weakest(unit.rules()) }
     }
 
-    /// What the table is of.
+    /// Returns the unit, chip, level and seed of the table.
     pub fn contents(&self) -> Contents {
         self.contents
     }
 
-    /// Columns of configuration and inputs.
+    /// Returns the columns of configuration and inputs.
     pub fn inputs(&self) -> &[Column] {
         &self.inputs
     }
 
-    /// Columns of intermediates and results.
+    /// Returns the columns of intermediates and results.
     pub fn results(&self) -> &[Column] {
         &self.results
     }
 
-    /// The lines before the rows.
+    /// Returns the lines before the rows.
     pub fn head(&self) -> String {
         let Contents { unit, profile, level, seed } = self.contents;
         let columns = || self.inputs.iter().chain(&self.results);
@@ -116,8 +116,8 @@ impl Writer {
         Row { inputs: inputs.to_vec(), results, origin, alternatives }
     }
 
-    /// The id of a row: twelve hexadecimal digits of a hash over unit, chip, configuration and inputs. It does not change when rows
-    /// come or go, nor with the results.
+    /// Returns the id of a row: twelve hexadecimal digits of a hash over unit, chip, configuration and inputs. It depends neither on other rows nor
+    /// on the results.
     pub fn id(&self, inputs: &[i64]) -> String {
         let mut hash = Sha256::new();
         hash.update(format!("{}\n{}\n", self.contents.unit.name(), self.contents.profile.name()));
@@ -127,7 +127,7 @@ impl Writer {
         hexadecimal(&hash.finalize()[..6])
     }
 
-    /// The line of a row, without its end.
+    /// Returns the line of a row, without its end.
     pub fn line(&self, row: &Row) -> String {
         let numbers = self.inputs.iter().zip(&row.inputs).chain(self.results.iter().zip(&row.results));
         let mut fields = vec![self.id(&row.inputs)];
@@ -136,13 +136,13 @@ impl Writer {
         fields.join("\t")
     }
 
-    /// The values of the columns [`LAST`].
-    pub fn last(&self, row: &Row) -> [String; 4] {
+    /// Returns the values of the columns `LAST`.
+    pub(crate) fn last(&self, row: &Row) -> [String; 4] {
         let reach = self.contents.unit.reach(&row.inputs, &row.results).word();
         [tags(row), self.grade.to_owned(), reach.to_owned(), self.alternatives(row)]
     }
 
-    /// `RULE=value:out.x=1,out.y=2;...`: what differs of the results; `-` if nothing.
+    /// Returns the changed results under other policies, as `RULE=value:out.x=1,out.y=2;...`, or `-` if nothing changes.
     fn alternatives(&self, row: &Row) -> String {
         let texts: Vec<String> = row
             .alternatives
@@ -159,10 +159,11 @@ impl Writer {
         if texts.is_empty() { "-".to_owned() } else { texts.join(";") }
     }
 
-    /// Hands over every row of the table, with `deciding` only those that some policy changes, until one is refused. Returns their number.
+    /// Passes every row of the table to `take`, or with `deciding` only those that some policy changes, until `take` returns an error. Returns the
+    /// number of rows.
     ///
     /// # Errors
-    /// What `take` refuses.
+    /// Returns the error of `take`.
     pub fn each<E>(&self, deciding: bool, mut take: impl FnMut(&Row) -> Result<(), E>) -> Result<usize, E> {
         let (mut rows, mut result) = (0, Ok(()));
         let Contents { unit, profile, level, seed } = self.contents;
@@ -180,7 +181,7 @@ impl Writer {
     }
 }
 
-/// Why the row is there, and the rules whose policies change it.
+/// Returns the tags of a row: the reason why it is there, and the rules whose policies change it.
 fn tags(row: &Row) -> String {
     let mut tags = vec![row.origin.word().to_owned()];
     for alternative in &row.alternatives {

@@ -1,7 +1,7 @@
-//! Views: the same rows for readers that want no text.
+//! Views: the rows of a table in other formats.
 //!
-//! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row. `c` has an array of structures, for tests without a reader. `gpu` has draws ([`gpu`](super::gpu)).
+//! `hex` packs a row into one word for `$readmemh`, with the first column in its top bits; `json`, `svh` and `h` files give each column's bits.
+//! `jsonl` has one object per row. `c` has an array of structures, for tests without a parser. `gpu` has draws ([`gpu`](super::gpu)).
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use super::{Column, Kind, Row, Writer};
 use ninebit::state::named;
 
 named! {
-    /// What is written beside a table.
+    /// A format that is written beside a table.
     pub enum View {
         /// Packed words for `$readmemh`, with layouts for Verilog and C.
         Hex,
@@ -20,26 +20,26 @@ named! {
         Jsonl,
         /// An array of structures for C.
         C,
-        /// Draws for a graphics card, of units that one can show.
+        /// Draws for a graphics card, for units whose results it can show.
         Gpu,
     }
 }
 
-/// What of a table goes into a file.
+/// The functions that write a file of a view.
 #[derive(Clone, Copy, Debug)]
-pub enum Content {
-    /// Text that needs no rows.
+pub(crate) enum Content {
+    /// A text that does not depend on the rows.
     Whole(fn(&Layout) -> String),
-    /// A head, and a line for each row.
+    /// A header, and a line for each row.
     Rows(fn(&Writer) -> String, fn(&Layout, &Row) -> String),
 }
 
-/// The canonical table.
-pub const TABLE: (&str, Content) = ("tsv", Content::Rows(Writer::head, |layout, row| layout.writer.line(row)));
+/// The canonical table: extension and content.
+pub(crate) const TABLE: (&str, Content) = ("tsv", Content::Rows(Writer::head, |layout, row| layout.writer.line(row)));
 
 impl View {
-    /// The files of the view: extension and content.
-    pub fn files(self) -> Vec<(&'static str, Content)> {
+    /// Returns extension and content of each file of the view.
+    pub(crate) fn files(self) -> Vec<(&'static str, Content)> {
         match self {
             View::Hex => vec![
                 ("hex", Content::Rows(|_| String::new(), packed)),
@@ -53,37 +53,37 @@ impl View {
                     ("rows.inc", Content::Rows(|_| String::new(), initializer)),
                 ]
             }
-            // Rows are put together before any is written.
+            // Batches are written when all rows are known.
             View::Gpu => Vec::new(),
             View::Jsonl => vec![("jsonl", Content::Rows(|_| String::new(), |layout, row| object(layout.writer, row)))],
         }
     }
 }
 
-/// A column's place in a packed row.
+/// The bits of a column in a packed row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slice {
-    /// The column whose numbers these are.
+    /// The column.
     pub column: Column,
-    /// Its most significant bit.
+    /// Most significant bit.
     pub high: u32,
-    /// Its least significant bit.
+    /// Least significant bit.
     pub low: u32,
 }
 
-/// Where the columns of a table lie in a packed row.
+/// Layout of a packed row.
 #[derive(Debug)]
 pub struct Layout<'w> {
-    /// The columns of the table.
-    pub writer: &'w Writer,
-    /// The columns in order.
+    /// The writer of the table.
+    writer: &'w Writer,
+    /// The columns in the order of the table, which is from the top bits down.
     pub slices: Vec<Slice>,
-    /// Bits of a row.
+    /// Number of bits in a row.
     pub width: u32,
 }
 
 impl<'w> Layout<'w> {
-    /// Of a table: the first column in the top bits.
+    /// Returns the layout of a table, with the first column in the top bits.
     pub fn new(writer: &'w Writer) -> Layout<'w> {
         let columns = || writer.inputs().iter().chain(writer.results());
         let width: u32 = columns().map(|column| column.kind.bits()).sum();
@@ -102,7 +102,7 @@ impl<'w> Layout<'w> {
     }
 }
 
-/// A row as one hexadecimal word.
+/// Returns a row as one hexadecimal word.
 pub fn packed(layout: &Layout, row: &Row) -> String {
     let mut digits = vec![0_u8; layout.width.div_ceil(4) as usize];
     for (slice, value) in layout.slices.iter().zip(row.inputs.iter().chain(&row.results)) {
@@ -115,7 +115,7 @@ pub fn packed(layout: &Layout, row: &Row) -> String {
     digits.iter().rev().map(|digit| char::from_digit(u32::from(*digit), 16).unwrap_or('0')).collect()
 }
 
-/// A row as a JSON object.
+/// Returns a row as a JSON object.
 fn object(writer: &Writer, row: &Row) -> String {
     let mut object = Map::new();
     object.insert("id".to_owned(), json!(writer.id(&row.inputs)));
@@ -133,7 +133,7 @@ fn object(writer: &Writer, row: &Row) -> String {
     Value::Object(object).to_string()
 }
 
-/// A row as an initializer of C: the numbers of its columns, then its id.
+/// Returns a row as a C initializer: the numbers of its columns, then its id.
 fn initializer(layout: &Layout, row: &Row) -> String {
     let columns = layout.slices.iter().map(|slice| &slice.column.kind);
     let numbers = columns.zip(row.inputs.iter().chain(&row.results)).map(|(kind, value)| match kind {
@@ -143,7 +143,7 @@ fn initializer(layout: &Layout, row: &Row) -> String {
     format!("{{{}, \"{}\"}},", numbers.collect::<Vec<_>>().join(", "), layout.writer.id(&row.inputs))
 }
 
-/// The structure of a row and the array of all of them, for C.
+/// Returns C declarations of a row's structure and the array of all rows.
 fn rows_header(layout: &Layout) -> String {
     let unit = layout.unit();
     let lower = identifier(unit).to_lowercase();
@@ -191,7 +191,7 @@ fn layout_json(layout: &Layout) -> String {
     format!("{value:#}\n")
 }
 
-/// A column's name as an identifier: `cfg.mapping_a` is `CFG_MAPPING_A`.
+/// Converts a column's name to an identifier: `cfg.mapping_a` to `CFG_MAPPING_A`.
 fn identifier(name: &str) -> String {
     name.replace(['.', '-'], "_").to_uppercase()
 }
@@ -238,7 +238,7 @@ mod tests {
     use crate::units;
     use ninebit::state::Profile;
 
-    /// An initializer has a number for each member, and every member holds what its column can be.
+    /// Checks that every member of the structure can hold every number of its column.
     #[test]
     fn structures_hold_their_rows() {
         for unit in units::all() {

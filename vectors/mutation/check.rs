@@ -19,10 +19,10 @@ const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Whether the model says something else of some row. What other policies would yield is left out: it takes most of the time.
 fn differs(table: &Table) -> bool {
-    let conditions = Conditions { profile: table.contents.profile, policies: Policies::DEFAULT };
+    let conditions = Conditions { profile: table.writer.contents().profile, policies: Policies::DEFAULT };
     let differs = |row: &TableRow| {
         let mut results = vec![0; row.results.len()];
-        table.contents.unit.evaluate(&row.inputs, &conditions, &mut results);
+        table.writer.contents().unit.evaluate(&row.inputs, &conditions, &mut results);
         results != row.results
     };
     table.rows.iter().any(differs)
@@ -35,7 +35,7 @@ fn noticed(number: u32, tables: &[Table]) -> Vec<String> {
         // A mutant may well break an assertion.
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| differs(table))).unwrap_or(true)
     };
-    let name = |table: &Table| format!("{} {}", table.contents.profile.name(), table.contents.unit.name());
+    let name = |table: &Table| format!("{} {}", table.writer.contents().profile.name(), table.writer.contents().unit.name());
     tables.iter().filter(noticed).map(name).collect()
 }
 

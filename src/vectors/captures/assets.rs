@@ -1,4 +1,4 @@
-//! Images that the programs load (MIT): `vectors/captures/images`, where their licence stands.
+//! Image files that the test programs load (MIT); `vectors/captures/images` holds them and their licence.
 
 use super::images::Color;
 use ninebit::state::TextureFormat;
@@ -10,10 +10,10 @@ macro_rules! file {
     };
 }
 
-/// Name, format, columns and rows, levels, and the file.
+/// A compressed image: name, format, size in texels, number of mip levels, and the bytes of its DDS file.
 pub(super) type Compressed = (&'static str, TextureFormat, [u32; 2], u32, &'static [u8]);
 
-/// Compressed images.
+/// The compressed images of Texture_DXT.
 pub(super) const COMPRESSED: [Compressed; 9] = [
     ("plasma_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_dxt1.dds")),
     ("plasma_alpha_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_alpha_dxt1.dds")),
@@ -26,24 +26,24 @@ pub(super) const COMPRESSED: [Compressed; 9] = [
     ("64x256_bands_dxt5", TextureFormat::Dxt5, [64, 256], 9, file!("64x256_bands_dxt5.dds")),
 ];
 
-/// Blocks begin behind this header.
+/// Size of a DDS file's header in bytes; the blocks follow it.
 const DDS_HEADER: usize = 128;
 
-/// The blocks of all levels as words.
+/// Returns the compressed blocks of all levels as words.
 pub(super) fn blocks(format: TextureFormat, file: &[u8]) -> Vec<u32> {
     texels::from_bytes(file.get(DDS_HEADER..).unwrap_or_default(), format)
 }
 
-/// The normals of a cube, 256 x 256.
+/// An object-space normal map of a cube, unfolded, 256 x 256.
 pub(super) const NORMALS: &[u8] = file!("cube_normals_object_space.png");
-/// Waves, 128 x 128.
+/// A bump map of waves, 128 x 128.
 pub(super) const WATER: &[u8] = file!("water_bump_map.png");
-/// What is seen through the waves, 128 x 128.
+/// The image that the bump map displaces, 128 x 128.
 pub(super) const SEEN: &[u8] = file!("bump_map_test_image.png");
 
-/// The pixels of a picture.
+/// Decodes a PNG file. Returns a function from column and row to the pixel's colour.
 pub(super) fn pixels(file: &[u8]) -> impl Fn(u32, u32) -> Color + use<> {
-    // It is one of those above.
+    // The file is one of the constants above, so it decodes.
     let picture = image::load_from_memory(file).map(|picture| picture.into_rgba8()).unwrap_or_default();
     move |x, y| picture.get_pixel_checked(x, y).map_or([0; 4], |pixel| pixel.0)
 }

@@ -3,27 +3,30 @@
 use super::*;
 use images::{four_gradients, solid};
 
-/// Names of [`BlendEquation::ALL`] in those of frames.
+/// Names of [`BlendEquation::ALL`] as they appear in the names of frames.
 const EQUATIONS: &str = "ADD SUB REVSUB MIN MAX SADD SREVSUB";
 
-/// The same of [`BlendFactor::ALL`].
+/// Names of [`BlendFactor::ALL`] as they appear in the names of frames.
 const FACTORS: &str = "0 1 srcRGB 1-srcRGB srcA 1-srcA dstA 1-dstA dstRGB 1-dstRGB srcAsat cRGB 1-cRGB cA 1-cA";
 
-/// What is drawn over each other, A8B8G8R8: squares in squares, whose alpha is blended, and a stack of squares.
+/// Colours (A8B8G8R8) of the nested squares, from the outermost inwards. Their alpha is blended.
 const NESTED: [u32; 4] = [0x7f00_cc00, 0xffcc_0000, 0x8000_00ff, 0x00ff_ffff];
+/// Colours (A8B8G8R8) of the stacked squares, from the top down.
 const STACKED: [u32; 4] = [0xdd00_dd00, 0xdddd_0000, 0xdd00_00dd, 0xddff_ffff];
 
+/// A colour mask that writes red, green and blue, but not alpha.
 const COLORS: [bool; 4] = [true, true, true, false];
+/// A colour mask that writes alpha only.
 const ALPHA: [bool; 4] = [false, false, false, true];
-/// Both.
+/// A colour mask that writes all channels.
 const ALL: [bool; 4] = [true; 4];
 
-/// A rectangle of a colour A8B8G8R8, blended or not, whose channels are written as a mask says.
+/// Returns a rectangle of one A8B8G8R8 colour with the given blend state and colour mask.
 fn patch(edges: [f32; 4], color: u32, blend: Option<Blend>, color_mask: [bool; 4]) -> Draw {
     Draw { blend, color_mask, blend_constant: [0x55; 4], ..rectangle(edges, VertexColor::Bytes(abgr(color))) }
 }
 
-/// Squares in each other, each smaller by `inset` on every side: colours as they are, alpha blended.
+/// Returns nested squares, each smaller than the last by `inset` on every side. Colours are stored as they are; alpha is blended.
 fn nested(blend: Blend, [left, top]: [f32; 2], side: f32, inset: f32) -> Vec<Draw> {
     let square = |(n, color): (u8, u32)| {
         let by = inset * f32::from(n);
@@ -33,39 +36,39 @@ fn nested(blend: Blend, [left, top]: [f32; 2], side: f32, inset: f32) -> Vec<Dra
     (0..).zip(NESTED).flat_map(square).collect()
 }
 
-/// Squares above each other.
+/// Returns the edges of squares stacked downwards from `corner`, each with its colour.
 fn stacked(colors: impl Iterator<Item = u32>, corner: [f32; 2], side: f32) -> impl Iterator<Item = ([f32; 4], u32)> {
     let at = move |n: u8| sized([corner[0], corner[1] + side * f32::from(n)], [side, side]);
     (0..).map(at).zip(colors)
 }
 
-/// A stack whose colours are blended, and alpha as it is.
+/// Returns a stack of squares whose colours are blended and whose alpha is stored as it is.
 fn colors_blended(blend: Blend, corner: [f32; 2], side: f32) -> Vec<Draw> {
     let square = |(edges, color)| [patch(edges, color, Some(blend), COLORS), patch(edges, color, None, ALPHA)];
     stacked(STACKED.into_iter(), corner, side).flat_map(square).collect()
 }
 
-/// The stack upside down, wholly blended.
+/// Returns the stack in reverse order, with colours and alpha blended.
 fn all_blended(blend: Blend, corner: [f32; 2], side: f32) -> Vec<Draw> {
     let square = |(edges, color)| patch(edges, color, Some(blend), ALL);
     stacked(STACKED.into_iter().rev(), corner, side).map(square).collect()
 }
 
-/// The frame buffer with a chequered field in it.
+/// Fills the frame buffer with a chequered background.
 fn over(canvas: &mut Canvas, background: &Texture) {
     let texture = canvas.texture(background);
     let draw = pasted([0.0, 0.0, 640.0, 480.0], 0, nearest(texture), WHOLE);
     canvas.draw(Draw { blend: None, ..without_alpha(draw, FinalRegister::Texture0) });
 }
 
-/// Draws into a texture that begins as an image, and pastes it.
+/// Draws into a target that starts out as the image `first`, then pastes the result into the frame buffer.
 fn through(canvas: &mut Canvas, first: &Texture, draws: Vec<Draw>, edges: [f32; 4]) {
     let target = canvas.painted(first, SurfaceFormat::A8R8G8B8, draws);
     let texture = canvas.shown(target, TextureKind::TwoDimensional, TextureFormat::A8B8G8R8);
     canvas.draw(pasted(edges, 1, nearest(texture), WHOLE));
 }
 
-/// Blend_tests: one pair of factors large, and for each factor of the source all of the destination.
+/// Adds the frames of Blend_tests: a large frame for each pair of factors, and a frame with every destination factor for each source factor.
 pub(super) fn tests(frames: &mut Frames) {
     let grey = |dark: u32, size| checker([abgr(dark), abgr(0xff00_0000)], size);
     let background = |size| images::texture(TextureFormat::A8B8G8R8, [256, 256], grey(0xff20_2020, size));
@@ -106,7 +109,7 @@ pub(super) fn tests(frames: &mut Frames) {
     }
 }
 
-/// The formats that are blended, and how their words are read.
+/// The surface formats of Blend_surface: name in the frames, format, and the texture format that reads their words.
 const SURFACES: [(&str, SurfaceFormat, TextureFormat); 8] = [
     ("X_Z1RGB5", SurfaceFormat::X1R5G5B5Z, TextureFormat::A1R5G5B5),
     ("X_O1RGB5", SurfaceFormat::X1R5G5B5O, TextureFormat::A1R5G5B5),
@@ -118,21 +121,24 @@ const SURFACES: [(&str, SurfaceFormat, TextureFormat); 8] = [
     ("ARGB8", SurfaceFormat::A8R8G8B8, TextureFormat::A8R8G8B8),
 ];
 
+/// Side of a tile in pixels.
 const TILE: f32 = 128.0;
 const WHOLE_TILE: [f32; 4] = [0.0, 0.0, TILE, TILE];
 
-/// Places of tiles: four in a row, so far from one row to the next.
+/// Returns the corners of tiles, four in a row, with `down` pixels from one row to the next.
 fn tiles(down: f32) -> impl Iterator<Item = [f32; 2]> {
     places([32.0, 92.0], [144.0, down], 4)
 }
 
+/// Draws into a new target of one tile. Returns the texture that reads it in the format `read`.
 fn tile(canvas: &mut Canvas, format: SurfaceFormat, draws: Vec<Draw>, read: TextureFormat) -> usize {
     let target = canvas.target(Target::new(128, 128, format));
     canvas.draw_into(target, draws);
     canvas.shown(target, TextureKind::Rectangle, read)
 }
 
-/// A colour over which the destination's alpha is a factor, in eight tiles: once more blended into the frame buffer and once not.
+/// Draws eight tiles in which the destination's alpha is a blend factor. Shows the upper half of each blended into the frame buffer, and the lower
+/// half opaque.
 fn destination_alpha(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFormat, factor: BlendFactor) {
     let colors = [0, 0x4000_0000, 0x8000_0000, 0xff00_0000, 0x00ff_0000, 0x40ff_0000, 0x80ff_0000, 0xffff_0000];
     for (color, [x, y]) in colors.into_iter().zip(tiles(160.0)) {
@@ -146,7 +152,8 @@ fn destination_alpha(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFo
     }
 }
 
-/// Channels of four bits, in the high half: red grows downwards, blue falls to the right, green runs across, alpha is highest in the middle.
+/// Returns an image of 4-bit channels, held in the high half of a byte: red grows downwards, blue falls to the right, green runs across, and alpha is
+/// highest in the middle.
 fn four_bits(side: u32) -> impl images::Image {
     let last = f32::from((side - 1) as u16);
     let middle = last / 2.0;
@@ -160,7 +167,7 @@ fn four_bits(side: u32) -> impl images::Image {
     }
 }
 
-/// Formats of textures that are blended into each surface.
+/// Texture formats that are blended into each surface format.
 const BLENDED: [TextureFormat; 7] = [
     TextureFormat::A8B8G8R8,
     TextureFormat::X8R8G8B8,
@@ -171,7 +178,7 @@ const BLENDED: [TextureFormat; 7] = [
     TextureFormat::A4R4G4B4,
 ];
 
-/// Each texture four times over itself, and small squares in the corners, once or four times.
+/// Draws tiles in which each texture is blended four times with an offset, and small squares in the corners once or four times.
 fn textures_blended(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFormat, destination: BlendFactor) {
     let blend = Some(Blend { equation: BlendEquation::Add, source: BlendFactor::SourceAlpha, destination });
     for (number, (blended, place)) in BLENDED.into_iter().zip(tiles(144.0)).enumerate() {
@@ -205,7 +212,7 @@ fn textures_blended(canvas: &mut Canvas, format: SurfaceFormat, read: TextureFor
     }
 }
 
-/// Blend_surface.
+/// Adds the frames of Blend_surface.
 pub(super) fn surfaces(frames: &mut Frames) {
     for (name, format, read) in SURFACES {
         for (prefix, factor) in
@@ -224,7 +231,8 @@ pub(super) fn surfaces(frames: &mut Frames) {
     }
 }
 
-/// A picture blended and opaque into memory of zeros, which is then read as 32 bits a pixel, whatever they were.
+/// Draws a picture, blended and opaque, into zeroed memory of a surface format. The frame then reads that memory as 32 bits per pixel, whatever the
+/// format.
 fn surface_format(format: SurfaceFormat) -> Drawn {
     let blend = if surface::blends(format) && format != SurfaceFormat::R5G6B5 { OVER } else { None };
     let mut before = Canvas::new(0);
@@ -232,7 +240,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
     let picture = images::texture(TextureFormat::A8B8G8R8, size, four_gradients(size));
     let picture = images::in_texels(images::read_as(picture, TextureFormat::A8R8G8B8));
     let unit = nearest(before.texture(&picture));
-    // Behind the screen the memory goes on.
+    // The memory is as large as 480 rows of 32 bits, also where the format is narrower.
     let (width, height) = (640, 480 * 4 / format.bytes());
     let contents = Some(vec![0; (width * height) as usize].into());
     *before.frame_buffer() = Target { contents, ..Target::new(width, height, format) };
@@ -240,7 +248,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
     before.draw(Draw { blend, ..without_alpha(draw(184.0), FinalRegister::Texture3) });
     before.draw(Draw { blend, ..draw(328.0) });
     let mut canvas = Canvas::new(0);
-    // The memory takes the place of this.
+    // A placeholder: the memory of `before` takes its place.
     let whole = images::in_texels(images::texture(TextureFormat::A8R8G8B8, [1, 1], solid([0; 4])));
     let shown = nearest(canvas.texture(&whole));
     let fields = checker([abgr(0xff20_2020), abgr(0xff00_0000)], 8);
@@ -253,7 +261,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
     Drawn { before, ..canvas.colors() }
 }
 
-/// Surface_format.
+/// Adds the frames of Surface_format.
 pub(super) fn surface_formats(frames: &mut Frames) {
     let names = "A8R8G8B8 X8R8G8B8_Z8R8G8B8 X8R8G8B8_O8R8G8B8 R5G6B5 X1R5G5B5_Z1R5G5B5 X1R5G5B5_O1R5G5B5 \
                  X1A7R8G8B8_Z1A7R8G8B8 X1A7R8G8B8_O1A7R8G8B8 B8 G8B8";
@@ -262,7 +270,7 @@ pub(super) fn surface_formats(frames: &mut Frames) {
     }
 }
 
-/// Alpha_func: ramps of alpha, wide and steep, and one value.
+/// Adds the frames of Alpha_func: wide and steep ramps of alpha, and a rectangle of one alpha.
 pub(super) fn alpha_function(frames: &mut Frames) {
     let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always";
     for (name, function) in named(names) {
@@ -288,7 +296,7 @@ pub(super) fn alpha_function(frames: &mut Frames) {
     }
 }
 
-/// Color_mask_blend: the destination's alpha as a factor where alpha itself is not written.
+/// Adds the frame of Color_mask_blend: the destination's alpha is a blend factor while alpha itself is not written.
 pub(super) fn color_mask(frames: &mut Frames) {
     let mut canvas = Canvas::new(0x3022_2222);
     for (edges, color) in [

@@ -4,16 +4,17 @@ use super::texel_formats::texture;
 use super::*;
 use images::{Color, Image};
 
-/// Eight colours that go on from row to row, in fields of so many texels.
+/// Returns fields of `size` texels in eight colours, which repeat diagonally.
 fn blocks(colors: [Color; 8], size: u32) -> impl Image {
     move |x, y| colors[((x / size + y / size) % 8) as usize]
 }
 
+/// Returns a colour as it is, and with an alpha of 0x66.
 fn pale(color: Color) -> [Color; 2] {
     [color, [color[0], color[1], color[2], 0x66]]
 }
 
-/// Red, green, blue and white, each once opaque and once not.
+/// Returns four colours (`first`, green, `third` and white), each as it is and pale.
 fn colors(first: Color, third: Color) -> [Color; 8] {
     let [a, b] = pale(first);
     let [c, d] = pale([0, 255, 0, 255]);
@@ -22,7 +23,8 @@ fn colors(first: Color, third: Color) -> [Color; 8] {
     [a, b, c, d, e, f, g, h]
 }
 
-/// An image with border texels: a chequered field of grey around coloured ones. Of the programs' image of twice the size only four texels on each side are read.
+/// Returns an image with border texels: a chequered grey border around coloured fields. The programs' image has twice the size; only four of its
+/// texels on each side are read.
 fn bordered([width, height]: [u32; 2]) -> Texture {
     let field = checker([abgr(0xffcc_cccc), abgr(0xff44_4444)], 2);
     let inner = blocks(colors([0, 0, 255, 255], [255, 0x44, 0x44, 255]), 2);
@@ -41,7 +43,7 @@ fn addressed(mode: AddressMode, border_color: Color, unit: TextureUnit) -> Textu
     TextureUnit { address_s: mode, address_t: mode, border_color, ..unit }
 }
 
-/// Nine squares of a group, with the coordinates of their upper left corners.
+/// Returns the nine squares of a group, each with the texture coordinates of its upper left corner.
 fn nine(group: u8) -> Vec<([f32; 4], [f32; 2])> {
     let (unit_width, unit_height) = ((5.5_f32 - 0.2) / 3.0, (3.5_f32 - 0.1) / 2.0);
     let (width, height) = (unit_width / 3.0, unit_height / 3.0);
@@ -56,14 +58,15 @@ fn nine(group: u8) -> Vec<([f32; 4], [f32; 2])> {
     (0..3).flat_map(|row| (0..3).map(move |column| (row, column))).map(|(row, column)| cell(row, column)).collect()
 }
 
-/// A rectangle of the world at z = 1, whose w its corners have.
+/// Returns a rectangle of the world at z = 1, whose vertices have the w of that depth.
 fn in_world([left, top, right, bottom]: [f32; 4], unit: TextureUnit, coordinates: [f32; 4]) -> Draw {
     let [x0, y0, _, w] = space::fixed_function([left, top, 1.0, 1.0]);
     let [x1, y1, ..] = space::fixed_function([right, bottom, 1.0, 1.0]);
     far(pasted([x0, y0, x1, y1], 0, unit, coordinates), w)
 }
 
-/// One texture through every address mode; in `with_border` one of border texels too.
+/// Draws a texture through every address mode. The fifth group shows `other_color` as the border colour; where that is `None`, it shows a texture
+/// with border texels.
 fn modes(canvas: &mut Canvas, border_color: Color, other_color: Option<Color>) {
     let image = blocks(colors([255, 0, 0, 255], [0x44, 0x44, 255, 255]), 2);
     let plain = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [32, 32], image));
@@ -78,7 +81,7 @@ fn modes(canvas: &mut Canvas, border_color: Color, other_color: Option<Color>) {
             };
             let draw = match (group, other_color) {
                 (4, None) => {
-                    // As far as the border texels go.
+                    // Coordinates are limited to the border texels.
                     let coordinates = [s, t, s + 1.0, t + 1.0].map(|at| at.clamp(-0.125, 1.125));
                     in_world(edges, addressed(mode, [0; 4], nearest(border)), coordinates)
                 }
@@ -92,7 +95,7 @@ fn modes(canvas: &mut Canvas, border_color: Color, other_color: Option<Color>) {
     }
 }
 
-/// Textures with border texels in nine sizes, without the border and with it.
+/// Draws textures with border texels in nine sizes, without and with their borders.
 fn border_sizes(canvas: &mut Canvas) {
     let sizes = [[1, 1], [2, 2], [4, 4], [8, 8], [16, 16], [32, 32], [16, 1], [8, 2], [4, 8]];
     let textures = sizes.map(|size| canvas.texture(&bordered(size)));
@@ -106,7 +109,7 @@ fn border_sizes(canvas: &mut Canvas) {
     }
 }
 
-/// Texture_border, without its cube maps.
+/// Adds the frames of Texture_border, except those of cube maps.
 pub(super) fn borders(frames: &mut Frames) {
     frames.paint("2D", 0xfe20_2020, move |canvas| modes(canvas, [255, 0, 255, 0xf0], None));
     frames.paint("xemu#1034", 0xfe20_2020, move |canvas| {
@@ -115,7 +118,7 @@ pub(super) fn borders(frames: &mut Frames) {
     frames.paint("2D_BorderTex_SZ", 0xfe18_1818, border_sizes);
 }
 
-/// Texture_border_color: the border colour beside texels of every format.
+/// Adds the frame of Texture_border_color: the border colour beside texels of every format.
 pub(super) fn border_color(frames: &mut Frames) {
     use TextureFormat::*;
     let formats = [A8, R5G6B5, R8B8, G8B8, R6G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];

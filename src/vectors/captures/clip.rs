@@ -1,11 +1,11 @@
-//! CLP-1, CLP-2: clips on the frame buffer, on a texture that is drawn into, and on narrower views of the frame buffer.
+//! CLP-1, CLP-2: clips on the frame buffer, on a texture that is a render target, and on narrower views of the frame buffer.
 
 use super::*;
 
 /// Column, row, width and height.
 type Area = [u32; 4];
 
-/// First rectangles of Window_clip: the registers hold the last column and row, x + width and y + height of these.
+/// The first rectangles of Window_clip. The registers hold the last column and row, which are x + width and y + height of these.
 const FIRST: [Area; 11] = [
     [0, 0, 0, 0],
     [0, 0, 256, 256],
@@ -19,18 +19,19 @@ const FIRST: [Area; 11] = [
     [256, 256, 1, 1],
     [96, 96, 64, 64],
 ];
+/// The second rectangles of Window_clip, encoded the same way.
 const SECOND: [Area; 2] = [[0, 0, 0, 0], [16, 16, 8, 8]];
 
 fn bytes(r: u8, g: u8, b: u8) -> VertexColor {
     VertexColor::Bytes([r, g, b, 255])
 }
 
-/// Copies the second target to the frame buffer.
+/// Copies a rectangle of the second target to the frame buffer.
 fn show(from: [f32; 4], to: [f32; 4]) -> Draw {
     Draw { blend: None, ..without_alpha(pasted(to, 0, nearest(0), from), FinalRegister::Texture0) }
 }
 
-/// Window_clip: on the frame buffer, and (`r`) on a texture.
+/// Adds the frames of Window_clip: on the frame buffer, and (prefix `r`) on a texture.
 pub(super) fn window_clip(frames: &mut Frames) {
     let mut cases = Vec::new();
     for exclusive in [false, true] {
@@ -42,7 +43,7 @@ pub(super) fn window_clip(frames: &mut Frames) {
         let (order, kind) = (if first_is_last { "s" } else { "" }, if exclusive { "E" } else { "I" });
         let name = format!("{order}{kind}_{}-{}", name(first), name(second));
         let clip = |[x, y, width, height]: Area| Rectangle { x, y, width: width + 1, height: height + 1 };
-        // Writing the first of the registers writes all eight.
+        // A write to the first register sets all eight, so the second rectangle is lost if it is written before.
         let mut rectangles = vec![clip(first)];
         if !first_is_last {
             rectangles.push(clip(second));
@@ -61,7 +62,7 @@ pub(super) fn window_clip(frames: &mut Frames) {
     }
 }
 
-/// The clips of Surface_clip.
+/// The clip rectangles of Surface_clip.
 const CLIPS: [Area; 9] = [
     [0, 0, 0, 0],
     [0, 0, 512, 0],
@@ -74,7 +75,7 @@ const CLIPS: [Area; 9] = [
     [320, 240, 320, 240],
 ];
 
-/// A red outline around an area, the area in green a pixel larger, a light green outline within; clipped.
+/// Draws a red outline around an area, the area itself in green and one pixel larger, and a light green outline inside it. All are clipped by `clip`.
 fn image([x, y, width, height]: Area, clip: Area) -> Vec<Draw> {
     let edges = |by: f32| {
         let [x, y, width, height] = [x, y, width, height].map(|n| f32::from(n as u16));
@@ -97,7 +98,7 @@ fn image([x, y, width, height]: Area, clip: Area) -> Vec<Draw> {
     draws.into_iter().map(|draw| Draw { scissor, blend: None, ..draw }).collect()
 }
 
-/// Surface_clip: on the frame buffer, on views of it, and on a texture.
+/// Adds the frames of Surface_clip: on the frame buffer, on views of it in narrower formats, and on a texture.
 pub(super) fn surface_clip(frames: &mut Frames) {
     for area in CLIPS {
         let [x, y, width, height] = area;
@@ -112,7 +113,7 @@ pub(super) fn surface_clip(frames: &mut Frames) {
             let drawn = Drawn { scene: of(vec![]), before: None, view: Some(view), shown: Shown::Colors };
             frames.push(format!("{name}{suffix}"), drawn);
         }
-        // A texture of no columns or rows is drawn whole.
+        // On a texture, the programs replace a clip width or height of 0 by the whole width or height.
         let or = |size: u32, whole: u32| if size == 0 { whole } else { size };
         let clip = [x, y, or(width, SIZE.0), or(height, SIZE.1)];
         let edges = [x, y, x + clip[2], y + clip[3]].map(|n| f32::from(n as u16));

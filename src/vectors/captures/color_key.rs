@@ -1,19 +1,21 @@
-//! KEY-1: four units, each with a key and with an opposite that shares its alpha, in every mode.
+//! KEY-1: four units in every key mode. Each unit draws two quads of its texture: one with its key, and one with another word as the key.
 
 use super::*;
 
-/// The keys of the four units, A8R8G8B8.
+/// The colour keys of the four units, A8R8G8B8.
 const KEYS: [u32; 4] = [0xf000_00ff, 0xf1ff_00ff, 0xf280_0080, 0xf3ff_0000];
-/// Words with a key's place in the second quad.
+/// Words, A8R8G8B8, that take the key's place in the second quad of each unit.
 const OTHERS: [u32; 4] = [0xf470_7071, 0xf570_7072, 0xf670_7073, 0xf770_7074];
+/// Background colours of the upper two quarters, A8R8G8B8.
 const GREYS: [u32; 2] = [0xfdcc_cccc, 0xfe99_9999];
 
-/// How a chequered field of some size goes on.
+/// Returns the word of a chequered field at a texel; a field has `size` texels a side.
 fn checker(x: u32, y: u32, [first, second]: [u32; 2], size: u32) -> u32 {
     if (x / size + y / size).is_multiple_of(2) { first } else { second }
 }
 
-/// A quarter each: a grey and the key; a grey and the other word; the key's colour with either alpha; another unit's key's colour likewise.
+/// Returns the texture of a unit. Its quarters alternate between: a grey and the key; a grey and the other word; the key's colour with the other
+/// word's alpha and with alpha 255; another unit's key colour with either alpha.
 fn texture(unit: usize) -> Texture {
     let (key, other) = (KEYS[unit], OTHERS[unit]);
     let next = KEYS[usize::from(unit == 0)];
@@ -30,9 +32,10 @@ fn key(word: u32, mode: ColorKeyMode) -> ColorKey {
     ColorKey { color: argb(word), mode }
 }
 
-/// A square around a point of the plane z = 0.1, seen from z = -7 through an angle of 45 degrees; `offset`: of the viewport, in pixels.
+/// Returns the corners of a square around a point of the plane z = 0.1, seen from z = -7 with a field of view of 45 degrees. `offset` is the
+/// viewport's offset in pixels.
 fn square(center: [f32; 2], offset: f32) -> Vec<[f32; 2]> {
-    // 240 / tan(22.5 degrees) pixels at the distance 1.
+    // 240 / tan(22.5 degrees) is the size in pixels of one unit at distance 1.
     const SCALE: f32 = 579.411_2 / 7.1;
     let place = |[x, y]: [f32; 2]| {
         let (right, up) = (x + center[0], y + center[1]);
@@ -51,7 +54,7 @@ fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
     Drawn::colors(scene)
 }
 
-/// Color_key.
+/// Adds the frames of Color_key.
 pub(super) fn frames(frames: &mut Frames) {
     let textures: Vec<Texture> = (0..4).map(texture).collect();
     let centers = [

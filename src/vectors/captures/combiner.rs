@@ -1,8 +1,9 @@
-//! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of Combiner, in the combiner language. A part of a colour c is the byte that 255 c is cut to.
+//! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of the suite Combiner, in the combiner language. A colour component c of the programs is written as
+//! the byte 255 c, truncated.
 
 use super::*;
 
-/// The draw with a program.
+/// Returns the draw with a combiner program in place of its own.
 fn with(draw: &Draw, text: &str) -> Draw {
     Draw { combiners: program(text), ..draw.clone() }
 }
@@ -11,7 +12,7 @@ const OPAQUE: &str = "out.a = unsigned_invert(zero);";
 const INVERTED_SPARE0: &str = "color_sum = unsigned_invert(spare0) + col1;";
 const INVERTED_SECONDARY: &str = "color_sum = spare0 + unsigned_invert(col1);";
 
-/// Six rectangles in two rows, of two triangles each.
+/// Returns six rectangles in two rows, each of two triangles.
 fn six() -> Vec<Draw> {
     let (left, right, top, bottom, gap) = (-2.75_f32, 2.75_f32, 1.85_f32, -1.75_f32, 0.1_f32);
     let width = ((right - left) - 3.0 * gap) / 4.0;
@@ -35,7 +36,7 @@ fn six() -> Vec<Draw> {
     draws
 }
 
-/// The frame buffer over which a grey chequered field is drawn.
+/// Fills the frame buffer with a grey chequered background.
 fn chequered(canvas: &mut Canvas) {
     let colors = [abgr(0xff33_3333), abgr(0xff44_4444)];
     let texture = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, [256, 256], checker(colors, 8)));
@@ -43,13 +44,13 @@ fn chequered(canvas: &mut Canvas) {
     canvas.draw(without_alpha(draw, FinalRegister::Texture0));
 }
 
-/// A rectangle in four colours, one a corner.
+/// Returns a rectangle that interpolates four colours, one for each corner.
 fn gradient(edges: [f32; 4], colors: [[f32; 4]; 4]) -> Draw {
     let corners = corners(unprojected(edges)).into_iter().zip(colors);
     draw(Topology::Quads, corners.map(|(corner, color)| vertex(corner, VertexColor::Floats(color))).collect())
 }
 
-/// The mux, by bits of SPARE0's alpha.
+/// Draws the mux, which selects by the most or least significant bit of SPARE0's alpha.
 fn mux(canvas: &mut Canvas) {
     let mut combiners = program(
         "{ rgb { spare0 = unsigned_invert(zero); } alpha { spare0 = unsigned(const0.a); } }
@@ -64,12 +65,12 @@ fn mux(canvas: &mut Canvas) {
     }
 }
 
-/// Both products of a stage are computed before either is written.
+/// Draws the proof that both products of a stage are computed before either is written.
 fn independence(canvas: &mut Canvas) {
     let places = six();
     let colors = "{ const0 = bytes(0, 255, 0, 255); rgb { spare0 = unsigned(const0); } }
         { const0 = bytes(255, 0, 0, 255); rgb { spare0 = unsigned(const0); spare1 = unsigned(spare0); } }";
-    // The same of blue that goes to alpha.
+    // The same for blue that is written to alpha.
     let blue = "{ const0 = bytes(0, 0, 63, 0); rgb { spare0 = unsigned(const0); } }
         { const0 = bytes(0, 0, 191, 0);
           rgb { spare0 = unsigned(const0), blue_to_alpha; spare1 = unsigned(spare0), blue_to_alpha; } }
@@ -79,7 +80,7 @@ fn independence(canvas: &mut Canvas) {
     }
 }
 
-/// The alpha portion reads what was there before the RGB portion of its stage.
+/// Draws the proof that the alpha portion reads registers as they were before the RGB portion of its stage wrote.
 fn color_and_alpha(canvas: &mut Canvas) {
     let place = |[x, y]: [f32; 2]| {
         let diffuse = VertexColor::Floats([0.1, 1.0, 0.1, 1.0]);
@@ -92,7 +93,7 @@ fn color_and_alpha(canvas: &mut Canvas) {
     canvas.draw(with(&whole, &format!("{stages} out.rgb = spare0; out.a = spare1.a;")));
 }
 
-/// The final combiner's sum, limited or not, with either part inverted.
+/// Draws the final combiner's colour sum: clamped or not, and with either term inverted.
 fn flags(canvas: &mut Canvas) {
     let both = "const0 = bytes(127, 127, 127, 127);
         { rgb { col1 = unsigned_invert(zero); spare0 = unsigned_invert(zero); } } out.rgb = const0 * color_sum;";
@@ -113,7 +114,7 @@ fn flags(canvas: &mut Canvas) {
     }
 }
 
-/// Colours and alphas of units that have no texture.
+/// Draws the colours and alphas of texture registers whose units have no texture.
 fn unbound(canvas: &mut Canvas) {
     let colors = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.5, 0.5, 0.5, 1.0]];
     for (n, corner) in (0..8).zip(places([252.0, 96.0], [72.0; 2], 2)) {
@@ -123,7 +124,7 @@ fn unbound(canvas: &mut Canvas) {
     }
 }
 
-/// A white square without alpha, its left half opaque and its right half with the alpha of SPARE0.
+/// Draws a white square. Its left half is opaque; its right half has the alpha of SPARE0.
 fn halves(canvas: &mut Canvas, stages: &str, [left, top]: [f32; 2]) {
     for (left, alpha) in [(left, OPAQUE), (left + 32.0, "out.a = spare0.a;")] {
         let half = gradient(sized([left, top], [32.0, 64.0]), [[1.0, 1.0, 1.0, 0.0]; 4]);
@@ -131,7 +132,7 @@ fn halves(canvas: &mut Canvas, stages: &str, [left, top]: [f32; 2]) {
     }
 }
 
-/// Blue of either product as alpha.
+/// Draws squares whose alpha is the blue of the AB or of the CD product.
 fn alpha_from_blue(canvas: &mut Canvas) {
     chequered(canvas);
     for (top, before) in [(192.0, ""), (264.0, "discard = zero * zero;")] {
@@ -143,7 +144,7 @@ fn alpha_from_blue(canvas: &mut Canvas) {
     }
 }
 
-/// Scale and bias of the outputs.
+/// Draws every combination of output scale and bias.
 fn operations(canvas: &mut Canvas) {
     chequered(canvas);
     for (operation, corner) in [
@@ -160,7 +161,7 @@ fn operations(canvas: &mut Canvas) {
     }
 }
 
-/// E F, and the sum with either part inverted.
+/// Draws the product E F, and the colour sum plain and with either term inverted.
 fn special_inputs(canvas: &mut Canvas) {
     chequered(canvas);
     let product = "const0 = bytes(255, 191, 127, 255); const1 = bytes(127, 127, 127, 127);
@@ -178,7 +179,7 @@ fn special_inputs(canvas: &mut Canvas) {
     }
 }
 
-/// Combiner.
+/// Adds the frames of Combiner.
 pub(super) fn frames(frames: &mut Frames) {
     frames.paint("Mux", 0xff30_3030, mux);
     frames.paint("Independence", 0xff30_3030, independence);

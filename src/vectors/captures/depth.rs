@@ -1,8 +1,9 @@
-//! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, three large ones behind them, in four formats, over 49 cleared depths.
+//! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, and three large ones behind them, in four formats and over 49 clear
+//! values.
 
 use super::*;
 
-/// Formats, the words of 16 or 24 in the names of frames, and the deepest word that the programs use.
+/// The depth formats, their part in the names of frames, and the deepest word that the programs use.
 const FORMATS: [(DepthFormat, &str, u32); 4] = [
     (DepthFormat::Z16, "z16", 0xffff),
     (DepthFormat::Z24S8, "z24", 0xff_ffff),
@@ -10,13 +11,13 @@ const FORMATS: [(DepthFormat, &str, u32); 4] = [
     (DepthFormat::Z24S8F, "z24", 0xfe_ffff),
 ];
 
-/// The programs leave the range as it was set for floats of 24 bits, to 1e30; the deepest words lie beyond.
+/// The depth range of 24-bit floats. The programs leave it at 1e30, and the deepest words lie beyond that.
 const FLOAT_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: 1e30, clamps: false, drops_triangles: false };
 
-/// How many steps there are between the cleared depths.
+/// Number of steps between the clear values.
 const STEPS: u32 = 48;
 
-/// The number of which a word is the word, as the programs hand it to the chip.
+/// Returns the depth that a word of the format encodes, as the programs pass it to the chip.
 fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
     match format {
         DepthFormat::Z16 | DepthFormat::Z24S8 => word as f32,
@@ -26,7 +27,7 @@ fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
     }
 }
 
-/// Two triangles over a rectangle, from its upper left corner on: depths and colours of the corners, clockwise.
+/// Adds two triangles that cover a rectangle. Depths and colours belong to its corners, clockwise from the upper left.
 fn quad(vertices: &mut Vec<Vertex>, edges: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]) {
     for n in [0, 1, 2, 0, 2, 3] {
         let ([x, y], [r, g, b]) = (corners(edges)[n], colors[n]);
@@ -70,7 +71,7 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
     all
 }
 
-/// Depth_buffer.
+/// Adds the frames of Depth_buffer.
 pub(super) fn formats(frames: &mut Frames) {
     for (format, bits, deepest) in FORMATS {
         let range = (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE);
@@ -81,7 +82,7 @@ pub(super) fn formats(frames: &mut Frames) {
             let mut target = frame_buffer(0xff00_0000);
             target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
             let scene = scene(vec![target], vec![], vec![draw.clone()]);
-            // Compressed buffers hold the same.
+            // Compression of the depth buffer changes no pixel.
             for compressed in ["n", "y"] {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");

@@ -1,13 +1,13 @@
-//! DEP-4 to DEP-6: depths beyond a range that are dropped or limited, triangles that are dropped whole.
+//! DEP-4 to DEP-6: depths beyond the depth range that are culled or clamped, and triangles that are culled whole.
 
 use super::*;
 
-/// The deepest depth of 24 bits.
+/// The deepest value of a 24-bit depth buffer.
 const DEEPEST: f32 = 16_777_215.0;
 
 const WHOLE_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: DEEPEST, clamps: false, drops_triangles: false };
 
-/// A quad of the world with a texture of 256 texels.
+/// Returns a quad of the world with a texture of 256 x 256 texels.
 fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
     let matrix = space::product(space::eye(), space::window_to(f64::from(DEEPEST)));
     let vertex = |n: usize| {
@@ -20,7 +20,7 @@ fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
     Draw { depth_test: Some(depth_test), ..draw }
 }
 
-/// Two upright quads and a floor through both, whose depths have the range.
+/// Draws two upright quads and a floor through both; only the floor's depths are limited to `range`.
 fn floor(canvas: &mut Canvas, w_buffer: bool, range: DepthRange, bias: f32) {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
@@ -36,7 +36,7 @@ fn floor(canvas: &mut Canvas, w_buffer: bool, range: DepthRange, bias: f32) {
     canvas.draw(textured(corners, DepthTest { offset, ..test(range) }));
 }
 
-/// Depth_Clamp: the frames whose vertices lie before the eye.
+/// Adds those frames of Depth_Clamp whose vertices lie in front of the eye.
 pub(super) fn clamped(frames: &mut Frames) {
     let buffers = [(false, [14_988_020.0, 15_869_663.0], -500_000.0), (true, [9.01, 16.49], -5.0)];
     for (w_buffer, limits, offset) in buffers {
@@ -45,7 +45,7 @@ pub(super) fn clamped(frames: &mut Frames) {
             let range = DepthRange { lowest, highest, clamps, drops_triangles: false };
             let bias = if biased { offset } else { 0.0 };
             let [w, clamps, biased, whole] = [w_buffer, clamps, biased, whole].map(u8::from);
-            // A vertex program puts the vertices where the fixed function does.
+            // The programs' vertex program yields the same positions as the fixed function.
             for program in [0, 1] {
                 let name = format!("depth_clamp_W{w}_C{clamps}_ZB{biased}_FR{whole}_VSH{program}");
                 frames.paint(name, 0xfe25_1135, move |canvas| floor(canvas, w_buffer, range, bias));
@@ -54,7 +54,7 @@ pub(super) fn clamped(frames: &mut Frames) {
     }
 }
 
-/// What z and w of a block's quads are.
+/// How z and w vary over the quads of a block.
 #[derive(Clone, Copy)]
 enum Block {
     GrowingZ,
@@ -65,7 +65,7 @@ enum Block {
     WOfTen,
 }
 
-/// 40 quads of 16 pixels. Their depths, or w, grow from quad to quad.
+/// Adds a block of 40 quads of 16 x 16 pixels, whose depths or w grow from quad to quad.
 fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
     let step = 150.0_f32 / 41.0;
     let (mut z, mut w) = (0.0_f32, 0.0_f32);
@@ -103,18 +103,18 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
             };
             for (side, dx, dy) in [(0, 0.0, 0.0), (1, 16.0, 0.0), (1, 16.0, 16.0), (0, 0.0, 16.0)] {
                 let [r, g, b] = colors[side];
-                // The chip takes a w of 0 as a small one.
+                // The chip replaces a w of 0 by a small number.
                 let position = [x + dx, y + dy, zs[side], ws[side].max(f32::EPSILON * 8.0)];
                 let diffuse = VertexColor::Floats([r, g, b, 1.0]);
                 vertices.push(Vertex { position, diffuse, ..Vertex::default() });
             }
-            // Where a block has values of its own, they go on from there.
+            // A block that overrides z or w continues from its own values.
             (z, w) = (zs[0] + step, ws[0] + step);
         }
     }
 }
 
-/// ZMinMaxControl: the frames whose vertices go straight to the window.
+/// Adds those frames of ZMinMaxControl whose vertices are given in window coordinates.
 pub(super) fn controls(frames: &mut Frames) {
     let mut vertices = Vec::new();
     let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
@@ -134,7 +134,7 @@ pub(super) fn controls(frames: &mut Frames) {
                 let depth_test = in_steps(CompareFunction::Always, false, Some(range));
                 let depth_test = Some(DepthTest { w_buffer, ..depth_test });
                 let drawn = one(0xff22_2228, None, Draw { depth_test, ..quads.clone() });
-                // A bit about w changes nothing here.
+                // The control bit CULL_IGNORE_W changes nothing here.
                 for suffix in ["", "_IgnW"] {
                     frames.push(format!("Ctrl_{buffer}{prefix}{mode}{suffix}"), drawn.clone());
                 }

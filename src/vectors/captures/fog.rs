@@ -1,12 +1,12 @@
-//! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
+//! FOG-1 to FOG-5: all fog modes, over coordinates of every source and magnitude, infinities and NaN.
 
 use super::*;
 use ninebit::vertex::fog::passed;
 
-/// Names of [`FogMode::ALL`] in those of frames.
+/// Names of [`FogMode::ALL`] as they appear in the names of frames.
 const MODES: &str = "linear exp exp2 linear_abs exp_abs exp2_abs";
 
-/// The programs' parameters: fog that is whole at 200, or of a density of 0.025.
+/// Returns the parameters p0 and p1 of the programs: full fog at 200, or a density of 0.025.
 fn parameters(mode: FogMode, start: f32) -> [f32; 2] {
     let (end, density) = (200.0_f32, 0.025_f32);
     match mode {
@@ -23,12 +23,12 @@ fn function(mode: FogMode, [p0, p1]: [f32; 2]) -> FogFunction {
     FogFunction { mode, p0, p1, p2: 0.0, per_vertex: false }
 }
 
-/// A mixture of two registers by the fog's factor.
+/// Returns combiners that interpolate between two registers by the fog factor.
 fn mixed(full: &str, none: &str) -> Combiners {
     program(&format!("out.rgb = lerp(fog.a, {full}, {none}); out.a = col0.a;"))
 }
 
-/// A draw in fog; each vertex with its fog coordinate.
+/// Returns a draw in fog, given each vertex with its fog coordinate.
 fn foggy(
     topology: Topology,
     vertices: impl Iterator<Item = (Vertex, f32)>,
@@ -42,7 +42,7 @@ fn foggy(
     Draw { fog, combiners, ..draw(topology, vertices.map(vertex).collect()) }
 }
 
-/// Four triangles, from near to far.
+/// Four triangles of the world, from near to far.
 const TRIANGLES: [[[f32; 3]; 3]; 4] = [
     [[-1.5, -1.5, 0.0], [-2.5, 0.6, 0.0], [-0.5, 0.6, 0.0]],
     [[0.0, -1.5, 5.0], [-1.0, 0.75, 10.0], [2.0, 0.75, 20.0]],
@@ -50,18 +50,18 @@ const TRIANGLES: [[[f32; 3]; 3]; 4] = [
     [[20.0, -10.0, 50.0], [12.0, 10.0, 125.0], [80.0, 10.0, 200.0]],
 ];
 
-/// The farthest depth that is drawn, in the steps of [`space::window`].
+/// The depth range, in the steps of [`space::window`]; what lies beyond is culled.
 const FARTHEST: DepthRange = DepthRange { lowest: 0.0, highest: 65535.0, clamps: false, drops_triangles: false };
 
-/// The triangles in white, through the fixed function or a vertex program, with a coordinate made of each one's distance. The tip of the last
-/// lies beyond the farthest depth.
+/// Draws the triangles in white, through the fixed function or a vertex program. `coordinate` maps each vertex's w to its fog coordinate. The tip of
+/// the last triangle lies beyond the farthest depth.
 fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFunction, color: [u8; 3]) -> Draw {
     let place = if is_program { space::programmed } else { space::fixed_function };
     let vertices = TRIANGLES.as_flattened().iter().map(|[x, y, z]| {
         let position = place([*x, *y, *z, 1.0]);
         (Vertex { position, ..Vertex::default() }, coordinate(position[3]))
     });
-    // The programs' own depths end farther away.
+    // Through a vertex program, the programs set a farther limit.
     let depth_test = (!is_program).then(|| in_steps(CompareFunction::Always, false, Some(FARTHEST)));
     Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
 }
@@ -74,23 +74,23 @@ fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) 
     }
 }
 
-/// Fog: the depth before the eye.
+/// Adds the frames of Fog: the coordinate is the depth in eye space.
 pub(super) fn planar(frames: &mut Frames) {
     all_modes(frames, false, |w| w);
 }
 
-/// Fog_vsh: a vertex program passes w.
+/// Adds the frames of Fog_vsh: a vertex program passes w as the coordinate.
 pub(super) fn of_program(frames: &mut Frames) {
     all_modes(frames, true, |w| w);
 }
 
-/// Fog_inf_coord: a vertex program passes the reciprocal of 0.
+/// Adds the frames of Fog_inf_coord: a vertex program passes the reciprocal of 0.
 pub(super) fn infinite(frames: &mut Frames) {
     all_modes(frames, true, |_| f32::INFINITY);
 }
 
-/// Components that a vertex program writes, in its order, one instruction after the other, and the four values. An instruction that writes
-/// several counts as one: the first of them is the coordinate.
+/// Components of the fog coordinate that a vertex program writes, and the four values. `_` separates its instructions. If an instruction writes
+/// several components, the first of them is the coordinate.
 const COMPONENTS: [(&str, &[[f32; 4]]); 18] = [
     ("W", &[[0.0, 0.25, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [1.0, 0.0, 0.0, 0.5], [0.3, 0.3, 0.3, 1.0]]),
     ("W_X", &[[0.25, 0.0, 0.0, 0.5], [0.65, 0.0, 0.0, 0.0]]),
@@ -112,14 +112,14 @@ const COMPONENTS: [(&str, &[[f32; 4]]); 18] = [
     ("ZW", &[[0.0, 0.0, 0.75, 1.0], [0.0, 0.0, 0.33, 0.0]]),
 ];
 
-/// The value that the chip takes: of the last instruction the first component.
+/// Returns the coordinate that the chip takes: the first component that the last instruction writes.
 fn taken(written: &str, values: [f32; 4]) -> f32 {
     let last = written.rsplit('_').next().and_then(|last| last.chars().next());
     let component = last.and_then(|letter| "XYZW".find(letter)).unwrap_or_default();
     values[component]
 }
 
-/// Fog_coord_vec4.
+/// Adds the frames of Fog_coord_vec4.
 pub(super) fn of_components(frames: &mut Frames) {
     let function = function(FogMode::Linear, [1.0, 1.0]);
     for (written, values) in COMPONENTS {
@@ -129,14 +129,14 @@ pub(super) fn of_components(frames: &mut Frames) {
             frames.push(name, one(0xff30_3030, None, Draw { combiners: mixed("fog", "col0"), ..draw }));
         }
     }
-    // Nothing is written: what the draws before have left.
+    // The program writes no coordinate, so the one that earlier draws have left applies.
     let draw = triangles(true, |_| 0.25, function, [0, 255, 0]);
     let text = "const0 = bytes(127, 0, 191, 255); out.rgb = lerp(fog.a, const0, col0); out.a = col0.a;";
     let combiners = program(text);
     frames.push("CoordNotSet", one(0xff34_1010, None, Draw { combiners, ..draw }));
 }
 
-/// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
+/// Returns the vertices of a rectangle, clockwise from the upper left. Its left and right edges may have a different w.
 fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is_program: bool) -> [Vertex; 4] {
     let edges = if is_program { space::programmed_edges(edges) } else { unprojected(edges) };
     std::array::from_fn(|n| {
@@ -145,7 +145,7 @@ fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is
     })
 }
 
-/// Places of panels from the upper left corner on, row by row.
+/// Returns the edges of square panels row by row, as far as they fit the screen. `corner` is the upper left corner of the first.
 fn grid(corner: [f32; 2], side: f32, gaps: [f32; 2]) -> impl Iterator<Item = [f32; 4]> {
     let (right, bottom) = (640.0 - (corner[0] + side), 480.0 - side);
     let [mut left, mut top] = corner;
@@ -159,14 +159,14 @@ fn grid(corner: [f32; 2], side: f32, gaps: [f32; 2]) -> impl Iterator<Item = [f3
     })
 }
 
-/// Numbers that grow by a step, each rounded to single precision.
+/// Returns numbers that grow by a step; each sum is rounded to single precision.
 fn steps(first: f32, step: f32) -> impl Iterator<Item = f32> {
     std::iter::successors(Some(first), move |value| Some(value + step))
 }
 
 const RED: [u8; 3] = [255, 0, 0];
 
-/// Fog_param: 320 coordinates through eight multipliers, and 340 biases.
+/// Adds the frames of Fog_param: 320 coordinates through eight multipliers, and 340 biases.
 pub(super) fn parameters_varied(frames: &mut Frames) {
     for (name, mode) in named(MODES) {
         let name = name.replace("linear", "lin");
@@ -195,13 +195,13 @@ pub(super) fn parameters_varied(frames: &mut Frames) {
     }
 }
 
-/// Where Fog_gen takes its coordinates from.
+/// Sources of the fog coordinate, as the names of frames have them.
 const SOURCES: [&str; 5] = ["spec_alpha", "radial", "planar", "abs_planar", "fog_x"];
 
-/// The alphas of a panel's secondary colours.
+/// The alphas of the secondary colours at a panel's corners.
 const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
 
-/// The distance of a point from the eye.
+/// Returns the distance of a panel's corner from the eye.
 fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
     let [x, y] = corners(edges)[corner];
     let scale = space::window()[0][0];
@@ -209,13 +209,14 @@ fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
     (x * x + y * y + f64::from(w) * f64::from(w)).sqrt() as f32
 }
 
-/// Fog_gen: panels farther and farther away, with coordinates of five sources; with a vertex program all but one take what it passes.
+/// Adds the frames of Fog_gen: panels farther and farther away, with coordinates of five sources. With a vertex program, every source yields the
+/// coordinate that the program passes.
 pub(super) fn generated(frames: &mut Frames) {
     for (name, mode) in named(MODES) {
         for source in SOURCES {
             for is_program in [false, true] {
                 if is_program && source == "radial" {
-                    // What the chip makes of it differs from run to run.
+                    // The chip's result differs from run to run.
                     continue;
                 }
                 let path = if is_program { "VS" } else { "FF" };
@@ -237,7 +238,7 @@ pub(super) fn generated(frames: &mut Frames) {
                                 "spec_alpha" => SECONDARY_ALPHAS[corner],
                                 "radial" => distance(edges, corner, w),
                                 "fog_x" => fog_x,
-                                // The plane is twice the depth.
+                                // The programs' plane yields twice the depth.
                                 _ => 2.0 * w,
                             };
                             (vertex, d)
@@ -250,14 +251,14 @@ pub(super) fn generated(frames: &mut Frames) {
     }
 }
 
-/// Coordinates of every kind, as words.
+/// Exceptional and ordinary coordinates, as binary32 words.
 const EXCEPTIONAL: [[u32; 7]; 3] = [
     [0, 0x3f80_0000, 0x4120_0000, 0x42c8_0000, 0x447a_0000, 0xbf9e_b852, 0xc12c_0000],
     [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0xffc0_0000, 0x7f80_0001, 0xff80_0001, 0x7f7f_ffff],
     [0xff7f_ffff, 0x0080_0000, 0x8080_0000, 0x007f_ffff, 0x807f_ffff, 0x0000_0001, 0x8000_0001],
 ];
 
-/// The reciprocal as the vertex unit makes it: what is not normal is 0.
+/// Returns the reciprocal as the vertex unit computes it, which flushes subnormal numbers to 0.
 fn reciprocal(value: f32) -> f32 {
     let flushed = |value: f32| if value.is_subnormal() { 0.0_f32.copysign(value) } else { value };
     flushed(1.0 / flushed(value))
@@ -268,7 +269,8 @@ fn exceptional_panel(edges: [f32; 4], d: f32) -> impl Iterator<Item = (Vertex, f
     panel(edges, [7.0, 9.0], colors, true).into_iter().map(move |vertex| (vertex, d))
 }
 
-/// Fog_exceptional_value: a vertex program passes coordinates of every kind, or their reciprocals; one of no number under 24 pairs of parameters.
+/// Adds the frames of Fog_exceptional_value: a vertex program passes exceptional coordinates or their reciprocals; infinity and NaN are also drawn
+/// under 24 pairs of parameters.
 pub(super) fn exceptional(frames: &mut Frames) {
     let places = || grid([48.0, 70.0], 64.0, [24.0, 38.0]);
     for (name, mode) in named(MODES) {

@@ -1,17 +1,17 @@
-//! Images that the programs make for their textures.
+//! Images that the programs generate for their textures.
 
 use ninebit::state::{Texels, Texture, TextureFormat, TextureImage, TextureKind};
 use ninebit_files::texels;
 
-/// R, G, B, A.
+/// A colour as R, G, B, A.
 pub(super) type Color = [u8; 4];
 
-/// What makes the texel of a column and row.
+/// A function from column and row to the texel's colour.
 pub(super) trait Image: Fn(u32, u32) -> Color {}
 
 impl<F: Fn(u32, u32) -> Color> Image for F {}
 
-/// A texture of words: faces, and in them levels.
+/// Returns a texture of the given words: faces one after another, and the levels within each.
 pub(super) fn of_words(
     kind: TextureKind,
     format: TextureFormat,
@@ -23,55 +23,55 @@ pub(super) fn of_words(
     Texture { name: String::from("image"), kind, format, image: TextureImage::Texels(texels) }
 }
 
-/// Columns and rows of all texels, row by row from the top.
+/// Returns the column and row of every texel, row by row from the top.
 pub(super) fn each_texel([width, height]: [u32; 2]) -> impl Iterator<Item = (u32, u32)> {
     (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
-/// The words of an image, row by row from the top.
+/// Returns the texel words of an image, row by row from the top.
 pub(super) fn words(format: TextureFormat, size: [u32; 2], image: impl Image) -> Vec<u32> {
     each_texel(size).map(|(x, y)| texels::word(image(x, y), format)).collect()
 }
 
-/// An image as a texture whose size counts as 1.
+/// Returns an image as a 2D texture with normalised coordinates.
 pub(super) fn texture(format: TextureFormat, size: [u32; 2], image: impl Image) -> Texture {
     of_words(TextureKind::TwoDimensional, format, size, 1, words(format, size, image))
 }
 
-/// The same image, read by coordinates in texels.
+/// Returns the texture with coordinates in texels.
 pub(super) fn in_texels(texture: Texture) -> Texture {
     Texture { kind: TextureKind::Rectangle, ..texture }
 }
 
-/// The same words in another format of as many bytes.
+/// Returns the texture with its words read in another format of as many bytes.
 pub(super) fn read_as(texture: Texture, format: TextureFormat) -> Texture {
     let TextureImage::Texels(image) = texture.image else { return Texture { format, ..texture } };
     let words = image.words.iter().map(|word| word & texels::used_bits(format)).collect();
     Texture { format, image: TextureImage::Texels(Texels { words, ..image }), ..texture }
 }
 
-/// A cube map of six images.
+/// Returns a cube map of six images.
 pub(super) fn cube<I: Image>(format: TextureFormat, side: u32, faces: [I; 6]) -> Texture {
     let words = faces.into_iter().flat_map(|face| words(format, [side, side], face)).collect();
     of_words(TextureKind::Cube, format, [side, side], 1, words)
 }
 
-/// One colour.
+/// Returns an image of one colour.
 pub(super) fn solid(color: Color) -> impl Image {
     move |_, _| color
 }
 
-/// A chequered field, the first colour in its upper left corner.
+/// Returns a chequered image with fields of `size` texels; the upper left field has the first colour.
 pub(super) fn checker(colors: [Color; 2], size: u32) -> impl Image {
     move |x, y| colors[((x / size + y / size) % 2) as usize]
 }
 
-/// 0 to below 255 over so many steps.
+/// Maps 0..`of` to 0..255, truncated.
 fn ramp(at: u32, of: u32) -> u8 {
     (f32::from(at as u16) * 255.0 / f32::from(of as u16)) as u8
 }
 
-/// Red grows downwards, where blue falls, and green to the right; alpha is the sum of red and green, its high bits cut off.
+/// Returns an image whose red grows and blue falls downwards, and whose green grows to the right. Alpha is the sum of red and green modulo 256.
 pub(super) fn gradient([width, height]: [u32; 2]) -> impl Image {
     move |x, y| {
         let (down, right) = (ramp(y, height), ramp(x, width));
@@ -79,7 +79,8 @@ pub(super) fn gradient([width, height]: [u32; 2]) -> impl Image {
     }
 }
 
-/// Red grows to the right, green downwards, blue is three quarters; all times a brightness of the distance from the middle, 0 to 1.
+/// Returns an image whose red grows to the right and green downwards, with blue at three quarters. All are multiplied by a brightness, a function of
+/// the distance from the centre (0 to 1).
 pub(super) fn radial(side: u32, brightness: impl Fn(f32) -> f32) -> impl Fn(u32, u32) -> [u8; 3] {
     let middle = f32::from((side - 1) as u16) / 2.0;
     let farthest = (middle * middle + middle * middle).sqrt();
@@ -92,12 +93,12 @@ pub(super) fn radial(side: u32, brightness: impl Fn(f32) -> f32) -> impl Fn(u32,
     }
 }
 
-/// The luminance of a colour, cut.
+/// Returns the luminance of a colour, truncated.
 pub(super) fn luminance([r, g, b, _]: Color) -> u8 {
     (0.299 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) as u8
 }
 
-/// The luminance of an image, with its alpha.
+/// Returns the image in grey, with its alpha.
 pub(super) fn grey(image: impl Image) -> impl Image {
     move |x, y| {
         let color = image(x, y);
@@ -106,7 +107,7 @@ pub(super) fn grey(image: impl Image) -> impl Image {
     }
 }
 
-/// 255 in the middle, falling with the square of the distance to 0 in the corners, cut.
+/// Returns a function that is 255 in the middle and falls with the square of the distance to 0 in the corners, truncated.
 pub(super) fn bulge([width, height]: [u32; 2]) -> impl Fn(u32, u32) -> u8 {
     let [right, down] = [width, height].map(|side| f32::from((side / 2) as u16));
     let farthest = right * right + down * down;
@@ -116,7 +117,7 @@ pub(super) fn bulge([width, height]: [u32; 2]) -> impl Fn(u32, u32) -> u8 {
     }
 }
 
-/// Four gradients without alpha, and the bulge as the alpha of all.
+/// Returns an image of four gradients; the alpha of all is the bulge.
 pub(super) fn four_gradients([width, height]: [u32; 2]) -> impl Image {
     let (quarter, alpha) = ([width / 2, height / 2], bulge([width, height]));
     let gradient = gradient(quarter);

@@ -1,8 +1,8 @@
-//! Captured frames of a real NV2A, drawn again: what the programs drew stands here, what came out as a digest.
+//! Captured frames of a real NV2A, drawn again by the model. This module holds what the programs drew; a table holds digests of what the chip showed.
 //!
-//! The frames are those of [nxdk_pgraph_tests_golden_results](https://github.com/abaire/nxdk_pgraph_tests_golden_results) (CC0), drawn by
-//! the programs of [nxdk_pgraph_tests](https://github.com/abaire/nxdk_pgraph_tests) (MIT). `vectors/captures/frames.tsv` has a row for each: where
-//! the programs printed their text, which is left out, and the SHA-256 of the captured pixels outside.
+//! The frames are those of [nxdk_pgraph_tests_golden_results](https://github.com/abaire/nxdk_pgraph_tests_golden_results) (CC0), drawn by the
+//! programs of [nxdk_pgraph_tests](https://github.com/abaire/nxdk_pgraph_tests) (MIT). `vectors/captures/frames.tsv` has a row for each frame: the
+//! areas where the programs printed text, which are not compared, and the SHA-256 of the captured pixels outside them.
 #![allow(clippy::float_arithmetic, reason = "positions that programs gave the chip")]
 
 mod assets;
@@ -41,66 +41,66 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// Columns and rows of every frame.
+/// Width and height of every frame in pixels.
 pub const SIZE: (u32, u32) = (640, 480);
 
-/// The captures' state.
+/// The repository and commit that the captures come from.
 pub const SOURCE: &str = "abaire/nxdk_pgraph_tests_golden_results (CC0-1.0), commit 902343e2";
 
 const TABLE: &str = include_str!("../../../vectors/captures/frames.tsv");
 
-/// What a capture shows of the frame buffer.
+/// The part of the frame buffer that a capture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     Colors,
-    /// The words of depth and stencil, as if they were A8R8G8B8; those of 16 bits as if they were R5G6B5.
+    /// The words of depth and stencil, shown as A8R8G8B8; 16-bit words are shown as R5G6B5.
     DepthStencil,
 }
 
-/// What a program drew: a scene whose first target is the frame buffer.
+/// The drawing of one frame: a scene whose first target is the frame buffer.
 #[derive(Clone, Debug)]
 struct Drawn {
     scene: Scene,
-    /// Drawn before: the memory of its first target is the first texture of the scene, of as many rows and columns as the frame buffer, A8R8G8B8.
+    /// A scene that is drawn first. The memory of its first target becomes the first texture of `scene`, A8R8G8B8 and as large as the frame buffer.
     before: Option<Scene>,
-    /// Draws on the same memory in another format, whose rows begin where they did.
+    /// Draws on the frame buffer's memory in a narrower format. Each row begins at the same address as before.
     view: Option<Scene>,
     shown: Shown,
 }
 
 impl Drawn {
-    /// The colours of a scene's first target.
+    /// Returns a frame that shows the colours of a scene's first target.
     fn colors(scene: Scene) -> Drawn {
         Drawn { scene, before: None, view: None, shown: Shown::Colors }
     }
 }
 
-/// The variants of an enumeration with their names in those of frames, given in the same order.
+/// Returns the variants of an enumeration with their names in those of frames. `names` has to be in the order of the variants.
 fn named<T: Named>(names: &'static str) -> impl Iterator<Item = (&'static str, T)> {
     names.split(' ').zip(T::ALL.iter().copied())
 }
 
-/// A frame that was captured.
+/// A captured frame.
 #[derive(Clone)]
 pub struct Frame {
-    /// The suite of the test programs.
+    /// The suite of the test programs that it belongs to.
     pub suite: &'static str,
-    /// The frame's name: that of the picture, without its ending.
+    /// The frame's name: the picture's file name without its extension.
     pub name: String,
     make: Make,
-    /// Where the programs printed text: pixels there are not compared.
+    /// Areas where the programs printed text. Pixels there are not compared.
     pub text: Vec<Rectangle>,
     digest: &'static str,
-    /// What is known to be wrong with it.
+    /// The known difference from the capture; `None` if the frame is exact.
     pub open: Option<Open>,
 }
 
-/// A frame that is not drawn exactly, and the rule of which something is not known.
+/// A known difference of a frame, and the rule that is not fully understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Open {
     /// The rule's id.
     pub rule: &'static str,
-    /// Pixels that differ.
+    /// Number of pixels that differ.
     pub pixels: u64,
 }
 
@@ -110,41 +110,41 @@ impl fmt::Debug for Frame {
     }
 }
 
-/// Frames of the table that nothing here draws, or the other way round: an error of this crate.
+/// An error of this crate: rows of the table that no code draws, or frames that have no row.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} frames and rows do not meet: {}", .0.len(), .0[..self.0.len().min(3)].join("; "))]
 pub struct Unmatched(pub Vec<String>);
 
-/// All suites, in the order of the table.
+/// Returns the names of all suites, in the order of the table.
 pub fn suites() -> impl Iterator<Item = &'static str> {
     SUITES.iter().map(|(name, _)| *name)
 }
 
-/// What makes a frame's scenes, when they are wanted: those of all frames together take much memory.
+/// Builds a frame's scenes on demand: all frames together would take much memory.
 type Make = Arc<dyn Fn() -> Drawn + Send + Sync>;
 
-/// Frames by name.
+/// The frames of a suite by name.
 #[derive(Default)]
 struct Frames(Vec<(String, Make)>);
 
 impl Frames {
-    /// A frame that is there.
+    /// Adds a frame whose scene is built already.
     fn push(&mut self, name: impl Into<String>, drawn: Drawn) {
         self.make(name, move || drawn.clone());
     }
 
-    /// The colours of a scene, and the words of depth and stencil.
+    /// Adds two frames of a scene: its colours, and its words of depth and stencil.
     fn both(&mut self, name: &str, scene: Scene) {
         self.push(format!("{name}_ZB"), Drawn { shown: Shown::DepthStencil, ..Drawn::colors(scene.clone()) });
         self.push(name, Drawn::colors(scene));
     }
 
-    /// A frame that is made when it is wanted.
+    /// Adds a frame whose scene is built on demand.
     fn make(&mut self, name: impl Into<String>, make: impl Fn() -> Drawn + Send + Sync + 'static) {
         self.0.push((name.into(), Arc::new(make)));
     }
 
-    /// A frame that is painted, when it is wanted, on a frame buffer of this colour.
+    /// Adds a frame that is drawn on demand, on a frame buffer cleared to `clear`.
     fn paint(&mut self, name: impl Into<String>, clear: u32, paint: impl Fn(&mut Canvas) + Send + Sync + 'static) {
         self.make(name, move || {
             let mut canvas = Canvas::new(clear);
@@ -154,7 +154,7 @@ impl Frames {
     }
 }
 
-/// A suite by name, and what draws its frames.
+/// The name of a suite, and the function that adds its frames.
 type Suite = (&'static str, fn(&mut Frames));
 
 const SUITES: &[Suite] = &[
@@ -208,10 +208,10 @@ const SUITES: &[Suite] = &[
     ("ZMinMaxControl", depth_range::controls),
 ];
 
-/// The frames of some suites, in the order of the table; of all, where none is named.
+/// Returns the frames of the named suites in the order of the table, or of all suites if none is named.
 ///
 /// # Errors
-/// A frame without its row, or a row without its frame.
+/// Returns an error if a frame has no row in the table, or a row has no frame.
 pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut all = Vec::new();
     let mut unmatched = Vec::new();
@@ -233,7 +233,7 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
 }
 
-/// About so many of some frames: of each suite as large a part, and at least one, evenly spread over it.
+/// Returns about `count` of the frames: the same share of each suite, at least one, and evenly spread over it.
 pub fn sample(frames: Vec<Frame>, count: usize) -> Vec<Frame> {
     let total = frames.len().max(1);
     let mut of_suites = BTreeMap::<&str, usize>::new();
@@ -245,14 +245,14 @@ pub fn sample(frames: Vec<Frame>, count: usize) -> Vec<Frame> {
         let (all, number) = (of_suites[frame.suite], numbers.entry(frame.suite).or_default());
         *number += 1;
         let taken = (all * count).div_ceil(total).min(all);
-        // One is taken wherever this grows, in the middle of each of so many parts.
+        // A frame is taken wherever this number grows: in the middle of each of `taken` equal parts.
         let before = |number: usize| (2 * number * taken + all) / (2 * all);
         before(*number) > before(*number - 1)
     };
     frames.into_iter().filter(is_taken).collect()
 }
 
-/// A row of the table.
+/// A row of the table of frames.
 struct Row {
     suite: &'static str,
     name: &'static str,
@@ -278,10 +278,10 @@ fn row(line: &'static str) -> Option<Row> {
 }
 
 impl Frame {
-    /// Draws it: R, G, B, A of every pixel, row by row from the top.
+    /// Draws the frame. Returns R, G, B, A of every pixel, row by row from the top.
     ///
     /// # Errors
-    /// The scene cannot be planned.
+    /// Returns the plan's errors if a scene cannot be planned.
     pub fn render(&self, options: &RenderOptions) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
         let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &Limits::default());
         let Drawn { mut scene, before, view, shown } = (self.make)();
@@ -309,35 +309,35 @@ impl Frame {
         Ok(words.into_iter().map(|word| surface::show(SurfaceFormat::A8R8G8B8, word)).collect())
     }
 
-    /// Whether a picture is the captured one, text aside.
+    /// Returns whether a picture equals the capture outside the programs' text.
     pub fn is(&self, pixels: &[[u8; 4]]) -> bool {
         digest(pixels, &self.text) == self.digest
     }
 
-    /// Pixels that are compared.
+    /// Returns the number of pixels that are compared.
     pub fn compared(&self) -> u64 {
         let area = |r: &Rectangle| u64::from(r.width) * u64::from(r.height);
         u64::from(SIZE.0) * u64::from(SIZE.1) - self.text.iter().map(area).sum::<u64>()
     }
 }
 
-/// A word R5G6B5 as it stands in the pictures, which were written by factors of their own: 255/31, and 97/24 for G.
+/// Converts an R5G6B5 word as the captured pictures do, by their own factors: 255/31, and 97/24 for G.
 fn shown_as_565(word: u32) -> [u8; 4] {
     let channel = |n: u32, factor: [u32; 2]| (n * factor[0] / factor[1]) as u8;
     [channel(word >> 11, [255, 31]), channel(word >> 5 & 63, [97, 24]), channel(word & 31, [255, 31]), 255]
 }
 
-/// The indices of a rectangle's pixels in a frame.
+/// Returns the indices of a rectangle's pixels in a frame.
 pub fn pixels(of: &Rectangle) -> impl Iterator<Item = usize> + use<> {
     let Rectangle { x, y, width, height } = *of;
     (y..y + height).flat_map(move |row| (x..x + width).map(move |column| (row * SIZE.0 + column) as usize))
 }
 
-/// The first 16 hexadecimal digits of the SHA-256 of the pixels outside the text, R, G, B, A, row by row.
+/// Returns the first 16 hexadecimal digits of the SHA-256 of the pixels outside the text (R, G, B, A, row by row).
 fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     let mut outside = vec![true; pixels.len()];
     for at in text.iter().flat_map(self::pixels) {
-        // A picture may be smaller than a frame.
+        // A rectangle of text may reach beyond a smaller picture.
         if let Some(outside) = outside.get_mut(at) {
             *outside = false;
         }
@@ -347,7 +347,7 @@ fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     hexadecimal(&Sha256::digest(bytes.as_flattened())[..8])
 }
 
-/// The beginning of a surface's memory as a texture of 32 bits.
+/// Returns the beginning of a surface's memory as a 32-bit texture of a frame's size.
 fn memory(surface: &Surface) -> Texture {
     let bytes = surface.format.bytes() as usize;
     let memory: Vec<u8> = surface.words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
@@ -356,7 +356,7 @@ fn memory(surface: &Surface) -> Texture {
     images::of_words(TextureKind::Rectangle, TextureFormat::A8R8G8B8, [SIZE.0, SIZE.1], 1, words)
 }
 
-/// Words of 32 bits as a surface of narrower ones sees the beginning of each row.
+/// Reads the beginning of each row of 32-bit words as words of a narrower format.
 fn seen_as(words: &[u32], format: SurfaceFormat) -> Vec<u32> {
     let bytes = format.bytes() as usize;
     let row = |row: &[u32]| {
@@ -367,7 +367,7 @@ fn seen_as(words: &[u32], format: SurfaceFormat) -> Vec<u32> {
     words.chunks(SIZE.0 as usize).flat_map(row).collect()
 }
 
-/// The other way: what a narrower surface holds, in the beginnings of rows of 32 bits.
+/// Writes a narrower surface back into the beginning of each row of 32-bit words.
 fn put_back(surface: &Surface, words: &mut [u32]) {
     let (bytes, width) = (surface.format.bytes() as usize, SIZE.0 as usize);
     for (narrow, row) in surface.words.chunks(width).zip(words.chunks_mut(width)) {

@@ -9,25 +9,27 @@ const FORMATS: [(DepthFormat, &str); 4] = [
     (DepthFormat::Z24S8F, "ZBuf24F"),
 ];
 
-/// What the programs add where they add something.
+/// The offset that the programs add in the frames with an offset.
 const BIAS: f32 = 16.0;
 const FACTOR: f32 = 16.0;
 
-/// The programs draw to the right of their text.
+/// The scissor: the programs draw to the right of their text.
 const DRAWN: Rectangle = Rectangle { x: 150, y: 0, width: SIZE.0 - 150, height: SIZE.1 };
 
-/// The two depths of the long quads, and w.
+/// The far depth of the long quads, and its w.
 const FAR: [f32; 2] = [16_809_768.0, 325.805_8];
+/// The near depth of the long quads, and its w.
 const NEAR: [f32; 2] = [16_572_698.0, 58.379_993];
 
-/// Coordinates of a quad's corners, and those of one that begins below.
+/// Texture coordinates of a quad's corners, clockwise from the upper left.
 const DOWN: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+/// Texture coordinates of a quad that starts at its lower left corner.
 const UP: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 
-/// A name, quads or triangles, positions and coordinates.
+/// A shape: name, topology, positions, and the texture coordinates that its vertices repeat.
 type Shape = (&'static str, Topology, Vec<[f32; 4]>, [[f32; 2]; 4]);
 
-/// Triangles have a w of their z.
+/// Returns the shapes of W_buffering. The w of triangles equals their z.
 fn shapes() -> [Shape; 6] {
     let quads = Topology::Quads;
     let (mut horizontal, mut vertical) = (Vec::new(), Vec::new());
@@ -65,7 +67,7 @@ fn shapes() -> [Shape; 6] {
     ]
 }
 
-/// Almost the deepest depth. Its w is the same, beyond what draws may have; a 32nd of it has the same picture.
+/// Almost the deepest depth. The programs give it the same w, which is beyond the limit of a scene; a 32nd of that draws the same pixels.
 const LARGE: f32 = 16_777_046.0;
 
 fn frame(format: DepthFormat, shape: &Shape, offset: PolygonOffset, w_buffer: bool, shown: Shown) -> Drawn {
@@ -84,7 +86,8 @@ fn frame(format: DepthFormat, shape: &Shape, offset: PolygonOffset, w_buffer: bo
     Drawn { scene: scene(vec![target], vec![texture], vec![draw]), before: None, view: None, shown }
 }
 
-/// W_buffering: words, and colours where no line lies over them. A slope of w plays no part in colours: every depth passes.
+/// Adds the frames of W_buffering: the words of depth, and the colours where no line of the programs lies over them. A slope of w has no effect on
+/// colours, because every depth passes.
 pub(super) fn buffers(frames: &mut Frames) {
     let named =
         |prefix: &str, name: &str, [biased, sloped]: [u8; 2]| format!("{prefix}_{name}_V1_ZB{biased}_ZS{sloped}");

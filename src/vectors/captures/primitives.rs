@@ -1,4 +1,4 @@
-//! RAS-1 to RAS-5, INT-1, NUM-4: every topology smooth and flat, with and without perspective; colours of floats; many vertices.
+//! RAS-1 to RAS-5, INT-1, NUM-4: every topology, smooth and flat, with and without perspective; float colours; large vertex counts.
 
 use super::space::without_depth;
 use super::*;
@@ -9,7 +9,7 @@ const COLORS: [[u32; 5]; 2] = [
     [0xffff_cc33, 0xffcc_ff33, 0xff33_ffcc, 0xff33_ccff, 0xffcc_33ff],
 ];
 
-/// x, y, z in the world, red, green and blue, s and t; what no frame shows of a corner is 0.
+/// A vertex: x, y, z in world space, red, green, blue, and s, t. What no frame shows is 0.
 type Corner = [f32; 8];
 
 const TRIANGLES: &[Corner] = &[
@@ -83,7 +83,7 @@ const POLYGON: &[Corner] = &[
     [2.75, -1.5, 1.0, 0.7, 0.7, 0.7, 0.7, 0.7],
 ];
 
-/// A name, how the corners are joined, and the corners.
+/// A shape: name, topology and vertices.
 type Shape = (&'static str, Topology, &'static [Corner]);
 
 /// The shapes of Shade_model.
@@ -96,14 +96,14 @@ const SHAPES: [Shape; 6] = [
     ("Poly", Topology::Polygon, POLYGON),
 ];
 
-/// Shade_model: colours, smooth and flat by either vertex, and textures, which do not heed it.
+/// Adds the frames of Shade_model: colours, smooth and flat by either provoking vertex, and textures, which the shade model does not affect.
 pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
     let texture = images::texture(TextureFormat::A8B8G8R8, [64, 64], checker(colors, 8));
     for (name, topology, points) in SHAPES {
         let programmed = points.iter().map(|[x, y, ..]| without_depth(space::programmed([*x, *y, 0.1, 1.0])));
         let programmed: Vec<[f32; 4]> = programmed.collect();
-        // w of the points grows by so much from one to the next.
+        // The w of the vertices grows by `more` from one to the next.
         let fixed = |w: f32, more: f32| {
             let w = std::iter::successors(Some(w), |w| Some(w + more));
             points.iter().zip(w).map(|([x, y, ..], w)| space::flat([*x, *y, 0.1, w])).collect()
@@ -132,7 +132,7 @@ pub(super) fn shade_model(frames: &mut Frames) {
     }
 }
 
-/// Texture_perspective: a square whose corners have other w, with perspective and without, as two triangles and as a quad.
+/// Adds the frames of Texture_perspective: a square whose corners differ in w, with and without perspective, as two triangles and as a quad.
 pub(super) fn perspective(frames: &mut Frames) {
     let colors = [argb(0xff00_ffff), argb(0xff00_0000)];
     let texture = images::texture(TextureFormat::A8R8G8B8, [256, 256], checker(colors, 8));
@@ -161,7 +161,7 @@ pub(super) fn perspective(frames: &mut Frames) {
     }
 }
 
-/// Attrib_float: colours beyond 0 to 1, as they are, times 1 and times 0. What the programs multiply by infinities is not drawn.
+/// Adds the frames of Attrib_float: colours outside 0 to 1, as they are, times 1, and times 0. The programs' products with infinity are not drawn.
 pub(super) fn float_colors(frames: &mut Frames) {
     for (name, lowest, highest) in [("0_1", 0.0, 1.0), ("-1_1", -1.0, 1.0), ("-8_1", -8.0, 1.0), ("0_8", 0.0, 8.0)] {
         let mut canvas = Canvas::new(0xff64_95ed);
@@ -180,7 +180,7 @@ pub(super) fn float_colors(frames: &mut Frames) {
     }
 }
 
-/// High_vertex_count: small squares over each other, 34,952 vertices, however they reach the chip.
+/// Adds the frames of High_vertex_count: 34,952 vertices of small squares over each other. The way that vertices reach the chip changes no pixel.
 pub(super) fn many_vertices(frames: &mut Frames) {
     const SQUARES: u32 = 0x7ffff / 60;
     let mut vertices = Vec::new();
@@ -224,7 +224,7 @@ const SOLIDS: [Shape; 6] = [
     ("Polygon", Topology::Polygon, POLYGON),
 ];
 
-/// 3D_primitive, however vertices reach the chip.
+/// Adds the frames of 3D_primitive. The way that vertices reach the chip changes no pixel.
 pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
         let vertex = |[x, y, z, r, g, b, ..]: &Corner| {
@@ -241,7 +241,7 @@ pub(super) fn solids(frames: &mut Frames) {
     }
 }
 
-/// Attrib_setter: colours in one format or another, where they are plain.
+/// Adds the frame of Attrib_setter: those triangles whose colours are plain bytes or floats.
 pub(super) fn setters(frames: &mut Frames) {
     let bytes = |words: [u32; 3]| words.map(|word| VertexColor::Bytes(abgr(word)));
     let floats = |colors: [[f32; 4]; 3]| colors.map(VertexColor::Floats);

@@ -1,8 +1,8 @@
-//! RAS-1 to RAS-3: vertices on and beside sixteenths of a pixel, on the frame buffer and on textures; edges that meet pixels' centres.
+//! RAS-1 to RAS-3: vertices at and near sixteenths of a pixel, on the frame buffer and on textures; edges through pixel centres.
 
 use super::*;
 
-/// What is added to the positions, as the names of frames have it.
+/// The bias that is added to positions, as the names of frames have it and as a number.
 const BIASES: [(&str, f32); 9] = [
     ("0.0000", 0.0),
     ("0.0010", 0.001),
@@ -21,13 +21,13 @@ fn patch(edges: [f32; 4], color: u32) -> Draw {
     without_alpha(rectangle(edges, VertexColor::Bytes(abgr(color))), FinalRegister::PrimaryColor)
 }
 
-/// A rectangle over a larger one that begins at the same place, without the bias.
+/// Draws a biased rectangle over an unbiased one of the same position.
 fn geometry(canvas: &mut Canvas, bias: f32) {
     canvas.draw(patch([200.0, 120.0, 440.0, 360.0], 0xffff_00ff));
     canvas.draw(patch([200.0 + bias, 120.0 + bias, 440.0, 360.0], GREEN));
 }
 
-/// Eight squares that meet.
+/// Draws eight biased squares that share edges.
 fn adjacent(canvas: &mut Canvas, bias: f32) {
     canvas.draw(patch([120.0, 140.0, 520.0, 340.0], 0xffe0_e0e0));
     for top in [140.0, 240.0] {
@@ -37,10 +37,11 @@ fn adjacent(canvas: &mut Canvas, bias: f32) {
     }
 }
 
-/// The sizes of four rectangles that are drawn on textures.
+/// Sizes of the four rectangles that are drawn on textures.
 const SIZES: [[u32; 2]; 4] = [[128, 128], [128, 32], [32, 128], [16, 64]];
 
-/// The textures are as large as the rectangles, or larger than the screen: then only their first rows hold what the last frame left.
+/// Draws a rectangle on each of four textures. These are as large as the rectangle or, if `is_large`, larger than the screen; then only their first
+/// rows hold what the last frame left.
 fn on_textures(canvas: &mut Canvas, bias: f32, is_large: bool) {
     let first = |_, y| if y < 16 { argb(0xffff_00ff) } else { abgr(GREEN) };
     let large = images::texture(TextureFormat::A8R8G8B8, [1024, 1024], first);
@@ -63,15 +64,16 @@ fn on_textures(canvas: &mut Canvas, bias: f32, is_large: bool) {
     canvas.draw_into(0, shown);
 }
 
-/// The next number below.
+/// Returns the next smaller number of a positive one.
 fn before(value: f32) -> f32 {
     f32::from_bits(value.to_bits() - 1)
 }
 
-/// A shape, with its columns along x or, mirrored, along y.
+/// The corners of a polygon.
 type Corners = Vec<[f32; 2]>;
 
-/// Thin shapes along an axis, from 4 pixels on or, mirrored, from 45 on. `across`: four places on the other axis. `is_down`: the axis is y.
+/// Adds thin shapes along an axis, from position `at` on. `across` has four positions on the other axis. If `is_down`, the axis is y: x and y are
+/// exchanged.
 fn combs(shapes: &mut Vec<Corners>, mut at: f32, across: [f32; 4], patches: [f32; 3], length: f32, is_down: bool) {
     let [a0, a1, a2, a3] = across;
     let mut put = |corners: &[[f32; 2]]| {
@@ -128,7 +130,7 @@ fn combs(shapes: &mut Vec<Corners>, mut at: f32, across: [f32; 4], patches: [f32
     }
 }
 
-/// TopLeftRaster.
+/// Draws the frame TopLeftRaster.
 fn edges(canvas: &mut Canvas) {
     let mut shapes = Vec::new();
     combs(&mut shapes, 4.0, [45.0, 135.0, 315.0, 450.0], [50.0, 150.0, 250.0], 50.0, false);
@@ -143,7 +145,7 @@ fn edges(canvas: &mut Canvas) {
     }
 }
 
-/// Vertex_shader_rounding_tests.
+/// Adds the frames of Vertex_shader_rounding_tests.
 pub(super) fn frames(frames: &mut Frames) {
     for (name, bias) in BIASES {
         frames.paint(format!("Geometry_{name}"), 0xfe40_4040, move |canvas| geometry(canvas, bias));

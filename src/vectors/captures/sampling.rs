@@ -1,4 +1,4 @@
-//! VOL-1, TEX-17, CYL-1: volumes in all formats, anisotropy, and a coordinate that goes around a cylinder.
+//! VOL-1, TEX-17, CYL-1: volume textures in all formats, anisotropic filtering, and cylindrical wrapping.
 
 use super::*;
 use images::{Image, gradient};
@@ -6,14 +6,14 @@ use images::{Image, gradient};
 const SIDE: u32 = 256;
 const LAYERS: u32 = 4;
 
-/// Layers one after the other as a volume.
+/// Returns a volume texture whose words hold one layer after another.
 fn volume(format: TextureFormat, words: Vec<u32>) -> Texture {
     let texture = images::of_words(TextureKind::ThreeDimensional, format, [SIDE; 2], 1, words);
     let TextureImage::Texels(texels) = texture.image else { return texture };
     Texture { image: TextureImage::Texels(Texels { layers: LAYERS, ..texels }), ..texture }
 }
 
-/// Seven pairs of triangles, each at another r.
+/// Returns seven pairs of triangles, each with a different r.
 fn pairs(unit: TextureUnit) -> Draw {
     let (width, height) = ((2.75_f32 + 2.75) / 3.0 - 0.1 * 2.0, (1.75_f32 + 1.75) / 3.0 - 0.1 * 2.0);
     let (step, fall) = (width + 0.1, height + 0.1);
@@ -47,7 +47,7 @@ fn pairs(unit: TextureUnit) -> Draw {
     fetching(draw(Topology::Triangles, vertices), 0, unit)
 }
 
-/// A layer of the gradient: all channels, blue, red, green.
+/// Returns a layer of the volume: the gradient with all channels, or with only blue, red or green.
 fn layer(z: u32) -> impl Image {
     let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
     let ([red, green, blue], image) = (masks[z as usize], gradient([SIDE; 2]));
@@ -57,8 +57,8 @@ fn layer(z: u32) -> impl Image {
     }
 }
 
-/// The words of a volume. Where the programs would have to convert, they store 32 bits a texel: alpha, blue, green, red from the lowest byte on,
-/// or alpha, red, green, blue for A8; the chip finds its texels in that memory.
+/// Returns the words of a volume. For formats that the programs do not convert to, they store 32 bits per texel (alpha, blue, green, red from the
+/// lowest byte on, or alpha, red, green, blue for A8); the chip then reads that memory in its own format.
 fn words(format: TextureFormat) -> Vec<u32> {
     use TextureFormat::{A1R5G5B5, A8, A8L8, Dxt1, G8B8, I8, L8, R6G5B5, R8B8, R16B16, Y16};
     let bytes = match format {
@@ -66,7 +66,7 @@ fn words(format: TextureFormat) -> Vec<u32> {
         A8L8 | G8B8 | R8B8 | Y16 => 2,
         R16B16 => 4,
         Dxt1 => {
-            // Row by row. Of a block of 4 x 4 x 4 texels the layers lie one after another.
+            // Blocks are stored row by row. The four layers of a 4 x 4 x 4 block lie one after another.
             let image = layer(0);
             let word = |texel: u32| {
                 let [r, g, b, a] = image(texel % SIDE, texel / SIDE);
@@ -100,7 +100,7 @@ fn words(format: TextureFormat) -> Vec<u32> {
         .collect()
 }
 
-/// Volume_texture.
+/// Adds the frames of Volume_texture.
 pub(super) fn volumes(frames: &mut Frames) {
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
     let formats = texel_formats::variants().filter(|variant| !variant.in_texels).map(|v| (v.base, v.format));
@@ -123,7 +123,7 @@ pub(super) fn volumes(frames: &mut Frames) {
     });
 }
 
-/// Texture_anisotropy: a floor to the horizon, with one to eight taps.
+/// Adds the frames of Texture_anisotropy: a floor to the horizon, with one to eight taps.
 pub(super) fn anisotropy(frames: &mut Frames) {
     for anisotropy in [1, 2, 4, 8] {
         let image = checker([0xffff_ff00, 0xff66_3333].map(argb), 4);
@@ -137,7 +137,7 @@ pub(super) fn anisotropy(frames: &mut Frames) {
     }
 }
 
-/// TextureWrapMode: coordinates that jump by one repeat and by a fifth, as they are and around a cylinder.
+/// Adds the frame of TextureWrapMode: coordinates that span one repeat and a fifth of it, with and without cylindrical wrapping.
 pub(super) fn wrap_modes(frames: &mut Frames) {
     let mut canvas = Canvas::new(0xff00_0000);
     let image = images::radial(SIDE, |distance| distance);

@@ -15,7 +15,7 @@ const CUBE: [[[f32; 3]; 4]; 6] = [
     [[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0]],
 ];
 
-/// Left, top, right and bottom of the faces in the image of normals.
+/// Edges (left, top, right, bottom) of the faces in the unfolded normal map.
 const UNFOLDED: [[f32; 4]; 6] = [
     [0.25, 0.375, 0.5, 0.625],
     [0.75, 0.375, 1.0, 0.625],
@@ -25,7 +25,7 @@ const UNFOLDED: [[f32; 4]; 6] = [
     [0.25, 0.125, 0.5, 0.375],
 ];
 
-/// Where the two cubes stand.
+/// Returns the model matrices of the two cubes.
 fn models() -> [Matrix; 2] {
     [([-1.5, 0.0, 2.0], DEGREES_45), ([1.5, 0.0, 2.0], DEGREES_225)]
         .map(|(place, angle)| space::product(space::rotated([angle, DEGREES_45, STRAIGHT]), space::moved_by(place)))
@@ -35,12 +35,12 @@ fn homogeneous([x, y, z]: [f32; 3]) -> [f64; 4] {
     [f64::from(x), f64::from(y), f64::from(z), 1.0]
 }
 
-/// A vector after a matrix, in single precision.
+/// Transforms a vector and rounds it to single precision.
 fn through(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
     space::transform(vector, matrix).map(|value| f64::from(value as f32))
 }
 
-/// Both cubes, of which the faces are drawn that are turned to the viewer. `coordinates`: of a corner of a model, by face and number.
+/// Draws the front faces of both cubes. `coordinates` returns the texture coordinates of a vertex, given its model, face and corner.
 fn cubes(
     canvas: &mut Canvas,
     coordinates: impl Fn(&Matrix, [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS],
@@ -71,7 +71,7 @@ fn cubes(
     }
 }
 
-/// A cube map of chequered faces.
+/// Returns a cube map of chequered faces.
 fn chequered() -> Texture {
     let faces = [
         [0xff77_77ff, 0xff22_2222],
@@ -84,7 +84,7 @@ fn chequered() -> Texture {
     images::cube(TextureFormat::A8B8G8R8, 64, faces.map(|words| checker(words.map(abgr), 4)))
 }
 
-/// A cube map of faces that are black in the middle, each in channels of its own.
+/// Returns a cube map whose faces are black in the middle, each in different channels.
 fn radial() -> Texture {
     let brightness = |distance: f32| {
         if distance < 0.25 { distance / 0.25 * 0.5 } else { 0.5 + (distance - 0.25) / 0.75 * 0.5 }
@@ -102,7 +102,7 @@ fn radial() -> Texture {
     images::cube(TextureFormat::A8B8G8R8, 64, channels.map(face))
 }
 
-/// The inverse, in double precision.
+/// Returns the inverse of a matrix, computed in double precision.
 fn inverse(matrix: Matrix) -> Matrix {
     let (mut left, mut right) = (matrix, space::IDENTITY);
     for column in 0..4 {
@@ -124,17 +124,18 @@ fn inverse(matrix: Matrix) -> Matrix {
     right
 }
 
-/// Toward where a surface is seen from, in the programs.
+/// The eye vector that the programs pass in q of the coordinates.
 #[derive(Clone, Copy)]
 enum Eye {
-    /// All ones: the operation does not read it.
+    /// All components are 1; the operation does not read it.
     Unread,
-    /// From the vertex, of length 1.
+    /// The unit vector from the eye to the vertex.
     Vertex,
+    /// A constant vector.
     Along([f32; 3]),
 }
 
-/// The normals' place, and rows of a matrix for three dot products, with the eye behind them.
+/// Returns the coordinates of a corner: its place in the normal map, then the rows of a matrix for three dot products, with the eye vector in q.
 fn surface(model: &Matrix, eye: Eye, [face, corner]: [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS] {
     let rows = inverse(space::product(space::product(*model, space::eye()), space::window()));
     let eye = match eye {
@@ -151,12 +152,12 @@ fn surface(model: &Matrix, eye: Eye, [face, corner]: [usize; 2]) -> [[f32; 4]; T
     [corners(UNFOLDED[face])[corner], row(0), row(1), row(2)]
 }
 
-/// The stage of a texture shader that reads the first unit.
+/// Returns a texture shader stage that reads the result of the first unit.
 fn stage(number: usize, operation: ShaderOperation, mapping: DotMapping) -> ShaderStage {
     ShaderStage { operation, mapping, previous: 0, ..ShaderStage::conventional(number, true) }
 }
 
-/// A frame of cubes by the texture shader's last operation.
+/// Draws the cubes with a texture shader that ends in `operation`.
 fn dotted(canvas: &mut Canvas, operation: ShaderOperation, mapping: DotMapping, eye: Eye, textures: [&Texture; 2]) {
     let [normals, cube] = textures.map(|texture| nearest(canvas.texture(texture)));
     let state = |mut draw: Draw| {
@@ -180,7 +181,7 @@ fn dotted(canvas: &mut Canvas, operation: ShaderOperation, mapping: DotMapping, 
     cubes(canvas, |model, corner| surface(model, eye, corner), state);
 }
 
-/// Texture_cubemap.
+/// Adds the frames of Texture_cubemap.
 pub(super) fn cube_maps(frames: &mut Frames) {
     let [checks, radial] = [chequered(), radial()].map(Arc::new);
     let normals = images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS));
@@ -215,12 +216,12 @@ pub(super) fn cube_maps(frames: &mut Frames) {
     }
 }
 
-/// Coordinates of a rectangle's four corners.
+/// Returns the texture coordinates of a rectangle's four corners.
 fn corners(edges: [f32; 4]) -> [[f32; 4]; 4] {
     draws::corners(edges).map(|[s, t]| [s, t, 0.0, 1.0])
 }
 
-/// A rectangle with coordinate sets of its corners, whose fragment is what a unit fetched.
+/// Returns a rectangle with three coordinate sets, which shows what the unit `shows` fetched.
 fn with_sets(edges: [f32; 4], sets: [[[f32; 4]; 4]; 3], shows: usize) -> Draw {
     let draw = rectangle(edges, VertexColor::Bytes([255; 4]));
     let vertices = draw.vertices.iter().enumerate().map(|(n, vertex)| {
@@ -232,7 +233,7 @@ fn with_sets(edges: [f32; 4], sets: [[[f32; 4]; 4]; 3], shows: usize) -> Draw {
 
 const NO_SET: [[f32; 4]; 4] = [[0.0, 0.0, 0.0, 1.0]; 4];
 
-/// The draw whose first unit reads a texture for the stages behind it, of which the last shows another.
+/// Returns the draw with a texture shader: the first unit reads `first`, the stages after it perform `operations`, and the last of them reads `last`.
 fn shaded(
     mut draw: Draw,
     first: TextureUnit,
@@ -248,7 +249,7 @@ fn shaded(
     draw
 }
 
-/// A vector of length 1.
+/// Returns the normalised vector, with q = 1.
 fn unit_vector(vector: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = vector;
     let length = (x * x + y * y + z * z).sqrt();
@@ -258,7 +259,7 @@ fn unit_vector(vector: [f32; 3]) -> [f32; 4] {
 const LARGE: [f32; 4] = [192.0, 112.0, 448.0, 368.0];
 const TEXELS: [f32; 4] = [0.0, 0.0, 128.0, 128.0];
 
-/// Waves and what is seen through them, in coordinates of texels.
+/// Returns the bump map of waves and the image that it displaces, with coordinates in texels.
 fn water() -> [Texture; 2] {
     [assets::WATER, assets::SEEN].map(|file| {
         let image = assets::pixels(file);
@@ -266,7 +267,7 @@ fn water() -> [Texture; 2] {
     })
 }
 
-/// Two dot products: of the direction from the eye, and of that of a light.
+/// Draws two dot products of the waves: with the direction from the eye, and with the direction to a light.
 fn dot_2d(canvas: &mut Canvas) {
     let [waves, seen] = water();
     let waves = canvas.texture(&waves);
@@ -295,7 +296,7 @@ fn pass_through(canvas: &mut Canvas) {
     canvas.draw(draw);
 }
 
-/// A picture in a white frame.
+/// Draws a texture in a white frame.
 fn framed(canvas: &mut Canvas, edges: [f32; 4], texture: usize) {
     let [left, top, right, bottom] = edges;
     let frame = unprojected([left - 2.0, top - 2.0, right + 2.0, bottom + 2.0]);
@@ -303,7 +304,7 @@ fn framed(canvas: &mut Canvas, edges: [f32; 4], texture: usize) {
     canvas.draw(pasted(unprojected(edges), 0, nearest(texture), TEXELS));
 }
 
-/// The second texture, moved by the first.
+/// Returns a draw of the second texture, displaced by the first (TSH-7).
 fn moved(edges: [f32; 4], [first, second]: [usize; 2], matrix: [f32; 4], luminance: Option<[f32; 2]>) -> Draw {
     let draw = with_sets(unprojected(edges), [corners(TEXELS), corners(TEXELS), NO_SET], 1);
     let operation = ShaderOperation::BumpEnvironment { matrix, luminance };
@@ -348,7 +349,7 @@ fn bump_luminance(canvas: &mut Canvas) {
     }
 }
 
-/// Pixel_shader.
+/// Adds the frames of Pixel_shader.
 pub(super) fn programs(frames: &mut Frames) {
     frames.paint("DotST", 0xff22_2222, dot_2d);
     for (name, operation) in
@@ -362,7 +363,7 @@ pub(super) fn programs(frames: &mut Frames) {
     frames.paint("BumpEnvMapLuminance", 0xff22_2222, bump_luminance);
 }
 
-/// Squares in which the second column and the second row read more channels as signed.
+/// Column and row of four squares. The second column and the second row treat more channels as signed.
 const SQUARES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 fn square_at([column, row]: [usize; 2]) -> [f32; 4] {
@@ -370,14 +371,14 @@ fn square_at([column, row]: [usize; 2]) -> [f32; 4] {
     sized([place(column, 146.0), place(row, 66.0)], [168.0; 2])
 }
 
-/// A texture of two by two texels of a colour each; what lies beyond is like the last of them.
+/// Returns an image whose upper left texels are two by two fields of one colour each; the rest continues the last of them.
 fn quarters(colors: [Color; 4]) -> impl images::Image {
     move |x, y| colors[usize::from(y >= 2) * 2 + usize::from(x >= 2)]
 }
 
 const SIZE: [u32; 2] = [256, 256];
 
-/// A bump map of four colours that moves a chequered field. `words`: R, G, B, A.
+/// Draws a bump map of four colours that displaces a chequered texture. `words` hold R, G, B, A from the highest byte on.
 fn bumped(
     canvas: &mut Canvas,
     &Variant { format, is_grey, in_texels, .. }: &Variant,
@@ -391,7 +392,7 @@ fn bumped(
         if is_grey { [l, l, l, color[3]] } else { color }
     });
     let words = match format {
-        // Its colour is white whatever is stored.
+        // Its colour reads as white, whatever is stored.
         TextureFormat::A8 => packed(format, SIZE, solid([0; 4])),
         _ => packed(format, SIZE, quarters(colors)),
     };
@@ -416,7 +417,7 @@ fn bilinear(texture: usize) -> TextureUnit {
 const STRAIGHT_MATRIX: [f32; 4] = [0.3, 0.0, 0.0, 0.5];
 const TURNED_MATRIX: [f32; 4] = [0.0, -0.1, 0.3, 0.0];
 
-/// Halves of 16 bits in two dot products.
+/// Draws two dot products of a texture whose halves are 16-bit numbers.
 fn hilo(canvas: &mut Canvas, words: [u32; 4], fields: [Color; 2]) {
     let colors = words.map(u32::to_be_bytes);
     let format = TextureFormat::R16B16;
@@ -427,7 +428,7 @@ fn hilo(canvas: &mut Canvas, words: [u32; 4], fields: [Color; 2]) {
         let across = [0.0, 1.0, 1.0, 0.0].map(|third| [10.0, 0.0, third, 1.0]);
         let down = [0.0, 0.0, 1.0, 1.0].map(|third| [0.0, 15.0, third, 1.0]);
         let sets = [corners([texel, texel, 3.0 * texel, 3.0 * texel]), across, down];
-        // The sign of the low half is G's flag, and that of the high half A's.
+        // G's flag makes the low half signed, and A's the high half.
         let [low, high] = place.map(|n| n == 1);
         let unit = TextureUnit { signed: [false, low, false, high], ..bilinear(bumps) };
         let dots = [ShaderOperation::DotProduct, ShaderOperation::DotProduct2D];
@@ -435,12 +436,12 @@ fn hilo(canvas: &mut Canvas, words: [u32; 4], fields: [Color; 2]) {
     }
 }
 
-/// A variant's name behind the format's: which of two maps, and which of two matrices.
+/// Suffix of a frame's name, whether it uses the second bump map, and whether it uses the rotated matrix.
 type Maps = [(&'static str, bool, bool); 4];
 
 const MAPS: Maps = [("", false, false), ("_R90", false, true), ("_B", true, false), ("_B_R90", true, true)];
 
-/// Bump_map.
+/// Adds the frames of Bump_map.
 pub(super) fn bump_maps(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 255], [0x22, 0x21, 0x20, 0x7f]];
     let maps =
@@ -467,7 +468,7 @@ pub(super) fn bump_maps(frames: &mut Frames) {
     }
 }
 
-/// Bump_env_lum.
+/// Adds the frames of Bump_env_lum.
 pub(super) fn bump_maps_with_luminance(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 0x7f], [0x22, 0x21, 0x20, 0x7f]];
     let maps =

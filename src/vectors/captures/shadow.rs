@@ -1,12 +1,12 @@
-//! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two. Its words are given, or
-//! drawn.
+//! SHD-1: a depth texture as large as the frame, compared with one r by all eight functions, with R and with zero as the reference. Its words are
+//! given, or drawn.
 
 use super::*;
 
-/// Names of [`CompareFunction::ALL`] in those of frames.
+/// Names of [`CompareFunction::ALL`] as they appear in the names of frames.
 const FUNCTIONS: &str = "N LT EQ LE GT NE GE A";
 
-/// Formats, the bits of names, and least, greatest and reference word.
+/// Format, its bits in the names of frames, and the least, greatest and reference word.
 const RANGES: [(TextureFormat, u32, [u32; 3]); 6] = [
     (TextureFormat::Z16, 16, [0, 0xffff, 0x7fff]),
     (TextureFormat::Z16, 16, [0, 256, 128]),
@@ -16,21 +16,26 @@ const RANGES: [(TextureFormat, u32, [u32; 3]); 6] = [
     (TextureFormat::Z24S8, 24, [256, 512, 384]),
 ];
 
-/// Boxes along both axes.
+/// Number of boxes along each axis.
 const BOXES: u32 = 15;
-/// Columns of the special boxes, how far one is from the next, the first column, the first row.
+/// Width of the special boxes in pixels.
 const WIDTH: u32 = SIZE.0 / BOXES / 2;
+/// Pixels from one special box to the next.
 const STEP: u32 = WIDTH + (SIZE.0 / BOXES - WIDTH) * 2;
+/// First column of the special boxes.
 const LEFT: u32 = SIZE.0 / 2 - STEP * 3 + WIDTH / 2;
+/// First row of the special boxes.
 const TOP: u32 = SIZE.1 / 2 - WIDTH / 2;
+/// Height of the special boxes in pixels.
 const HEIGHT: u32 = SIZE.1 / BOXES * 2;
 
 /// The colours of the markers on the special boxes.
 const MARKERS: [u32; 7] = [0xffff_aa00, 0xffff_7700, 0xffcc_5500, 0xff00_ff00, 0xff00_aacc, 0xff00_5577, 0xff00_2266];
 
-/// The words of the picture in memory: boxes that grow from the least to the greatest value, and seven special ones in the middle.
+/// Returns the words of the depth texture as they lie in memory: boxes that grow from the least to the greatest value, and seven special ones in the
+/// middle.
 ///
-/// The programs shift words of 24 bits up only in the special boxes and at the sides.
+/// The programs shift 24-bit words left only in the special boxes and at the sides.
 fn words(format: TextureFormat, [least, greatest, reference]: [u32; 3]) -> Vec<u32> {
     let (width, height) = SIZE;
     let shift = if format == TextureFormat::Z24S8 { 8 } else { 0 };
@@ -58,12 +63,12 @@ fn words(format: TextureFormat, [least, greatest, reference]: [u32; 3]) -> Vec<u
     words
 }
 
-/// A colour as the programs hand it to the chip: red in the low byte.
+/// Converts a colour as the programs encode it, with red in the low byte.
 fn color(word: u32) -> VertexColor {
     VertexColor::Bytes(word.to_le_bytes())
 }
 
-/// A small triangle in each special box, whose edges are moved.
+/// Returns a small triangle in each special box. `moved` transforms their edges.
 fn markers(moved: fn([f32; 4]) -> [f32; 4]) -> Vec<Draw> {
     let (across, down) = (WIDTH as f32 / 4.0, HEIGHT as f32 / 4.0);
     let marker = |(n, word): (u32, u32)| {
@@ -76,7 +81,7 @@ fn markers(moved: fn([f32; 4]) -> [f32; 4]) -> Vec<Draw> {
     (0..).zip(MARKERS).map(marker).collect()
 }
 
-/// Compares the first texture with one r over a rectangle of the frame buffer, as if it were as large as that.
+/// Draws a rectangle that compares the first texture with one r. The texture covers the rectangle as if both had the frame's size.
 fn compared(canvas: &mut Canvas, edges: [f32; 4], w: f32, shadow: ShadowComparison, r: f32) {
     let unit = TextureUnit { shadow: Some(shadow), ..nearest(0) };
     let draw = rectangle(edges, color(0xff22_77ff));
@@ -89,10 +94,10 @@ fn compared(canvas: &mut Canvas, edges: [f32; 4], w: f32, shadow: ShadowComparis
     canvas.draw(draw);
 }
 
-/// What r is compared as, with the digit in names.
+/// The shadow references, each with the digit in the names of frames.
 const REFERENCES: [(ShadowReference, u8); 2] = [(ShadowReference::R, 3), (ShadowReference::Zero, 2)];
 
-/// The frames whose depths are given as they are.
+/// Adds the frames whose depth words are given.
 fn given(frames: &mut Frames) {
     for (format, bits, values) in RANGES {
         let memory = words(format, values);
@@ -113,17 +118,17 @@ fn given(frames: &mut Frames) {
     }
 }
 
-/// Formats of depths that are drawn, their names, the deepest depth, and nearest, farthest and compared point of the world.
+/// Format, its name in those of frames, deepest depth, and two triples of the nearest, farthest and compared z in world space.
 const DRAWN: [(TextureFormat, &str, f32, [[f32; 3]; 2]); 3] = [
     (TextureFormat::Z16, "16", 65535.0, [[-6.0, 193.0, -6.0 + 199.0 * 0.06], [10.0, 20.0, 15.0]]),
     (TextureFormat::Z16F, "16f", 511.9375, [[-6.0, 193.0, -6.0 + 199.0 * 0.0531], [10.0, 20.0, 14.04]]),
     (TextureFormat::Z24S8, "24", 16_777_215.0, [[-6.0, 193.0, 10.65], [10.0, 20.0, 11.47]]),
 ];
 
-/// How far special boxes lie from the points of the world.
+/// Distance of the special boxes from the three points in world space.
 const NEARBY: f32 = 0.0125;
 
-/// How depths come to be.
+/// The way in which the programs compute depths: by the fixed function or by a vertex program.
 #[derive(Clone, Copy)]
 struct Path {
     deepest: f32,
@@ -131,12 +136,13 @@ struct Path {
 }
 
 impl Path {
-    /// Edges on the screen that went through the inverse of what is done to vertices.
+    /// Returns the function that moves screen edges through the inverse of the vertex transform.
     fn moved(self) -> fn([f32; 4]) -> [f32; 4] {
         if self.is_program { space::programmed_edges } else { unprojected }
     }
 
-    /// The depth of a point of the world, and w. The chip cuts every product and sum; a vertex program first adds the viewer's distance.
+    /// Returns the depth of a point in world space, and its w. The chip truncates every product and sum; a vertex program adds the viewer's distance
+    /// first.
     fn depth(self, z: f32) -> [f32; 2] {
         let window = space::window_to(f64::from(self.deepest));
         let w = space::toward_zero(f64::from(z) + space::DISTANCE);
@@ -146,7 +152,7 @@ impl Path {
         [space::toward_zero(depth * f64::from(space::toward_zero(1.0 / f64::from(w)))), w]
     }
 
-    /// A rectangle, its depths those of points at its upper and lower edge.
+    /// Returns a rectangle whose depths at its upper and lower edge are those of two z in world space.
     fn slope(self, edges: [f32; 4], [top, bottom]: [f32; 2]) -> Draw {
         let mut draw = rectangle(self.moved()(edges), color(0));
         draw.vertices.update(|n, vertex| {
@@ -157,7 +163,7 @@ impl Path {
         Draw { depth_test: Some(in_steps(CompareFunction::Always, true, Some(range))), ..draw }
     }
 
-    /// A slope over a picture and seven boxes on it, compared.
+    /// Draws the depth texture (a slope with seven boxes on it) and compares it.
     fn paint(self, canvas: &mut Canvas, format: TextureFormat, points: [f32; 3], shadow: ShadowComparison) {
         let ([least, greatest, z], (width, height)) = (points, (SIZE.0 as f32, SIZE.1 as f32));
         let depth = format.depth().map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
@@ -171,7 +177,7 @@ impl Path {
         canvas.draw_into(target, std::iter::once(slope).chain(boxes));
         let image = TextureImage::Depth { target };
         canvas.texture(&Texture { image, ..target_texture(format, target) });
-        // The programs' processor rounds every product and sum.
+        // The console's CPU rounds every product and sum.
         let scale = 200.0_f32 / 199.0 * self.deepest;
         let distance = space::DISTANCE as f32;
         let r = (scale * z + (distance * scale - scale)) / (z + distance);
@@ -180,7 +186,7 @@ impl Path {
     }
 }
 
-/// Texture_shadow_comparator.
+/// Adds the frames of Texture_shadow_comparator.
 pub(super) fn frames(frames: &mut Frames) {
     given(frames);
     for (format, bits, deepest, ranges) in DRAWN {

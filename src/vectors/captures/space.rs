@@ -1,8 +1,8 @@
-//! Where the programs' points come to lie: their transforms, as matrices of single precision over which they multiply row vectors.
+//! Vertex transforms of the programs: matrices in single precision that row vectors are multiplied by.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// Rows by columns.
+/// A matrix as an array of rows.
 pub(super) type Matrix = [[f64; 4]; 4];
 
 pub(super) const IDENTITY: Matrix =
@@ -10,7 +10,7 @@ pub(super) const IDENTITY: Matrix =
 
 /// 1 / tan(22.5 degrees), as the programs have it: half of 45 degrees in single precision.
 const COTANGENT: f32 = 2.414_213_4;
-/// How far the viewer stands back from the origin.
+/// Distance of the viewer from the origin.
 pub(super) const DISTANCE: f64 = 7.0;
 
 fn cut(matrix: Matrix) -> Matrix {
@@ -21,29 +21,29 @@ fn times(a: Matrix, b: Matrix) -> Matrix {
     a.map(|row| transform(row, &b))
 }
 
-/// A product of matrices of single precision.
+/// Returns the product of two matrices, rounded to single precision.
 pub(super) fn product(a: Matrix, b: Matrix) -> Matrix {
     cut(times(a, b))
 }
 
-/// A row vector times a matrix.
+/// Returns a row vector times a matrix.
 pub(super) fn transform(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
     std::array::from_fn(|column| (0..4).map(|row| vector[row] * matrix[row][column]).sum())
 }
 
-/// A translation.
+/// Returns a translation matrix.
 pub(super) fn moved_by([x, y, z]: [f32; 3]) -> Matrix {
     let mut matrix = IDENTITY;
     matrix[3] = [f64::from(x), f64::from(y), f64::from(z), 1.0];
     matrix
 }
 
-/// From the eye to the window: depths of 0 to 65,535 between the distances 1 and 200.
+/// Returns the matrix from eye to window coordinates, with depths of 0 to 65,535 between the distances 1 and 200.
 pub(super) fn window() -> Matrix {
     window_to(65535.0)
 }
 
-/// The same with a deepest depth.
+/// Returns the matrix from eye to window coordinates with another deepest depth.
 pub(super) fn window_to(deepest: f64) -> Matrix {
     let (near, far) = (1.0_f32, 200.0_f32);
     let depth = far / (far - near);
@@ -59,48 +59,49 @@ pub(super) fn window_to(deepest: f64) -> Matrix {
     product(projection, viewport)
 }
 
-/// From the world to the eye.
+/// Returns the matrix from world to eye coordinates.
 pub(super) fn eye() -> Matrix {
     moved_by([0.0, 0.0, DISTANCE as f32])
 }
 
-/// A point of the world through the fixed function, whose pixels lie off by [`UNPROJECTED`](super::draws::UNPROJECTED).
+/// Transforms a point of the world by the fixed function, which shifts pixels by [`UNPROJECTED`](super::draws::UNPROJECTED).
 pub(super) fn fixed_function(point: [f32; 4]) -> [f32; 4] {
     let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window()));
     let off = f64::from(super::draws::UNPROJECTED);
     [x / w + off, y / w + off, z / w, w].map(|value| value as f32)
 }
 
-/// A position without its depth.
+/// Sets the depth of a position to 0.
 pub(super) fn without_depth([x, y, _, w]: [f32; 4]) -> [f32; 4] {
     [x, y, 0.0, w]
 }
 
-/// A point through the fixed function, without its depth.
+/// Transforms a point by the fixed function and sets its depth to 0.
 pub(super) fn flat(point: [f32; 4]) -> [f32; 4] {
     without_depth(fixed_function(point))
 }
 
-/// Cut to single precision.
+/// Truncates a number to single precision.
 pub(super) fn toward_zero(value: f64) -> f32 {
     let nearest = value as f32;
     if f64::from(nearest).abs() > value.abs() { f32::from_bits(nearest.to_bits() - 1) } else { nearest }
 }
 
-/// A point of the world through the programs' vertex program, which multiplies by the reciprocal of w.
+/// Transforms a point of the world by the programs' vertex program, which multiplies by the reciprocal of w.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
     let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window())).map(|value| value as f32);
     let reciprocal = toward_zero(1.0 / f64::from(w));
     [x * reciprocal, y * reciprocal, z * reciprocal, w]
 }
 
-/// Edges through the programs' inverse of their vertex program, and that: before the centre they lie before their pixel, a sixteenth after RAS-1.
+/// Moves edges through the inverse of the programs' vertex program and back. Edges left of and above the centre end up a sixteenth of a pixel before
+/// their pixel (RAS-1).
 pub(super) fn programmed_edges([left, top, right, bottom]: [f32; 4]) -> [f32; 4] {
     let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
     [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
 }
 
-/// A point of the plane z = 0.1 as the programs' vertex program shows it, whose viewer stands 2.25 before the origin.
+/// Transforms a point of the plane z = 0.1 by the programs' vertex program, whose viewer stands 2.25 before the origin.
 pub(super) fn vertex_program([x, y]: [f32; 2]) -> [f32; 4] {
     let w = 0.1_f32 + 2.25;
     let across = x * (COTANGENT / (640.0_f32 / 480.0)) * 320.0 + w * 320.0;
@@ -108,7 +109,7 @@ pub(super) fn vertex_program([x, y]: [f32; 2]) -> [f32; 4] {
     [across / w, down / w, 0.0, w]
 }
 
-/// Rotations about x, y and z by angles of which sine and cosine are given, z first.
+/// Returns the rotation about z, then y, then x, given sine and cosine of each angle.
 pub(super) fn rotated(angles: [[f32; 2]; 3]) -> Matrix {
     let [x, y, z] = angles.map(|angle| angle.map(f64::from));
     let (mut about_x, mut about_y, mut about_z) = (IDENTITY, IDENTITY, IDENTITY);
@@ -118,7 +119,7 @@ pub(super) fn rotated(angles: [[f32; 2]; 3]) -> Matrix {
     product(product(about_z, about_y), about_x)
 }
 
-/// Sine and cosine of no angle and of 45, 90 and 225 degrees in single precision.
+/// Sine and cosine of 0 degrees in single precision, as the programs compute them. The following constants are those of other angles.
 pub(super) const STRAIGHT: [f32; 2] = [0.0, 1.0];
 pub(super) const DEGREES_45: [f32; 2] = [FRAC_1_SQRT_2; 2];
 pub(super) const DEGREES_90: [f32; 2] = [1.0, -4.371_139e-8];

@@ -1,4 +1,4 @@
-//! STN-1: what is stored by zero and replace, with and without either test; stacks of operations, seen through all functions.
+//! STN-1: the operations zero and replace, with and without stencil and depth test; stacks of operations, made visible by all functions.
 
 use super::*;
 
@@ -16,13 +16,13 @@ fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> Ste
     StencilTest { function, reference, mask: 255, write_mask: 255, fail: keep, depth_fail: keep, pass }
 }
 
-/// A square around the centre; the programs draw it as two triangles, which have no other pixels.
+/// Returns a square around the centre. The programs draw it as two triangles, which cover the same pixels.
 fn square(side: f32, color: VertexColor) -> Draw {
     let half = side / 2.0;
     rectangle([320.0 - half, 240.0 - half, 320.0 + half, 240.0 + half], color)
 }
 
-/// Stencil.
+/// Adds the frames of Stencil.
 pub(super) fn operations(frames: &mut Frames) {
     for (stencil_on, depth_on) in [(true, false), (false, true), (true, true), (false, false)] {
         for (operation, cleared, reference) in [(StencilOperation::Zero, 255, 0), (StencilOperation::Replace, 0, 1)] {
@@ -44,10 +44,10 @@ pub(super) fn operations(frames: &mut Frames) {
     }
 }
 
-/// The reference of Stencil_func.
+/// Stencil reference value of Stencil_func.
 const REFERENCE: u8 = 0x7f;
 
-/// Stencil_func.
+/// Adds the frames of Stencil_func.
 pub(super) fn functions(frames: &mut Frames) {
     use StencilOperation::*;
     let upper: [&[StencilOperation]; 5] =

@@ -1,9 +1,9 @@
-//! TEX-1 to TEX-4, TEX-9, TEX-18: formats of texels, palettes, signed channels, levels.
+//! TEX-1 to TEX-4, TEX-9, TEX-18: texel formats, palettes, signed channels and mip levels.
 
 use super::*;
 use images::{Color, Image, bulge, gradient, grey};
 
-/// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
+/// Returns a textured square of two triangles, transformed by the vertex program. `side` is the texture coordinate of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {
     let (places, texels) = (corners([-0.75, 0.75, 0.75, -0.75]), corners([0.0, 0.0, side, side]));
     let vertex = |n: usize| placed(space::vertex_program(places[n]), texels[n]);
@@ -13,7 +13,7 @@ fn square(side: f32, unit: TextureUnit) -> Draw {
 const SIDE: u32 = 256;
 const SIZE: [u32; 2] = [SIDE; 2];
 
-/// Formats of one picture by the names of frames, and whether there is one in coordinates of texels too.
+/// Names of formats in those of frames, the format, and whether there is also a frame with coordinates in texels.
 const FORMATS: [(&str, TextureFormat, bool); 17] = [
     ("A8R8G8B8", TextureFormat::A8R8G8B8, true),
     ("A8B8G8R8", TextureFormat::A8B8G8R8, true),
@@ -34,7 +34,7 @@ const FORMATS: [(&str, TextureFormat, bool); 17] = [
     ("R6G5B5", TextureFormat::R6G5B5, false),
 ];
 
-/// A format of the frames: its name there, whether its texture is grey, and whether its coordinates are texels.
+/// A format of the frames: its name there, whether its texture is grey, and whether its coordinates are in texels.
 #[derive(Clone, Copy)]
 pub(super) struct Variant {
     pub(super) base: &'static str,
@@ -49,7 +49,7 @@ impl Variant {
     }
 }
 
-/// All formats, in both kinds of coordinates where there are frames of both.
+/// Returns all formats, with both kinds of coordinates where there are frames of both.
 pub(super) fn variants() -> impl Iterator<Item = Variant> {
     let formats = FORMATS.into_iter().chain([("A8", TextureFormat::A8, true)]);
     formats.flat_map(|(base, format, both)| {
@@ -59,7 +59,7 @@ pub(super) fn variants() -> impl Iterator<Item = Variant> {
     })
 }
 
-/// An image as words: of 16 bits a channel the programs write a byte twice, and of luminance they scale its byte.
+/// Returns an image as words. For 16-bit channels the programs write each byte twice, and for luminance they scale it.
 pub(super) fn packed(format: TextureFormat, size: [u32; 2], image: impl Image) -> Vec<u32> {
     let wide = |color: Color| match format {
         TextureFormat::R16B16 => {
@@ -72,29 +72,29 @@ pub(super) fn packed(format: TextureFormat, size: [u32; 2], image: impl Image) -
     images::each_texel(size).map(|(x, y)| wide(image(x, y))).collect()
 }
 
-/// Words of a texture whose kind says how its coordinates count.
+/// Returns a texture of the given words, with coordinates in texels or normalised.
 pub(super) fn texture(format: TextureFormat, in_texels: bool, size: [u32; 2], words: Vec<u32>) -> Texture {
     let kind = if in_texels { TextureKind::Rectangle } else { TextureKind::TwoDimensional };
     images::of_words(kind, format, size, 1, words)
 }
 
-/// A texture, and the entries of its palette where it holds indices.
+/// A texture, and the entries of its palette if it holds indices.
 type Pictured = (Texture, Vec<u32>);
 
-/// The first unit with a texture, and the coordinate of its far edges.
+/// Returns a unit that reads the texture, and the texture coordinate of its far edges.
 fn unit(canvas: &mut Canvas, (texture, palette): Pictured) -> (TextureUnit, f32) {
     let palette = (!palette.is_empty()).then(|| canvas.palette(palette.into_iter()));
     let side = if texture.kind == TextureKind::Rectangle { SIDE as f32 } else { 1.0 };
     (TextureUnit { palette, ..nearest(canvas.texture(&texture)) }, side)
 }
 
-/// Where a texel of a swizzled texture lies in memory: bits of its coordinates, of so many each, in turn while they last.
+/// Returns the index of a texel in a swizzled texture, which interleaves the bits of its coordinates. `bits` is the number of bits of each.
 pub(super) fn swizzled<const N: usize>(at: [u32; N], bits: [u32; N]) -> usize {
     let in_turn = (0..8).flat_map(|bit| (0..N).filter(move |n| bit < bits[*n]).map(move |n| at[n] >> bit & 1));
     in_turn.enumerate().map(|(place, bit)| (bit as usize) << place).sum()
 }
 
-/// The gradient of 32 bits, whose memory is read as if every byte were a texel; as alpha, in the lowest byte, red, green and blue.
+/// Returns the 32-bit gradient, whose memory is read as if every byte were a texel. Its bytes are alpha, red, green, blue from the lowest on.
 fn bytes_of_gradient(is_swizzled: bool) -> Vec<u32> {
     let mut memory = vec![0; (4 * SIDE * SIDE) as usize];
     let image = gradient(SIZE);
@@ -106,7 +106,8 @@ fn bytes_of_gradient(is_swizzled: bool) -> Vec<u32> {
     images::each_texel(SIZE).map(|at| memory[place(at)]).collect()
 }
 
-/// Blocks of four colours of which the first is black and the second an upper left texel of the gradient, chosen by its alpha.
+/// Returns compressed blocks with two colours, black and the gradient's upper left texel; the block is filled with one of two indices, chosen by that
+/// texel's alpha.
 fn blocks_of_gradient() -> Vec<u32> {
     let image = gradient(SIZE);
     let block = |(x, y)| {
@@ -117,7 +118,7 @@ fn blocks_of_gradient() -> Vec<u32> {
     images::each_texel([SIDE / 4; 2]).flat_map(block).collect()
 }
 
-/// Blue, green, red and grey, each falling from full in a quarter of the entries.
+/// Returns palette entries: blue, green, red and grey, each falling from full in a quarter of the palette.
 fn ramps(length: u32) -> impl Iterator<Item = u32> {
     let quarter = length / 4;
     let step = 255_u32.div_ceil(quarter);
@@ -129,7 +130,7 @@ fn ramps(length: u32) -> impl Iterator<Item = u32> {
     })
 }
 
-/// The texture of each format by the names of frames; that of R6G5B5 is written as words of `six_bits`.
+/// Returns a function for each frame that builds its texture, with the frame's name. That of R6G5B5 is written as words of `six_bits`.
 fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + Send + Sync>)> {
     let mut all: Vec<(String, Box<dyn Fn() -> Pictured + Send + Sync>)> = Vec::new();
     for variant in variants() {
@@ -159,7 +160,7 @@ fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + 
     all
 }
 
-/// Texture_format.
+/// Adds the frames of Texture_format.
 pub(super) fn formats(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R5G6B5) {
         frames.paint(name, 0xfe20_2020, move |canvas| {
@@ -169,7 +170,7 @@ pub(super) fn formats(frames: &mut Frames) {
     }
 }
 
-/// Texture_render_target: the same on a texture first.
+/// Adds the frames of Texture_render_target, which draw the textures to a render target first.
 pub(super) fn render_targets(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R6G5B5) {
         frames.paint(name, 0xfe21_2021, move |canvas| {
@@ -186,12 +187,12 @@ pub(super) fn render_targets(frames: &mut Frames) {
     }
 }
 
-/// A palette whose red grows, green falls and blue repeats, under a mask.
+/// Returns a palette whose red grows, green falls and blue repeats. Each entry is masked by `mask`.
 fn rainbow(mask: u32) -> Vec<u32> {
     (0..256).map(|n| (0xff << 24 | n << 16 | (255 - n) << 8 | (4 * n) & 255) & mask).collect()
 }
 
-/// Squares of an image of indices in a row, each through another palette.
+/// Draws an image of indices several times in a row, each through another palette.
 fn row_of_palettes(canvas: &mut Canvas, top: f32, texture: usize, palettes: &[Vec<u32>]) {
     let mut left = 51.0;
     for palette in palettes {
@@ -202,14 +203,14 @@ fn row_of_palettes(canvas: &mut Canvas, top: f32, texture: usize, palettes: &[Ve
     }
 }
 
-/// Indices that are highest in the middle, times a factor.
+/// Returns a texture of indices that are highest in the middle, multiplied by `factor` modulo 256.
 fn indices(factor: u32) -> Texture {
     let distance = bulge([128, 128]);
     let words = images::each_texel([128; 2]).map(|(x, y)| (u32::from(distance(x, y)) * factor) & 255).collect();
     texture(TextureFormat::P8, false, [128, 128], words)
 }
 
-/// Four palettes, each but the first without one channel, also in the other order; below them the palettes themselves.
+/// Draws four palettes, three of which lack one channel, in both orders, and the palettes themselves below.
 fn swapped_palettes(canvas: &mut Canvas) {
     let number = canvas.texture(&indices(1));
     let mut palettes = [0xffff_ffff, 0xff00_ffff, 0xffff_00ff, 0xffff_ff00].map(rainbow);
@@ -224,7 +225,7 @@ fn swapped_palettes(canvas: &mut Canvas) {
     }
 }
 
-/// One palette, of which all but the first quarter is moved by 31 entries, and has its channels changed about, twice.
+/// Draws a palette, the same with all but its first quarter rotated by 31 entries, and that with its channels rotated once and twice.
 fn moved_palettes(canvas: &mut Canvas) {
     let number = canvas.texture(&indices(5));
     let first = rainbow(0xffff_ffff);
@@ -239,13 +240,13 @@ fn moved_palettes(canvas: &mut Canvas) {
     row_of_palettes(canvas, 192.0, number, &[first, moved, once, twice]);
 }
 
-/// Texture_palette.
+/// Adds the frames of Texture_palette.
 pub(super) fn palettes(frames: &mut Frames) {
     frames.paint("PaletteSwapping", 0xff33_3333, swapped_palettes);
     frames.paint("XemuHighPaletteBug", 0xff33_3333, moved_palettes);
 }
 
-/// Texture_signed_component_tests: every set of signed channels. Fields of largest and smallest bytes stand in a larger one.
+/// Adds the frames of Texture_signed_component_tests: every set of signed channels, over fields of the largest and smallest bytes.
 pub(super) fn signed(frames: &mut Frames) {
     let image = |x: u32, y: u32| {
         let (column, row) = (x.wrapping_sub(5), y.wrapping_sub(10));
@@ -271,12 +272,12 @@ pub(super) fn signed(frames: &mut Frames) {
     }
 }
 
-/// A unit that mixes two levels where the texture is minified.
+/// Returns a unit with trilinear minification.
 fn levels(texture: usize) -> TextureUnit {
     TextureUnit { min_filter: Filter::Linear, mip_filter: MipFilter::Linear, ..nearest(texture) }
 }
 
-/// Texture_LOD_Bias: levels of other colours through fifteen biases.
+/// Adds the frame of Texture_LOD_Bias: mip levels of different colours through fifteen biases.
 pub(super) fn lod_bias(frames: &mut Frames) {
     frames.paint("LODBias", 0xfe20_2020, move |canvas| {
         // A8B8G8R8.
@@ -288,12 +289,12 @@ pub(super) fn lod_bias(frames: &mut Frames) {
         let words: Vec<u32> = (0..).zip(colors).flat_map(level).collect();
         let of = images::of_words(TextureKind::TwoDimensional, TextureFormat::A8B8G8R8, [512; 2], 8, words);
         let texture = canvas.texture(&of);
-        // All levels as they are, centred on the left.
+        // All levels without a bias, centred on the left.
         for side in [512.0, 256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0] {
             let edges = sized([160.0 - side, 272.0 - side / 2.0], [side; 2]);
             canvas.draw(without_alpha(pasted(edges, 0, levels(texture), WHOLE), FETCHED[0]));
         }
-        // 1/256 steps, cut.
+        // In steps of 1/256, truncated.
         let biases = [-3840, -1024, -512, -256, 0, 256, 512, 768, 1024, 3840, -204, 307, 460, 640, 896];
         for (lod_bias, corner) in biases.into_iter().zip(places([192.0, 200.0], [96.0; 2], 5)) {
             let unit = TextureUnit { lod_bias, ..levels(texture) };
@@ -302,7 +303,7 @@ pub(super) fn lod_bias(frames: &mut Frames) {
     });
 }
 
-/// Texture_DXT: the programs' images, large and through their levels.
+/// Adds the frames of Texture_DXT: the programs' images, large and through their mip levels.
 pub(super) fn compressed(frames: &mut Frames) {
     for (name, format, size, count, file) in assets::COMPRESSED {
         let words = assets::blocks(format, file);

@@ -1,13 +1,13 @@
-//! TEX-15 and INT-4: coordinates that the fixed function makes, and matrices over them.
+//! TEX-15 and INT-4: texture coordinates that the fixed function generates, and texture matrices.
 
 use super::space::{DEGREES_90, IDENTITY, Matrix, STRAIGHT};
 use super::*;
 use images::gradient;
 
-/// What coordinates are made of.
+/// Texture coordinate generation modes, as the names of frames have them.
 const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
 
-/// The matrices by name.
+/// Returns the texture matrices by name.
 fn matrices() -> [(&'static str, Matrix); 11] {
     let scaled = |by: f64| {
         let mut matrix = IDENTITY;
@@ -39,14 +39,14 @@ fn matrices() -> [(&'static str, Matrix); 11] {
     ]
 }
 
-/// Coordinates of a corner at x, y of the world, before the matrix. The draws give no normals: those are zero.
+/// Returns the generated coordinates of a corner at x, y of the world, before the texture matrix. The draws give no normals, so these are zero.
 fn generated(mode: &str, [x, y]: [f64; 2], given: [f64; 2]) -> [f64; 4] {
     match mode {
         "Disabled" => [given[0], given[1], 0.0, 1.0],
         "EyeLinear" => [x, y, 7.0, 1.0],
         "ObjectLinear" => [x, y, 0.0, 1.0],
         "NormalMap" => [0.0, 0.0, 0.0, 1.0],
-        // Nothing is reflected: toward the eye, a unit vector.
+        // A zero normal reflects nothing: the reflection is the unit vector to the vertex.
         _ => {
             let length = (x * x + y * y + 49.0).sqrt();
             let [x, y, z] = [x, y, 7.0].map(|value| value / length);
@@ -63,7 +63,7 @@ fn image() -> Texture {
     images::texture(TextureFormat::R8G8B8A8, [256, 128], gradient([256, 128]))
 }
 
-/// Two triangles over a rectangle of the world. A matrix stands to the left of its column.
+/// Draws two triangles over a rectangle of the world. The matrix is multiplied by column vectors.
 fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> Drawn {
     let vertex = |n: usize| {
         let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
@@ -77,7 +77,7 @@ fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix
     one(0xfe20_2020, Some(texture), without_alpha(fetching(draw, 0, nearest(0)), FETCHED[0]))
 }
 
-/// Texgen. The frame of SphereMap is not drawn: normals of no length have no rule there.
+/// Adds the frames of Texgen, except that of SphereMap: no rule covers normals of length zero there.
 pub(super) fn generation(frames: &mut Frames) {
     let texture = image();
     for mode in MODES.into_iter().filter(|mode| *mode != "SphereMap") {
@@ -85,7 +85,7 @@ pub(super) fn generation(frames: &mut Frames) {
     }
 }
 
-/// Texgen_with_texture_matrix.
+/// Adds the frames of Texgen_with_texture_matrix.
 pub(super) fn generation_and_matrices(frames: &mut Frames) {
     let texture = image();
     for mode in MODES {
@@ -95,7 +95,7 @@ pub(super) fn generation_and_matrices(frames: &mut Frames) {
     }
 }
 
-/// Texture_Matrix: matrices over coordinates that are given.
+/// Adds the frames of Texture_Matrix: matrices over given coordinates.
 pub(super) fn texture_matrices(frames: &mut Frames) {
     let texture = image();
     for (name, matrix) in matrices() {

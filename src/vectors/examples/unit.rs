@@ -1,4 +1,4 @@
-//! A unit of the conformance vectors, evaluated on one row: what a test bench asks.
+//! Evaluates a unit of the conformance vectors on one row, as a test bench does.
 //!
 //! `cargo run -p ninebit-vectors --example unit`
 
@@ -10,7 +10,7 @@ fn main() {
     let Some(unit) = by_name("final-combiner") else { return };
     let conditions = Conditions { profile: Profile::Nv2a, policies: Policies::DEFAULT };
     let (inputs, results) = (unit.inputs(), unit.results());
-    // The first number of each column.
+    // The first value of each column.
     let row: Vec<i64> = inputs.iter().map(|column| column.nth(0)).collect();
     let mut yields = vec![0; results.len()];
     unit.evaluate(&row, &conditions, &mut yields);

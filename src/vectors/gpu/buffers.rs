@@ -1,4 +1,4 @@
-//! Recipes that ask what OpenGL has of stencil, fog, depths as textures and volumes.
+//! Recipes for OpenGL's stencil, fog, depth textures and volume textures.
 #![allow(clippy::float_arithmetic, reason = "coordinates that OpenGL is handed")]
 
 use super::fixed::drawn;
@@ -6,12 +6,12 @@ use super::{Case, Draw, Path, Placement, Read, byte};
 use ninebit::state::{AddressMode, DepthFormat, ShadowReference, StencilOperation};
 use std::f32::consts::LN_2;
 
-/// The number of a word, if it is one.
+/// Returns the binary32 number that a word encodes, or `None` if it is not finite.
 fn number(bits: i64) -> Option<f32> {
     u32::try_from(bits).ok().map(f32::from_bits).filter(|value| value.is_finite())
 }
 
-/// r and q of the row, if r/q is a number that any card can make.
+/// Returns r and q of the row, or `None` if a card may not be able to represent r/q.
 fn projected(case: &Case) -> Option<[f32; 2]> {
     let [r, q] = case.numbers(["in.r", "in.q"]).map(number);
     let (r, q) = (r?, q?);
@@ -23,7 +23,7 @@ fn bytes(values: [f32; 2]) -> Vec<u8> {
     values.map(f32::to_le_bytes).concat()
 }
 
-/// The byte is read from the stencil, and whether the test passes from a second draw without a depth test, whose fragments have the colour 1.
+/// Reads the stored byte from the stencil. A second draw without a depth test, whose fragments have the colour 1, shows whether the test passes.
 pub(super) fn stencil_test(case: &Case) -> Option<Placement> {
     let function = case.word("cfg.function", super::fixed::FUNCTIONS);
     let operations = ["cfg.fail", "cfg.depth_fail", "cfg.pass"];
@@ -44,7 +44,8 @@ pub(super) fn stencil_test(case: &Case) -> Option<Placement> {
     Some(Placement { draws, ..drawn(Path::Common, needs, vec![], sources, vec![]) })
 }
 
-/// White in black fog of a density of 1. The coordinate is that of the middle of the step, so that a driver's parameters may be a little off.
+/// Draws white in black fog of density 1. The coordinate is that of the middle of the step, so that small errors of a driver's parameters do not
+/// matter.
 pub(super) fn fog_table(case: &Case) -> Option<Placement> {
     let steps = case.number("in.steps");
     let below = f32::from(i16::try_from(-steps).ok()?);
@@ -59,7 +60,8 @@ pub(super) fn fog_table(case: &Case) -> Option<Placement> {
     (steps <= 0).then(|| drawn(Path::Common, needs, state, sources, vec![Read::byte("out.byte", 0)]))
 }
 
-/// A depth as a texel. r is asked in fractions of the deepest one; where it is near a step, only what lies farther off is compared.
+/// Compares a texel of a depth texture. r is passed as a fraction of the deepest depth; rows where r is near a step are only asked if the texel
+/// differs from it by more than one.
 pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
     let ([r, q], depth) = (projected(case)?, case.number("in.depth"));
     let (format, texel) = match case.choice("cfg.format") {
@@ -90,7 +92,7 @@ pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, needs, state, sources, vec![Read::byte("out.value", 0)]))
 }
 
-/// A volume whose layers say which they are, within the coordinates that the model takes.
+/// Reads a volume texture whose texels hold the number of their layer, within the coordinates that the model takes.
 pub(super) fn volume_layer(case: &Case) -> Option<Placement> {
     let (mode, mut needs) = super::fixed::wrap(case.choice::<AddressMode>("cfg.mode"));
     needs.push("GL_EXT_texture3D");

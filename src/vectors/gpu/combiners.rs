@@ -1,39 +1,39 @@
-//! Programs of the register combiners that ask one row, and how they are written.
+//! Register combiner programs that evaluate one row, and their lines in a batch.
 //!
-//! An operand is a byte of a texel or a colour; a negative one is made by a general stage before, out of constants. A result is read from the final combiner, which
-//! shows 0 to 255: a second draw shows it negated, and a third tells -256 from -255.
+//! Operands are bytes of texels or colours; a preceding general stage makes negative ones out of constants. Results are read from the final combiner,
+//! which shows 0 to 255: a second draw shows the negated result, and a third tells -256 from -255.
 
 use super::{Draw, Path, Placement, Read};
 use ninebit::legality::Notation;
 use ninebit::state::*;
 use ninebit_program::combiner_calls::{self, Words};
 
-/// 1 as an input.
+/// Returns an input that reads 1.
 pub(super) fn one(component: Component) -> CombinerInput {
     CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
 }
 
-/// A register through a mapping.
+/// Returns an input that reads a register through a mapping.
 pub(super) fn input(register: Register, component: Component, mapping: InputMapping) -> CombinerInput {
     CombinerInput { register, component, mapping }
 }
 
-/// Identity of what is not negative, negation of what is.
+/// Returns the mapping that gives a magnitude the sign of `value`.
 pub(super) fn sign(value: i64) -> InputMapping {
     if value < 0 { InputMapping::SignedNegate } else { InputMapping::UnsignedIdentity }
 }
 
-/// A stage of these portions.
+/// Returns a stage of two portions without constants.
 pub(super) fn stage(rgb: Portion, alpha: Portion) -> GeneralStage {
     GeneralStage { rgb, alpha, constants: [[0; 4]; 2] }
 }
 
-/// A stage of which only the RGB portion writes.
+/// Returns a stage in which only the RGB portion writes.
 pub(super) fn rgb_stage(rgb: Portion) -> GeneralStage {
     stage(rgb, Portion::idle(Component::Alpha))
 }
 
-/// A portion that adds two registers through mappings.
+/// Returns a portion that adds two mapped registers.
 pub(super) fn adding(
     component: Component,
     [first, second]: [(Register, InputMapping); 2],
@@ -46,7 +46,7 @@ pub(super) fn adding(
     portion
 }
 
-/// How a group of channels is written as two bytes each: the signs of both, and the bytes. `None` if -256 stands beside something above 0.
+/// Splits channels into two bytes each. Returns the mappings of both, and the bytes; `None` if the group has both -256 and a positive value.
 fn halves(values: &[i64]) -> Option<([InputMapping; 2], Vec<[u8; 2]>)> {
     let split: fn(i64) -> [i64; 2] =
         if values.contains(&-256) { |v| [(-v).min(255), (-v - 255).max(0)] } else { |v| [v.max(0), (-v).max(0)] };
@@ -61,7 +61,7 @@ fn halves(values: &[i64]) -> Option<([InputMapping; 2], Vec<[u8; 2]>)> {
     Some(([first, InputMapping::SignedNegate], bytes?))
 }
 
-/// A stage that makes a register of any R, G, B, A out of its own two constants.
+/// Returns a stage that loads any R, G, B, A into a register from its own two constants.
 pub(super) fn load(register: Register, values: [i64; 4]) -> Option<GeneralStage> {
     let constants = [Register::ConstantColor0, Register::ConstantColor1];
     let (rgb_signs, rgb) = halves(&values[..3])?;
@@ -77,26 +77,26 @@ pub(super) fn load(register: Register, values: [i64; 4]) -> Option<GeneralStage>
     Some(loading)
 }
 
-/// A register that is read: its columns by channel.
+/// A register that is read back, and its columns.
 #[derive(Clone, Debug)]
 pub(super) struct Output {
     pub(super) register: Register,
-    /// Column and channel.
+    /// Pairs of a column's name and the channel that holds it.
     pub(super) columns: Vec<(String, usize)>,
 }
 
-/// What asks a row.
+/// The program that evaluates a row.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
     pub(super) profile: Profile,
     pub(super) stages: Vec<GeneralStage>,
     pub(super) sources: Vec<(&'static str, Vec<u8>)>,
-    /// Red, green and blue of FOG.
+    /// Red, green and blue of the register FOG.
     pub(super) fog: [u8; 3],
 }
 
 impl Program {
-    /// The placement that reads these registers, whose expected values are given; `None` if the chip has too few stages.
+    /// Returns the placement that reads these registers. `expected` returns a column's expected value. Returns `None` if the chip has too few stages.
     pub(super) fn reading(self, outputs: &[Output], expected: impl Fn(&str) -> i64) -> Option<Placement> {
         let limit = self.profile.general_stages();
         if self.stages.len() > limit {
@@ -122,7 +122,7 @@ impl Program {
         Some(self.placed(draws))
     }
 
-    /// The placement whose only draw has this final combiner.
+    /// Returns the placement with one draw, whose final combiner is `last`.
     pub(super) fn finished(self, last: FinalCombiner, reads: Vec<Read>) -> Option<Placement> {
         if self.stages.len() > self.profile.general_stages() {
             return None;
@@ -131,7 +131,7 @@ impl Program {
         Some(self.placed(vec![draw]))
     }
 
-    /// A draw with stages after the shared ones.
+    /// Returns a draw with further stages after the shared ones.
     fn draw(&self, after: &[GeneralStage], last: &FinalCombiner, reads: Vec<Read>) -> Draw {
         let mut stages = self.stages.clone();
         stages.extend_from_slice(after);
@@ -154,7 +154,7 @@ impl Program {
         }
         let mut needs = vec!["GL_NV_register_combiners"];
         if self.profile == Profile::Nv2a {
-            // Eight stages came with the constants of single stages.
+            // The extension that brings eight stages also brings constants per stage.
             needs.push("GL_NV_register_combiners2");
         }
         if self.sources.iter().any(|(name, _)| *name == "secondary") {
@@ -163,7 +163,7 @@ impl Program {
         Placement { path: Path::Combiners, needs, state, draws, sources: self.sources }
     }
 
-    /// The lines of a stage: portions that write, and constants that are not 0.
+    /// Returns the lines of a stage: the portions that write, and the constants that are not 0.
     fn stage_lines(&self, n: usize, stage: &GeneralStage) -> Vec<String> {
         let idle = |portion: &Portion| {
             [portion.ab_output, portion.cd_output, portion.sum_output].iter().all(|r| *r == Register::Zero)
@@ -185,7 +185,8 @@ impl Program {
     }
 }
 
-/// A register times -1, or that less one, in SPARE0; whether the negated mapping of -256 saturates or wraps does not count here.
+/// Returns a stage that writes a register times -1, or that minus one, to SPARE0. It does not depend on whether the negated mapping of -256 saturates
+/// or wraps.
 fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
     let portion = |component| {
         let minus_one = input(Register::ConstantColor0, component, InputMapping::SignedNegate);
@@ -202,7 +203,7 @@ fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
     GeneralStage { constants: [[255; 4], [0; 4]], ..stage(portion(Component::Rgb), portion(Component::Alpha)) }
 }
 
-/// `GL_` is left out of all names, `ZERO` is a destination's `DISCARD_NV`.
+/// Returns OpenGL's name of a register without the prefix `GL_`.
 fn register_name(register: FinalRegister) -> String {
     use FinalRegister::{Fog, Texture0, Texture1, Texture2, Texture3, Zero};
     let vendor = match register {
@@ -217,12 +218,12 @@ fn component_name(component: Component) -> String {
     component.name().to_uppercase()
 }
 
-/// A scale or bias, of which only none is no vendor's.
+/// Returns OpenGL's name of a scale or bias; all but NONE have a vendor's suffix.
 fn output_name(name: &str) -> String {
     if name == "NONE" { name.to_owned() } else { format!("{name}_NV") }
 }
 
-/// `portion STAGE RGB|ALPHA`, three words for each of A to D, destinations of AB, CD and the sum, scale, bias, and three flags.
+/// Returns the line of a portion: `portion STAGE RGB|ALPHA`, three words for each of A to D, the destinations of AB, CD and the sum, scale, bias, and three flags.
 fn portion_line(n: usize, name: &str, portion: &Portion) -> String {
     let mut words = vec!["portion".to_owned(), n.to_string(), name.to_owned()];
     for input in &portion.inputs {
@@ -238,7 +239,7 @@ fn portion_line(n: usize, name: &str, portion: &Portion) -> String {
     words.join(" ")
 }
 
-/// `final VARIABLE REGISTER MAPPING COMPONENT` for the inputs that are not ZERO, and the clamp of the colour sum.
+/// Returns the lines `final VARIABLE REGISTER MAPPING COMPONENT` for the inputs that are not ZERO, and the line of the colour sum's clamp.
 fn final_lines(state: &FinalCombiner) -> Vec<String> {
     let mut lines = Vec::new();
     for (name, input) in ["A", "B", "C", "D", "E", "F", "G"].into_iter().zip(state.inputs.iter().chain([&state.g])) {

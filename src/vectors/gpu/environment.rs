@@ -1,10 +1,10 @@
-//! Recipes that ask a whole unit of the OpenGL texture environment.
+//! Recipes that evaluate a whole unit of the OpenGL texture environment.
 
 use super::fixed::{COMBINE, color, colors, drawn};
 use super::{Case, Path, Placement};
 use ninebit_program::texture_environment::{BaseFormat, Function, Mode};
 
-/// The sources of both units: texture and primary colour, and the constant where it is read.
+/// Returns the sources of both recipes: texture and primary colour, and the constant if it is read.
 fn sources(case: &Case, reads_constant: bool) -> Option<Vec<(&'static str, Vec<u8>)>> {
     let mut sources = vec![("texture0", color(case, "texture")?), ("primary", color(case, "primary")?)];
     if reads_constant {
@@ -13,7 +13,7 @@ fn sources(case: &Case, reads_constant: bool) -> Option<Vec<(&'static str, Vec<u
     Some(sources)
 }
 
-/// The modes of OpenGL 1.1.
+/// Evaluates the texture environment modes of OpenGL 1.1.
 pub(super) fn texture_environment(case: &Case) -> Option<Placement> {
     let format: BaseFormat = case.choice("cfg.base_format");
     let internal = case.word("cfg.base_format", "ALPHA8 LUMINANCE8 LUMINANCE8_ALPHA8 INTENSITY8 RGB8 RGBA8");
@@ -21,7 +21,7 @@ pub(super) fn texture_environment(case: &Case) -> Option<Placement> {
     let (name, needs) = match mode {
         Mode::Replace => ("REPLACE", vec![]),
         Mode::Modulate => ("MODULATE", vec![]),
-        // OpenGL leaves the others undefined.
+        // OpenGL leaves DECAL undefined for other formats.
         Mode::Decal if matches!(format, BaseFormat::Rgb | BaseFormat::Rgba) => ("DECAL", vec![]),
         Mode::Blend => ("BLEND", vec![]),
         Mode::Add => ("ADD", vec!["GL_ARB_texture_env_add|GL_EXT_texture_env_add"]),
@@ -31,7 +31,7 @@ pub(super) fn texture_environment(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, needs, state, sources(case, mode == Mode::Blend)?, colors()))
 }
 
-/// The names of a function for R, G, B and for alpha, and the extension that brought it.
+/// Returns the names of a function for RGB and for alpha, and the extension that brings it.
 fn function_names(function: Function) -> (&'static str, &'static str, &'static str) {
     match function {
         Function::Replace => ("REPLACE", "REPLACE", COMBINE),
@@ -47,7 +47,7 @@ fn function_names(function: Function) -> (&'static str, &'static str, &'static s
     }
 }
 
-/// The combine functions, arguments as the unit has them.
+/// Evaluates the combine functions, with the arguments of the model's unit.
 pub(super) fn texture_combine(case: &Case) -> Option<Placement> {
     let (mode, function): (Mode, Function) = (case.choice("cfg.mode"), case.choice("cfg.function"));
     let (rgb, alpha, extension) = function_names(function);

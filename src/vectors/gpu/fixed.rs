@@ -1,9 +1,9 @@
-//! Recipes that ask what OpenGL has without register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
+//! Recipes that need no register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
 
 use super::{Case, Draw, Path, Placement, Read, byte};
 use ninebit::state::{AddressMode, Bias, BlendEquation, TextureFormat};
 
-/// A placement with one draw.
+/// Returns a placement with one draw.
 pub(super) fn drawn(
     path: Path,
     needs: Vec<&'static str>,
@@ -14,30 +14,30 @@ pub(super) fn drawn(
     Placement { path, needs, state, draws: vec![Draw { state: Vec::new(), reads, combiners: None }], sources }
 }
 
-/// The four channels of the pixel in columns of these names.
+/// Reads the four channels of the pixel into `out.r` to `out.a`.
 pub(super) fn colors() -> Vec<Read> {
     ["out.r", "out.g", "out.b", "out.a"].into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
 }
 
-/// The bytes of a colour of the row.
+/// Returns the bytes of a colour of the row, or `None` if a channel is not a byte.
 pub(super) fn color(case: &Case, name: &str) -> Option<Vec<u8>> {
     ["r", "g", "b", "a"].iter().map(|channel| byte(case.number(&format!("in.{name}.{channel}")))).collect()
 }
 
-/// The bits of a finite float as four bytes, the lowest first; `None` for infinities and NaN, which an API may treat as it likes.
+/// Returns the bits of a finite float as little-endian bytes, or `None` for infinities and NaN, which OpenGL leaves undefined.
 fn float(bits: i64) -> Option<[u8; 4]> {
     let value = f32::from_bits(u32::try_from(bits).ok()?);
     value.is_finite().then(|| value.to_le_bytes())
 }
 
-/// n / 2^shift, which has to be exact: n is below 2^24.
+/// Returns n / 2^shift as a little-endian binary32 number. It is exact because n is below 2^24.
 fn scaled(n: i64, shift: u32) -> [u8; 4] {
     let whole = n as f32;
     let bits = if n == 0 { 0 } else { whole.to_bits().wrapping_sub(shift << 23) };
     bits.to_le_bytes()
 }
 
-/// The environment of unit 0 that combines the texture and the primary colour.
+/// Returns the state lines of an environment that combines the texture and the primary colour.
 fn combine(operation: &str) -> Vec<String> {
     let words = [
         "TEXTURE_ENV_MODE COMBINE",
@@ -52,9 +52,10 @@ fn combine(operation: &str) -> Vec<String> {
     words.iter().map(|words| format!("env 0 {words}")).collect()
 }
 
+/// Extensions that bring the combine environment, of which any will do.
 pub(super) const COMBINE: &str = "GL_ARB_texture_env_combine|GL_EXT_texture_env_combine";
 
-/// MODULATE of two bytes.
+/// Multiplies two bytes by MODULATE.
 fn modulate(case: &Case, column: &str, state: &[String]) -> Option<Placement> {
     let [a, b] = case.numbers(["in.a", "in.b"]);
     let sources = vec![("texture0", vec![byte(a)?; 4]), ("primary", vec![byte(b)?; 4])];
@@ -66,7 +67,7 @@ pub(super) fn product(case: &Case) -> Option<Placement> {
     modulate(case, "out.ab", &["env 0 RGB_SCALE 1".to_owned()])
 }
 
-/// The scales that an environment has.
+/// Evaluates the scales that a texture environment has; it has no bias.
 pub(super) fn scale_bias(case: &Case) -> Option<Placement> {
     let scale = case.scale()?;
     if case.choice::<Bias>("cfg.bias") != Bias::None {
@@ -75,7 +76,7 @@ pub(super) fn scale_bias(case: &Case) -> Option<Placement> {
     modulate(case, "out.value", &[format!("env 0 RGB_SCALE {scale}")])
 }
 
-/// DOT3 of bytes, whose factors are the even ones of the expand mapping (CMB-3); a negative result is not shown.
+/// Evaluates DOT3 of bytes, whose factors are the even ones of the expand mapping (CMB-3). Negative results cannot be read.
 pub(super) fn dot_product(case: &Case) -> Option<Placement> {
     let expanded = |factor: i64| if factor % 2 == 0 { byte((factor + 256) / 2) } else { None };
     let vector = |names: [&str; 3]| {
@@ -101,11 +102,11 @@ pub(super) fn vertex_color(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, vec![], vec![], sources, vec![Read::byte("out.byte", 0)]))
 }
 
-/// The constant of the texture environment.
+/// Evaluates the constant colour of the texture environment.
 pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     let color = float(case.number("in.color"))?;
     let one = 1.0_f32.to_le_bytes();
-    // A unit with a texture, whose environment comes after it.
+    // The unit needs a texture for its environment to apply.
     let state = [
         "ramp 0 1",
         "env 0 TEXTURE_ENV_MODE COMBINE",
@@ -119,7 +120,7 @@ pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
 }
 
-/// OpenGL's word for an address mode, and what it needs.
+/// Returns OpenGL's name of an address mode, and the extensions that it needs.
 pub(super) fn wrap(mode: AddressMode) -> (&'static str, Vec<&'static str>) {
     match mode {
         AddressMode::Wrap => ("REPEAT", vec![]),
@@ -132,12 +133,12 @@ pub(super) fn wrap(mode: AddressMode) -> (&'static str, Vec<&'static str>) {
     }
 }
 
-/// The number of a texel that says which it is, and whether it is one.
+/// Reads the number of a texel that encodes its own position, and whether a texel was read at all.
 pub(super) fn numbered(column: &str) -> Vec<Read> {
     vec![Read::byte("out.inside", 2), Read::byte(column, 0), Read { weight: 256, ..Read::byte(column, 1) }]
 }
 
-/// A texture whose texels say where they are. Sizes are powers of two, whose coordinates are exact.
+/// Reads a texture whose texels encode their positions. Only sizes that are powers of two are asked: their coordinates are exact.
 pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
     let size = case.number("cfg.size");
     if case.number("cfg.border_texels") != 0 || size.count_ones() != 1 {
@@ -145,13 +146,13 @@ pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
     }
     let (mode, needs) = wrap(case.choice("cfg.mode"));
     let state = vec![format!("ramp 0 {size}"), format!("parameter 0 TEXTURE_WRAP_S {mode}")];
-    // u is in 1/256 texel, s in textures.
+    // u is in 1/256 texel, s in texture sizes.
     let s = scaled(case.number("in.u"), 8 + size.trailing_zeros());
     let sources = vec![("coordinates0", [s, scaled(1, 1), [0; 4]].concat())];
     Some(drawn(Path::Common, needs, state, sources, numbered("out.texel")))
 }
 
-/// Four texels, and weights as coordinates between them.
+/// Filters four texels. The weights are encoded as coordinates between them.
 fn filtered(texels: [i64; 4], weights: [i64; 2]) -> Option<Placement> {
     let mut quad = Vec::new();
     for texel in texels {
@@ -171,7 +172,7 @@ pub(super) fn linear_step(case: &Case) -> Option<Placement> {
     filtered([first, second, first, second], [weight, 0])
 }
 
-/// A cube map whose texels say where they are, in bytes.
+/// Reads a cube map whose texels encode their face and position in bytes.
 pub(super) fn cube_face(case: &Case) -> Option<Placement> {
     let size = case.number("cfg.size");
     let [u, v] = case.numbers(["out.u", "out.v"]).map(|along| along >> 8);
@@ -185,7 +186,7 @@ pub(super) fn cube_face(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, needs, vec![format!("cube 0 {size}")], sources, reads))
 }
 
-/// Internal format, format and type by which OpenGL takes the words of a format.
+/// Returns OpenGL's internal format, format and type for the words of a texture format.
 fn upload(format: TextureFormat) -> Option<&'static str> {
     Some(match format {
         TextureFormat::A8R8G8B8 => "RGBA8 BGRA UNSIGNED_INT_8_8_8_8_REV",
@@ -228,10 +229,10 @@ pub(super) fn compressed_block(case: &Case) -> Option<Placement> {
     Some(drawn(Path::Common, needs, state, sources, colors()))
 }
 
-/// Functions of tests in the order of the model's.
+/// OpenGL's comparison functions in the order of the model's.
 pub(super) const FUNCTIONS: &str = "NEVER LESS EQUAL LEQUAL GREATER NOTEQUAL GEQUAL ALWAYS";
 
-/// The fragment is the primary colour: 1 where it passes, 0 in the cleared buffer.
+/// Draws fragments of the primary colour: 1 where the test passes, 0 from the cleared buffer elsewhere.
 pub(super) fn alpha_test(case: &Case) -> Option<Placement> {
     let function = case.word("cfg.function", FUNCTIONS);
     let state = vec![format!("alpha_test {function} {}", case.number("cfg.reference"))];
@@ -243,7 +244,7 @@ const FACTORS: &str = "ZERO ONE SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINU
     ONE_MINUS_DST_ALPHA DST_COLOR ONE_MINUS_DST_COLOR SRC_ALPHA_SATURATE CONSTANT_COLOR ONE_MINUS_CONSTANT_COLOR \
     CONSTANT_ALPHA ONE_MINUS_CONSTANT_ALPHA";
 
-/// The fragment is the primary colour, what the buffer holds is drawn before.
+/// Blends the primary colour over a colour that is drawn first.
 pub(super) fn blend(case: &Case) -> Option<Placement> {
     let (equation, mut needs) = match case.choice("cfg.equation") {
         BlendEquation::Add => ("FUNC_ADD", vec![]),
@@ -251,7 +252,7 @@ pub(super) fn blend(case: &Case) -> Option<Placement> {
         BlendEquation::ReverseSubtract => ("FUNC_REVERSE_SUBTRACT", vec!["GL_EXT_blend_subtract"]),
         BlendEquation::Min => ("MIN", vec!["GL_EXT_blend_minmax"]),
         BlendEquation::Max => ("MAX", vec!["GL_EXT_blend_minmax"]),
-        // OpenGL has no name for them.
+        // OpenGL has no such equations.
         BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract => return None,
     };
     let factors = ["cfg.source_factor", "cfg.destination_factor"].map(|name| case.word(name, FACTORS));

@@ -1,14 +1,14 @@
-//! GPU batches: rows of tables as draws that a real card, or a driver, can be asked with.
+//! GPU batches: rows of tables as draws for a real card or a driver.
 //!
-//! A row is not fed to a card by itself: operands become texels of nearest-filtered textures, constants and vertex colours, and what comes out is a byte of
-//! an RGBA frame buffer. [`Placement`] says all that for one row; rows that share their state are one batch of up to 65,536 pixels. The
-//! program under `vectors/harness/gl` draws batches and writes what it read back.
+//! A card cannot evaluate a row directly: its operands become texels of nearest-filtered textures, constants and vertex colours, and its result is a
+//! byte of an RGBA frame buffer. A [`Placement`] describes that for one row. Rows that share their state form one batch of up to 65,536 pixels. The
+//! program under `vectors/harness/gl` draws batches and writes what it reads back.
 //!
-//! [`recipes`] names what there is for a unit: `stages.rs` asks the register combiners, `environment.rs` whole texture environments, `fixed.rs` what
-//! else OpenGL has without them, `buffers.rs` stencil, fog, depths and volumes.
+//! [`recipes`] returns the recipes of a unit: `stages.rs` has those for register combiners, `environment.rs` those for whole texture environments,
+//! `buffers.rs` those for stencil, fog, depths and volumes, and `fixed.rs` the others that need no combiners.
 
 mod buffers;
-pub mod combiners;
+mod combiners;
 mod environment;
 mod fixed;
 mod stages;
@@ -19,101 +19,101 @@ use ninebit::state::{Combiners, Named, Profile, Scale, named};
 use super::column::Column;
 use super::table::Row;
 
-/// What a row is drawn with.
+/// Everything that is needed to draw a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// Which part of OpenGL it asks.
+    /// The part of OpenGL that it uses.
     pub path: Path,
-    /// Extensions; each is one name or several with `|` between, of which any will do.
+    /// Required extensions. Each entry is one name, or several with `|` between them of which any will do.
     pub needs: Vec<&'static str>,
-    /// State that all draws share, a line each (`vectors/harness/gl/README.md`).
+    /// State lines that all draws share (`vectors/harness/gl/README.md`).
     pub state: Vec<String>,
-    /// Draws, whose bytes make the results together.
+    /// The draws. Their pixels together yield the results.
     pub draws: Vec<Draw>,
-    /// What this row brings, by the name of the source.
+    /// The row's own bytes, by the name of their source.
     pub sources: Vec<(&'static str, Vec<u8>)>,
 }
 
-/// One draw of a batch, with what is set before it.
+/// One draw of a batch and its state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// State of its own.
+    /// State lines of this draw only.
     pub state: Vec<String>,
-    /// What its pixels add to the results.
+    /// The contributions of its pixels to the results.
     pub reads: Vec<Read>,
-    /// The combiners that the state sets; none on the fixed path.
+    /// The combiners that the state sets; `None` on paths without combiners.
     pub combiners: Option<Combiners>,
 }
 
-/// A byte of the pixel times a weight is added to a column, which starts at 0.
+/// Adds a byte of the pixel, times a weight, to a column that starts at 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Read {
-    /// The column of the unit; `out.u>>8` is that column without its eight lowest bits.
+    /// Name of the unit's column; `out.u>>8` is that column without its eight lowest bits.
     pub column: String,
-    /// R, G, B, A: 0 to 3; 4 is the stencil.
+    /// Channel: 0 to 3 for R, G, B, A, and 4 for the stencil.
     pub channel: usize,
-    /// The factor by which the byte is multiplied.
+    /// Factor of the byte.
     pub weight: i64,
 }
 
 impl Read {
-    /// A byte as it is.
+    /// Returns a read of a byte with weight 1.
     fn byte(column: &str, channel: usize) -> Read {
         Read { column: column.to_owned(), channel, weight: 1 }
     }
 }
 
 named! {
-    /// Which part of OpenGL a batch asks.
+    /// The part of OpenGL that a batch uses.
     #[derive(PartialOrd, Ord)]
     pub enum Path =>
-    /// The word in a batch.
+    /// Returns the word in a batch file.
     word: &'static str {
         /// General stages and a final combiner: `NV_register_combiners`.
         Combiners => "combiners",
-        /// The texture environment, asked where there are no combiners.
+        /// The texture environment, for cards without combiners.
         Environment => "environment",
-        /// What every path has: texels, coordinates, colours, blending.
+        /// Functions that every card has: texels, coordinates, colours, blending.
         Common => "common",
     }
 }
 
-/// A row by the names of its columns.
+/// A row whose numbers are looked up by column name.
 #[derive(Clone, Copy, Debug)]
 pub struct Case<'r> {
     /// Configuration and inputs.
     pub inputs: &'r [Column],
     /// Intermediates and results.
     pub results: &'r [Column],
-    /// The row that is to be drawn.
+    /// The row to be drawn.
     pub row: &'r Row,
     /// The chip whose rules it follows.
     pub profile: Profile,
 }
 
 impl Case<'_> {
-    /// The number in a column; 0 if there is none of that name, which the tests of this module rule out.
+    /// Returns the number in a column. It is 0 for an unknown name, which the tests of this module rule out.
     fn number(&self, name: &str) -> i64 {
         let numbers = self.row.inputs.iter().chain(&self.row.results);
         self.inputs.iter().chain(self.results).zip(numbers).find(|(c, _)| c.name == name).map_or(0, |(_, n)| *n)
     }
 
-    /// The numbers in several columns.
+    /// Returns the numbers in several columns.
     fn numbers<const N: usize>(&self, names: [&str; N]) -> [i64; N] {
         names.map(|name| self.number(name))
     }
 
-    /// The variant in a column of names.
+    /// Returns the variant in a column of names.
     fn choice<T: Named>(&self, name: &str) -> T {
         super::units::named(self.number(name))
     }
 
-    /// OpenGL's word for a choice; `words` are in the order of the names that it is among.
+    /// Returns OpenGL's word for a choice. `words` are in the order of the column's names.
     fn word(&self, name: &str, words: &'static str) -> &'static str {
         words.split(' ').nth(self.number(name) as usize).unwrap_or_default()
     }
 
-    /// What a scale multiplies by; OpenGL has no half.
+    /// Returns the factor of a scale, or `None` for one half, which OpenGL does not have.
     fn scale(&self) -> Option<u8> {
         match self.choice("cfg.scale") {
             Scale::One => Some(1),
@@ -124,10 +124,10 @@ impl Case<'_> {
     }
 }
 
-/// Places a row, or says that it cannot be asked.
+/// Converts a row to a placement, or returns `None` if the row cannot be drawn.
 pub type Recipe = fn(&Case) -> Option<Placement>;
 
-/// The recipes of a unit, empty if no frame buffer shows it.
+/// Returns the recipes of a unit; none if no frame buffer can show its results.
 pub fn recipes(unit: &str) -> &'static [Recipe] {
     match unit {
         "vertex-color" => &[fixed::vertex_color],
@@ -160,7 +160,7 @@ pub fn recipes(unit: &str) -> &'static [Recipe] {
     }
 }
 
-/// A byte, if the number is one.
+/// Converts a number to a byte, or returns `None` if it is out of range.
 fn byte(value: i64) -> Option<u8> {
     u8::try_from(value).ok()
 }

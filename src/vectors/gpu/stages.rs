@@ -1,4 +1,4 @@
-//! Recipes that ask the register combiners.
+//! Recipes for the register combiners.
 
 use super::combiners::{Output, Program, input, load, one, rgb_stage, sign, stage};
 use super::{Case, Placement, Read, byte};
@@ -9,7 +9,7 @@ const IDENTITY: InputMapping = InputMapping::UnsignedIdentity;
 const SIGNED: InputMapping = InputMapping::SignedIdentity;
 const NEGATE: InputMapping = InputMapping::SignedNegate;
 
-/// The four registers that whole stages read.
+/// The registers of A to D where a whole portion is evaluated.
 const SOURCES: [Register; 4] =
     [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::SecondaryColor];
 
@@ -21,24 +21,24 @@ fn program(case: &Case, sources: Vec<(&'static str, Vec<u8>)>) -> Program {
     Program { profile: case.profile, stages: Vec::new(), sources, fog: [0; 3] }
 }
 
-/// The byte of a factor's magnitude, in all channels.
+/// Returns the magnitude of a factor in all four channels, or `None` if it is not a byte.
 fn magnitude(value: i64) -> Option<Vec<u8>> {
     byte(value.abs()).map(|b| vec![b; 4])
 }
 
-/// Red of a register in one column.
+/// Reads the red of a register into one column.
 fn red(register: Register, column: &str) -> [Output; 1] {
     [Output { register, columns: vec![(column.to_owned(), 0)] }]
 }
 
-/// A portion of the product of two textures, their signs as mappings.
+/// Returns a program and a portion that multiply two textures; mappings supply the signs.
 fn product_of(case: &Case) -> Option<(Program, Portion)> {
     let [a, b] = case.numbers(["in.a", "in.b"]);
     let program = program(case, vec![("texture0", magnitude(a)?), ("texture1", magnitude(b)?)]);
     Some((program, multiplying([rgb(Register::Texture0, sign(a)), rgb(Register::Texture1, sign(b))])))
 }
 
-/// A product of colours into SPARE0.
+/// Returns a portion that writes a product of colours to SPARE0.
 fn multiplying([a, b]: [CombinerInput; 2]) -> Portion {
     let idle = Portion::idle(Component::Rgb);
     Portion { inputs: [a, b, idle.inputs[2], idle.inputs[3]], ab_output: Register::Spare0, ..idle }
@@ -72,7 +72,7 @@ pub(super) fn sum(case: &Case) -> Option<Placement> {
     program.reading(&red(Register::Spare0, "out.sum"), |name| case.number(name))
 }
 
-/// Two vectors, each the difference of two textures.
+/// Evaluates the dot product of two vectors, each the difference of two textures.
 pub(super) fn dot_product(case: &Case) -> Option<Placement> {
     let vectors = [case.numbers(["in.a.r", "in.a.g", "in.a.b"]), case.numbers(["in.b.r", "in.b.g", "in.b.b"])];
     if case.profile == Profile::Nv10 {
@@ -98,13 +98,13 @@ pub(super) fn dot_product(case: &Case) -> Option<Placement> {
     program.reading(&red(Register::Spare0, "out.dot"), |name| case.number(name))
 }
 
-/// Two textures that make any register value between them: of one sign each, or both negative for -256.
+/// Splits a register value into two texels, and returns the mappings that add up to it. The second is not 0 only for -256.
 fn texels(value: i64) -> ([InputMapping; 2], [u8; 2]) {
     let (first, second) = (value.unsigned_abs().min(255), value.unsigned_abs().saturating_sub(255));
     ([sign(value), NEGATE], [first as u8, second as u8])
 }
 
-/// What is not negative is read from a texture, the rest is made by a stage before.
+/// Evaluates an input mapping. The mapped register is a texture, or a preceding stage makes it if it is negative.
 pub(super) fn input_mapping(case: &Case) -> Option<Placement> {
     let (x, factor) = (case.number("in.x"), case.number("out.factor"));
     if factor % 2 != 0 || factor > 510 {
@@ -122,7 +122,7 @@ pub(super) fn input_mapping(case: &Case) -> Option<Placement> {
     program.reading(&red(Register::Spare0, "out.factor"), |name| case.number(name))
 }
 
-/// SPARE0.a is made in alpha; the mux takes 0 or 1/255.
+/// Evaluates the mux. The alpha portion of the first stage sets SPARE0.a; the mux then selects 0 or 1/255.
 pub(super) fn mux(case: &Case) -> Option<Placement> {
     if case.choice::<MuxSelect>("cfg.select") != MuxSelect::Msb {
         return None;
@@ -146,12 +146,12 @@ pub(super) fn mux(case: &Case) -> Option<Placement> {
     program.finished(last, vec![Read::byte("out.takes_cd", 0)])
 }
 
-/// Whether the mux of a whole stage is one that OpenGL can ask for.
+/// Returns whether OpenGL can select this mux.
 fn muxes(case: &Case) -> bool {
     case.number("cfg.mux") == 0 || case.choice::<MuxSelect>("cfg.mux_select") == MuxSelect::Msb
 }
 
-/// The mappings of A to D, scale, bias and mux of a whole portion.
+/// Returns a portion with the row's mappings of A to D, scale, bias and mux.
 fn configured(case: &Case, component: Component) -> Portion {
     let mut portion = Portion::idle(component);
     for (n, name) in ["a", "b", "c", "d"].into_iter().enumerate() {
@@ -163,7 +163,7 @@ fn configured(case: &Case, component: Component) -> Portion {
     portion
 }
 
-/// Operands are constants of stages before; every row is a draw of its own.
+/// Evaluates a whole RGB portion. Its operands are constants of preceding stages, so every row is a draw of its own.
 pub(super) fn general_stage(case: &Case) -> Option<Placement> {
     if case.profile == Profile::Nv10 || !muxes(case) {
         return None;
@@ -227,7 +227,7 @@ pub(super) fn two_stages(case: &Case) -> Option<Placement> {
     program.reading(&red(Register::Spare0, "out.spare0"), |name| case.number(name))
 }
 
-/// Registers are constants of the general stages; FOG is the fog colour.
+/// Evaluates the final combiner. General stages load its registers from constants; FOG is the fog colour.
 pub(super) fn final_combiner(case: &Case) -> Option<Placement> {
     let inverts = ["cfg.invert_spare0", "cfg.invert_secondary"];
     if case.profile == Profile::Nv10 || inverts.iter().any(|name| case.number(name) != 0) {
@@ -251,7 +251,7 @@ pub(super) fn final_combiner(case: &Case) -> Option<Placement> {
     let invert = |name: &str| case.number(&format!("cfg.invert_{name}")) != 0;
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];
     for (n, name) in ["a", "b", "c", "d", "e", "f"].into_iter().enumerate() {
-        // Names of the column: a register of its own, the colour sum, E F.
+        // In the order of the column's names: the variable's own register, the colour sum, E F.
         let source = if n < 4 { case.number(&format!("cfg.source_{name}")) } else { 0 };
         let register = [OWN[n], FinalRegister::Spare0PlusSecondary, FinalRegister::ETimesF][source as usize % 3];
         inputs[n] = FinalInput { register, component: Component::Rgb, invert: invert(name) };

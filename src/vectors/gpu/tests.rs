@@ -1,4 +1,4 @@
-//! What recipes ask of the combiners, the model answers as the tables say.
+//! Checks that the model's combiners, run on the recipes' placements, give the results of the tables.
 
 use super::*;
 use crate::cases::{self, Level};
@@ -6,7 +6,7 @@ use crate::{Conditions, Contents, Writer, units};
 use ninebit::combiner::registers::Registers;
 use ninebit::state::{Policies, Register};
 
-/// The bytes of a pixel drawn by the model.
+/// Returns the channels of a pixel as the model draws it.
 fn pixel(placement: &Placement, combiners: &Combiners) -> [i32; 4] {
     let mut file = Registers::<i32>::new();
     for (name, bytes) in &placement.sources {
@@ -28,7 +28,7 @@ fn pixel(placement: &Placement, combiners: &Combiners) -> [i32; 4] {
     combiners.run(file, &Policies::DEFAULT).map(i32::from)
 }
 
-/// The results that the reads of all draws make.
+/// Returns the results that the reads of all draws add up to.
 fn observed(placement: &Placement) -> Vec<(String, i64)> {
     let mut sums: Vec<(String, i64)> = Vec::new();
     for draw in &placement.draws {
@@ -81,7 +81,7 @@ fn the_model_answers_what_recipes_ask() {
     }
 }
 
-/// Recipes look columns up by name: a name that a unit does not have would be read as 0.
+/// Recipes look columns up by name, and an unknown name would read as 0.
 #[test]
 fn recipes_name_columns_that_exist() {
     let sources = concat!(include_str!("stages.rs"), include_str!("environment.rs"), include_str!("fixed.rs"));

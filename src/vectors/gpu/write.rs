@@ -1,4 +1,4 @@
-//! Batches as files: `UNIT.gpu.txt` says what is drawn, `UNIT.gpu.raw` holds what the rows bring.
+//! Batch files: `UNIT.gpu.txt` describes the draws, `UNIT.gpu.raw` holds the rows' bytes.
 //!
 //! ```text
 //! ninebit-gpu 1
@@ -22,7 +22,7 @@
 //! end
 //! ```
 //!
-//! Numbers after a source are the bytes of a row and the place of the first in the raw file. An id takes six bytes there.
+//! The numbers after a source's name are the bytes per row and the offset of the first in the raw file. An id takes six bytes there.
 
 use std::collections::BTreeMap;
 
@@ -30,10 +30,11 @@ use super::{Case, Placement, recipes};
 use crate::{BEHAVIOUR, Contents, Row, Writer};
 use ninebit::state::Named;
 
-/// Rows of a batch: a draw of 256 by 256 pixels.
-pub const ROWS: usize = 65_536;
+/// Maximum number of rows in a batch: a draw of 256 by 256 pixels.
+const ROWS: usize = 65_536;
 
-/// Batches of a unit. A unit with more configurations than these is asked of a part of its rows; those that a policy changes come first.
+/// Maximum number of batches of a unit. Of a unit with more configurations only a part of the rows is drawn; batches that a policy changes come
+/// first.
 pub const BATCHES: usize = 1_000;
 
 /// Rows that share their state.
@@ -41,14 +42,14 @@ pub const BATCHES: usize = 1_000;
 struct Batch {
     ids: Vec<u8>,
     placement: Placement,
-    /// Bytes of all rows, source by source.
+    /// Bytes of all rows, for each source.
     sources: Vec<Vec<u8>>,
     rows: usize,
-    /// Some policy changes a row of it.
+    /// Whether a policy changes one of its rows.
     deciding: bool,
 }
 
-/// Everything that rows of a batch have to share.
+/// Returns the key of a batch: everything that its rows have to share.
 fn key(placement: &Placement) -> String {
     let draws = placement.draws.iter().map(|draw| draw.state.join("\n"));
     let sources = placement.sources.iter().map(|(name, bytes)| format!("{name} {}", bytes.len()));
@@ -56,35 +57,35 @@ fn key(placement: &Placement) -> String {
     format!("{}\n{}", placement.path.word(), lines.join("\n"))
 }
 
-/// The batches of a table, row by row.
+/// Collects the rows of a table into batches.
 #[derive(Debug)]
-pub struct Batches<'w> {
+pub(crate) struct Batches<'w> {
     writer: &'w Writer,
-    /// By their state.
+    /// Batches by their key.
     open: BTreeMap<String, Vec<Batch>>,
 }
 
 /// The two files of a unit.
 #[derive(Debug)]
-pub struct Drawn {
-    /// What is drawn.
-    pub text: String,
-    /// What the rows bring.
-    pub raw: Vec<u8>,
-    /// How many rows are asked; one that two paths ask counts twice.
-    pub rows: usize,
-    /// How many more could be, beyond [`BATCHES`].
-    pub left_out: usize,
+pub(crate) struct Drawn {
+    /// Content of `UNIT.gpu.txt`.
+    pub(crate) text: String,
+    /// Content of `UNIT.gpu.raw`.
+    pub(crate) raw: Vec<u8>,
+    /// Number of rows that are drawn; a row that is drawn by two paths counts twice.
+    pub(crate) rows: usize,
+    /// Number of rows that are left out because of [`BATCHES`].
+    pub(crate) left_out: usize,
 }
 
 impl<'w> Batches<'w> {
-    /// Of a table whose rows will come.
-    pub fn new(writer: &'w Writer) -> Batches<'w> {
+    /// Returns an empty collection for a table.
+    pub(crate) fn new(writer: &'w Writer) -> Batches<'w> {
         Batches { writer, open: BTreeMap::new() }
     }
 
-    /// Places a row, if the unit has a recipe for it.
-    pub fn take(&mut self, row: &Row) {
+    /// Adds a row, if the unit has a recipe for it.
+    pub(crate) fn take(&mut self, row: &Row) {
         let Contents { unit, profile, .. } = self.writer.contents();
         let case = Case { inputs: self.writer.inputs(), results: self.writer.results(), row, profile };
         for placement in recipes(unit.name()).iter().filter_map(|recipe| recipe(&case)) {
@@ -104,8 +105,8 @@ impl<'w> Batches<'w> {
         }
     }
 
-    /// The files; none for a unit that no frame buffer shows.
-    pub fn finish(self) -> Option<Drawn> {
+    /// Returns the files, or `None` for a unit without recipes.
+    pub(crate) fn finish(self) -> Option<Drawn> {
         if recipes(self.writer.contents().unit.name()).is_empty() {
             return None;
         }
@@ -116,7 +117,7 @@ impl<'w> Batches<'w> {
             batches.sort_by_key(|batch| !batch.deciding);
             batches.truncate(BATCHES);
         }
-        // The path first, so that a reader that skips one skips it at once.
+        // Sorted by path, so that a reader skips an unsupported path at once.
         batches.sort_by_key(|batch| batch.placement.path);
         let mut raw = Vec::new();
         for batch in &batches {
@@ -128,13 +129,13 @@ impl<'w> Batches<'w> {
     }
 }
 
-/// Twelve hexadecimal digits as six bytes.
+/// Converts twelve hexadecimal digits to six bytes.
 fn id_bytes(id: &str) -> Vec<u8> {
     let digit = |c: u8| char::from(c).to_digit(16).unwrap_or(0) as u8;
     id.as_bytes().chunks(2).map(|pair| pair.iter().fold(0, |byte, c| byte << 4 | digit(*c))).collect()
 }
 
-/// The lines of all batches.
+/// Returns the lines of all batches.
 fn text(writer: &Writer, batches: &[Batch]) -> String {
     let contents = writer.contents();
     let mut columns: Vec<&str> = Vec::new();

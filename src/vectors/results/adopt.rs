@@ -1,4 +1,4 @@
-//! What a real card answered becomes truth: a folder of the repository that names the card and what it said.
+//! Adoption of a real card's results as ground truth: a folder of the repository that records the card and its results.
 //!
 //! ```text
 //! vectors/results/DEVICE/ADOPTED.json   the card, the pack, the grade, the behaviour that the model has to have, counts and digests
@@ -17,62 +17,64 @@ use ninebit_files::output::{PendingFolder, write_file};
 use ninebit_files::picture::hexadecimal;
 use ninebit_files::read;
 
-/// `format` of the record.
-pub const FORMAT: &str = "ninebit-adopted-1";
+/// Value of `format` in the record.
+const FORMAT: &str = "ninebit-adopted-1";
 
-/// Name of the record.
-pub const RECORD: &str = "ADOPTED.json";
+/// File name of the record.
+const RECORD: &str = "ADOPTED.json";
 
-/// What was adopted.
+/// Record of adopted results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Adopted {
-    /// The version of the format: [`FORMAT`].
+    /// Version of the format: `ninebit-adopted-1`.
     pub format: String,
-    /// The card's name in this project: that of its folder.
+    /// The card's name in this project, which is also the name of its folder.
     pub device: String,
-    /// The vendor, as OpenGL names it.
+    /// OpenGL's vendor string.
     pub vendor: String,
-    /// The renderer, as OpenGL names it.
+    /// OpenGL's renderer string.
     pub renderer: String,
-    /// The version, as OpenGL names it.
+    /// OpenGL's version string.
     pub version: String,
-    /// The grade of what is told here.
+    /// Grade of these results: SILICON.
     pub grade: String,
-    /// The chip of the pack.
+    /// Name of the pack's chip.
     pub profile: String,
     /// The pack's root digest.
     pub pack: String,
-    /// What the model has to say: the pack's behaviour, one more if the card contradicts it.
+    /// The behaviour revision that the model has to reach: the pack's, or one more if the card contradicts it.
     pub behaviour_rev: u32,
-    /// What was adopted, a unit each.
+    /// The adopted units.
     pub units: Vec<AdoptedUnit>,
 }
 
-/// What was adopted of a unit.
+/// Adopted results of one unit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AdoptedUnit {
     /// Name of the unit.
     pub unit: String,
-    /// Rows that the card confirms.
+    /// Number of rows that the card confirms.
     pub confirmed: usize,
-    /// Rows that it contradicts.
+    /// Number of rows that it contradicts.
     pub contradicted: usize,
-    /// SHA-256 of the file of results.
+    /// SHA-256 of the file of results, in hexadecimal.
     pub sha256: String,
 }
 
-/// A name as a folder: lower case, words joined by `-`.
+/// Converts a renderer's name to a folder name: lower case, words joined by `-`.
 pub fn folder_name(renderer: &str) -> String {
     let words = renderer.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// Records results in `folder`, under the device's name. Everything is written beside and renamed: nothing half-written stays.
+/// Records results in `folder`, under the device's name. Returns the new folder and the record. All files are written to a temporary folder that is
+/// then renamed, so an error leaves nothing behind.
 ///
 /// # Errors
-/// A program answered and no card; draws failed; nothing was asked; the device has a record already; the folder cannot be written.
+/// Returns an error if a software renderer answered, draws failed, no row was drawn, the device has a record already, or the folder cannot be
+/// written.
 pub fn adopt(
     folder: &Path,
     name: &str,
@@ -130,7 +132,7 @@ pub fn adopt(
     Ok((place, adopted))
 }
 
-/// Copies a file; returns its digest.
+/// Copies a file. Returns its SHA-256 in hexadecimal.
 fn copy(from: &Path, to: &Path) -> Result<String, VectorError> {
     let missing = "the folder has changed meanwhile: try again";
     let bytes = read::bytes(from, Kind::Regular, limits::VECTOR_TABLE).map_err(|error| unread(error, from, missing))?;

@@ -1,4 +1,4 @@
-//! Results held to a pack: by unit, by tag, by policy.
+//! Compares results with a pack by unit, tag and policy.
 
 use super::*;
 use std::collections::{BTreeMap, HashMap};
@@ -10,104 +10,104 @@ use crate::unit::other_policies;
 use crate::{Conditions, Kind, Table, VectorError};
 use ninebit::state::{Policies, Profile};
 
-/// How results and a pack differ.
+/// Comparison of results with a pack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Comparison {
-    /// Units that were asked, in the order of their names.
+    /// Units with results, in the order of their names.
     pub units: Vec<UnitComparison>,
-    /// The single other value of a policy that explains the most, if one explains more than it breaks.
+    /// The other value of a policy that explains most rows beyond those it breaks, if it explains more than it breaks.
     pub explanation: Option<Explanation>,
 }
 
-/// How a unit differs. Rows are counted.
+/// Comparison of a unit; the counts are numbers of rows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UnitComparison {
     /// Name of the unit.
     pub unit: &'static str,
-    /// Rows with results.
+    /// Rows that have results.
     pub asked: usize,
-    /// All columns as the pack has them.
+    /// Rows that equal the pack in all columns.
     pub exact: usize,
-    /// Every number at most one step off.
+    /// Rows that differ, by one step of the column at most.
     pub off_by_one: usize,
-    /// Some number further off, or another name, or a flag that is not the same.
+    /// Rows in which a number differs by more than a step, or a name or flag differs.
     pub worse: usize,
-    /// The draw failed.
+    /// Rows whose draw failed.
     pub errors: usize,
-    /// Rows of the pack without a result.
+    /// Rows of the pack that have no result.
     pub not_asked: usize,
-    /// The largest difference of a number, in steps of its column.
+    /// Largest difference of a number, in steps of its column.
     pub largest: u64,
-    /// By tag: why a row is there, and the policies that change it.
+    /// Shares of rows by tag: the reason why the table has a row, and the policies that change it.
     pub tags: BTreeMap<String, Share>,
-    /// Other values of policies that would explain rows that differ, the best first.
+    /// Other values of policies that would explain differing rows, the best first.
     pub policies: Vec<Explanation>,
-    /// What a waiver takes away: rows.
+    /// Number of differing rows that a waiver accepts.
     pub waived: usize,
-    /// Why it does.
+    /// The waiver's reason; `None` without a waiver.
     pub reason: Option<String>,
-    /// The first rows that differ.
+    /// The first differing rows.
     pub rows: Vec<RowDifference>,
 }
 
-/// A part of a unit's rows.
+/// Counts of the rows with one tag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Share {
-    /// Rows with results.
+    /// Rows that have results.
     pub asked: usize,
     /// Rows whose results differ.
     pub differ: usize,
 }
 
-/// What another value of a policy would do.
+/// The effect of another value of a policy.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Explanation {
-    /// The policy and its value, as `CMB-3=literal`.
+    /// The policy and its value, such as `CMB-3=literal`.
     pub policy: String,
-    /// Rows that differ and would not.
+    /// Number of differing rows that would agree.
     pub explains: usize,
-    /// Rows that do not differ and would.
+    /// Number of agreeing rows that would differ.
     pub breaks: usize,
 }
 
 impl Explanation {
-    /// Rows won, less rows lost.
+    /// Returns the explained rows minus the broken ones.
     fn gain(&self) -> i64 {
         self.explains as i64 - self.breaks as i64
     }
 }
 
-/// A row that differs.
+/// A differing row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RowDifference {
     /// Id of the row that differs.
     pub id: String,
-    /// Its line in the results.
+    /// Line number in the file of results, from 1.
     pub line: usize,
-    /// Column, what the pack has, what was observed; empty where the draw failed.
+    /// For each differing column: name, the pack's value, the observed value. Empty if the draw failed.
     pub differences: Vec<(String, String, String)>,
-    /// Configuration, inputs, intermediates and results of the pack: `name=value`.
+    /// The pack's row as `name=value`.
     pub row: Vec<String>,
 }
 
 impl UnitComparison {
-    /// Rows that differ and are not waived.
-    pub fn failures(&self) -> usize {
+    /// Returns the number of rows that differ or failed and are not waived.
+    fn failures(&self) -> usize {
         self.off_by_one + self.worse + self.errors - self.waived
     }
 }
 
 impl Comparison {
-    /// Whether everything is exact or waived.
+    /// Returns whether every row is exact or waived.
     pub fn is_clean(&self) -> bool {
         self.units.iter().all(|unit| unit.failures() == 0)
     }
 }
 
-/// Holds results to the tables of their pack. At most `shown` rows of a unit are told.
+/// Compares results with the tables of their pack. Reports at most `shown` rows of each unit.
 ///
 /// # Errors
-/// Results of a unit or a row that the pack does not have.
+/// Returns an error if there are results of a unit or row that the pack does not have.
 pub fn compare(
     tables: &[Table],
     results: &Results,
@@ -118,7 +118,7 @@ pub fn compare(
     let mut totals: Vec<Explanation> = Vec::new();
     for of_unit in &results.units {
         let name = of_unit.unit.name();
-        let Some(table) = tables.iter().find(|table| table.contents.unit.name() == name) else {
+        let Some(table) = tables.iter().find(|table| table.writer.contents().unit.name() == name) else {
             let message = format!("the pack has no unit `{name}`");
             return Err(VectorError::line("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
         };
@@ -135,7 +135,7 @@ pub fn compare(
         }
         if let Some(waiver) = waivers.iter().find(|waiver| waiver.unit == name) {
             let differing = compared.off_by_one + compared.worse;
-            // Beyond its limits a waiver waives nothing: what is known has become something else.
+            // Beyond its limits a waiver accepts nothing: the known difference has changed.
             let holds = differing <= waiver.count && compared.largest <= waiver.maximum;
             compared.waived = if holds { differing } else { 0 };
             compared.reason = Some(waiver.reason.clone());
@@ -146,7 +146,7 @@ pub fn compare(
     Ok(Comparison { units, explanation })
 }
 
-/// Rows of results with the pack's.
+/// Pairs each row of results with the pack's row.
 fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r TableRow, &'r ResultRow)>, VectorError> {
     let by_id: HashMap<&str, &TableRow> = table.rows.iter().map(|row| (row.id.as_str(), row)).collect();
     let pair = |row: &'r ResultRow| match by_id.get(row.id.as_str()) {
@@ -159,12 +159,12 @@ fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r Tab
     results.rows.iter().map(pair).collect()
 }
 
-/// The expected number of an observed column.
+/// Returns the expected number of an observed column.
 fn expected(results: &[i64], column: &Observed) -> i64 {
     results[column.column] >> column.shift
 }
 
-/// How far a number is off; `None` for what has no steps.
+/// Returns the difference of two numbers in steps, or `None` for names, flags and words.
 fn steps(kind: &Kind, expected: i64, observed: i64) -> Option<u64> {
     let apart = expected.abs_diff(observed);
     match kind {
@@ -234,15 +234,15 @@ fn unit(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)],
     compared
 }
 
-/// What every other value of the unit's policies would explain, the best first; those that explain nothing are left out.
+/// Returns the effect of every other value of the unit's policies, the best first. Values that explain nothing are left out.
 fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)]) -> Vec<Explanation> {
-    let unit = table.contents.unit;
+    let unit = table.writer.contents().unit;
     let mut found = Vec::new();
     for (policy, value, policies) in other_policies().filter(|(policy, ..)| unit.rules().contains(&policy.rule)) {
         let mut explanation = Explanation { policy: format!("{}={value}", policy.rule), explains: 0, breaks: 0 };
         for (row, result) in pairs {
             let Some(observed) = &result.values else { continue };
-            let other = evaluated(table, row, policies, table.contents.profile);
+            let other = evaluated(table, row, policies, table.writer.contents().profile);
             let agrees = |results_of: &[i64]| {
                 results.columns.iter().zip(observed).all(|(column, value)| expected(results_of, column) == *value)
             };
@@ -262,6 +262,6 @@ fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRo
 
 fn evaluated(table: &Table, row: &TableRow, policies: Policies, profile: Profile) -> Vec<i64> {
     let mut results = vec![0; row.results.len()];
-    table.contents.unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut results);
+    table.writer.contents().unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut results);
     results
 }

@@ -1,13 +1,13 @@
-//! Results: what a card or a driver answered, as `vectors/harness/gl` writes it.
+//! Results of a card or a driver, as `vectors/harness/gl` writes them.
 //!
 //! ```text
-//! device.json     who answered: vendor, renderer, version, extensions, surface; the root digest of the pack that was asked
+//! device.json     the device: vendor, renderer, version, extensions, surface; the root digest of the pack that was asked
 //! UNIT.tsv        rows: id, observed columns, status
 //! ```
 //!
-//! A unit whose results the asked chip cannot show (on nv10 those of a whole stage, for example) has a table without observed columns and rows.
-//! A table begins with `# ninebit-results 1` and ends with `# end ROWS CRC`, the CRC-32 of everything before that line: one that was cut off, reordered or
-//! edited is refused. [`compare`](compare::compare) holds results to a pack; [`adopt`](adopt::adopt) records those of a real card.
+//! A table has no observed columns and no rows if the chip cannot show the unit's results (on nv10 those of a whole stage, for example). A table
+//! begins with `# ninebit-results 1` and ends with `# end ROWS CRC`, the CRC-32 of everything before that line: a truncated, reordered or edited
+//! table is refused. [`compare`](compare::compare) compares results with a pack; [`adopt`](adopt::adopt) records those of a real card.
 
 pub mod adopt;
 pub mod compare;
@@ -26,98 +26,98 @@ use ninebit::limits;
 use ninebit_files::output::is_leftover;
 use ninebit_files::read::Kind;
 
-/// `format` of a device file.
-pub const DEVICE_FORMAT: &str = "ninebit-device-1";
+/// Value of `format` in a device file.
+const DEVICE_FORMAT: &str = "ninebit-device-1";
 
-/// Name of the device file.
-pub const DEVICE: &str = "device.json";
+/// File name of the device file.
+const DEVICE: &str = "device.json";
 
-/// What to do with results that are not whole.
+/// Advice for incomplete results.
 const AGAIN: &str = "draw the pack again";
 
-/// The card and driver that answered, as the harness wrote them.
+/// Description of the card and driver, as the harness wrote it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Device {
-    /// The version of the format: [`DEVICE_FORMAT`].
+    /// Version of the format: `ninebit-device-1`.
     pub format: String,
-    /// Root digest of the pack that was asked.
+    /// Root digest of the pack that was drawn.
     pub pack: String,
-    /// The vendor, as OpenGL names it.
+    /// OpenGL's vendor string.
     pub vendor: String,
-    /// The renderer, as OpenGL names it.
+    /// OpenGL's renderer string.
     pub renderer: String,
-    /// The version, as OpenGL names it.
+    /// OpenGL's version string.
     pub version: String,
-    /// What was drawn into.
+    /// Kind of the surface that was drawn into.
     pub surface: String,
-    /// The bits of red, green, blue and alpha that the surface really has.
+    /// Bits of red, green, blue and alpha that the surface really has.
     pub surface_format: String,
-    /// OpenGL's extensions, with spaces between.
+    /// OpenGL's extensions, separated by spaces.
     pub extensions: String,
 }
 
 impl Device {
-    /// Whether a program answered instead of a card.
-    pub fn is_software(&self) -> bool {
+    /// Returns whether the device is a software renderer.
+    fn is_software(&self) -> bool {
         let programs = "llvmpipe,softpipe,swrast,software,swiftshader,gdi generic,basic render,recorder,virgl,lavapipe";
         let renderer = format!("{} {}", self.vendor, self.renderer).to_lowercase();
         programs.split(',').any(|program| renderer.contains(program))
     }
 }
 
-/// A column that was observed.
+/// An observed column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observed {
-    /// The column's name in the results: `out.u>>8`.
+    /// The column's name in the results, such as `out.u>>8`.
     pub name: String,
-    /// Its place among the unit's results.
+    /// Index among the unit's result columns.
     pub column: usize,
-    /// Lowest bits that it lacks.
+    /// Number of lowest bits that were not observed.
     pub shift: u32,
 }
 
 /// The results of a unit.
 #[derive(Debug)]
 pub struct UnitResults {
-    /// The file that the answers were read from.
+    /// The file of results.
     pub path: PathBuf,
-    /// The unit that was asked.
+    /// The unit.
     pub unit: &'static dyn Unit,
-    /// Chip, level, seed and behaviour of the table that was asked, as written.
+    /// Chip, level, seed and behaviour of the table that was drawn, as text.
     pub asked: [String; 4],
-    /// What was observed.
+    /// The observed columns.
     pub columns: Vec<Observed>,
-    /// Rows in the order of the file.
+    /// The rows, in the order of the file.
     pub rows: Vec<ResultRow>,
-    /// Rows of batches that the device could not draw.
+    /// Number of rows in batches that the device could not draw.
     pub unsupported: u64,
 }
 
 /// A row of results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ResultRow {
-    /// Its line in the file, from 1.
+    /// Line number in the file, from 1.
     pub line: usize,
-    /// The row of the pack.
+    /// Id of the pack's row.
     pub id: String,
-    /// A number for each observed column, in the column's own unit; `None` if the draw failed.
+    /// A number for each observed column, in the column's unit; `None` if the draw failed.
     pub values: Option<Vec<i64>>,
 }
 
-/// Everything that a device answered.
+/// All results of a device.
 #[derive(Debug)]
 pub struct Results {
-    /// The card and driver that answered.
+    /// The card and driver.
     pub device: Device,
-    /// By unit, in the order of their names.
+    /// Results of each unit, in the order of the units' names.
     pub units: Vec<UnitResults>,
 }
 
-/// Reads a folder of results of this pack.
+/// Reads a folder of results of a pack.
 ///
 /// # Errors
-/// A file is missing, cut off, was changed, is of another version or of another pack.
+/// Returns an error if a file is missing, truncated, changed, of another version, or of another pack.
 pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> {
     let device_path = folder.join(DEVICE);
     let missing = "name the folder of results that vectors/harness/gl wrote";

@@ -1,4 +1,4 @@
-//! Tables of results out of text.
+//! Reads tables of results.
 
 use super::*;
 use std::collections::HashMap;
@@ -9,11 +9,11 @@ use crate::{Column, Kind, VectorError, units};
 /// First line of a table of results.
 const FORMAT: &str = "# ninebit-results 1";
 
-/// Reads a table of results. `path` is for messages only.
+/// Reads a table of results. `path` is used for messages only.
 ///
 /// # Errors
-/// Not results, another version, cut off or edited, an unknown unit or column, a number that its column does not take, a row that is there
-/// twice.
+/// Returns an error if the text is not results, is of another version, truncated or edited, names an unknown unit or column, has a number that its
+/// column does not take, or has a row twice.
 pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
     let invalid = |code, line, message: String| VectorError::line(code, path, line, message, AGAIN);
     let first = text.lines().next().unwrap_or_default();
@@ -57,7 +57,7 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
     Ok(UnitResults { path: path.to_path_buf(), unit, asked, columns, rows, unsupported })
 }
 
-/// Everything before the last line, which says how much that is.
+/// Checks the last line against the text before it. Returns that text.
 fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
     let invalid = |message: &str| VectorError::file("NB1030", path, message, AGAIN);
     let last = text.strip_suffix('\n').and_then(|text| text.rfind('\n')).map(|at| at + 1);
@@ -75,7 +75,7 @@ fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
     Ok(body)
 }
 
-/// The columns between `id` and `status`: none of a unit whose results the asked chip cannot show.
+/// Reads the columns between `id` and `status`. There are none if the chip cannot show the unit's results.
 fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
     let mut names = names.split('\t');
     if names.next() != Some("id") || names.next_back() != Some("status") {
@@ -90,7 +90,7 @@ fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
     names.map(column).collect()
 }
 
-/// A row out of its line.
+/// Reads a row.
 fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Result<ResultRow, String> {
     let fields: Vec<&str> = text.split('\t').collect();
     let wanted = columns.len() + 2;
@@ -119,7 +119,7 @@ fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Res
     Ok(ResultRow { line, id: id.to_owned(), values })
 }
 
-/// A decimal number in the column's own unit: names by their places, halves doubled. A card may answer what no column of the model holds.
+/// Reads a decimal number: the index of a name, or twice a number of halves. A card may answer with numbers that the model's column cannot hold.
 fn number(field: &str, kind: &Kind) -> Option<i64> {
     let value: i32 = field.parse().ok()?;
     let value = i64::from(value);

@@ -1,18 +1,18 @@
-//! Waivers: differences that are known and named. There is no other tolerance.
+//! Waivers: known and documented differences. There is no other tolerance.
 
 use super::*;
 
 use crate::{VectorError, read_text, units};
 
-/// A difference that is known.
+/// A known difference.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waiver {
     /// Name of the unit.
     pub unit: String,
-    /// The largest difference of a number that is waived, in its column's steps.
+    /// Largest accepted difference of a number, in steps of its column.
     pub maximum: u64,
-    /// The most rows that are waived.
+    /// Maximum number of accepted rows.
     pub count: usize,
     /// Why the difference is accepted.
     pub reason: String,
@@ -21,7 +21,8 @@ pub struct Waiver {
 /// Reads a file of waivers: JSON, a list of objects.
 ///
 /// # Errors
-/// The file is missing or is not such a list; a unit does not exist or is there twice; a waiver waives nothing or has no reason.
+/// Returns an error if the file is missing or is not such a list, a unit does not exist or is listed twice, or a waiver accepts nothing or has no
+/// reason.
 pub fn read(path: &Path) -> Result<Vec<Waiver>, VectorError> {
     let help = r#"a list such as [{"unit": "blend", "maximum": 1, "count": 7, "reason": "..."}]"#;
     let invalid = |line, message: String| VectorError::line("NB1034", path, line, message, help);

@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let differing: usize = found.iter().map(Vec::len).sum();
     let mut text = String::new();
     for (table, differences) in tables.iter().zip(&found).filter(|(_, differences)| !differences.is_empty()) {
-        let name = table.contents.unit.name();
+        let name = table.writer.contents().unit.name();
         let _ = writeln!(text, "{name}: {} of {} rows differ", differences.len(), table.rows.len());
         for difference in differences.iter().take(SHOWN) {
             let Difference { line, id, column, table: expected, model, in_lanes, row } = difference;

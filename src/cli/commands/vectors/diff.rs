@@ -28,11 +28,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut text = String::new();
     let mut differs = false;
-    let mut names: Vec<&str> = first.iter().chain(&second).map(|table| table.contents.unit.name()).collect();
+    let mut names: Vec<&str> = first.iter().chain(&second).map(|table| table.writer.contents().unit.name()).collect();
     names.sort_unstable();
     names.dedup();
     for name in names {
-        let find = |tables: &'_ [Table]| tables.iter().position(|table| table.contents.unit.name() == name);
+        let find = |tables: &'_ [Table]| tables.iter().position(|table| table.writer.contents().unit.name() == name);
         let (rows_a, rows_b) = (find(&first).map(|n| &first[n]), find(&second).map(|n| &second[n]));
         let (Some(table_a), Some(table_b)) = (rows_a, rows_b) else {
             differs = true;

@@ -8,7 +8,7 @@ use ninebit::threads::on_threads;
 use ninebit_files::output::make_folder;
 use ninebit_vectors::exhaustive::{Exhaustive, MAX_ROWS};
 use ninebit_vectors::part::Part;
-use ninebit_vectors::tree::{self, Of, Tree};
+use ninebit_vectors::tree::{self, SweepHeader, Tree};
 use rayon::prelude::*;
 
 #[derive(Debug, Args)]
@@ -55,7 +55,8 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         on_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
     let results = results.into_iter().collect::<Result<Vec<bool>, _>>()?;
     let computed = results.iter().filter(|computed| **computed).count();
-    let (name, profile, leaves, kept) = (Of::new(&sweep).name(), profile.name(), mine.len(), mine.len() - computed);
+    let (name, profile, leaves, kept) =
+        (SweepHeader::new(&sweep).name(), profile.name(), mine.len(), mine.len() - computed);
     Ok(write_text(&format!(
         "{name} {profile}, shard {shard}: {leaves} of {} leaves, {computed} computed, {kept} were there\n",
         sweep.leaves
@@ -82,8 +83,8 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     if destination == Some(Destination::Stdout) {
         return Ok(());
     }
-    let Tree { of: of @ Of { profile, leaves, .. }, rows, root, .. } = &tree;
-    let text = format!("{} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n", of.name());
+    let Tree { header: header @ SweepHeader { profile, leaves, .. }, rows, root, .. } = &tree;
+    let text = format!("{} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n", header.name());
     Ok(write_text(&text)?)
 }
 
@@ -110,7 +111,7 @@ pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
         let (tree, sweep) = Tree::read(path)?;
         let mut chosen: Vec<usize> = (0..tree.leaf.len()).collect();
         if let Some(sample) = arguments.sample {
-            let mut random = Random::new(arguments.seed, &tree.of.unit);
+            let mut random = Random::new(arguments.seed, &tree.header.unit);
             while chosen.len() > sample {
                 chosen.swap_remove(random.below(chosen.len() as u128) as usize);
             }
@@ -120,8 +121,8 @@ pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
             let wrong = chosen.par_iter().filter(|index| sweep.leaf(**index as u64) != tree.leaf[**index]);
             wrong.copied().collect()
         });
-        let Of { profile, leaves, behaviour_rev, .. } = &tree.of;
-        let mut text = format!("{} {profile}: {} of {leaves} leaves computed, ", tree.of.name(), chosen.len());
+        let SweepHeader { profile, leaves, behaviour_rev, .. } = &tree.header;
+        let mut text = format!("{} {profile}: {} of {leaves} leaves computed, ", tree.header.name(), chosen.len());
         if wrong.is_empty() {
             text.push_str("all as the tree has them\n");
         } else {
