@@ -1,6 +1,6 @@
-//! Experiments: how exact techniques are, what they cost, and where they fail.
+//! Experiments: the accuracy of techniques, their cost, and their limits.
 //!
-//! * [`accuracy`]: a technique's frame against the ground truth of its scene, cause by cause.
+//! * [`accuracy`]: a technique's frame against the ground truth of its scene, with the error by cause.
 //! * [`chart`]: speed against accuracy, measured on this machine.
 //! * [`experiments`]: one parameter varied until a method fails.
 

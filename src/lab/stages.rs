@@ -1,11 +1,11 @@
-//! What scenes are built of in code: stages and programs, and their plan.
+//! Helpers to build scenes in code: stages, combiners and plans.
 
 use ninebit::diagnostic::Source;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit_scene::SceneError;
 
-/// The plan of a scene; what is wrong with it reads like what is wrong with a file.
+/// Compiles a scene. Errors are reported like those of a scene file.
 pub(crate) fn planned(scene: &Scene) -> Result<Plan, Box<SceneError>> {
     Plan::compile(scene, &PlanOptions::default()).map_err(|errors| {
         let diagnostics = errors.iter().map(|error| error.diagnostic(None)).collect();
@@ -14,7 +14,7 @@ pub(crate) fn planned(scene: &Scene) -> Result<Plan, Box<SceneError>> {
     })
 }
 
-/// Makes the frame of a scene a square of so many pixels.
+/// Makes the frame of a scene `side` pixels wide and high.
 pub(crate) fn resize(scene: &mut Scene, side: usize) {
     for target in &mut scene.targets {
         (target.width, target.height) = (side as u32, side as u32);
@@ -26,27 +26,27 @@ pub(crate) fn resize(scene: &mut Scene, side: usize) {
     }
 }
 
-/// The colour of a register through a mapping.
+/// Returns an input: the colour of a register through a mapping.
 pub(crate) fn mapped(mapping: InputMapping, register: Register) -> CombinerInput {
     CombinerInput { register, mapping, component: Component::Rgb }
 }
 
-/// The colour of a register as a vector.
+/// Returns an input: the colour of a register, expanded to a signed vector.
 pub(crate) fn expanded(register: Register) -> CombinerInput {
     mapped(InputMapping::ExpandNormal, register)
 }
 
-/// The colour of a register as it is.
+/// Returns an input: the colour of a register, unmapped.
 pub(crate) fn plain(register: Register) -> CombinerInput {
     mapped(InputMapping::UnsignedIdentity, register)
 }
 
-/// The number 1.
+/// Returns an input that reads 1.
 pub(crate) fn one() -> CombinerInput {
     mapped(InputMapping::UnsignedInvert, Register::Zero)
 }
 
-/// SPARE0 = A B.
+/// Returns a stage that computes SPARE0 = A B.
 pub(crate) fn product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
     let mut stage = GeneralStage::default();
     stage.rgb.inputs[..2].copy_from_slice(&[a, b]);
@@ -54,14 +54,14 @@ pub(crate) fn product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
     stage
 }
 
-/// SPARE0 = A . B.
+/// Returns a stage that computes SPARE0 = A . B.
 pub(crate) fn dot_product(a: CombinerInput, b: CombinerInput) -> GeneralStage {
     let mut stage = product(a, b);
     stage.rgb.ab_dot_product = true;
     stage
 }
 
-/// SPARE0 = A + C.
+/// Returns a stage that computes SPARE0 = A + C.
 pub(crate) fn sum(a: CombinerInput, c: CombinerInput) -> GeneralStage {
     let mut stage = GeneralStage::default();
     stage.rgb.inputs = [a, one(), c, one()];
@@ -69,7 +69,7 @@ pub(crate) fn sum(a: CombinerInput, c: CombinerInput) -> GeneralStage {
     stage
 }
 
-/// A program that shows SPARE0 and has one constant colour in all its stages.
+/// Returns combiners that show SPARE0 and have one constant colour in all stages.
 pub(crate) fn program([r, g, b]: [u8; 3], stages: Vec<GeneralStage>) -> Combiners {
     let mut combiners = Combiners { stages, ..Combiners::showing(FinalRegister::Spare0) };
     combiners.final_combiner.constants[0] = [r, g, b, 255];

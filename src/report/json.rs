@@ -1,4 +1,4 @@
-//! A trace as one JSON document; `docs/trace-format.md` describes it.
+//! Prints a trace as a JSON document; `docs/trace-format.md` describes it.
 
 use super::text::integer;
 use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
@@ -11,17 +11,17 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io;
 
-/// Version of the document.
+/// Version of the document's format.
 const VERSION: u32 = 1;
 
-/// The trace of a pixel as one JSON document, ended by a newline.
+/// Returns the trace of a pixel as a JSON document that ends in a newline.
 pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
     let mut text = serde_json::to_string_pretty(&trace_value(plan, trace)).unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// Writes the same document while the trace is made, a fragment at a time.
+/// Writes the same document while the pixel is traced, fragment by fragment.
 ///
 /// # Errors
 /// Those of `out`.
@@ -47,7 +47,7 @@ pub fn write_trace_json(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_
     writeln!(out, "{closing},{}", pretty(&rest).trim_start_matches('{'))
 }
 
-/// Writes the documents of all pixels of a rectangle, row by row, in one.
+/// Writes one document with the traces of all pixels of a rectangle, row by row.
 ///
 /// # Errors
 /// Those of `out`.
@@ -62,7 +62,7 @@ pub fn write_traces_json(out: &mut dyn io::Write, plan: &Plan, tracers: &[Tracer
     writeln!(out, "]\n}}")
 }
 
-/// The same document as a value, to stand in another one.
+/// Returns the same document as a value, to be embedded in another one.
 pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
     let mut value = json!({
         "format": "ninebit-trace",
@@ -75,7 +75,7 @@ pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
         "shown": trace.shown,
         "word": trace.word,
     });
-    // Values that `json!` is given are copied, with all that they hold.
+    // Assigned here because `json!` would copy the value with all its content.
     value["draws"] = trace.draws.iter().map(|fragment| draw(plan, fragment)).collect();
     if trace.left_out > 0 {
         value["left_out"] = json!(trace.left_out);
@@ -86,25 +86,25 @@ pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
     value
 }
 
-/// An integer as text, if not every reader's integers hold it: one that takes more than 31 bits and a sign.
+/// Returns an integer as text if it needs more than 31 bits and a sign, which not every reader's integers hold.
 fn beyond_31_bits(value: i64, per_one: i64) -> Option<String> {
     i32::try_from(value).is_err().then(|| integer(value, per_one))
 }
 
-/// Every policy's value.
+/// Returns the value of every policy as a JSON object.
 pub fn policies_value(policies: &Policies) -> Value {
     let value = |p: &Policy| (p.rule.to_string(), json!(p.values[policies.chosen(p.rule)].0));
     Value::Object(POLICIES.iter().map(value).collect())
 }
 
-/// Steps as they stand in the document of a trace.
+/// Returns steps as in the document of a trace.
 pub fn steps_value(steps: &[Step]) -> Value {
     numbered(steps, &[])
 }
 
-/// Steps with their numbers; `textures` are those of the scene.
+/// Returns steps with their ids. `textures` are those of the scene.
 fn numbered(steps: &[Step], textures: &[Texture]) -> Value {
-    // A later step of a name supersedes the earlier one.
+    // A later step replaces an earlier one of the same name.
     let mut made = HashMap::new();
     let mut values = Vec::with_capacity(steps.len());
     for (id, each) in steps.iter().enumerate() {
@@ -131,7 +131,7 @@ fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
     value
 }
 
-/// What each general stage was written as.
+/// Returns the text that each general stage was made from.
 pub fn origins(origins: &[StageOrigin]) -> Value {
     origins.iter().map(|origin| json!({ "rgb": origin.rgb, "alpha": origin.alpha })).collect()
 }

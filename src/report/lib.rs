@@ -1,7 +1,7 @@
-//! What a render did, for people and for programs.
+//! Reports on renders, as text and as JSON.
 //!
-//! * [`trace_text`], [`trace_json`] and [`side_by_side`](fn@side_by_side): the integers of one pixel, and of two.
-//! * [`compare`]: the same frame in ideal float64 arithmetic, and which rule causes which part of the difference.
+//! * [`trace_text`], [`trace_json`] and [`side_by_side`](fn@side_by_side): the integers of one pixel, and of two compared.
+//! * [`compare`]: comparison with the same frame in ideal float64 arithmetic, split by the rules that cause differences.
 //! * [`explain`]: what a plan computes, as equations, and what it costs.
 //! * [`vocabulary`]: the fields, names and operations of traces.
 
@@ -15,5 +15,5 @@ pub mod vocabulary;
 pub use json::origins;
 pub use json::{policies_value, steps_value, trace_json, trace_value, write_trace_json, write_traces_json};
 pub use side_by_side::{SideBySideLine, side_by_side, side_by_side_text};
-pub use text::planes;
+pub(crate) use text::planes;
 pub use text::{policies_text, steps_text, trace_text, write_trace_text};

@@ -1,4 +1,4 @@
-//! Two traces of one pixel beside each other.
+//! Two traces of one pixel side by side.
 
 use std::fmt::Write;
 
@@ -9,30 +9,30 @@ use ninebit::engine::{DrawTrace, PixelTrace};
 use ninebit::shown;
 use ninebit::trace::Step;
 
-/// A line of two traces: what one of them, or both, computed.
+/// A line of two traces: a step of one of them, or of both.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SideBySideLine {
-    /// The draw and the hardware block, where they begin with this line.
+    /// The draw and the hardware block, if this line is their first.
     pub heading: Option<String>,
-    /// What was computed.
+    /// Name of the step.
     pub name: String,
-    /// Its rule; may be empty.
+    /// Id of its rule; may be empty.
     pub rule: &'static str,
-    /// How, and the integer, in the first trace.
+    /// Expression and integer in the first trace; `None` if it has no such step.
     pub first: Option<(String, String)>,
-    /// How, and the integer, in the second trace.
+    /// Expression and integer in the second trace; `None` if it has no such step.
     pub second: Option<(String, String)>,
 }
 
 impl SideBySideLine {
-    /// Whether the traces differ here in what they yield.
+    /// Returns whether the integers of the traces differ.
     pub fn differs(&self) -> bool {
         let integer = |side: &Option<(String, String)>| side.as_ref().map(|(_, integer)| integer.clone());
         integer(&self.first) != integer(&self.second)
     }
 }
 
-/// The lines of two traces of the same pixel, steps of the same name on one line.
+/// Aligns two traces of the same pixel, with steps of the same name on one line.
 pub fn side_by_side(first: &PixelTrace, second: &PixelTrace) -> Vec<SideBySideLine> {
     let mut lines = Vec::new();
     let same = |a: &DrawTrace, b: &DrawTrace| (a.draw, a.triangle) == (b.draw, b.triangle);
@@ -73,8 +73,7 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
     }
 }
 
-/// The lines as a table for people. `titles` head the columns of the first and the second trace. Lines in which they differ begin
-/// with `>`.
+/// Returns the lines as a text table. `titles` are the headings of the first and second trace. Lines that differ begin with `>`.
 pub fn side_by_side_text(titles: [&str; 2], lines: &[SideBySideLine]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.

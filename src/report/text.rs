@@ -1,4 +1,4 @@
-//! A trace as text: one line a step, the integer, its real value, the ideal and the rule.
+//! Prints a trace as text, one line per step: the integer, its real value, the ideal and the rule.
 
 use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use ninebit::plan::Plan;
@@ -10,7 +10,7 @@ use ninebit::trace::{Operand, SINGLE, Step};
 use std::fmt::Write;
 use std::io;
 
-/// The trace of a pixel as text.
+/// Returns the trace of a pixel as text.
 pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -27,7 +27,7 @@ fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result 
     write_end(out, trace.draws.is_empty(), &TraceEnd { shown: trace.shown, word: trace.word })
 }
 
-/// Writes a trace as text while it is made, a fragment at a time.
+/// Writes a trace as text while the pixel is traced, fragment by fragment.
 ///
 /// # Errors
 /// Those of `out`.
@@ -75,7 +75,7 @@ fn write_end(out: &mut String, empty: bool, end: &TraceEnd) -> std::fmt::Result 
     writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", end.word)
 }
 
-/// The policies that are not the default, one a line.
+/// Returns the policies that differ from the default, one per line.
 pub fn policies_text(policies: &Policies) -> String {
     let mut out = String::new();
     for policy in POLICIES {
@@ -88,7 +88,7 @@ pub fn policies_text(policies: &Policies) -> String {
     out
 }
 
-/// Steps as a table: one line each, under the name of their hardware block.
+/// Returns steps as a table: one line each, under the name of their hardware block.
 pub fn steps_text(steps: &[Step]) -> String {
     let mut out = String::new();
     let _ = write_steps(&mut out, steps, |_| None);
@@ -107,15 +107,15 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
 }
 
-/// The names of planes, as a list.
-pub fn planes(set: u8) -> String {
+/// Returns the names of the clip planes in a set, separated by commas.
+pub(crate) fn planes(set: u8) -> String {
     ClipPlane::in_set(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {
     let mut block = "";
     let lines: Vec<(String, String)> = steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
-    // A few that are long do not push the columns of all others.
+    // A few long names do not widen the columns of all others.
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 40), width(|l| l.1.chars().count(), 58));
@@ -136,7 +136,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
         let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
         let (mut name, mut expression) = (name.as_str(), expression.as_str());
-        // What is wider than its column stands above, so that the numbers stay below each other.
+        // What is wider than its column gets a line of its own, so that the numbers stay aligned.
         if name.chars().count() > names {
             writeln!(out, "    {name}")?;
             name = "";
@@ -158,17 +158,17 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
     Ok(())
 }
 
-/// An integer; the bits of a single-precision number in hexadecimal.
+/// Formats an integer; the bits of a single-precision number are hexadecimal.
 pub(super) fn integer(value: i64, per_one: i64) -> String {
     if per_one == SINGLE { format!("{value:#010x}") } else { value.to_string() }
 }
 
-/// An operand as formulas show it: its integer, or the single-precision number.
+/// Formats an operand of a formula: its integer, or the single-precision number.
 fn shown(operand: &Operand) -> String {
     if operand.per_one == SINGLE { f32::from_bits(operand.value as u32).to_string() } else { operand.value.to_string() }
 }
 
-/// How a value came about, with the operands' integers.
+/// Returns the formula of a step with the integers of its operands.
 pub(super) fn expression(step: &Step) -> String {
     let value = |n: usize| step.inputs.get(n).map_or(String::new(), shown);
     let pairs = |inputs: &[Operand]| {
@@ -176,7 +176,7 @@ pub(super) fn expression(step: &Step) -> String {
             inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
         products.join(" + ")
     };
-    // The coordinate that is made, and the quantity of which the vertices have one each.
+    // The coordinate that is computed, and the quantity that each vertex has one of.
     let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
     let axis = last(&step.name);
     let prefix = step.inputs.first().map_or(String::new(), |input| last(input.name.trim_end_matches('0')));
@@ -273,13 +273,13 @@ pub(super) fn expression(step: &Step) -> String {
     }
 }
 
-/// The direction that twelve operands of a cube map make: three planes and the edge functions.
+/// Returns the direction that a cube map step's twelve operands yield: three planes and the edge functions.
 fn direction(inputs: &[Operand]) -> [i128; 3] {
     let at = |n: usize| inputs.get(n).map_or(0, |o| i128::from(o.value));
     [0, 3, 6].map(|first| (0..3).map(|k| at(first + k) * at(9 + k)).sum())
 }
 
-/// Which weights fall short (INT-4t), as an end of a formula.
+/// Returns the suffix of a formula that says which weights fall short (INT-4t).
 fn short(step: &Step) -> &'static str {
     let is = |name: &str| step.inputs.iter().any(|input| input.name == name && input.value == 1);
     match (is("short0"), is("short2")) {
@@ -290,7 +290,7 @@ fn short(step: &Step) -> &'static str {
     }
 }
 
-/// The minor component of u or v and the magnitude of the major one, of a step on a face.
+/// Returns the minor component for u or v, and the magnitude of the major one, for a step on a face.
 fn on_face(step: &Step) -> (i128, i128) {
     let direction = direction(&step.inputs);
     let face = step.inputs.get(12).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));

@@ -1,22 +1,22 @@
-//! The vocabulary of traces: the fields of their documents, and the names and operations of their steps, each with its meaning.
+//! Vocabulary of traces: the fields of their documents, and the names and operations of steps, each with its meaning.
 //!
-//! `docs/trace-format.md` shows it, and every trace is written in it.
+//! `docs/trace-format.md` is generated from it, and every trace uses only its words.
 
-/// Tables one after the other: a line `# NAME`, a line that names the columns, the rows; tabs between cells, an empty line between tables.
+/// The tables. Each is a line `# NAME`, a line with the names of the columns, and the rows. Cells are separated by tabs, tables by an empty line.
 const TEXT: &str = include_str!("vocabulary.tsv");
 
 /// A table of the vocabulary.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table {
-    /// What its rows are, for example "A step" or "Operations: Texture units".
+    /// Name, for example "A step" or "Operations: Texture units".
     pub name: &'static str,
-    /// What each column has.
+    /// Names of the columns.
     pub columns: Vec<&'static str>,
-    /// Cells in Markdown, one for each column. Words of traces stand in backticks.
+    /// Rows of Markdown cells, one for each column. Words of traces are in backticks.
     pub rows: Vec<Vec<&'static str>>,
 }
 
-/// All tables, in the order of the page.
+/// Returns all tables, in the order of the page.
 pub fn tables() -> Vec<Table> {
     let table = |text: &'static str| {
         let mut lines = text.lines();

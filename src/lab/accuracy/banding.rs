@@ -1,27 +1,28 @@
-//! Bands: how few levels a highlight has.
+//! Banding: the number of different levels in a highlight.
 
 use std::collections::HashSet;
 
 use ninebit_scene::generate::byte;
 use ninebit_scene::truth::TruthFrame;
 
-/// Levels over the highlight: the pixels whose truth is at least half of the brightest one. Counted in the channel that is brightest there.
+/// Banding of the highlight, which consists of the pixels whose truth is at least half of the brightest one. It is counted in the channel that is
+/// brightest there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Banding {
-    /// Pixels of the highlight.
+    /// Number of pixels in the highlight.
     pub pixels: u64,
-    /// Different bytes in it.
+    /// Number of different bytes in the picture's highlight.
     pub levels: u64,
-    /// Different bytes that the truth, rounded, has there.
+    /// Number of different bytes in the highlight of the rounded truth.
     pub truth_levels: u64,
-    /// The most pixels side by side in a row that have one byte.
+    /// Longest run of pixels in a row that have the same byte.
     pub flat_run: u64,
-    /// The longest flat run of the truth, rounded to bytes.
+    /// Longest such run of the rounded truth.
     pub truth_flat_run: u64,
 }
 
 impl Banding {
-    /// Over the measured pixels, given in ascending order.
+    /// Computes the banding of the measured pixels, whose indices are in ascending order.
     pub(super) fn from_pixels(truth: &TruthFrame, shown: &[[u8; 4]], measured: &[usize]) -> Banding {
         let value = |at: usize, channel: usize| truth.pixels[at].as_ref().map_or(0.0, |pixel| pixel.color[channel]);
         let brightest = |channel: usize| measured.iter().map(|at| value(*at, channel)).fold(0.0, f64::max);
@@ -36,7 +37,7 @@ impl Banding {
     }
 }
 
-/// Different bytes, and the longest run of one of them.
+/// Returns the number of different bytes, and the length of the longest run of one byte.
 fn bands(pixels: &[usize], width: usize, byte: impl Fn(usize) -> u8) -> (u64, u64) {
     let (mut levels, mut longest, mut run) = (HashSet::new(), 0, 0);
     let mut before: Option<usize> = None;

@@ -1,29 +1,29 @@
-//! What a technique costs the modelled chip: counts, no cycles.
+//! Cost of a technique on the modelled chip: operation counts, not cycles.
 
 use ninebit::plan::Plan;
 use ninebit::state::Scene;
 use ninebit::trace::Work;
 use ninebit_report::explain::{Cost, explain};
 
-/// What a frame costs, counted twice.
+/// Cost of a frame, before and after pruning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HardwareCost {
-    /// As the program asks for it: what a chip pays, which runs what it is told.
+    /// Cost of everything that the program asks for, which is what a chip does.
     pub asked: FrameCost,
-    /// Without what nothing can see: what the plan keeps, and what is drawn here.
+    /// Cost without what cannot affect the picture: what the plan keeps and the model draws.
     pub pruned: FrameCost,
 }
 
-/// Counts of one frame. What tests or the lod may save is counted as if they saved nothing.
+/// Operation counts of one frame. Savings by tests or by the level of detail are not taken into account.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameCost {
-    /// Draws of the frame.
+    /// Number of draws.
     pub passes: u64,
-    /// The most general stages that a pass has.
+    /// Largest number of general stages of a pass.
     pub most_stages: u64,
-    /// The most texture units that a pass reads.
+    /// Largest number of texture units that a pass reads.
     pub most_units: u64,
-    /// Vertices of all passes.
+    /// Number of vertices of all passes.
     pub vertices: u64,
     /// Per final pixel: fragments of all passes.
     pub fragments: f64,
@@ -42,7 +42,7 @@ pub struct FrameCost {
 }
 
 impl HardwareCost {
-    /// Of a frame with so many final pixels, which are at least 1.
+    /// Computes the cost of a frame. `pixels` is its number of final pixels, at least 1.
     pub(super) fn from_scene(scene: &Scene, plan: &Plan, pixels: u64) -> HardwareCost {
         let explained = explain(scene, plan);
         let vertices = || scene.draws.iter().map(|draw| draw.vertices.len() as u64);
@@ -53,7 +53,7 @@ impl HardwareCost {
 }
 
 impl FrameCost {
-    /// Of draws, each with its vertices.
+    /// Adds up the costs of draws, each with its number of vertices.
     fn from_draws(draws: &[(&Cost, u64)], pixels: u64) -> FrameCost {
         let seen = || draws.iter().filter(|(cost, _)| cost.seen);
         let per_pixel =
@@ -79,8 +79,8 @@ impl FrameCost {
         }
     }
 
-    /// Amounts for each final pixel, by name.
-    pub fn per_pixel(&self) -> [(&'static str, f64); 7] {
+    /// Returns the counts per final pixel, by name.
+    pub(crate) fn per_pixel(&self) -> [(&'static str, f64); 7] {
         [
             ("fragments", self.fragments),
             ("texture fetches", self.fetches),
@@ -92,8 +92,8 @@ impl FrameCost {
         ]
     }
 
-    /// Counts of the whole frame, by name.
-    pub fn counts(&self) -> [(&'static str, u64); 4] {
+    /// Returns the counts of the whole frame, by name.
+    pub(crate) fn counts(&self) -> [(&'static str, u64); 4] {
         [
             ("passes", self.passes),
             ("most stages", self.most_stages),

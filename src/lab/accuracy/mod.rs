@@ -1,6 +1,6 @@
-//! How exact a technique is: a scene's picture against its truth, the error split by cause, and what it costs the chip.
+//! Accuracy of a technique: a scene's picture against its ground truth, the error by cause, and the cost on the chip.
 //!
-//! The way from the truth to the picture is taken in steps, and each step has a cause:
+//! The truth turns into the picture in steps, each of which is a cause of errors:
 //!
 //! ```text
 //! truth                      the equation, per pixel, in float64                       truth::evaluate
@@ -30,62 +30,62 @@ pub use cost::{FrameCost, HardwareCost};
 pub use normals::NormalError;
 pub use report::{accuracy_text, accuracy_value};
 
-/// The target that is measured: the first.
+/// Index of the target that is measured.
 const TARGET: usize = 0;
 
-/// R, G and B.
+/// Mask of the channels R, G and B.
 const COLORS: u8 = 7;
 
-/// What a technique is off by because of one thing.
+/// The error of a technique that is due to one cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// What: "quantised normals", "method", or the name of a [`Part`].
+    /// Name: "quantised normals", "method", or the name of a [`Part`].
     pub name: &'static str,
-    /// What it adds to the error.
+    /// The errors that it adds.
     pub errors: Statistics,
 }
 
-/// How exact a scene's picture is.
+/// Accuracy of a scene's picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Columns of the target.
+    /// Width of the target in pixels.
     pub width: u32,
-    /// Rows of the target.
+    /// Height of the target in pixels.
     pub height: u32,
-    /// Pixels that were measured: those that have a truth.
+    /// Number of measured pixels: those that have a truth.
     pub pixels: u64,
-    /// Pixels that were drawn and have none.
+    /// Number of pixels that are drawn but have no truth.
     pub without: u64,
-    /// R, G and B together.
+    /// Errors of R, G and B together.
     pub errors: Statistics,
-    /// R, G and B.
+    /// Errors of R, G and B.
     pub channels: [Statistics; 3],
-    /// The error, split by cause; the causes of a pixel add up to its error.
+    /// Errors by cause. In each pixel they add up to its error.
     pub causes: Vec<Cause>,
-    /// Bands over the highlight.
+    /// Banding of the highlight.
     pub banding: Banding,
-    /// How far the technique's normals are turned, where the truth names their register.
+    /// Errors of the technique's normals, if the truth names their register.
     pub normals: Option<NormalError>,
-    /// What it costs the chip.
+    /// Cost on the chip.
     pub cost: HardwareCost,
-    /// What was compared.
+    /// The pictures that were compared.
     pub pictures: Pictures,
 }
 
 /// A picture and its truth, pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pictures {
-    /// Columns of each picture.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of each picture.
+    /// Height in pixels.
     pub height: u32,
-    /// What is shown: R, G, B, A.
+    /// The picture: R, G, B, A.
     pub shown: Vec<[u8; 4]>,
-    /// What ought to be shown, 0 to 1; `None` where that is not measured.
+    /// The truth: R, G, B from 0 to 1; `None` where a pixel is not measured.
     pub truth: Vec<Option<[f64; 3]>>,
 }
 
-/// Measures a scene with its truth. `None` if no pixel with a truth is drawn.
+/// Measures a scene against its truth. Returns `None` if no pixel with a truth is drawn.
 pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let visible = Visible::new(plan, truth, TARGET);
     let ideal = visible.evaluate(|_| None);
@@ -137,7 +137,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     })
 }
 
-/// A channel of a pixel's truth, in steps.
+/// Returns a channel of a pixel's truth, in steps of 1/255.
 fn color(frame: Option<&TruthFrame>, at: usize, channel: usize) -> Option<f64> {
     frame.and_then(|frame| frame.pixels[at].as_ref()).map(|pixel| 255.0 * pixel.color[channel])
 }
@@ -150,7 +150,7 @@ fn causes(inputs: Option<Statistics>, method: Statistics, technique: &Comparison
     inputs.into_iter().chain([method]).chain(parts).collect()
 }
 
-/// What a picture shows, R, G, B, A by pixel.
+/// Draws the picture. Returns R, G, B, A of each pixel.
 fn shown(plan: &Plan) -> Vec<[u8; 4]> {
     let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
     let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);

@@ -1,4 +1,4 @@
-//! The normals that a technique holds in a register, read out and compared with the surface's.
+//! The normals that a technique has in a register, read back and compared with those of the surface.
 
 use super::{COLORS, TARGET};
 use ninebit::engine::{DrawTrace, trace};
@@ -10,26 +10,26 @@ use ninebit_scene::truth::{NormalHolder, ShadingNormal, Space, Truth, TruthFrame
 use ninebit_scene::vector::{Vector, cross, dot, unit_or_zero};
 use rayon::prelude::*;
 
-/// How far a technique's normals are turned away from the surface's.
+/// Deviation of a technique's normals from the surface's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalError {
-    /// Angles in degrees, none negative.
+    /// Angles between them in degrees, not negative.
     pub degrees: Statistics,
-    /// Lengths of the technique's normals; 1 is right.
+    /// Lengths of the technique's normals; they should be 1.
     pub lengths: Statistics,
 }
 
-/// Normals by pixel: what a register holds before the first general stage, or what a dot product of the texture shader reads.
+/// Normals by pixel: those in a register before the first general stage, or those that a dot product of the texture shader reads.
 pub(super) struct Normals {
-    /// What is stored: a register's bytes as `expand` reads them, or the vector of the texture shader.
+    /// The stored vectors: a register's bytes as `expand` reads them, or the vectors of the texture shader.
     stored: Vec<Option<Vector>>,
-    /// The same if nothing on the way to the register had been rounded: 2x - 1 of the ideal of the texels or colours.
+    /// The vectors without any rounding before the register: 2x - 1 of the ideal texels or colours.
     pub(super) ideal: Vec<Option<Vector>>,
     /// The space in which the vectors are given.
     pub(super) space: Space,
 }
 
-/// Reads the normals of the draws that have a truth. `measured` names the pixels that will be asked for.
+/// Reads the normals of the draws that have a truth. `measured` lists the pixels that the caller needs.
 pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNormal, measured: &[usize]) -> Normals {
     match normal.holder {
         NormalHolder::Register(register) => of_register(scene, plan, truth, normal.space, register),
@@ -37,7 +37,7 @@ pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNor
     }
 }
 
-/// The vectors that a dot product of the texture shader reads, off the trace of each pixel: those of the last draw that has a truth and reads one.
+/// Reads the vectors of a texture shader's dot product from the trace of each pixel. They are those of the last draw that has a truth and reads them.
 fn of_dot_product(plan: &Plan, truth: &Truth, space: Space, unit: usize, measured: &[usize]) -> Normals {
     let width = plan.targets[TARGET].width as usize;
     let components = ["x", "y", "z"].map(|axis| format!("unit{unit}.vector.{axis}"));
@@ -66,7 +66,7 @@ fn of_dot_product(plan: &Plan, truth: &Truth, space: Space, unit: usize, measure
     normals
 }
 
-/// What a register holds: the scene is drawn once more with programs that show it.
+/// Reads a register by drawing the scene once more, with combiners that show it.
 fn of_register(scene: &Scene, plan: &Plan, truth: &Truth, space: Space, register: Register) -> Normals {
     let mut probe = scene.clone();
     for (number, draw) in probe.draws.iter_mut().enumerate() {
@@ -100,7 +100,7 @@ fn of_register(scene: &Scene, plan: &Plan, truth: &Truth, space: Space, register
     }
 }
 
-/// A program that shows a register, opaque.
+/// Returns combiners that show a register with alpha 1.
 fn showing(register: FinalRegister) -> Combiners {
     let mut shown = Combiners::showing(register);
     shown.final_combiner.g = FinalInput { invert: true, ..FinalInput::zero(Component::Alpha) };
@@ -108,7 +108,7 @@ fn showing(register: FinalRegister) -> Combiners {
 }
 
 impl NormalError {
-    /// Over the measured pixels; where the surface has no normal there is no angle.
+    /// Computes the errors over the measured pixels. Pixels where the surface has no normal have no angle.
     pub(super) fn from_normals(truth: &TruthFrame, normals: &Normals, measured: &[usize]) -> NormalError {
         let (mut degrees, mut lengths) = (Statistics::default(), Statistics::default());
         for at in measured {
@@ -123,7 +123,7 @@ impl NormalError {
     }
 }
 
-/// The angle between two unit vectors, in degrees; exact for small ones too.
+/// Returns the angle between two unit vectors in degrees. It is also accurate for small angles.
 fn angle(a: Vector, b: Vector) -> f64 {
     let across = cross(a, b);
     libm::atan2(dot(across, across).sqrt(), dot(a, b)).to_degrees()

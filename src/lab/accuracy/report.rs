@@ -1,11 +1,11 @@
-//! A measurement as text and as JSON.
+//! Prints an accuracy measurement as text and as JSON.
 
 use super::{Accuracy, FrameCost, HardwareCost};
 use ninebit_report::compare::{Statistics, statistics_value};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// The measurement for people.
+/// Returns the measurement as text.
 pub fn accuracy_text(accuracy: &Accuracy) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -50,7 +50,7 @@ fn write(out: &mut String, a: &Accuracy) -> std::fmt::Result {
     write_cost(out, &a.cost)
 }
 
-/// What the program asks of the chip, beside what is left of it after pruning.
+/// Writes the cost as asked beside the cost after pruning.
 fn write_cost(out: &mut String, cost: &HardwareCost) -> std::fmt::Result {
     writeln!(out, "\ncost                     as asked  after pruning")?;
     for ((name, asked), (_, pruned)) in cost.asked.counts().iter().zip(cost.pruned.counts()) {
@@ -63,7 +63,7 @@ fn write_cost(out: &mut String, cost: &HardwareCost) -> std::fmt::Result {
     Ok(())
 }
 
-/// The measurement for programs: an object of a JSON document.
+/// Returns the measurement as a JSON object.
 pub fn accuracy_value(a: &Accuracy) -> Value {
     let channels: Map<String, Value> =
         ["r", "g", "b"].iter().zip(&a.channels).map(|(name, e)| ((*name).to_owned(), statistics_value(e))).collect();

@@ -1,5 +1,5 @@
-//! What the figures say: answers to five questions, and five claims of 2002, decided. Nothing of either is written down here but the
-//! question, which figures decide it, and from which difference on.
+//! Answers to five questions, and verdicts on five claims of 2002, derived from the measurements. The code holds only the questions, the figures that
+//! decide them, and the thresholds.
 
 use super::evaluators::Evaluator;
 use super::page::number;
@@ -10,19 +10,19 @@ use super::techniques::Technique;
 use ninebit::combiner::mapping::map;
 use ninebit::state::{ExpandCentre, InputMapping, Policies};
 
-/// Two errors are alike if the larger is at most so many times the smaller.
+/// Two errors count as alike if the larger is at most this many times the smaller.
 const MAX_ERROR_RATIO: f64 = 1.25;
-/// A speed is what is claimed if it is no further off than this, of 100.
+/// Largest deviation from a claimed relative speed (in per cent) at which the claim counts as confirmed.
 const MAX_SPEED_DEVIATION: f64 = 10.0;
 
-/// A row of words.
+/// A row of table cells.
 type Row = Vec<String>;
 
 fn row(cells: &[&str]) -> Row {
     cells.iter().map(|cell| (*cell).to_owned()).collect()
 }
 
-/// A way with its error and what it asks of the chip.
+/// Describes a technique with its error and its cost on the chip.
 fn told(way: &Technique) -> String {
     let cost = &way.accuracy.cost.asked;
     let counts = [(cost.passes as f64, "pass"), (cost.stages, "stage"), (cost.fetches, "fetch")];
@@ -34,13 +34,13 @@ fn told(way: &Technique) -> String {
     format!("*{}*: {} rms for {passes}, {stages}, {fetches}", way.entry.name(), rms(way))
 }
 
-/// The error of a way as it is written.
+/// Returns the error of a technique as text.
 fn rms(way: &Technique) -> String {
     number(way.rms())
 }
 
 impl Measured {
-    /// Five people's questions. A question whose scenes were not measured is left out.
+    /// Returns the table of five questions and their answers. Questions whose scenes were not measured are left out.
     pub(super) fn answers(&self) -> Vec<Row> {
         let lights = self.lights();
         let light = |name: &str| lights.iter().find(|light| light.name == name);
@@ -63,7 +63,7 @@ impl Measured {
         self.techniques.iter().find(|way| way.entry.family == family && way.entry.name() == name)
     }
 
-    /// For each exponent that both were drawn with: which is nearer.
+    /// Compares squaring with a table at each exponent that both were measured with.
     fn table_or_squaring(&self) -> Option<String> {
         let family = "per-pixel-lighting";
         let exponents = [8, 16, 32].into_iter().filter_map(|exponent| {
@@ -90,7 +90,7 @@ impl Measured {
         Some(format!("At every exponent from {first} on{but}. {}", capital(&told.join("; "))))
     }
 
-    /// The same passes with and without a subtracting blend.
+    /// Compares the same passes with and without a subtracting blend.
     fn subtracting(&self, lights: &[Light<'_>]) -> Option<String> {
         let family = "orthogonal-illumination-mapping";
         let [with, without] = [self.find(family, "dot 12")?, self.find(family, "dot 12 approximate")?];
@@ -105,7 +105,7 @@ impl Measured {
         ))
     }
 
-    /// The exact evaluators beside those that are not.
+    /// Compares the exact evaluators with the others.
     fn exact(&self) -> Option<String> {
         let surface = &self.evaluators.first()?.surface;
         let own: Vec<&Evaluator> = self.evaluators.iter().filter(|e| e.surface == *surface).collect();
@@ -129,7 +129,7 @@ impl Measured {
         Some(format!("{verdict}. {}; {}", capital(&told(exact)), others.join("; ")))
     }
 
-    /// Five claims of 2002. A claim whose scenes were not measured is left out.
+    /// Returns the table of five claims of 2002 and their verdicts. Claims whose scenes were not measured are left out.
     pub(super) fn claims(&self) -> Vec<Row> {
         let lights = self.lights();
         let light = |name: &str| lights.iter().find(|light| light.name == name);
@@ -151,7 +151,7 @@ impl Measured {
     }
 }
 
-/// A verdict and the figures that it stands on.
+/// A verdict and the figures behind it; `None` if scenes were not measured.
 type Decided = Option<(&'static str, String)>;
 
 fn verdict(holds: bool) -> &'static str {
@@ -181,7 +181,7 @@ fn cube_map(light: &Light<'_>) -> Option<String> {
     ))
 }
 
-/// Error, levels, angle and cost of a way.
+/// Describes error, cost, levels and normal angle of a technique.
 fn figures(way: &Technique) -> String {
     let turned = degrees(way).map_or(String::new(), |angle| format!(", normals {} degrees off", number(angle)));
     format!("{}, {} levels{turned}", told(way), way.accuracy.banding.levels)
@@ -211,7 +211,7 @@ fn bands(smooth: &Light<'_>) -> Decided {
     Some((verdict(2 * few < wanted && 10 * many > 8 * wanted), text))
 }
 
-/// The ratio of errors that bumps leave of what it was.
+/// Decides whether bump maps make the difference between two techniques vanish.
 fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Decided {
     let ratio = |light: &Light<'_>, names: [&str; 2]| {
         let [a, b] = names.map(|name| light.way(name).map(Technique::rms));
@@ -243,7 +243,7 @@ fn speeds(smooth: &Light<'_>) -> Decided {
     Some((if near { "confirmed here" } else { "refuted here" }, text))
 }
 
-/// Not a claim of the five, but of the same year: bytes of 128 are taken for zero, or the neutral normal leans.
+/// Returns a sixth claim of the same year: if byte 128 does not mean zero, the neutral normal is tilted.
 fn neutral() -> Row {
     let angle = |centre: ExpandCentre| {
         let policies = Policies { expand_centre: centre, ..Policies::DEFAULT };

@@ -1,4 +1,4 @@
-//! A drawing made of texts, lines, marks and pictures, as SVG and as PNG. It knows where its texts stand.
+//! A drawing of texts, lines, marks and pictures, as SVG and as PNG.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -7,112 +7,87 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use std::fmt::Write;
 
-use super::labels::{Rect, text_width};
+use super::labels::Rect;
 use super::picture::{Picture, SCALE, encode_error};
 use ninebit_files::output::{Compression, OutputError, encode_png};
 
-/// Which part of a text stands at its place.
+/// The point of a text that its position refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// It begins there.
+pub(super) enum Side {
+    /// Its left end.
     Left,
-    /// Its middle is there.
+    /// Its middle.
     Middle,
-    /// It ends there.
+    /// Its right end.
     Right,
 }
 
-/// Pixels of a picture, row by row, R, G, B.
+/// A picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Image {
-    /// Pixels across.
+pub(super) struct Image {
+    /// Width in pixels.
     pub width: usize,
-    /// Its rows one after another.
+    /// R, G, B of each pixel, row by row from the top.
     pub pixels: Vec<[u8; 3]>,
 }
 
-/// A drawing; sizes and places are in pixels of the SVG from the top left, the PNG has twice as many each way.
-pub struct Canvas {
+/// A drawing. Sizes and positions are in pixels of the SVG, from the top left; the PNG has [`SCALE`] times as many in each direction.
+pub(super) struct Canvas {
     size: [f64; 2],
     scene: Scene,
-    texts: Vec<(String, Rect)>,
     images: Vec<(Rect, Image)>,
 }
 
-impl std::fmt::Debug for Canvas {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Canvas").field("size", &self.size).field("texts", &self.texts).finish_non_exhaustive()
-    }
-}
-
 impl Canvas {
-    /// A white one.
-    pub fn new(width: f64, height: f64) -> Canvas {
+    /// Returns a white drawing.
+    pub(super) fn new(width: f64, height: f64) -> Canvas {
         let mut scene = Scene::new(width, height);
         scene.background_color = Some("#ffffff".to_owned());
         scene.font_family = Some("DejaVu Sans, Liberation Sans, Arial, sans-serif".to_owned());
-        Canvas { size: [width, height], scene, texts: Vec::new(), images: Vec::new() }
+        Canvas { size: [width, height], scene, images: Vec::new() }
     }
 
-    /// A text whose baseline is at `y`.
-    pub fn text(&mut self, [x, y]: [f64; 2], side: Side, size: u32, color: &str, text: &str) {
-        let width = text_width(text, f64::from(size));
-        let (left, anchor) = match side {
-            Side::Left => (x, TextAnchor::Start),
-            Side::Middle => (x - width / 2.0, TextAnchor::Middle),
-            Side::Right => (x - width, TextAnchor::End),
+    /// Adds a text whose baseline is at `y`.
+    pub(super) fn text(&mut self, [x, y]: [f64; 2], side: Side, size: u32, color: &str, text: &str) {
+        let anchor = match side {
+            Side::Left => TextAnchor::Start,
+            Side::Middle => TextAnchor::Middle,
+            Side::Right => TextAnchor::End,
         };
-        let height = f64::from(size);
-        self.texts.push((text.to_owned(), Rect { x: left, y: y - 0.8 * height, width, height }));
         let (content, color) = (text.to_owned(), Some(color.into()));
         self.scene.add(Primitive::Text { x, y, content, size, anchor, rotate: None, bold: false, color });
     }
 
-    /// A straight line.
-    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str, stroke_width: f64) {
+    /// Adds a straight line.
+    pub(super) fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str, stroke_width: f64) {
         let stroke = color.into();
         self.scene.add(Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray: None });
     }
 
-    /// A filled rectangle.
-    pub fn rectangle(&mut self, place: Rect, color: &str) {
+    /// Adds a filled rectangle.
+    pub(super) fn rectangle(&mut self, place: Rect, color: &str) {
         let Rect { x, y, width, height } = place;
         let fill = color.into();
         self.scene.add(Primitive::Rect { x, y, width, height, fill, stroke: None, stroke_width: None, opacity: None });
     }
 
-    /// A disc, filled or as a ring.
-    pub fn disc(&mut self, [cx, cy]: [f64; 2], r: f64, color: &str, filled: bool) {
+    /// Adds a disc, filled or as a ring.
+    pub(super) fn disc(&mut self, [cx, cy]: [f64; 2], r: f64, color: &str, filled: bool) {
         let fill = if filled { color } else { "#ffffff" }.into();
         let (stroke, stroke_width) = (Some(color.into()), Some(1.5));
         self.scene.add(Primitive::Circle { cx, cy, r, fill, fill_opacity: None, stroke, stroke_width });
     }
 
-    /// A picture in a rectangle; its pixels stay sharp.
-    pub fn image(&mut self, place: Rect, image: Image) {
+    /// Adds a picture that fills a rectangle, without interpolation.
+    pub(super) fn image(&mut self, place: Rect, image: Image) {
         self.images.push((place, image));
     }
 
-    /// Two texts that share a place, or one that leaves the drawing, if there are any.
-    pub fn collision(&self) -> Option<(&str, &str)> {
-        let whole = Rect { x: 0.0, y: 0.0, width: self.size[0], height: self.size[1] };
-        for (n, (text, place)) in self.texts.iter().enumerate() {
-            if place.overlap(&whole) + 1e-6 < place.width * place.height {
-                return Some((text, "the edge"));
-            }
-            let other = self.texts[n + 1..].iter().find(|(_, other)| place.overlap(other) > 0.0);
-            if let Some((other, _)) = other {
-                return Some((text, other));
-            }
-        }
-        None
-    }
-
-    /// The drawing in both formats.
+    /// Draws it in both formats.
     ///
     /// # Errors
-    /// A PNG cannot be encoded.
-    pub fn draw(&self) -> Result<Picture, OutputError> {
+    /// Returns an error if a PNG cannot be encoded.
+    pub(super) fn draw(&self) -> Result<Picture, OutputError> {
         let size = self.size.map(|side| (side * f64::from(SCALE)) as u32);
         let fail = |reason| encode_error(size, reason);
         let mut svg = SvgBackend::new().render_scene(&self.scene).trim_end().trim_end_matches("</svg>").to_owned();
@@ -149,12 +124,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_stand_in_both_formats_and_texts_are_known() {
+    fn pictures_stand_in_both_formats() {
         let mut canvas = Canvas::new(60.0, 40.0);
         let image = Image { width: 2, pixels: vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]] };
         canvas.image(Rect { x: 10.0, y: 20.0, width: 10.0, height: 10.0 }, image);
         canvas.text([2.0, 12.0], Side::Left, 10, "#000000", "a < b");
-        assert_eq!(canvas.collision(), None);
         let picture = canvas.draw().unwrap();
         assert!(picture.svg.contains("a &lt; b") && picture.svg.contains("data:image/png;base64,"));
         assert!(picture.svg.ends_with("</svg>\n") && picture.svg.matches("</svg>").count() == 1);
@@ -166,10 +140,5 @@ mod tests {
             [[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]]
         );
         assert_eq!(at(19, 41), [255, 255, 255]);
-        canvas.text([20.0, 14.0], Side::Middle, 10, "#000000", "over");
-        assert_eq!(canvas.collision(), Some(("a < b", "over")));
-        let mut canvas = Canvas::new(60.0, 40.0);
-        canvas.text([58.0, 14.0], Side::Left, 10, "#000000", "out");
-        assert_eq!(canvas.collision(), Some(("out", "the edge")));
     }
 }

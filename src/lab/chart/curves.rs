@@ -1,4 +1,4 @@
-//! How the cost of a frame grows with what is drawn: in proportion, and not at all with what nothing sees.
+//! Growth of a frame's cost: it is proportional to what is drawn and does not depend on what nothing sees.
 
 use std::sync::OnceLock;
 
@@ -13,21 +13,21 @@ use ninebit::plan::Plan;
 use ninebit::state::{self, GeneralStage, Register};
 use ninebit_scene::SceneError;
 
-/// The scene, without what varies: a draw for each grid, the smallest first.
+/// The scene without the parts that vary. It has a draw for each grid, the smallest first.
 const SCENE: &str = include_str!("curve.ron");
 
-/// A scene of some size.
+/// Parameters of a scene whose cost is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scene {
-    /// Columns and rows of the frame.
+    /// Width and height of the frame in pixels.
     pub side: usize,
-    /// The grid: the number of its draw in the scene's file.
+    /// Index of the grid, which is that of its draw in the scene's file.
     pub grid: usize,
-    /// Draws of the same.
+    /// Number of identical draws.
     pub draws: usize,
-    /// General stages, 1 to 8: dot products and, each fourth, a choice.
+    /// Number of general stages, 1 to 8: dot products and, every fourth, a mux.
     pub stages: usize,
-    /// Further stages, at most 8 with the others, that nothing reads.
+    /// Number of further stages whose results nothing reads; at most 8 together with the others.
     pub unseen: usize,
 }
 
@@ -36,28 +36,28 @@ const PLAIN: Scene = Scene { side: 256, grid: 0, draws: 1, stages: 1, unseen: 0 
 /// A point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// How many there are of what is counted.
+    /// The counted quantity.
     pub count: u64,
-    /// Pixels that are shaded, once for each draw.
+    /// Number of shaded pixels, counted once for each draw.
     pub pixels: u64,
-    /// Of a frame; a quarter of them took less.
+    /// Time of a frame: the lower quartile.
     pub microseconds: f64,
 }
 
-/// A line of a chart.
+/// A curve of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
-    /// The chart that it stands in, also the name of its file.
+    /// Name of its chart and of the chart's file.
     pub chart: &'static str,
-    /// What is counted.
+    /// Name of the counted quantity.
     pub counted: &'static str,
-    /// Its name among others of its chart; may be empty.
+    /// Its label in the chart; may be empty.
     pub label: &'static str,
-    /// The points, by ascending count.
+    /// The points, sorted by count.
     pub points: Vec<Point>,
 }
 
-/// Everything that is measured, in order; with few frames, small ones only.
+/// Returns every curve, still without points, and the scenes of its points. With `quick` it has only the first two of each.
 pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     let most = if quick { 2 } else { usize::MAX };
     let curve = |chart, counted, label, scenes: Vec<Scene>| {
@@ -79,7 +79,7 @@ pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     ]
 }
 
-/// The scene of the file, which is read once.
+/// Returns the scene of the file, which is parsed once.
 fn base() -> Result<&'static state::Scene, Box<SceneError>> {
     static BASE: OnceLock<state::Scene> = OnceLock::new();
     if let Some(scene) = BASE.get() {
@@ -89,12 +89,12 @@ fn base() -> Result<&'static state::Scene, Box<SceneError>> {
     Ok(BASE.get_or_init(|| scene))
 }
 
-/// A dot product of what the stage before has left.
+/// Returns a stage with a dot product of the previous stage's result.
 fn continued() -> GeneralStage {
     dot_product(expanded(Register::Spare0), expanded(Register::PrimaryColor))
 }
 
-/// A choice between two products.
+/// Returns a stage with a mux of two products.
 fn choice() -> GeneralStage {
     let mut stage = GeneralStage::default();
     stage.rgb.inputs =
@@ -104,11 +104,11 @@ fn choice() -> GeneralStage {
 }
 
 impl Scene {
-    /// The scene, ready to be drawn.
+    /// Compiles the scene to a plan.
     ///
     /// # Errors
-    /// The scene is not accepted: a fault of the file.
-    pub fn plan(&self) -> Result<Plan, Box<SceneError>> {
+    /// Returns an error if the scene is not valid, which is a fault of the file.
+    fn plan(&self) -> Result<Plan, Box<SceneError>> {
         let mut scene = base()?.clone();
         let mut draw = scene.draws.swap_remove(self.grid);
         let (texture, color) = (Register::Texture0, Register::PrimaryColor);
@@ -126,10 +126,10 @@ impl Scene {
         planned(&scene)
     }
 
-    /// A point of what is counted.
+    /// Measures the scene as a point of a curve.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// The same as [`plan`](Self::plan).
     pub fn point(&self, counted: &str, effort: &Effort) -> Result<Point, Box<SceneError>> {
         let plan = self.plan()?;
         let options = RenderOptions { threads: 1, ..RenderOptions::default() };
@@ -144,8 +144,8 @@ impl Scene {
     }
 }
 
-/// The charts, by the names of their files.
-pub fn drawings(curves: &[Curve]) -> Vec<(&'static str, Drawing)> {
+/// Returns the charts with the names of their files.
+pub(crate) fn drawings(curves: &[Curve]) -> Vec<(&'static str, Drawing)> {
     let mut charts: Vec<&str> = curves.iter().map(|curve| curve.chart).collect();
     charts.dedup();
     charts
@@ -157,7 +157,7 @@ pub fn drawings(curves: &[Curve]) -> Vec<(&'static str, Drawing)> {
 fn drawing(curves: Vec<&Curve>) -> Drawing {
     let counted = curves.first().map_or("", |curve| curve.counted);
     let stages = counted == "stages";
-    // Stages are few, and each pixel has them all.
+    // Time is per pixel for stages, since each pixel runs all of them.
     let value =
         |point: &Point| if stages { point.microseconds * 1000.0 / point.pixels as f64 } else { point.microseconds };
     let all = || curves.iter().flat_map(|curve| &curve.points);
@@ -203,7 +203,7 @@ mod tests {
         }
     }
 
-    /// Stages that nothing reads are left out of the plan; the others are not.
+    /// Checks that the plan drops stages that nothing reads, and only those.
     #[test]
     fn only_seen_stages_are_planned() {
         let planned = |scene: Scene| scene.plan().unwrap().draws[0].stages.len();

@@ -1,4 +1,4 @@
-//! What was measured, as data: one table as comma-separated values, and everything as one document.
+//! The measurements as data: a table as comma-separated values, and everything as one JSON document.
 
 use serde_json::{Value, json};
 
@@ -10,14 +10,14 @@ use crate::accuracy::{FrameCost, HardwareCost, accuracy_value};
 use ninebit::engine::Isa;
 use ninebit::state::Named;
 
-/// A column: its name, what it holds, and its value; empty where there is none.
+/// A column: its name, its meaning, and the function to its value, which may be empty.
 struct Column {
     name: String,
     meaning: String,
     of: Box<dyn Fn(&Technique) -> String>,
 }
 
-/// A column of the costs: its name, its meaning and its value.
+/// A column of the costs: its name, its meaning, and the function to its value.
 type Count = (&'static str, &'static str, fn(&FrameCost) -> f64);
 
 const COUNTS: [Count; 10] = [
@@ -34,7 +34,7 @@ const COUNTS: [Count; 10] = [
 ];
 
 impl Measured {
-    /// The columns after those that say which technique it is.
+    /// Returns the columns after those that identify the technique.
     fn columns(&self) -> Vec<Column> {
         let mut all = Vec::new();
         let mut add = |name: &str, meaning: &str, of: Box<dyn Fn(&Technique) -> String>| {
@@ -70,7 +70,7 @@ impl Measured {
         all
     }
 
-    /// One row a technique under a heading.
+    /// Returns a heading and one row per technique.
     pub(super) fn data_rows(&self, lights: &[Light<'_>]) -> Vec<Vec<String>> {
         let columns = self.columns();
         let heading = ["family", "technique", "parameter", "truth"].into_iter().map(str::to_owned);
@@ -85,7 +85,7 @@ impl Measured {
         std::iter::once(heading).chain(self.techniques.iter().map(row)).collect()
     }
 
-    /// What the columns hold.
+    /// Returns the table that explains the columns.
     pub(super) fn column_rows(&self) -> Vec<Vec<String>> {
         let fixed = [
             ["column", "what it holds"],
@@ -99,7 +99,7 @@ impl Measured {
         fixed.into_iter().chain(columns).collect()
     }
 
-    /// All measurements of the page as one JSON document.
+    /// Returns all measurements of the page as one JSON document.
     pub(super) fn document(&self, lights: &[Light<'_>]) -> Value {
         let technique = |technique: &Technique| {
             let mut value = accuracy_value(&technique.accuracy);
@@ -125,13 +125,13 @@ impl Measured {
     }
 }
 
-/// The name of the light that a scene means.
+/// Returns the name of the light that a scene approximates.
 fn meant<'l>(lights: &'l [Light<'_>], entry: &Entry) -> Option<&'l str> {
     let light = lights.iter().find(|light| light.ways.iter().any(|way| way.entry == *entry));
     light.map(|light| light.name.as_str())
 }
 
-/// A number as data: at most four decimals, none if it is whole; nothing if it is not finite.
+/// Formats a number with at most four decimals, and without any if it is whole. Numbers that are not finite become empty.
 fn real(value: f64) -> String {
     if !value.is_finite() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Charts of what a chip pays: a row a method, its error on an axis, its counts beside it.
+//! Charts of the cost on the chip: a row per method, with its error on an axis and its counts beside it.
 
 use super::canvas::{Canvas, Side};
 use super::labels::{Rect, text_width};
@@ -7,17 +7,17 @@ use super::picture::{Axis, ticks};
 use super::questions::Light;
 use super::techniques::Technique;
 
-/// What is counted, per final pixel but for the passes.
+/// The counted quantities. All but the passes are per final pixel.
 const COUNTS: [&str; 4] = ["passes", "stages", "fetches", "blends"];
 const WIDTH: f64 = 930.0;
 const ROW: f64 = 23.0;
-/// Where names end.
+/// Right end of the names, in pixels.
 const NAMES: f64 = 226.0;
-/// Ends of the axis.
+/// Left and right end of the axis, in pixels.
 const AXIS: [f64; 2] = [242.0, 540.0];
-/// Where the first column of counts begins, and how far apart they are.
+/// Left end of the first column of counts, and distance between columns, in pixels.
 const COLUMNS: [f64; 2] = [568.0, 84.0];
-/// The longest bar.
+/// Length of the longest bar, in pixels.
 const BAR: f64 = 30.0;
 const INK: &str = "#222222";
 const PALE: &str = "#767676";
@@ -28,12 +28,12 @@ const SPARED: &str = "#b9cde6";
 /// Methods under a heading.
 struct Group<'a> {
     heading: Option<&'a str>,
-    /// Each method, and whether nothing beats it.
+    /// Each method, and whether it is on the Pareto front.
     rows: Vec<(&'a Technique, bool)>,
 }
 
-/// One light: every way to it, with the front within it.
-pub fn of_light(light: &Light<'_>) -> Canvas {
+/// Returns the chart of one light: all its methods, with their Pareto front marked.
+pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let front = light.front_by_counts();
     let rows = light.shown().iter().enumerate().map(|(n, way)| (*way, front.contains(&n))).collect();
     let says = [
@@ -42,8 +42,8 @@ pub fn of_light(light: &Light<'_>) -> Canvas {
     chart(&light.title, &says, &[Group { heading: None, rows }])
 }
 
-/// Several lights: of each what nothing beats, and the way that is furthest off.
-pub fn overview(lights: &[&Light<'_>]) -> Canvas {
+/// Returns the chart of several lights: for each its Pareto front and its least accurate method.
+pub(super) fn overview(lights: &[&Light<'_>]) -> Canvas {
     let groups: Vec<Group<'_>> = lights
         .iter()
         .map(|light| {
@@ -110,7 +110,7 @@ fn row(canvas: &mut Canvas, way: &Technique, best: bool, x: f64, y: f64, most: f
     let rms = number(way.rms());
     let width = text_width(&rms, 10.0);
     let left = if side == Side::Right { beside - width } else { beside };
-    // The line of the front does not cross the number.
+    // Clears the background so that the line of the front does not cross the number.
     canvas.rectangle(Rect { x: left, y: y - 6.0, width, height: 12.0 }, "#ffffff");
     canvas.text([beside, y + 4.0], side, 10, INK, &rms);
     for (n, [asked, pruned]) in counts(way).into_iter().enumerate() {
@@ -133,7 +133,7 @@ fn column(n: usize) -> f64 {
     COLUMNS[0] + COLUMNS[1] * n as f64
 }
 
-/// Of each column: as asked, and after pruning.
+/// Returns the count of each column as asked and after pruning.
 fn counts(way: &Technique) -> [[f64; 2]; 4] {
     let both = [&way.accuracy.cost.asked, &way.accuracy.cost.pruned];
     [

@@ -1,4 +1,4 @@
-//! The ways in which a scene can be evaluated here: how long each takes, and how far it is from the stored bytes.
+//! The evaluators of a scene: their speed, and their deviation from the stored bytes.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,21 +16,21 @@ use ninebit_scene::SceneError;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluator {
-    /// What tables call it.
+    /// Name in tables.
     pub name: String,
-    /// What is drawn.
+    /// Name of the surface that is drawn.
     pub surface: String,
-    /// What comes out.
+    /// Description of its results.
     pub yields: String,
-    /// Nanoseconds per pixel, one thread.
+    /// Nanoseconds per pixel on one thread.
     pub time: Spread,
-    /// Root mean square of R, G, B against the stored bytes, in steps.
+    /// Root mean square error of R, G, B against the stored bytes, in steps of 1/255.
     pub error: f64,
-    /// The largest such error.
+    /// Largest such error.
     pub largest: f64,
 }
 
-/// Evaluators that were measured elsewhere, as a document.
+/// A JSON document of evaluators that were measured elsewhere.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
@@ -38,13 +38,13 @@ struct Document {
     evaluators: Vec<Evaluator>,
 }
 
-/// The name of the form of such a document.
+/// Value of `format` in such a document.
 const FORMAT: &str = "ninebit-evaluators-1";
 
-/// Reads evaluators that were measured elsewhere, from JSON: `format` and a list of [`Evaluator`].
+/// Parses a JSON document of evaluators that were measured elsewhere: `format` and a list of [`Evaluator`].
 ///
 /// # Errors
-/// What is wrong with it: the notation, a field, a name that is empty, or a number that no measurement yields.
+/// Returns a message if the document is not valid: its notation, a field, an empty name, or a number that no measurement yields.
 pub fn parse(text: &[u8]) -> Result<Vec<Evaluator>, String> {
     let document: Document = serde_json::from_slice(text).map_err(|error| error.to_string())?;
     if document.format != FORMAT {
@@ -66,7 +66,7 @@ pub fn parse(text: &[u8]) -> Result<Vec<Evaluator>, String> {
     Ok(document.evaluators)
 }
 
-/// The surfaces that evaluators are timed on.
+/// Returns the surfaces that evaluators are timed on, by name.
 fn workloads() -> [(&'static str, Surface); 2] {
     let lit = Surface { stages: 1, units: 1, filtered: true, ..Surface::default() };
     [
@@ -75,10 +75,10 @@ fn workloads() -> [(&'static str, Surface); 2] {
     ]
 }
 
-/// Times every evaluator. `progress` is told of each.
+/// Times every evaluator. Calls `progress` after each.
 ///
 /// # Errors
-/// A surface's scene is not accepted: a fault of its template.
+/// Returns an error if a surface's scene is not valid, which is a fault of its template.
 pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<Evaluator>, Box<SceneError>> {
     let mut all = Vec::new();
     for (surface, state) in workloads() {
@@ -114,19 +114,19 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
     Ok(all)
 }
 
-/// How many evaluators [`measure`] times.
+/// Returns the number of evaluators that [`measure`] times.
 pub fn count() -> usize {
     let widths = Isa::ALL.iter().filter(|isa| isa.is_available()).count();
     workloads().len() * (widths + 4 + Mode::ALL.len())
 }
 
-/// R, G, B that an engine stores.
+/// Returns R, G, B of the pixels that an engine stores.
 fn rendered(plan: &Plan, options: &RenderOptions) -> Vec<[f64; 3]> {
     let bytes = render(plan, options).surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default();
     bytes.iter().map(|[r, g, b, _]| [*r, *g, *b].map(f64::from)).collect()
 }
 
-/// Errors against the definition's bytes, of all numbers that are there.
+/// Returns the errors against the definition's bytes, without NaN.
 fn against(definition: &[[f64; 3]], frame: &[[f64; 3]]) -> Statistics {
     let mut errors = Statistics::default();
     for (byte, value) in definition.iter().flatten().zip(frame.iter().flatten()).filter(|(_, value)| !value.is_nan()) {
@@ -135,7 +135,7 @@ fn against(definition: &[[f64; 3]], frame: &[[f64; 3]]) -> Statistics {
     errors
 }
 
-/// The ideal in a lane of real numbers.
+/// Measures the ideal in a lane of real numbers.
 fn real<L: Ideal + Send + Sync>(
     plan: &Plan,
     definition: &[[f64; 3]],
@@ -148,9 +148,9 @@ fn real<L: Ideal + Send + Sync>(
     (time, against(definition, &frame))
 }
 
-/// Traces of pixels spread over the frame.
+/// Measures traces of pixels that are spread over the frame.
 fn traced(plan: &Plan, definition: &[[f64; 3]], side: usize, effort: &Effort) -> (Spread, Statistics) {
-    /// Pixels that are traced, along each side.
+    /// Number of traced pixels along each side.
     const GRID: usize = 8;
     let along = |k: usize| ((k * side + side / 2) / GRID) as u32;
     let places: Vec<(u32, u32)> = (0..GRID * GRID).map(|n| (along(n % GRID), along(n / GRID))).collect();

@@ -1,31 +1,31 @@
-//! Where the names of marks stand, so that they cover neither one another nor the marks.
+//! Placement of the names of marks, so that they cover neither one another nor the marks.
 
 /// A rectangle, in pixels from the top left.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
-    /// Its left edge.
-    pub x: f64,
-    /// Its upper edge.
-    pub y: f64,
-    /// Pixels across.
-    pub width: f64,
-    /// Pixels down.
-    pub height: f64,
+pub(crate) struct Rect {
+    /// Left edge.
+    pub(crate) x: f64,
+    /// Upper edge.
+    pub(crate) y: f64,
+    /// Width.
+    pub(crate) width: f64,
+    /// Height.
+    pub(crate) height: f64,
 }
 
 impl Rect {
-    /// How many square pixels two rectangles share.
-    pub fn overlap(&self, other: &Rect) -> f64 {
+    /// Returns the area that two rectangles share, in square pixels.
+    pub(crate) fn overlap(&self, other: &Rect) -> f64 {
         let along = |a: f64, aw: f64, b: f64, bw: f64| ((a + aw).min(b + bw) - a.max(b)).max(0.0);
         along(self.x, self.width, other.x, other.width) * along(self.y, self.height, other.y, other.height)
     }
 
-    /// How many square pixels lie outside `bounds`.
+    /// Returns the area outside `bounds`, in square pixels.
     fn outside(&self, bounds: &Rect) -> f64 {
         self.width * self.height - self.overlap(bounds)
     }
 
-    /// About how many pixels of the segment lie inside.
+    /// Returns the approximate length of a line segment inside the rectangle, in pixels.
     fn crossed(&self, (from, to): ([f64; 2], [f64; 2])) -> f64 {
         let length = ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2)).sqrt();
         let steps = (length / 3.0).ceil().clamp(1.0, 400.0);
@@ -42,34 +42,34 @@ impl Rect {
     }
 }
 
-/// A mark with a name of so many pixels.
+/// A mark and the size of its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Named {
+pub(crate) struct Named {
     /// Centre of the mark.
-    pub at: [f64; 2],
-    /// Width and height of the name; no name where the width is 0.
-    pub size: [f64; 2],
+    pub(crate) at: [f64; 2],
+    /// Width and height of the name in pixels; a width of 0 means that it has no name.
+    pub(crate) size: [f64; 2],
 }
 
-/// Half the side of the square that a mark covers.
+/// Half the side of the square that a mark covers, in pixels.
 const MARK: f64 = 6.0;
-/// Names further from their marks than this get a line.
+/// Distance in pixels from which on a line joins a name to its mark.
 const MIN_LEADER: f64 = 14.0;
-/// Distances of a name from its mark.
+/// Candidate distances of a name from its mark, in pixels.
 const DISTANCES: [f64; 8] = [8.0, 13.0, 20.0, 30.0, 42.0, 56.0, 74.0, 95.0];
-/// Directions, best first: right, left, above, below, and between them.
+/// Candidate directions, best first: right, left, above, below, and between them.
 const DIRECTIONS: [[[f64; 2]; 4]; 4] = [
     [[1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]],
     [[0.7, -0.7], [0.7, 0.7], [-0.7, -0.7], [-0.7, 0.7]],
     [[0.92, -0.38], [0.92, 0.38], [-0.92, -0.38], [-0.92, 0.38]],
     [[0.38, -0.92], [0.38, 0.92], [-0.38, -0.92], [-0.38, 0.92]],
 ];
-/// Names are moved until nothing gets better, at most so often.
+/// Maximum number of rounds in which names are moved.
 const ROUNDS: usize = 12;
 
-/// A place for each name inside `bounds`, away from names, marks and, if there is room, from `lines`. The order of `marks` decides
-/// between places that are equally good, nothing else does.
-pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> Vec<Rect> {
+/// Places each name inside `bounds`, away from other names, marks and, where possible, from `lines`. Between equally good places the order of `marks`
+/// decides, and nothing else.
+pub(crate) fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> Vec<Rect> {
     let squares: Vec<Rect> = marks
         .iter()
         .map(|mark| Rect { x: mark.at[0] - MARK, y: mark.at[1] - MARK, width: 2.0 * MARK, height: 2.0 * MARK })
@@ -85,7 +85,7 @@ pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> 
                 let covered: f64 = others().map(|(_, other)| roomy.overlap(&other)).sum();
                 let marked: f64 = squares.iter().map(|square| place.overlap(square)).sum();
                 let crossed: f64 = lines.iter().map(|line| place.crossed(*line)).sum();
-                // Lines between marks and names cross no names, neither this one's the others nor theirs this one.
+                // A line from a mark to its name should cross no other name.
                 let leads: f64 = others()
                     .map(|(k, other)| {
                         let own = leader(&marks[n], place).map_or(0.0, |line| other.crossed(line));
@@ -125,10 +125,10 @@ pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> 
     places.into_iter().map(|place| place.unwrap_or(nowhere)).collect()
 }
 
-/// The name's rectangle when it lies in that direction of its mark.
+/// Returns the name's rectangle in a direction and at a distance from its mark.
 fn beside(mark: &Named, [dx, dy]: [f64; 2], distance: f64) -> Rect {
     let [width, height] = mark.size;
-    // The nearest edge or corner of the name is what stands at the distance.
+    // The distance is that of the name's nearest edge or corner.
     let side = |d: f64, size: f64| match d {
         d if d > 0.2 => 0.0,
         d if d < -0.2 => -size,
@@ -142,8 +142,8 @@ fn beside(mark: &Named, [dx, dy]: [f64; 2], distance: f64) -> Rect {
     }
 }
 
-/// The line from a mark to its name, if they stand so far apart that one is drawn.
-pub fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
+/// Returns the line from a mark to its name, or `None` if the name is so near that none is drawn.
+pub(crate) fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
     let end = nearest(place, mark.at);
     let apart = ((end[0] - mark.at[0]).powi(2) + (end[1] - mark.at[1]).powi(2)).sqrt();
     let share = MARK / apart;
@@ -151,12 +151,12 @@ pub fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
     (apart > MIN_LEADER).then_some((start, end))
 }
 
-/// The point of a rectangle nearest to another point.
+/// Returns the point of a rectangle that is nearest to another point.
 fn nearest(rect: &Rect, [x, y]: [f64; 2]) -> [f64; 2] {
     [x.clamp(rect.x, rect.x + rect.width), y.clamp(rect.y, rect.y + rect.height)]
 }
 
-/// About how wide a text is in a sans-serif face of that size, rather too much than too little.
+/// Estimates the width of a text in a sans-serif font of the given size. The estimate is rather too large than too small.
 pub fn text_width(text: &str, size: f64) -> f64 {
     let advance = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | '\'' | '|' | ' ' => 0.33,
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_crowd_of_names_stays_apart_and_inside() {
-        // Thirty marks on a curve, some of them nearly at the same place.
+        // Thirty marks on a curve, some of them close together.
         let marks: Vec<Named> = (0..30)
             .map(|n| {
                 let t = f64::from(n) / 30.0;

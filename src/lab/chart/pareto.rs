@@ -1,8 +1,8 @@
-//! The Pareto front: which of several ways nothing else beats.
+//! The Pareto front of several points.
 
-/// Indices of the points that no other point equals or beats in every coordinate, smaller being better, from the smallest first coordinate
-/// to the largest. Of equal points the first counts; points with a NaN never do.
-pub fn pareto_front<const N: usize>(points: &[[f64; N]]) -> Vec<usize> {
+/// Returns the indices of the points on the Pareto front: no other point equals or beats them in every coordinate, where smaller is better. They are
+/// sorted by the first coordinate. Of equal points only the first is on the front; points with a NaN never are.
+pub(super) fn pareto_front<const N: usize>(points: &[[f64; N]]) -> Vec<usize> {
     let valid = |n: &usize| points[*n].iter().all(|value| !value.is_nan());
     let covers = |a: usize, b: usize| points[a].iter().zip(&points[b]).all(|(a, b)| a <= b);
     let beaten = |n: usize| (0..points.len()).filter(valid).any(|k| k != n && covers(k, n) && (!covers(n, k) || k < n));

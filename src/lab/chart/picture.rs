@@ -1,4 +1,4 @@
-//! Charts as pictures: SVG and PNG of one drawing.
+//! Charts with two axes, as SVG and PNG.
 
 use std::sync::Arc;
 
@@ -17,22 +17,22 @@ use super::labels::{self, Named, Rect};
 use super::page::plain;
 use ninebit_files::output::OutputError;
 
-/// An axis: what it shows with its unit, and its ends.
+/// An axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// Lower end; above 0 on a logarithmic axis.
+    /// Lower end; positive on a logarithmic axis.
     pub low: f64,
     /// Upper end, above the lower one.
     pub high: f64,
-    /// Equal ratios are equal lengths.
+    /// Whether the axis is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Axis {
-    /// A logarithmic axis around values above 0, from a tick to a tick.
-    pub fn logarithmic(label: impl Into<String>, values: impl Iterator<Item = f64>) -> Axis {
+    /// Returns a logarithmic axis that contains the positive values and ends at ticks.
+    pub(crate) fn logarithmic(label: impl Into<String>, values: impl Iterator<Item = f64>) -> Axis {
         let (low, high) = ends(values.filter(|value| *value > 0.0), 1.0);
         Axis {
             label: label.into(),
@@ -42,15 +42,15 @@ impl Axis {
         }
     }
 
-    /// A linear axis around values, or around those and 0.
-    pub fn linear(label: impl Into<String>, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+    /// Returns a linear axis that contains the values and, with `from_zero`, 0.
+    pub(crate) fn linear(label: impl Into<String>, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
         let (low, high) = ends(values.chain(from_zero.then_some(0.0)), 0.0);
         let room = if high > low { 0.04 * (high - low) } else { 1.0 };
         let low = if from_zero && low >= 0.0 { 0.0 } else { low - room };
         Axis { label: label.into(), low, high: high + room, logarithmic: false }
     }
 
-    /// Where a value stands between the ends, 0 to 1.
+    /// Returns the position of a value between the ends, 0 to 1.
     pub(super) fn share(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value.max(self.low).ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
@@ -60,7 +60,7 @@ impl Axis {
     }
 }
 
-/// The library counts clipped regions through all drawings of a process; here each drawing begins anew, so that its bytes are its own.
+/// Renumbers clip regions. The library counts them through all drawings of a process, which would make a drawing's bytes depend on earlier ones.
 fn numbered_anew(svg: &str) -> String {
     const NAME: &str = "kuva-clip-";
     let mut pieces = svg.split(NAME);
@@ -78,7 +78,7 @@ fn numbered_anew(svg: &str) -> String {
     text
 }
 
-/// The values of a logarithmic axis that are 1, 2 or 5 times a power of ten.
+/// Returns the ticks of a logarithmic axis: 1, 2 and 5 times powers of ten.
 pub(super) fn ticks(axis: &Axis) -> Vec<f64> {
     let mut all = Vec::new();
     let mut tick = tick_below(axis.low * 1.000_001);
@@ -89,118 +89,120 @@ pub(super) fn ticks(axis: &Axis) -> Vec<f64> {
     all
 }
 
-/// What says that a picture of that size has not become a PNG.
+/// Returns the error for a picture that cannot be encoded as PNG.
 pub(super) fn encode_error([width, height]: [u32; 2], reason: String) -> OutputError {
     OutputError::Encode { width, height, reason }
 }
 
-/// The largest 1, 2 or 5 times a power of ten that is not above a positive number.
+/// Returns the largest tick that is not above a positive number: 1, 2 or 5 times a power of ten.
 fn tick_below(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
     [5.0, 2.0].into_iter().map(|n| n * power).find(|tick| *tick <= value).unwrap_or(power)
 }
 
-/// The least and the largest of finite values; `empty` twice of none.
+/// Returns the least and the largest of the finite values; both are `empty` if there are none.
 fn ends(values: impl Iterator<Item = f64>, empty: f64) -> (f64, f64) {
     let finite = values.filter(|value| value.is_finite());
     let ends = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     if ends.0 > ends.1 { (empty, empty) } else { ends }
 }
 
-/// Marks that are easily told apart, for families in order.
-pub const SHAPES: [MarkerShape; 5] =
+/// Shapes of marks that are easily told apart.
+pub(crate) const SHAPES: [MarkerShape; 5] =
     [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond, MarkerShape::Cross];
 
-/// How the points of a series are joined, in their order.
+/// The line that joins the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Join {
-    /// Not at all.
+pub(crate) enum Join {
+    /// No line.
     None,
-    /// A line joins the points.
+    /// A solid line.
     Solid,
-    /// A dashed line joins the points.
+    /// A dashed line.
     Dashed,
 }
 
 /// A point and its name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub(crate) struct Mark {
     /// Value on the horizontal axis.
     pub x: f64,
     /// Value on the vertical axis.
     pub y: f64,
-    /// Written beside it; nothing if empty.
+    /// Text beside the point; empty for none.
     pub name: String,
 }
 
-/// Points that belong together.
+/// A series of points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
-    /// For the legend; empty keeps it out of there.
+pub(crate) struct Series {
+    /// Label in the legend; an empty one is left out.
     pub label: String,
     /// The colour of marks and lines, `#rrggbb`.
     pub color: &'static str,
-    /// At each point; none where a line is alone.
+    /// Shape of the marks; `None` if there is only a line.
     pub shape: Option<MarkerShape>,
-    /// How lines run from point to point.
+    /// The line that joins the points.
     pub join: Join,
-    /// The points, in the order in which lines join them.
+    /// The points, in the order in which they are joined.
     pub marks: Vec<Mark>,
 }
 
-/// Dark colours that stay apart for those who see few colours.
-pub const COLORS: [&str; 8] = ["#1f5fa8", "#c2401e", "#2f7d4f", "#7b3fa0", "#a67c00", "#00838f", "#ad1457", "#4d4d4d"];
+/// Dark colours that also differ for readers with colour blindness.
+pub(crate) const COLORS: [&str; 8] =
+    ["#1f5fa8", "#c2401e", "#2f7d4f", "#7b3fa0", "#a67c00", "#00838f", "#ad1457", "#4d4d4d"];
 
-/// A chart before it is drawn: titles, axes, points and lines.
+/// A chart with titles, axes, points and lines.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
-    /// Above the chart.
+pub(crate) struct Drawing {
+    /// Title above the chart.
     pub title: String,
-    /// The axis along the bottom.
+    /// Horizontal axis.
     pub x: Axis,
-    /// The axis on the left.
+    /// Vertical axis.
     pub y: Axis,
-    /// Points and lines; later ones stand on earlier ones.
+    /// Points and lines; later series are drawn over earlier ones.
     pub series: Vec<Series>,
-    /// Levels of the vertical axis with their names, drawn as broken lines.
+    /// Levels of the vertical axis with their names, drawn as dashed lines.
     pub levels: Vec<(f64, String)>,
-    /// Width and height in pixels of the SVG; the PNG has twice as many each way.
+    /// Width and height in pixels of the SVG; the PNG has [`SCALE`] times as many in each direction.
     pub size: [f64; 2],
 }
 
 /// A chart in both formats.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub(crate) struct Picture {
     /// The text of the SVG.
     pub svg: String,
     /// The bytes of the PNG.
     pub png: Vec<u8>,
 }
 
-/// Room around the plot: left, right, top, bottom.
+/// Margins of the plot in pixels: left, right, top, bottom.
 const MARGINS: [f64; 4] = [58.0, 24.0, 58.0, 56.0];
-/// Height of a letter of names.
+/// Font size of names.
 const NAME: u32 = 11;
+/// Font size of labels.
 const BODY: u32 = 12;
-/// Lines of the grid, pale: names stand on them.
+/// Colour of grid lines: pale, because names stand on them.
 const GRID: &str = "#e4e4e4";
-/// Columns of the PNG for one of the SVG.
+/// Pixels of the PNG for one of the SVG, in each direction.
 pub(super) const SCALE: f32 = 2.0;
 
 impl Drawing {
-    /// Draws it in both formats.
+    /// Draws the chart in both formats.
     ///
     /// # Errors
-    /// The PNG cannot be encoded.
-    pub fn draw(&self) -> Result<Picture, OutputError> {
+    /// Returns an error if the PNG cannot be encoded.
+    pub(crate) fn draw(&self) -> Result<Picture, OutputError> {
         let scene = self.scene();
         let fail = |reason| encode_error(self.size.map(|side| (side * f64::from(SCALE)) as u32), reason);
         let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(fail)?;
         Ok(Picture { svg: text_of(&scene), png })
     }
 
-    /// Draws it as SVG alone.
-    pub fn svg(&self) -> String {
+    /// Draws the chart as SVG.
+    pub(crate) fn svg(&self) -> String {
         text_of(&self.scene())
     }
 
@@ -242,7 +244,7 @@ impl Drawing {
         let mut scene = render_multiple(self.series.iter().flat_map(Series::plots).collect(), layout);
         let plot = Rect { x: left, y: top, width: self.size[0] - left - right, height: self.size[1] - top - bottom };
         self.write_names(&mut scene, &plot);
-        // What the vertical axis shows stands above it, as people read.
+        // The label of the vertical axis stands above it, where it can be read horizontally.
         scene.add(Primitive::Text {
             x: 12.0,
             y: top - 10.0,
@@ -268,7 +270,7 @@ impl Drawing {
             .collect()
     }
 
-    /// The names of the marks, with a thin line to those that stand apart.
+    /// Writes the names of the marks, with a thin line to those that stand apart.
     fn write_names(&self, scene: &mut Scene, plot: &Rect) {
         let at = |mark: &Mark| {
             [plot.x + plot.width * self.x.share(mark.x), plot.y + plot.height * (1.0 - self.y.share(mark.y))]
@@ -298,7 +300,7 @@ impl Drawing {
                 let stroke = "#999999".into();
                 scene.add(Primitive::Line { x1, y1, x2, y2, stroke, stroke_width: 0.7, stroke_dasharray: None });
             }
-            // Text that is narrower than was reckoned stays near its mark.
+            // The text is aligned to its mark, so that it stays near if it is narrower than estimated.
             let (x, anchor) = if place.x + place.width <= named.at[0] {
                 (place.x + place.width, TextAnchor::End)
             } else if place.x >= named.at[0] {
@@ -320,7 +322,7 @@ impl Drawing {
     }
 }
 
-/// The text of an SVG.
+/// Returns the text of an SVG.
 fn text_of(scene: &Scene) -> String {
     numbered_anew(&SvgBackend::new().render_scene(scene)) + "\n"
 }

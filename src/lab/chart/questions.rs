@@ -1,21 +1,21 @@
-//! Which methods mean the same picture: the lights of charts, and the questions that they answer.
+//! Grouping of techniques by the light that they approximate, and the questions that charts answer.
 
 use super::pareto::pareto_front;
 use super::techniques::Technique;
 
-/// A light that is asked for, and what is asked.
+/// A question: a light whose techniques are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Question {
-    /// The name of its files, and of its truth in the data.
+pub(super) struct Question {
+    /// Name of its files, and of its truth in the data.
     pub name: &'static str,
-    /// Above its charts.
+    /// Title above its charts.
     pub title: &'static str,
-    /// Family and technique, with the parameter, of a scene that means this light; every scene of an equal truth is a way to it.
+    /// Family and technique (with its parameter) of a scene of this light. Every scene with an equal truth is a technique for it.
     like: (&'static str, &'static str),
 }
 
 /// The questions, in the order of the page.
-pub const QUESTIONS: [Question; 6] = [
+pub(super) const QUESTIONS: [Question; 6] = [
     question("diffuse", "Diffuse light on bumps", PER_PIXEL, "tangent space diffuse"),
     question("highlight", "A highlight on bumps, exponent 8", PER_PIXEL, "specular 8"),
     question("hemisphere", "Light of sky and ground on bumps", PER_PIXEL, "hemisphere exact"),
@@ -30,24 +30,24 @@ const fn question(name: &'static str, title: &'static str, family: &'static str,
     Question { name, title, like: (family, technique) }
 }
 
-/// The most methods that a chart shows; the most exact ones of more.
-pub const MAX_SHOWN: usize = 12;
+/// Maximum number of techniques in a chart; the most accurate ones are kept.
+pub(super) const MAX_SHOWN: usize = 12;
 
-/// What some techniques all mean to show.
+/// A light, and all techniques that approximate it.
 #[derive(Clone, Debug)]
-pub struct Light<'a> {
-    /// The name of its files, and of its truth in the data.
+pub(super) struct Light<'a> {
+    /// Name of its files, and of its truth in the data.
     pub name: String,
-    /// Above its charts.
+    /// Title above its charts.
     pub title: String,
-    /// A question asks for it.
+    /// Whether one of [`QUESTIONS`] asks for it.
     pub asked: bool,
-    /// The ways to it, the most exact first.
+    /// The techniques, the most accurate first.
     pub ways: Vec<&'a Technique>,
 }
 
-/// The lights that techniques mean, those that questions ask for first. `title` is the name of a family.
-pub fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> String) -> Vec<Light<'a>> {
+/// Groups techniques by light. Lights of [`QUESTIONS`] come first. `title` returns the title of a family.
+pub(super) fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> String) -> Vec<Light<'a>> {
     let mut left: Vec<&Technique> = techniques.iter().collect();
     let mut all = Vec::new();
     for question in &QUESTIONS {
@@ -81,13 +81,13 @@ pub fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> String) -
 }
 
 impl<'a> Light<'a> {
-    /// The ways that a chart shows.
-    pub fn shown(&self) -> &[&'a Technique] {
+    /// Returns the techniques that a chart shows.
+    pub(super) fn shown(&self) -> &[&'a Technique] {
         &self.ways[..self.ways.len().min(MAX_SHOWN)]
     }
 
-    /// Which of the shown ways nothing beats at all of error, passes, stages, fetches and blended pixels.
-    pub fn front_by_counts(&self) -> Vec<usize> {
+    /// Returns the indices of the shown techniques on the Pareto front of error, passes, stages, fetches and blends.
+    pub(super) fn front_by_counts(&self) -> Vec<usize> {
         let point = |way: &&Technique| {
             let cost = &way.accuracy.cost.asked;
             [way.rms(), cost.passes as f64, cost.stages, cost.fetches, cost.blends]
@@ -95,13 +95,13 @@ impl<'a> Light<'a> {
         pareto_front(&self.shown().iter().map(point).collect::<Vec<_>>())
     }
 
-    /// Which of the shown ways nothing beats at both error and time, from the fastest on.
-    pub fn front_by_time(&self) -> Vec<usize> {
+    /// Returns the indices of the shown techniques on the Pareto front of error and time, the fastest first.
+    pub(super) fn front_by_time(&self) -> Vec<usize> {
         pareto_front(&self.shown().iter().map(|way| [way.time.median, way.rms()]).collect::<Vec<_>>())
     }
 
-    /// The way of that name.
-    pub fn way(&self, name: &str) -> Option<&'a Technique> {
+    /// Returns the technique of the given name.
+    pub(super) fn way(&self, name: &str) -> Option<&'a Technique> {
         self.ways.iter().copied().find(|way| way.entry.name() == name)
     }
 }

@@ -1,4 +1,4 @@
-//! What was measured, as the files of the page on speed and accuracy.
+//! The files of the page on speed and accuracy.
 
 use std::collections::BTreeMap;
 
@@ -14,45 +14,45 @@ use ninebit::engine::Isa;
 use ninebit::state::Named;
 use ninebit_files::output::OutputError;
 
-/// What the page says between its tables.
+/// The page's template.
 const TEMPLATE: &str = include_str!("page.md");
-/// The folder of the files, beside the page; also the name of the page.
+/// Name of the page, and of the folder of its files beside it.
 pub(super) const FOLDER: &str = "speed-accuracy";
 const ERROR: &str = "rms error against the truth, 8-bit steps";
 
-/// Everything that the page shows.
+/// All measurements that the page shows.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
-    /// Scenes with a truth, by family.
+    /// Measured scenes with a truth, sorted by family.
     pub techniques: Vec<Technique>,
-    /// Titles of families.
+    /// Titles of the families.
     pub titles: BTreeMap<String, String>,
-    /// Ways of evaluating a scene.
+    /// Measured evaluators.
     pub evaluators: Vec<Evaluator>,
-    /// Surfaces with more and more state.
+    /// Measured surfaces.
     pub surfaces: Vec<SurfaceCost>,
-    /// How cost grows.
+    /// Measured cost curves.
     pub curves: Vec<Curve>,
-    /// Few frames were timed.
+    /// Whether only few frames were timed.
     pub quick: bool,
-    /// What is missing, because this program failed on it.
+    /// Names of scenes that are missing because of an internal error.
     pub failed: Vec<String>,
 }
 
 impl Measured {
-    /// What the techniques mean.
+    /// Returns the lights of the techniques.
     pub(super) fn lights(&self) -> Vec<Light<'_>> {
         lights(&self.techniques, |family| self.titles.get(family).cloned().unwrap_or_else(|| family.to_owned()))
     }
 
-    /// The page and all its files.
+    /// Returns the page and all its files.
     ///
     /// # Errors
-    /// A picture cannot be encoded.
+    /// Returns an error if a picture cannot be encoded.
     pub fn files(&self) -> Result<Vec<File>, OutputError> {
         let lights = self.lights();
         let several = |asked: bool| lights.iter().filter(move |light| light.asked == asked && light.ways.len() > 1);
-        // Folders of one's own have no questions: each light that there are several ways to is one.
+        // Folders of a user have no questions, so each light with several techniques is charted.
         let charted: Vec<&Light<'_>> =
             if several(true).count() > 0 { several(true).collect() } else { several(false).collect() };
         let mut files = Vec::new();
@@ -63,7 +63,7 @@ impl Measured {
         for light in &charted {
             files.extend(both(&format!("{}-chip", light.name), dots::of_light(light).draw()?));
             files.extend(both(&format!("{}-here", light.name), time_drawing(light).draw()?));
-            // Nothing in it would be lines.
+            // It is a PNG only: it has no lines that an SVG would help.
             files.push(pixels(&format!("{}-pictures", light.name), strip::of_light(light).draw()?.png));
         }
         files.extend(both("evaluators", self.evaluators_drawing().draw()?));
@@ -102,7 +102,7 @@ impl Measured {
         )
     }
 
-    /// The evaluators on the first surface; those that nothing beats at both are joined.
+    /// Returns the chart of the evaluators on the first surface.
     fn evaluators_drawing(&self) -> Drawing {
         let surface = self.evaluators.first().map_or("", |evaluator| evaluator.surface.as_str());
         let own: Vec<&Evaluator> = self.evaluators.iter().filter(|evaluator| evaluator.surface == surface).collect();
@@ -124,7 +124,7 @@ impl Measured {
     }
 }
 
-/// A light: how exact each way to it is, and how long this program takes.
+/// Returns the chart of a light's techniques by time and error.
 fn time_drawing(light: &Light<'_>) -> Drawing {
     let (ways, front) = (light.shown(), light.front_by_time());
     let mark = |way: &Technique, name: String| Mark { x: way.time.median, y: way.rms(), name };

@@ -1,4 +1,4 @@
-//! Strips of pictures: what each way to a light shows, and below it how far that is off.
+//! Strips of pictures: the picture of each technique for a light, and its error below.
 
 use super::canvas::{Canvas, Image, Side};
 use super::labels::{Rect, text_width};
@@ -7,21 +7,21 @@ use super::questions::Light;
 use crate::accuracy::Pictures;
 use ninebit_scene::generate::byte;
 
-/// Side of a picture as it is shown.
+/// Side of a picture in pixels.
 const TILE: f64 = 128.0;
 const GAP: f64 = 14.0;
-/// Pictures side by side.
+/// Number of pictures in a row.
 const ACROSS: usize = 6;
-/// Height of the two lines of a name and the one of the error.
+/// Height in pixels of a caption: two lines for the name and one for the error.
 const CAPTION: f64 = 46.0;
 const INK: &str = "#222222";
 const PALE: &str = "#767676";
-/// An error of so many steps has the full colour.
+/// Error in steps that is shown in full colour.
 const FULL: f64 = 64.0;
 const LEGEND: &str = "Below each picture its error: red is too bright, blue too dark; full colour from 64 steps on, half of it at 16, a quarter at 4.";
 
-/// The truth, then the ways to it from the most exact on.
-pub fn of_light(light: &Light<'_>) -> Canvas {
+/// Returns the strip of a light: the truth, then its techniques from the most accurate on.
+pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let ways = light.shown();
     let across = (ways.len() + 1).min(ACROSS);
     let rows = (ways.len() + 1).div_ceil(ACROSS);
@@ -49,7 +49,7 @@ fn tile(x: f64, y: f64) -> Rect {
     Rect { x, y, width: TILE, height: TILE }
 }
 
-/// A name in up to two lines, and a line below.
+/// Writes a name in up to two lines, and a line below.
 fn caption(canvas: &mut Canvas, [x, y]: [f64; 2], name: &str, below: &str) {
     let mut lines = vec![String::new()];
     for word in name.split(' ') {
@@ -67,7 +67,7 @@ fn caption(canvas: &mut Canvas, [x, y]: [f64; 2], name: &str, below: &str) {
     canvas.text([x, y + CAPTION - 6.0], Side::Left, 11, PALE, below);
 }
 
-/// A picture of a fixed size: pixels of the frame, none of them mixed.
+/// Scales a picture to a fixed size by nearest sampling.
 fn image(pictures: &Pictures, of: fn(&Pictures, usize) -> [u8; 3]) -> Image {
     let side = TILE as usize;
     let [width, height] = [pictures.width, pictures.height].map(|n| n as usize);
@@ -80,12 +80,12 @@ fn shown(pictures: &Pictures, at: usize) -> [u8; 3] {
     [r, g, b]
 }
 
-/// Black where there is no truth, as the frame is.
+/// Returns the truth of a pixel; black where there is none, like the frame.
 fn truth(pictures: &Pictures, at: usize) -> [u8; 3] {
     pictures.truth[at].map_or([0; 3], |color| color.map(byte))
 }
 
-/// The error of the channel that is furthest off: white none, red too bright, blue too dark.
+/// Returns the colour of a pixel's largest channel error: white for none, red for too bright, blue for too dark.
 fn error(pictures: &Pictures, at: usize) -> [u8; 3] {
     let Some(color) = pictures.truth[at] else { return [238; 3] };
     let errors = [0, 1, 2].map(|n| f64::from(pictures.shown[at][n]) - 255.0 * color[n]);

@@ -1,4 +1,4 @@
-//! The same surface with more and more state: what is not asked for costs nothing.
+//! A surface with more and more state: state that is not used costs nothing.
 
 use std::path::Path;
 
@@ -13,46 +13,46 @@ use ninebit::state::*;
 use ninebit::trace::Work;
 use ninebit_scene::{SceneError, parse};
 
-/// The scene, without what varies.
+/// The scene without the parts that vary.
 const SCENE: &str = include_str!("surface.ron");
 
-/// What a surface has.
+/// State of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Surface {
-    /// General stages, 0 to 2.
+    /// Number of general stages, 0 to 2.
     pub stages: usize,
-    /// Texture units, 0 to 2.
+    /// Number of texture units, 0 to 2.
     pub units: usize,
-    /// Units read four texels.
+    /// Whether units filter four texels.
     pub filtered: bool,
-    /// Alpha is computed and written.
+    /// Whether alpha is computed and written.
     pub alpha: bool,
-    /// The colour is added to what is there.
+    /// Whether the colour is added to that of the frame buffer.
     pub blend: bool,
-    /// The colour is blended with the fog's.
+    /// Whether the colour is blended with the fog's.
     pub fog: bool,
-    /// State that nothing sees: a stage and a unit whose results are not read.
+    /// Whether there is state without effect: a stage and a unit whose results are not read.
     pub unused: bool,
 }
 
-/// What a surface costs for each pixel.
+/// Cost of a surface per pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurfaceCost {
-    /// What it has, in words.
+    /// Description of its state.
     pub name: String,
-    /// Texels that are looked up.
+    /// Number of texels read.
     pub texels: f64,
-    /// Steps of filters, products and roundings, and channels blended.
+    /// Number of interpolations, products, roundings and blended channels.
     pub operations: f64,
-    /// Bytes of the frame buffer, read and written.
+    /// Bytes of the frame buffer that are read and written.
     pub bytes: f64,
-    /// The fast engine, nanoseconds.
+    /// Time of the fast engine in nanoseconds.
     pub fast: Spread,
-    /// The definition, nanoseconds.
+    /// Time of the scalar engine in nanoseconds.
     pub scalar: Spread,
 }
 
-/// The surfaces in the order of the table.
+/// Returns the surfaces with their descriptions, in the order of the table.
 pub fn surfaces() -> Vec<(&'static str, Surface)> {
     let plain = Surface::default();
     let lit = Surface { stages: 1, units: 1, filtered: true, ..plain };
@@ -74,19 +74,19 @@ pub fn surfaces() -> Vec<(&'static str, Surface)> {
     ]
 }
 
-/// A scene file of this folder, without what varies.
+/// Parses a scene file of this folder.
 ///
 /// # Errors
-/// The scene is not accepted: a fault of the file.
+/// Returns an error if the scene is not valid, which is a fault of the file.
 pub(super) fn read(text: &str) -> Result<Scene, Box<SceneError>> {
     Ok(parse(text, Path::new("chart.ron"), &Limits::default())?.scene)
 }
 
 impl Surface {
-    /// The scene of this surface, square, so many pixels wide.
+    /// Compiles the scene of this surface, `side` pixels wide and high.
     ///
     /// # Errors
-    /// The scene is not accepted: a fault of the file.
+    /// Returns an error if the scene is not valid, which is a fault of the file.
     pub fn plan(&self, side: usize) -> Result<Plan, Box<SceneError>> {
         let mut scene = read(SCENE)?;
         resize(&mut scene, side);
@@ -143,10 +143,10 @@ impl Surface {
         planned(&scene)
     }
 
-    /// What it costs.
+    /// Measures the cost.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// The same as [`plan`](Self::plan).
     pub fn cost(&self, name: &str, side: usize, effort: &Effort) -> Result<SurfaceCost, Box<SceneError>> {
         let plan = self.plan(side)?;
         let counts = count(&plan);
@@ -186,7 +186,7 @@ mod tests {
         for more in ["2 stages, 2 units, alpha", "2 stages, 2 units, blend", "2 stages, 2 units, fog"] {
             assert!(of(more).operations > two.operations, "{more}");
         }
-        // What nothing reads is not modelled.
+        // Results that nothing reads are not computed.
         let unused = of("1 stage, 1 unit, and one of each that nothing reads");
         assert_eq!((unused.texels, unused.operations, unused.bytes), (lit.texels, lit.operations, lit.bytes));
     }

@@ -9,14 +9,14 @@ use super::techniques::Technique;
 use super::timing::Spread;
 use crate::accuracy::FrameCost;
 
-/// Errors that a reader may allow, rms in steps.
+/// Error budgets: rms in 8-bit steps.
 const BUDGETS: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// A row of words.
+/// A row of table cells.
 type Row = Vec<String>;
 
 impl Measured {
-    /// A light with its charts: what each way to it costs, and what it shows.
+    /// Returns the section of a light with its charts.
     pub(super) fn light_section(light: &Light<'_>) -> String {
         let (name, title) = (&light.name, &light.title);
         let picture = |end: &str, what: &str| format!("![{title}: {what}]({FOLDER}/{name}-{end}.png)\n\n");
@@ -32,7 +32,7 @@ impl Measured {
         )
     }
 
-    /// A family: how exact each technique is, at what cost, and why.
+    /// Returns the section of a family: accuracy, cost and causes of errors of each technique.
     pub(super) fn family_section(&self, family: &str) -> String {
         let title = self.titles.get(family).map_or(family, String::as_str);
         format!(
@@ -81,7 +81,7 @@ impl Measured {
         heading(&names).chain(self.of(family).map(row)).collect()
     }
 
-    /// What each cause adds to the error.
+    /// Returns the table of each cause's contribution to the error.
     fn cause_rows(&self, family: &str) -> Vec<Row> {
         let causes = causes(self.of(family));
         let names: Vec<&str> =
@@ -94,7 +94,7 @@ impl Measured {
         heading(&names).chain(self.of(family).map(row)).collect()
     }
 
-    /// Of each light that there are several ways to, the fastest one within each budget.
+    /// Returns the fastest technique within each budget, for each light with several techniques.
     pub(super) fn budget_rows(lights: &[Light<'_>]) -> Vec<Row> {
         let names = ["ways to the same light".to_owned(), "most exact".to_owned()]
             .into_iter()
@@ -139,7 +139,7 @@ fn heading(names: &[&str]) -> impl Iterator<Item = Row> {
     std::iter::once(names.iter().map(|name| (*name).to_owned()).collect())
 }
 
-/// The causes that any of some techniques have, in the order of the way from the truth to the picture.
+/// Returns all causes of some techniques, in the order of the steps from the truth to the picture.
 pub(super) fn causes<'a>(techniques: impl Iterator<Item = &'a Technique>) -> Vec<&'static str> {
     let mut causes: Vec<&'static str> = Vec::new();
     for cause in techniques.flat_map(|technique| &technique.accuracy.causes) {
@@ -147,22 +147,22 @@ pub(super) fn causes<'a>(techniques: impl Iterator<Item = &'a Technique>) -> Vec
             causes.push(cause.name);
         }
     }
-    // Not every technique has normals that bytes hold: that cause comes first all the same.
+    // Not every technique has this cause, but it is always the first step.
     causes.sort_by_key(|name| usize::from(*name != "quantised normals"));
     causes
 }
 
-/// What a cause adds to a technique's error, rms.
+/// Returns the rms of a cause's contribution to a technique's error, or `None` if it has none.
 pub(super) fn cause(technique: &Technique, name: &str) -> Option<f64> {
     technique.accuracy.causes.iter().find(|cause| cause.name == name).map(|cause| cause.errors.rms())
 }
 
-/// How far a technique's normals are turned, on average.
+/// Returns the mean angle error of a technique's normals in degrees, or `None` if it was not measured.
 pub(super) fn degrees(technique: &Technique) -> Option<f64> {
     technique.accuracy.normals.as_ref().map(|normals| normals.degrees.mean())
 }
 
-/// A median with the ends of the middle half.
+/// Formats a median and its quartiles.
 pub(super) fn spread(spread: Spread) -> String {
     format!("{} ({} to {})", number(spread.median), number(spread.lower), number(spread.upper))
 }

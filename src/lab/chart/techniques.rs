@@ -1,4 +1,4 @@
-//! Scenes that say what their picture ought to show, found in folders: how exact each is, how fast, and at what cost.
+//! Scenes with a ground truth, found in folders: their accuracy, speed and cost.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -16,63 +16,62 @@ use ninebit_scene::{SceneError, load};
 /// A scene to be measured.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entry {
-    /// The folder it stands in, below the one that was searched; of scenes directly in that, its own name.
+    /// Name of its folder below the folder that was searched, or of that folder if the scene is directly in it.
     pub family: String,
-    /// Its file's name without the parameter.
+    /// File name without the parameter and the extension.
     pub technique: String,
-    /// The number that the file's name ends in.
+    /// The number at the end of the file name; `None` if there is none.
     pub parameter: Option<u32>,
-    /// The scene's file.
+    /// Path of the file.
     pub path: PathBuf,
 }
 
 impl Entry {
-    /// Technique and parameter in words.
+    /// Returns technique and parameter, separated by spaces.
     pub fn name(&self) -> String {
         let words = self.technique.replace('-', " ");
         self.parameter.map_or(words.clone(), |parameter| format!("{words} {parameter}"))
     }
 }
 
-/// What was measured of a scene.
+/// Measurements of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Technique {
-    /// Where the scene stands, and what it is called.
+    /// The scene.
     pub entry: Entry,
-    /// What its picture ought to show, without what tells how the technique does it. Scenes of which this is equal are ways to the same
-    /// light.
+    /// The ground truth without the part that describes the technique. Scenes with an equal truth are techniques for the same light.
     pub truth: Truth,
-    /// How far its picture is from its truth, and what it costs the chip.
+    /// Accuracy, and cost on the chip.
     pub accuracy: Accuracy,
-    /// Drawing it here on a [large picture](LARGE), nanoseconds per final pixel, fast engine, one thread.
+    /// Time of drawing a [large picture](LARGE) with the fast engine on one thread, in nanoseconds per final pixel.
     pub time: Spread,
 }
 
-/// Columns and rows of the pictures that are timed: so many that setting up draws and triangles does not count.
-pub const LARGE: u32 = 512;
+/// Width of the pictures that are timed: so large that the setup of draws and triangles does not matter.
+pub(crate) const LARGE: u32 = 512;
 
 impl Technique {
-    /// The error that charts show, in 8-bit steps.
+    /// Returns the rms error in 8-bit steps.
     pub fn rms(&self) -> f64 {
         self.accuracy.errors.rms()
     }
 }
 
-/// Why a scene was not measured.
+/// Reason why a scene was not measured.
 #[derive(Debug)]
 pub enum TechniqueError {
     /// A folder cannot be read.
     Folder(PathBuf, io::Error),
-    /// A scene is not accepted.
+    /// A scene is not valid.
     Scene(Box<SceneError>),
     /// No pixel of a scene that has a truth is drawn.
     Unseen(PathBuf),
 }
 
-/// Every scene file in a folder and below, by family, technique and parameter.
+/// Finds all scene files in a folder and its subfolders, sorted by family, technique and parameter.
 ///
 /// # Errors
-/// A folder cannot be read.
+/// Returns an error if a folder cannot be read.
 pub fn find(folder: &Path) -> Result<Vec<Entry>, TechniqueError> {
     let mut found = Vec::new();
     let own = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -96,23 +95,23 @@ fn search(folder: &Path, family: &str, top: bool, found: &mut Vec<Entry>) -> Res
     Ok(())
 }
 
-/// `squaring-16` as its two parts.
+/// Splits a name such as `squaring-16` into technique and parameter.
 fn parted(stem: &str) -> (String, Option<u32>) {
     let parts = stem.rsplit_once('-').and_then(|(name, number)| Some((name.to_owned(), Some(number.parse().ok()?))));
     parts.unwrap_or((stem.to_owned(), None))
 }
 
-/// The name of a family: the first heading of the page in its folder, or the folder's name in words.
+/// Returns the title of a family: the first heading of the page in its folder, or the folder's name with spaces.
 pub fn title(folder: &Path, family: &str) -> String {
     let page = page(&folder.join(family).join("README.md")).unwrap_or_default();
     let heading = page.lines().find_map(|line| line.strip_prefix("# ")).map(|line| line.replace('`', ""));
     heading.unwrap_or_else(|| family.replace('-', " "))
 }
 
-/// Measures a scene. `None` if it says nothing of what its picture ought to show.
+/// Measures a scene. Returns `None` if it has no ground truth.
 ///
 /// # Errors
-/// The scene is not accepted, or nothing of it is seen.
+/// Returns an error if the scene is not valid, or no pixel with a truth is drawn.
 pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, TechniqueError> {
     let loaded = load(&entry.path, &Limits::default()).map_err(|error| TechniqueError::Scene(Box::new(error)))?;
     let Some(truth) = &loaded.truth else { return Ok(None) };
@@ -128,7 +127,7 @@ pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, Tech
     Ok(Some(Technique { entry: entry.clone(), truth, accuracy, time }))
 }
 
-/// The scene with its one target so many pixels wide, and as much higher; `None` if it cannot be told what else that changes.
+/// Returns the scene enlarged to `width` pixels, or `None` if its other state does not scale in a known way.
 fn enlarged(scene: &Scene, width: u32) -> Option<Scene> {
     let [target] = &scene.targets[..] else { return None };
     let factor = width as f32 / target.width as f32;
@@ -148,7 +147,7 @@ fn enlarged(scene: &Scene, width: u32) -> Option<Scene> {
     Some(large)
 }
 
-/// Pixels of the first target on which something is drawn; at least 1.
+/// Returns the number of fragments of the largest draw into the first target, at least 1.
 fn final_pixels(plan: &Plan) -> u64 {
     let most = plan.draws.iter().filter(|draw| draw.target == 0).map(|draw| engine::fragments(plan, draw)).max();
     most.unwrap_or(1).max(1)

@@ -1,4 +1,4 @@
-//! How long drawing takes here, in processor time: what other programs take meanwhile does not count.
+//! Timing of draws in processor time, which excludes other programs.
 
 use std::time::Duration;
 
@@ -8,21 +8,21 @@ use serde::{Deserialize, Serialize};
 use ninebit::engine::{RenderOptions, Renderer};
 use ninebit::plan::Plan;
 
-/// The middle of some times and where the middle half of them lies, in nanoseconds per final pixel.
+/// Median and quartiles of some times, in nanoseconds per final pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
-    /// Half of the times are below.
+    /// Median.
     pub median: f64,
-    /// A quarter of the times are below.
+    /// Lower quartile.
     pub lower: f64,
-    /// A quarter are above.
+    /// Upper quartile.
     pub upper: f64,
 }
 
 impl Spread {
-    /// The median and the quartiles of some times; zeros if there are none.
-    pub fn from_times(times: &mut [f64]) -> Spread {
+    /// Computes the median and quartiles of some times; all are zero if there are none.
+    fn from_times(times: &mut [f64]) -> Spread {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| {
             let index = ((times.len().saturating_sub(1)) as f64 * share).round() as usize;
@@ -32,23 +32,23 @@ impl Spread {
     }
 }
 
-/// How long to go on measuring.
+/// Duration of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// The least number of times that a frame is drawn.
-    pub times: usize,
-    /// And so long, a hundred times as often at most.
-    pub duration: Duration,
+    /// Minimum number of times that a frame is drawn.
+    times: usize,
+    /// Minimum duration; a frame is drawn at most 100 times as often as `times`.
+    duration: Duration,
 }
 
 impl Effort {
-    /// What figures that are kept are measured with.
+    /// For published figures.
     pub const FULL: Effort = Effort { times: 9, duration: Duration::from_millis(100) };
-    /// The least that shows whether everything works.
+    /// For tests that everything works.
     pub const QUICK: Effort = Effort { times: 1, duration: Duration::ZERO };
 
-    /// Times `work` again and again, once before that unmeasured; nanoseconds for each of `pixels`. Work runs on one thread, whichever:
-    /// the time is that of the whole process.
+    /// Times `work` repeatedly, after one run that is not measured. Returns nanoseconds for each of `pixels`. `work` has to run on one thread at a
+    /// time, because the time is that of the whole process.
     pub fn measure(&self, pixels: u64, mut work: impl FnMut()) -> Spread {
         work();
         let (begin, mut times) = (ProcessTime::now(), Vec::new());
@@ -61,11 +61,11 @@ impl Effort {
     }
 }
 
-/// Times frames of a plan on one thread; textures are decoded and draws compiled before.
-pub fn frames(plan: &Plan, options: &RenderOptions, pixels: u64, effort: &Effort) -> Spread {
+/// Times frames of a plan on one thread. Textures are decoded and draws compiled beforehand.
+pub(crate) fn frames(plan: &Plan, options: &RenderOptions, pixels: u64, effort: &Effort) -> Spread {
     let renderer = Renderer::new(plan, &RenderOptions { threads: 1, ..*options });
     let (mut frames, _) = renderer.render();
-    // Fragments of a second frame would fail the depth test of a first: then the clear belongs to the frame.
+    // A second frame would fail the depth test against the first, so the clear has to be part of the frame.
     let clears = plan.draws.iter().any(|draw| draw.depth_test.is_some());
     effort.measure(pixels, || {
         if clears {

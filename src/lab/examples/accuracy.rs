@@ -1,4 +1,4 @@
-//! How exact a technique is: the picture of a scene against the ground truth that it names.
+//! Measures the accuracy of a technique: a scene's picture against the ground truth that it names.
 //!
 //! `cargo run -p ninebit-lab --example accuracy vectors/scenes/techniques/normalisation/smooth-combiners.ron`
 

@@ -1,10 +1,10 @@
-//! Highlights stored in a cube map: how many texels a face they need.
+//! Highlights stored in a cube map: the resolution that they need.
 
 use super::*;
 
-/// Toward the middle of the highlight.
+/// Direction of the middle of the highlight.
 const AXIS: [f64; 3] = [0.3, 0.1, 1.0];
-/// The directions end before the face does: what happens at its edges is another matter.
+/// Half width of the range of directions. It ends before the face does, to leave out effects at the face's edges.
 const HALF_WIDTH: f64 = 0.8;
 
 pub(super) fn experiment() -> Experiment {
@@ -21,14 +21,14 @@ pub(super) fn experiment() -> Experiment {
         .by([8, 32, 128].map(method))
 }
 
-/// The cosine with the axis, to a power.
+/// Returns the cosine with the axis, to a power.
 fn highlight(direction: [f64; 3], exponent: i32) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cosine = dot(direction, AXIS) / (dot(direction, direction) * dot(AXIS, AXIS)).sqrt();
     pow(cosine.max(0.0), f64::from(exponent))
 }
 
-/// Directions along a face; only that face, the fifth, holds anything.
+/// Draws directions along a face of the cube map; only this face, the fifth, has content.
 fn picture(side: usize, exponent: i32) -> Pixels {
     let mut words = vec![0; 6 * side * side];
     for (n, word) in words[4 * side * side..5 * side * side].iter_mut().enumerate() {

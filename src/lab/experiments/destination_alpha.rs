@@ -1,4 +1,4 @@
-//! Numbers that are gathered in destination alpha, eight bits a pass.
+//! Numbers that are accumulated in destination alpha, with eight bits per pass.
 
 use super::*;
 
@@ -21,14 +21,14 @@ pub(super) fn experiment() -> Experiment {
         ])
 }
 
-/// Each pass brings the same part of what is to come out, as a byte.
+/// Draws the passes. Each contributes the same part of the result, as a byte.
 fn picture(passes: f64, [source, destination]: [BlendFactor; 2], part: fn(f64, f64) -> f64) -> Pixels {
     let texels = bytes((0..WIDTH).map(|x| byte(part(centre(x, WIDTH), passes))));
     let pass = whole_row(WIDTH, 0, Combiners::showing(FinalRegister::Texture0));
     let pass = Draw { color_mask: [false, false, false, true], ..pass };
     let blend = Some(Blend { equation: BlendEquation::Add, source, destination });
     let mut draws = vec![Draw { blend, ..pass.clone() }; passes as usize];
-    // The first pass replaces what was there.
+    // The first pass overwrites the target.
     draws[0] = pass;
     drawn(Profile::Nv10, WIDTH, vec![texels], draws)
 }

@@ -2,10 +2,11 @@
 
 use super::*;
 
-/// Texels of the height field, and of one wave of it.
+/// Number of texels of the height field.
 const TEXELS: usize = 64;
+/// Number of texels of one wave.
 const WAVE: f64 = 16.0;
-/// Height of the waves, half of it above and half below the middle.
+/// Height of the waves; half of it is above and half below the middle.
 const AMPLITUDE: f64 = 0.4;
 
 pub(super) fn experiment() -> Experiment {
@@ -13,7 +14,7 @@ pub(super) fn experiment() -> Experiment {
         Method::new(name, [1.0, 7.0], move |offset| {
             let pixels = picture(offset, back)?;
             let steepest = 255.0 * offset * 0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE;
-            // What the slope alone would give: one half, less the rise over the offset.
+            // The slope alone gives one half, minus the rise over the offset.
             let ideal = |at: f64| 0.5 - offset * slope(at * TEXELS as f64);
             Ok(100.0 * largest(&errors(&pixels, 0, ideal)) / steepest)
         })
@@ -24,7 +25,7 @@ pub(super) fn experiment() -> Experiment {
         .by([method("h(s) - h(s + d)", 0.0), method("h(s - d/2) - h(s + d/2)", 0.5)])
 }
 
-/// Rise a texel of the height field at a place in texels.
+/// Returns the rise of the height field per texel at a position in texels.
 fn slope(at: f64) -> f64 {
     0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE * cos(std::f64::consts::TAU * at / WAVE)
 }

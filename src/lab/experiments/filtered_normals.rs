@@ -1,8 +1,8 @@
-//! Normals between two texels, shortened by the filter.
+//! Normals between two texels, which filtering shortens.
 
 use super::*;
 
-/// The dot product of the normals with the constant; `renormalised`, after one step of Newton's method: N + N (1 - N . N) / 2.
+/// Returns the stages of the dot product of normals and constant. `renormalised` adds one step of Newton's method before: N + N (1 - N . N) / 2.
 fn dot(renormalised: bool) -> Vec<GeneralStage> {
     let (normals, direction) = (expanded(Register::Texture0), expanded(Register::ConstantColor0));
     if !renormalised {
@@ -20,7 +20,7 @@ pub(super) fn experiment() -> Experiment {
         Method::new(name, [5.0, 120.0], move |degrees: f64| {
             let half = 0.5 * degrees.to_radians();
             largest_error(picture(half, renormalised, squares), 0, |at| {
-                // The mix of the exact normals, brought to unit length.
+                // The interpolated exact normals, normalised.
                 let (x, z) = (sin(half) * (2.0 * at - 1.0), cos(half));
                 pow(z / (x * x + z * z).sqrt(), f64::from(1 << squares))
             })
@@ -32,7 +32,7 @@ pub(super) fn experiment() -> Experiment {
         .by([method("N . H", false, 0), method("(N . H)^8", false, 3), method("(N . H)^8, N renormalised", true, 3)])
 }
 
-/// Two normals that lean away from one another by `half` each, mixed along the strip.
+/// Draws a strip between two normals that lean away from one another by `half` each.
 fn picture(half: f64, renormalised: bool, squares: usize) -> Pixels {
     let normals = colors([-1.0, 1.0].into_iter().map(|side: f64| encode([side * sin(half), 0.0, cos(half)])));
     let clamp = AddressMode::ClampToEdge;

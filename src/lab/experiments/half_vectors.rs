@@ -2,10 +2,11 @@
 
 use super::*;
 
-/// Where light and viewer stand over a floor, x and height.
+/// Position of the light over a floor: x and height.
 const LIGHT: [f64; 2] = [0.6, 1.0];
+/// Position of the viewer over the floor: x and height.
 const EYE: [f64; 2] = [-0.6, 1.0];
-/// log2 of the exponent.
+/// Binary logarithm of the exponent.
 const SQUARINGS: usize = 3;
 
 pub(super) fn experiment() -> Experiment {
@@ -26,12 +27,12 @@ pub(super) fn experiment() -> Experiment {
         .by([method("one quad", 1), method("2 quads", 2), method("4 quads", 4), method("16 quads", 16)])
 }
 
-/// From share of the strip to x on the floor.
+/// Converts a position on the strip (0 to 1) to x on the floor.
 fn place(at: f64, extent: f64) -> f64 {
     extent * (at - 0.5)
 }
 
-/// The unit vector half-way between the directions to light and viewer, along the floor and up.
+/// Returns the unit half vector between the directions to light and viewer, as components along the floor and up.
 fn half_vector(x: f64) -> [f64; 2] {
     let unit = |[x, z]: [f64; 2]| {
         let length = (x * x + z * z).sqrt();

@@ -1,13 +1,13 @@
-//! A directional light that sinks to the horizon of a bumpy surface and below it.
+//! A directional light that sinks to the horizon of a bumpy surface and below.
 
 use super::*;
 
-/// What happens to light that comes from below the surface.
+/// Treatment of light that comes from below the surface.
 #[derive(Clone, Copy)]
 enum Shadow {
-    /// Nothing: bumps catch it.
+    /// None: bumps are lit.
     None,
-    /// The light's own height above the surface, times four, multiplies it.
+    /// Multiplication by the light's height above the surface, times four.
     Term,
 }
 
@@ -40,7 +40,7 @@ pub(super) fn grazing() -> Experiment {
         .by([method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)])
 }
 
-/// The errors in steps, and what there ought to be.
+/// Returns the errors and the expected values, in steps.
 fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
     let elevation = elevation.to_radians();
     let tilt = |at: f64| angle(-bumps, bumps, at);

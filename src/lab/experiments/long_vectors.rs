@@ -3,7 +3,7 @@
 use super::order::pass;
 use super::*;
 
-/// The light stands in the middle of an octant.
+/// Component of the unit light vector, which points to the middle of an octant.
 const THIRD: f64 = 0.577_350_269_189_625_8;
 
 pub(super) fn experiment() -> Experiment {
@@ -21,7 +21,7 @@ pub(super) fn experiment() -> Experiment {
         .by([method("dot product of a general stage", combined), method("passes, additions first", passes)])
 }
 
-/// From facing away in y to facing it, between x and z.
+/// Returns normals that turn from -y to y, through the middle between x and z.
 fn normal(at: f64) -> [f64; 3] {
     let tilt = angle(-90.0, 90.0, at);
     let side = cos(tilt) * std::f64::consts::FRAC_1_SQRT_2;

@@ -1,12 +1,12 @@
-//! Highlights of a bumpy surface that moves away.
+//! Highlights on a bumpy surface that moves away from the viewer.
 
 use super::*;
 use ninebit_files::texels::halve;
 
 const PIXELS: usize = 256;
-/// Texels of the map.
+/// Number of texels of the normal map.
 const TEXELS: usize = 512;
-/// Degrees by which normals lean at most.
+/// Largest tilt of normals in degrees.
 const TILT: f64 = 35.0;
 
 pub(super) fn experiment() -> Experiment {
@@ -27,18 +27,18 @@ pub(super) fn experiment() -> Experiment {
         ])
 }
 
-/// How a texel's normal leans: waves of two lengths, about a dozen texels and thirty.
+/// Returns the tilt of a texel's normal: two waves of about a dozen and thirty texels.
 fn tilt(texel: usize) -> f64 {
     let at = std::f64::consts::TAU * texel as f64 / TEXELS as f64;
     angle(-TILT, TILT, 0.5 + 0.25 * (sin(41.0 * at) + sin(17.0 * at + 1.0)))
 }
 
-/// The mean of the highlight over the texels that a pixel covers.
+/// Returns the mean of the highlight over the texels that a pixel covers.
 fn seen(normals: &[[f64; 2]], at: f64, texels: f64, squarings: u32) -> f64 {
     const SAMPLES: usize = 64;
     let sample = |n: usize| {
         let place = at * texels * PIXELS as f64 + (centre(n, SAMPLES) - 0.5) * texels;
-        // Between texels as an exact filter mixes them, brought to unit length.
+        // Interpolated between texels as by an exact filter, and normalised.
         let left = (place - 0.5).floor();
         let weight = place - 0.5 - left;
         let normal = |texel: f64| normals[texel.rem_euclid(TEXELS as f64) as usize];

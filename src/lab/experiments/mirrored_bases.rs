@@ -3,7 +3,7 @@
 use super::*;
 use ninebit_scene::mesh::{Surface, mesh};
 
-/// Toward the light: along the binormal and up.
+/// Direction of the light: along the binormal and up.
 const LIGHT: [f64; 3] = [0.0, 0.6, 0.8];
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, vertices: fn() -> Vec<Vertex>| {
@@ -26,7 +26,7 @@ pub(super) fn experiment() -> Experiment {
         ])
 }
 
-/// A square whose left half shows the texture mirrored, with light vectors in the bases of its corners.
+/// Returns a square whose left half shows the texture mirrored, with light vectors in the tangent bases of its corners.
 fn of_the_mesh() -> Vec<Vertex> {
     let half = |[left, right]: [f32; 2], [s, other]: [f32; 2]| {
         [[left, -1.0, s, 1.0], [right, -1.0, other, 1.0], [right, 1.0, other, 0.0], [left, 1.0, s, 0.0]]
@@ -46,14 +46,14 @@ fn of_the_mesh() -> Vec<Vertex> {
     (0..2).flat_map(|half| quad(places[half], [4 * half, 4 * half + 1].map(|n| pointing(light(n))))).collect()
 }
 
-/// Light vectors whose binormal components are given at the ends of each half.
+/// Returns vertices with light vectors, given their binormal components at the ends of each half.
 fn listed(left: [f64; 2], right: [f64; 2]) -> Vec<Vertex> {
     let lit = |binormal: f64| pointing([0.0, binormal, LIGHT[2]]);
     let middle = (WIDTH / 2) as f64;
     [quad([0.0, middle], left.map(lit)), quad([middle, WIDTH as f64], right.map(lit))].concat()
 }
 
-/// A map of one normal that leans along the binormal.
+/// Draws a map of one normal that is tilted along the binormal.
 fn picture(tilt: f64, vertices: Vec<Vertex>) -> Pixels {
     let normals = colors(std::iter::once(encode([0.0, sin(tilt), cos(tilt)])));
     let dot = dot_product(expanded(Register::Texture0), expanded(Register::PrimaryColor));

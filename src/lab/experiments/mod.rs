@@ -1,8 +1,8 @@
-//! Where methods fail: the parameter that breaks each, and from which value on.
+//! Limits of methods: the parameter at which each begins to fail.
 //!
-//! An [`Experiment`] makes a small scene for every value of its parameter, draws it with the engine, and measures how far the picture is from a
-//! formula in float64. [`threshold`] halves an interval, between a value at which a method works and one at which it fails, until the place
-//! is found. Nothing about the outcome is written down here: thresholds, curves and their page come from the model.
+//! An [`Experiment`] builds a small scene for every value of its parameter, draws it with the engine, and measures the deviation from a formula in
+//! float64. [`threshold`] bisects an interval between a value at which a method works and one at which it fails. The code holds no outcome:
+//! thresholds, curves and their page are computed by the model.
 #![allow(clippy::float_arithmetic, reason = "measures pictures against formulas; nothing of this is stored")]
 
 mod cube_resolution;
@@ -27,18 +27,18 @@ use ninebit_scene::generate::normal_map::encode;
 use portable::*;
 use strip::*;
 
-/// How far a picture is off for a value of the parameter.
+/// Function from a value of the parameter to the picture's error.
 pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync>;
 
-/// One way of doing it.
+/// A method that an experiment measures.
 pub struct Method {
-    /// What legend and table call it.
+    /// Name in legend and table.
     pub name: String,
-    /// How far the picture is off.
+    /// Function from the parameter to the error.
     pub measure: Measure,
-    /// A value of the parameter at which it ought to work.
+    /// Value of the parameter at which the method should work.
     pub works: f64,
-    /// One at which it ought to fail.
+    /// Value of the parameter at which it should fail.
     pub fails: f64,
 }
 
@@ -58,35 +58,35 @@ impl std::fmt::Debug for Method {
     }
 }
 
-/// The values that a parameter takes.
+/// Kind of values that a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// Real numbers; a threshold is sought to this much.
+    /// Real numbers; thresholds are found to this precision.
     Real(f64),
-    /// Integers, one after the other.
+    /// Integers.
     Whole,
     /// Powers of two.
     Doubling,
 }
 
-/// A parameter that is moved until methods fail.
+/// An experiment: a parameter that is varied until methods fail.
 #[derive(Debug)]
 pub struct Experiment {
-    /// Name of its files, and of its place in the page.
+    /// Name of its files, and of its section in the page.
     pub name: &'static str,
-    /// Above its picture.
+    /// Title above its chart.
     pub title: &'static str,
-    /// What is moved, with its unit.
+    /// Name of the parameter, with its unit.
     pub parameter: &'static str,
-    /// What is measured, with its unit.
+    /// Name of the error, with its unit.
     pub error: &'static str,
-    /// An error up to this much is called working.
+    /// Largest error at which a method counts as working.
     pub limit: f64,
-    /// What values the parameter takes.
+    /// Kind of the parameter's values.
     pub scale: Scale,
-    /// The values that the picture shows.
+    /// Values of the parameter that the chart shows.
     pub shown: Vec<f64>,
-    /// The ways of doing it.
+    /// The methods.
     pub methods: Vec<Method>,
 }
 
@@ -96,12 +96,12 @@ impl Experiment {
         Experiment { name, title, parameter, error, limit, scale, shown: Vec::new(), methods: Vec::new() }
     }
 
-    /// What is moved, which values it takes, and those that the picture shows.
+    /// Sets the parameter, the kind of its values, and those that the chart shows.
     fn moving(self, parameter: &'static str, scale: Scale, shown: Vec<f64>) -> Experiment {
         Experiment { parameter, scale, shown, ..self }
     }
 
-    /// What is measured, and up to how much is called working.
+    /// Sets the error that is measured, and its limit.
     fn measuring(self, error: &'static str, limit: f64) -> Experiment {
         Experiment { error, limit, ..self }
     }
@@ -111,25 +111,25 @@ impl Experiment {
     }
 }
 
-/// Where a method stops working.
+/// The value of the parameter where a method stops working.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Threshold {
-    /// Between two values.
+    /// It lies between two values.
     Between {
-        /// It works here.
+        /// Last value at which the method works.
         works: f64,
-        /// It fails here.
+        /// First value at which it fails.
         fails: f64,
     },
-    /// It works even where it ought to fail.
+    /// The method works even where it should fail.
     Holds,
-    /// It fails even where it ought to work.
+    /// The method fails even where it should work.
     Fails,
 }
 
 impl Threshold {
-    /// Where a method still works, and where it fails no more than just; `None`: nowhere.
-    pub fn ends(self, method: &Method) -> (Option<f64>, Option<f64>) {
+    /// Returns the last value at which the method works and the first at which it fails; `None` if there is no such value.
+    fn ends(self, method: &Method) -> (Option<f64>, Option<f64>) {
         match self {
             Threshold::Between { works, fails } => (Some(works), Some(fails)),
             Threshold::Holds => (Some(method.fails), None),
@@ -139,7 +139,7 @@ impl Threshold {
 }
 
 impl Scale {
-    /// A value between two others, or `None` if there is none that matters.
+    /// Returns a value between two others, or `None` if they are next to each other or close enough.
     fn between(self, a: f64, b: f64) -> Option<f64> {
         match self {
             Scale::Real(enough) => ((a - b).abs() > enough).then_some(0.5 * (a + b)),
@@ -152,10 +152,10 @@ impl Scale {
     }
 }
 
-/// Finds where a method's error crosses the limit, by halving the interval between where it works and where it fails.
+/// Finds where a method's error crosses the limit, by bisection between its `works` and `fails`.
 ///
 /// # Errors
-/// A scene of the experiment is not accepted: a fault of the experiment.
+/// Returns an error if a scene is not valid, which is a fault of the experiment.
 pub fn threshold(experiment: &Experiment, method: &Method) -> Result<Threshold, Box<SceneError>> {
     let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)? <= experiment.limit);
     if !works_at(method.works)? {
@@ -175,7 +175,7 @@ pub fn threshold(experiment: &Experiment, method: &Method) -> Result<Threshold, 
     Ok(Threshold::Between { works, fails })
 }
 
-/// Every experiment, in the order of the page.
+/// Returns all experiments, in the order of the page.
 pub fn experiments() -> Vec<Experiment> {
     vec![
         squaring::experiment(),
@@ -195,7 +195,7 @@ pub fn experiments() -> Vec<Experiment> {
     ]
 }
 
-/// `count` values from `low` to `high`, equally far apart.
+/// Returns `count` evenly spaced values from `low` to `high`.
 fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|n| low + (high - low) * n as f64 / (count.max(2) - 1) as f64).collect()
 }

@@ -16,7 +16,7 @@ pub(super) fn experiment() -> Experiment {
         .by([method("additions first", true), method("subtractions first", false)])
 }
 
-/// Normals over half a circle, lit from `tilt`: each product of half components is a pass.
+/// Draws normals over half a circle, lit from `tilt`; each product of positive or negative component parts is a pass.
 fn picture(tilt: f64, additions_first: bool) -> Pixels {
     let component =
         |of: fn(f64) -> f64| bytes((0..WIDTH).map(|x| byte(of(angle(-90.0, 90.0, centre(x, WIDTH))).max(0.0))));
@@ -32,7 +32,7 @@ fn picture(tilt: f64, additions_first: bool) -> Pixels {
     drawn(Profile::Nv2a, WIDTH, vec![component(sin), component(cos), component(|angle| -sin(angle))], passes)
 }
 
-/// A pass that adds or subtracts a texture times the byte of a half component of the light.
+/// Returns a pass that adds or subtracts a texture times a component of the light.
 pub(super) fn pass(texture: usize, light: u8, equation: BlendEquation) -> Draw {
     let lit = product(plain(Register::Texture0), plain(Register::ConstantColor0));
     let blend = Some(Blend { equation, source: BlendFactor::One, destination: BlendFactor::One });

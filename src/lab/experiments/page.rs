@@ -1,4 +1,4 @@
-//! The page of the experiments: prose of `page.md`, with what was measured in its places.
+//! The page of the experiments: the template `page.md`, filled in with measurements.
 
 use serde::Serialize;
 
@@ -7,26 +7,26 @@ use crate::chart::page::{File, comma_separated, fill, number, plain, table};
 use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
 use ninebit_scene::SceneError;
 
-/// What the section says between its tables.
+/// The section's template.
 const TEMPLATE: &str = include_str!("page.md");
-/// The folder of the files, beside the page.
+/// Name of the folder of the page's files, beside it.
 const FOLDER: &str = "stability";
 
-/// What an experiment yielded.
+/// Measurements of an experiment.
 #[derive(Debug)]
 pub struct Measured {
-    /// What was moved, and the methods that were compared.
+    /// The experiment.
     pub experiment: Experiment,
-    /// The errors of each method at the values that are shown.
+    /// Errors of each method at the values that the chart shows.
     pub curves: Vec<Vec<f64>>,
-    /// Where each method stops working.
+    /// Threshold of each method.
     pub thresholds: Vec<Threshold>,
 }
 
-/// Runs every experiment. `progress` is told how many of how many methods are done.
+/// Runs all experiments. Calls `progress` with the number of finished methods and their total.
 ///
 /// # Errors
-/// A scene of an experiment is not accepted: a fault of the experiment.
+/// Returns an error if a scene is not valid, which is a fault of the experiment.
 pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<SceneError>> {
     let experiments = experiments();
     let total = experiments.iter().map(|experiment| experiment.methods.len()).sum();
@@ -46,7 +46,7 @@ pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<Sce
     Ok(all)
 }
 
-/// The section of the page, and the files that it shows.
+/// Returns the section of the page, and the files that it links to.
 pub fn files(all: &[Measured]) -> (String, Vec<File>) {
     let (mut parts, mut files) = (Vec::new(), Vec::new());
     for measured in all {
@@ -72,7 +72,7 @@ pub fn files(all: &[Measured]) -> (String, Vec<File>) {
 }
 
 impl Measured {
-    /// The table of the thresholds.
+    /// Returns the table of the thresholds.
     fn rows(&self) -> Vec<Vec<String>> {
         let works = format!("{}: works at", self.experiment.parameter);
         let heading = vec!["method".to_owned(), works, "fails at".to_owned()];
@@ -106,8 +106,8 @@ fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
     rows
 }
 
-/// The picture of an experiment.
-pub fn drawing(measured: &Measured) -> Drawing {
+/// Returns the chart of an experiment.
+fn drawing(measured: &Measured) -> Drawing {
     let Measured { experiment, curves, .. } = measured;
     let series = experiment.methods.iter().zip(curves).enumerate().map(|(n, (method, curve))| Series {
         label: method.name.clone(),
@@ -137,7 +137,7 @@ pub fn drawing(measured: &Measured) -> Drawing {
     }
 }
 
-/// An experiment for programs.
+/// An experiment as JSON.
 #[derive(Serialize)]
 struct Record {
     #[serde(rename = "sweep")]
@@ -151,9 +151,9 @@ struct Record {
 #[derive(Serialize)]
 struct MethodRecord {
     method: String,
-    /// `None`: it works nowhere.
+    /// Last value at which it works; `None` if it works nowhere.
     works: Option<f64>,
-    /// `None`: it works everywhere.
+    /// First value at which it fails; `None` if it works everywhere.
     fails: Option<f64>,
 }
 

@@ -1,11 +1,11 @@
-//! Sine, cosine, powers and logarithms of experiments: one implementation, so that figures are the same bytes on every platform. The standard
-//! library takes those of the system.
+//! Sine, cosine, powers and logarithms for experiments. `libm` gives the same bytes on every platform; the standard library calls the functions of
+//! the system.
 
 pub(super) use libm::{cos, exp2, log2, pow, sin};
 
 #[cfg(test)]
 mod tests {
-    /// What the standard library leaves to the platform occurs in no experiment.
+    /// Checks that no experiment calls functions that the standard library leaves to the platform.
     #[test]
     fn no_experiment_asks_the_platform() {
         let methods = [
@@ -28,7 +28,8 @@ mod tests {
             read += 1;
         }
         assert!(read >= 15, "{read}");
-        // The same bits everywhere: those of 0.479425538604203 and, 0.9 being a little more than that, of 0.4304672100000001.
+        // The results have the same bits everywhere: those of 0.479425538604203 and of 0.4304672100000001 (because 0.9 is a little more than nine
+        // tenths).
         assert_eq!(super::sin(0.5).to_bits(), 4_602_308_182_625_945_072);
         assert_eq!(super::pow(0.9, 8.0).to_bits(), 4_601_426_227_784_110_790);
     }

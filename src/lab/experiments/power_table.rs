@@ -1,10 +1,10 @@
-//! Highlights by a table of powers in a texture.
+//! Highlights from a table of powers in a texture.
 
 use super::*;
 
-/// Pixels: more than the largest table has texels.
+/// Number of pixels: more than the texels of the largest table.
 const PIXELS: usize = 8 * WIDTH;
-/// The smallest cosine that is looked up; the steep end of a power is the other one.
+/// Smallest cosine that is looked up; powers are steep at the other end.
 const FROM: f64 = 0.75;
 
 pub(super) fn experiment() -> Experiment {
@@ -19,7 +19,7 @@ pub(super) fn experiment() -> Experiment {
         .by([32, 64, 128, 256, 512, 1024].map(method))
 }
 
-/// The cosine along the strip looks its power up.
+/// Draws the powers of cosines along the strip.
 fn picture(texels: usize, exponent: f64) -> Pixels {
     let table = bytes((0..texels).map(|n| byte(pow(centre(n, texels), exponent))));
     let clamp = AddressMode::ClampToEdge;

@@ -1,10 +1,10 @@
-//! Highlights by squaring a dot product again and again.
+//! Highlights by repeated squaring of a dot product.
 
 use super::*;
 
-/// Pixels: several for each byte of the dot product.
+/// Number of pixels: several for each byte of the dot product.
 const PIXELS: usize = 4 * WIDTH;
-/// Degrees of the normals at the ends.
+/// Tilt of the normals at the ends in degrees.
 const TILT: f64 = 50.0;
 
 pub(super) fn experiment() -> Experiment {
@@ -22,14 +22,14 @@ pub(super) fn experiment() -> Experiment {
         ])
 }
 
-/// N . H, then so many squarings.
+/// Draws N . H, squared `count` times.
 fn picture(count: usize) -> Pixels {
     let normals = leaning(PIXELS, |x| angle(-TILT, TILT, strip::centre(x, PIXELS)));
     let row = whole_row(PIXELS, 0, highlight(Register::Texture0, [128, 128, 255], count));
     drawn(Profile::Nv2a, PIXELS, vec![normals], vec![row])
 }
 
-/// The largest difference of two neighbours.
+/// Returns the largest difference of two neighbouring pixels.
 fn band(pixels: &[[u8; 4]]) -> f64 {
     pixels.windows(2).map(|pair| f64::from(pair[0][0].abs_diff(pair[1][0]))).fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! Subtracting a pass without a subtracting blend: a (1 - b) in place of a - b.
+//! Subtraction of a pass without a subtracting blend: a (1 - b) in place of a - b.
 
 use super::*;
 
@@ -17,7 +17,7 @@ pub(super) fn experiment() -> Experiment {
         .by([method("(ZERO, ONE_MINUS_SRC_COLOR)", approximate), method("reverse subtraction", subtracting)])
 }
 
-/// The largest error of a - b where b is `gap` below a, for all bytes a from `gap` on.
+/// Returns the largest error of a - b, where b is `gap` below a, over all bytes a from `gap` on.
 fn error(gap: u8, blend: Blend) -> Result<f64, Box<ninebit_scene::SceneError>> {
     let textures = vec![bytes(0..=255), bytes((0..=255_u8).map(|a| a.saturating_sub(gap)))];
     let [first, second] = [0, 1].map(|n| whole_row(WIDTH, n, Combiners::showing(FinalRegister::Texture0)));

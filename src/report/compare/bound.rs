@@ -1,4 +1,4 @@
-//! Between which numbers the error of a single rule lies: the bounds that `docs/numerics.md` states.
+//! Bounds for the error of a single rule, as `docs/numerics.md` states them.
 #![allow(clippy::float_arithmetic, reason = "bounds of errors")]
 
 use ninebit::plan::{Plan, PlannedDraw};
@@ -8,17 +8,17 @@ use ninebit::state::*;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::trace::Rule;
 
-/// Half a step, less what a quotient by 255 cannot reach.
+/// Largest error of rounding a quotient by 255: less than half a step, because halves do not occur.
 const NEAREST: f64 = 127.0 / 255.0;
 
-/// Lowest and highest error, the definition minus the ideal, in steps (weights: 256ths). None is stated for TEX-15, whose error depends
-/// on how small q becomes, nor for TEX-17, whose taps depend on it.
+/// Returns the lowest and highest error, the definition minus the ideal, in steps (for weights in 256ths). Returns `None` where no bound is stated:
+/// the error of TEX-15 depends on how small q becomes, and the taps of TEX-17 depend on that.
 pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     let policies = &plan.policies;
     let symmetric = |n: f64| Some((-n, n));
     match rule {
         Rule::Num4 => symmetric(0.5 + 255.0 / 16384.0),
-        // The floor to 4096ths comes first, then that of NUM-6.
+        // The floor to 4096ths, then that of NUM-6.
         Rule::Num6 => {
             let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
             Some((-1.0 - slack, slack))
@@ -34,12 +34,12 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             Some((-1.0 - slack, 1.0 + slack))
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
-        // A floor, one step lower on a tie, and what the weights are off.
+        // A floor, one step lower on a tie, and the error of the weights.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan, 0.0), coordinate_slack(plan, 0.0))),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
-        // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
+        // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
         Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
-        // A quotient by q magnifies what weights are off, as in TEX-15.
+        // A quotient by q magnifies the error of the weights, as in TEX-15.
         Rule::Tsh7 if projects(plan) => None,
         Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan, SHORTFALL), coordinate_slack(plan, SHORTFALL))),
         Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
@@ -47,7 +47,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             let slack = number_slack(plan) + 255.0 / 4096.0;
             Some((-1.0 - slack, slack))
         }
-        // A byte of a half is off by what the other byte is worth.
+        // Each byte of a 16-bit half is off by up to the value of the other byte.
         Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
         // A unit test of the decoder finds the extremes.
@@ -67,7 +67,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         },
         // -256 negated is 255.
         Rule::Cmb5 => Some((-1.0, 0.0)),
-        // With half bits kept exact halves exist.
+        // With half bits kept, exact halves occur.
         Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 if policies.half_bias == HalfBiasConstant::Half127And5 => symmetric(0.5),
         Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 => symmetric(NEAREST),
         Rule::Cmb9 => match policies.output_rounding {
@@ -82,21 +82,21 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         },
         Rule::Fin2 | Rule::Fin4 => symmetric(NEAREST),
         Rule::Rop2 => symmetric(NEAREST),
-        // 5 bits lose up to 7 steps when they are cut; read back they are up to 7 below and, widened, up to 7 above.
+        // Truncation to 5 bits loses up to 7 steps; the value read back is up to 7 steps below and, widened, up to 7 above.
         Rule::Rop5 => symmetric(7.0),
     }
 }
 
-/// The largest relative error of a triangle's weights: the block-floating products of w (INT-1) and w itself (INT-6).
+/// Returns the largest relative error of the triangles' weights, from the block-floating products of w (INT-1) and w itself (INT-6).
 fn weights(plan: &Plan) -> f64 {
     triangles(plan).map(|(draw, vertices)| relative(plan, draw, vertices)).fold(0.0, f64::max)
 }
 
-/// INT-4t: how much of a weight is missing.
+/// The relative amount by which a weight falls short (INT-4t).
 const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 
-/// How far weights that are off, and so much besides, move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle
-/// times their relative error, twice because their sum is off as well.
+/// Returns the largest error of a texture coordinate, in 256ths of a texel, that is due to weights with their own error plus `besides`. It is the
+/// coordinate's span over a triangle times that relative error, twice because the sum of the weights is off as well.
 fn coordinate_slack(plan: &Plan, besides: f64) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
         let relative = relative(plan, draw, vertices) + besides;
@@ -114,8 +114,8 @@ fn coordinate_slack(plan: &Plan, besides: f64) -> f64 {
     slack.fold(1e-6, f64::max)
 }
 
-/// How far the light unit's words, weights that are off and the cut to 24 bits move a fog factor, in steps: what they move d' or e, times
-/// the steepest slope of the function.
+/// Returns the largest error of a fog factor, in steps, that is due to the light unit's words, the weights and the truncation to 24 bits: the
+/// resulting error of d' or e times the steepest slope of the function.
 fn fog_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).map(|(draw, vertices)| {
         let Some(function) = &draw.fog.function else { return 0.0 };
@@ -138,13 +138,13 @@ fn fog_slack(plan: &Plan) -> f64 {
             FogMode::Exp | FogMode::ExpAbs => 11.1,
             FogMode::Exp2 | FogMode::Exp2Abs => 4.05,
         };
-        // The last term: float64 where large terms cancel.
+        // The last term is the rounding of float64 where large terms cancel.
         255.0 * (slope * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
     });
     slack.fold(0.0, f64::max)
 }
 
-/// The same for coordinates that become colours, in steps.
+/// Returns the largest error of coordinates that become colours, in steps.
 fn number_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
         let relative = relative(plan, draw, vertices);
@@ -154,7 +154,7 @@ fn number_slack(plan: &Plan) -> f64 {
     slack.fold(1e-6, f64::max)
 }
 
-/// Whether some unit divides by a q other than 1.
+/// Returns whether a unit divides by a q other than 1.
 fn projects(plan: &Plan) -> bool {
     triangles(plan).any(|(draw, vertices)| {
         let q = |unit: &PlannedUnit| vertices.coordinates(unit.stage.coordinate_set).map(|set| set[3]);

@@ -1,4 +1,4 @@
-//! The walk over draws and bands of rows, whatever the ideal is allowed to decide.
+//! The walk over draws and bands of rows, independent of the mode.
 #![allow(clippy::float_arithmetic, reason = "statistics of errors")]
 
 use super::meter::Counts;
@@ -15,73 +15,74 @@ use ninebit::trace::{Decision, Part, Rule};
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
-/// Rows of a band; even, so that quads stay whole.
+/// Number of rows in a band. It is even so that quads stay whole.
 const BAND: usize = 16;
 
-/// Worst pixels that are named.
+/// Number of worst pixels that are reported.
 const WORST: usize = 8;
 
-/// What is known of a pixel beside its colour.
+/// State of a pixel besides its colour.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     /// The ideal's depth and stencil.
     pub(super) depth: DepthStencil,
-    /// A fragment was stored.
+    /// Whether a fragment was stored.
     pub(super) drawn: bool,
-    /// A decision has differed.
+    /// Whether a decision has differed.
     pub(super) diverged: bool,
 }
 
-/// Some rows of a target, as both sides hold them.
+/// Some rows of a target, as the definition and the ideal hold them.
 pub(super) struct Band<'a, L> {
-    /// The band's first row on the target.
+    /// First row of the band.
     pub(super) first_row: usize,
-    /// Pixels across.
+    /// Width in pixels.
     pub(super) width: usize,
-    /// The definition's words.
+    /// Words of the definition.
     pub(super) words: &'a mut [u32],
-    /// The definition's depths; empty without a depth buffer.
+    /// Depth words of the definition; empty without a depth buffer.
     pub(super) depth: &'a mut [u32],
-    /// What the lane holds.
+    /// Colours of the lane, as R, G, B, A.
     pub(super) held: &'a mut [[L; 4]],
-    /// What else each pixel keeps.
+    /// State of each pixel.
     pub(super) states: &'a mut [State],
 }
 
 impl<L> Band<'_, L> {
-    /// First row and the row after the last.
+    /// Returns the first row and the row after the last.
     pub(super) fn rows(&self) -> (i64, i64) {
         (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
     }
 
-    /// Where pixel (i, j) is.
+    /// Returns the index of pixel (i, j).
     pub(super) fn at(&self, i: i64, j: i64) -> usize {
         (j as usize - self.first_row) * self.width + i as usize
     }
 }
 
-/// Textures as a draw finds them.
+/// Textures at the time of a draw.
 pub(super) struct Images<'a, L> {
-    /// With what the lane holds.
+    /// Images with the lane's colours.
     pub(super) lane: Vec<Image<'a, L>>,
-    /// Only the definition's words.
+    /// Images with only the definition's words.
     pub(super) words: Vec<Image<'a, i32>>,
-    /// Those that are surfaces.
+    /// For textures that are surfaces, the state of their pixels.
     pub(super) states: Vec<Option<Seen<'a>>>,
 }
 
-/// A surface that is read as a texture.
+/// Pixel states of a surface that is read as a texture.
 pub(super) struct Seen<'a> {
-    /// Pixels of a row.
+    /// Width in pixels.
     width: usize,
     states: &'a [State],
-    /// Bytes of a pixel and of a texel.
+    /// Size of a pixel in bytes.
     pixel: u32,
+    /// Size of a texel in bytes.
     texel: u32,
 }
 
 impl Seen<'_> {
-    /// Whether one of the pixels that a texel shows has diverged.
+    /// Returns whether one of the pixels behind a texel has diverged.
     pub(super) fn diverged(&self, x: u32, y: u32) -> bool {
         let row = &self.states[y as usize * self.width..][..self.width];
         let [first, last] = [x * self.texel, x * self.texel + self.texel - 1].map(|byte| (byte / self.pixel) as usize);
@@ -89,26 +90,26 @@ impl Seen<'_> {
     }
 }
 
-/// A draw, and the textures as it finds them.
+/// A draw and its textures.
 pub(super) struct Draw<'a, L> {
     pub(super) plan: &'a Plan,
     pub(super) planned: &'a PlannedDraw,
     pub(super) images: &'a Images<'a, L>,
 }
 
-/// How the two sides are evaluated.
+/// Evaluation of the definition and the ideal in one mode.
 pub(super) trait Method {
-    /// The ideal's lane.
+    /// Lane of the ideal.
     type Lane: Lane + Send + Sync;
 
-    /// Draws what of a draw falls into a band.
+    /// Draws the part of a draw that lies in a band.
     fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts);
 
-    /// A channel at the end: the ideal, and what each part adds.
+    /// Returns a channel's ideal value at the end, and the contribution of each part to its error.
     fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>);
 }
 
-/// A target, or some of its rows, as both sides hold it.
+/// A target, or some of its rows, as the definition and the ideal hold it.
 struct Surface<L> {
     first_row: usize,
     width: usize,
@@ -156,7 +157,7 @@ impl<L: Lane> Surface<L> {
     }
 }
 
-/// What some rows came to.
+/// Comparison of some rows.
 #[derive(Default)]
 struct Outcome {
     counts: Counts,
@@ -170,7 +171,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Adds rows that lie below.
+    /// Appends the rows below.
     fn append(&mut self, mut other: Outcome) {
         self.counts.merge(&other.counts);
         self.drawn += other.drawn;
@@ -193,20 +194,20 @@ impl Outcome {
 }
 
 impl WorstPixel {
-    /// The definition minus the ideal, in steps.
+    /// Returns the definition minus the ideal, in steps.
     pub fn error(&self) -> f64 {
         f64::from(self.shown) - self.ideal
     }
 }
 
-/// Draws everything that the target can show, and sums up.
+/// Draws everything that affects the target, and sums up the errors.
 pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Comparison {
     let reads_targets = plan.draws.iter().any(|planned| plan.reads_target(planned));
     let work = || if reads_targets { whole::<M>(plan, options) } else { banded::<M>(plan, options) };
     summed(plan, options, on_threads(options.threads, work))
 }
 
-/// What `work` makes of each band, in their order.
+/// Runs `work` on each band. Returns its results in the order of the bands.
 fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) -> Vec<T> {
     #[cfg(feature = "threads")]
     return bands.into_par_iter().map(work).collect();
@@ -214,7 +215,7 @@ fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) ->
     bands.into_iter().map(work).collect()
 }
 
-/// No draw reads a surface: each band goes through all draws by itself, and other targets do not matter.
+/// Compares a target if no draw reads a surface: each band goes through all draws independently, and other targets do not matter.
 fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let height = plan.targets[options.target].height as usize;
     let surfaces: Vec<Surface<M::Lane>> = Vec::new();
@@ -239,7 +240,7 @@ fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     })
 }
 
-/// Draw after draw on whole surfaces.
+/// Compares a target by drawing on whole surfaces, one draw after the other.
 fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let (surfaces, counts) = surfaces::<M>(plan);
     let mut outcome = outcome::<M>(plan, options, &surfaces[options.target]);
@@ -247,14 +248,14 @@ fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     outcome
 }
 
-/// What the lane holds of a target in the end, R, G, B, A row by row; `None` where nothing was drawn.
+/// Returns the lane's final colours of a target, R, G, B, A row by row; `None` where nothing was drawn.
 pub(super) fn held<M: Method>(plan: &Plan, target: usize) -> Vec<Option<[M::Lane; 4]>> {
     let (surfaces, _) = surfaces::<M>(plan);
     let surface = &surfaces[target];
     surface.held.iter().zip(&surface.states).map(|(held, state)| state.drawn.then_some(*held)).collect()
 }
 
-/// All targets after all draws.
+/// Returns all targets after all draws.
 fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
     let rows = |target: usize| (0, plan.targets[target].height as usize);
     let mut surfaces: Vec<Surface<M::Lane>> =
@@ -262,7 +263,7 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
     let mut counts = Counts::default();
     for planned in &plan.draws {
         let empty = Surface { first_row: 0, width: 0, words: vec![], depth: vec![], held: vec![], states: vec![] };
-        // The surface leaves the others for the draw, so that they can be read as textures.
+        // The surface is taken out during the draw, so that the others can be read as textures.
         let mut surface = std::mem::replace(&mut surfaces[planned.target], empty);
         let words = texture_words(plan, std::slice::from_ref(planned), &surfaces);
         let images = images(plan, &words, &surfaces);
@@ -277,17 +278,17 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
     (surfaces, counts)
 }
 
-/// The words of the textures now, as these draws find them. Without surfaces nothing reads those that are targets.
+/// Returns the words of the textures that these draws read. `surfaces` may be empty if no draw reads a target.
 fn texture_words<'a, L>(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface<L>]) -> TextureWords<'a> {
     TextureWords::from_surfaces(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
 }
 
-/// The textures of these words.
+/// Returns the textures with these words.
 fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
     let surface = |texture: &Texture| match &texture.image {
         TextureImage::Target { target } => {
             let surface = plan.targets[*target].format;
-            // Bits read as another format are not what the lane holds.
+            // The lane has no colours for bits that are read as another format.
             let channels =
                 if surface.texture_format() == texture.format { surface::sampled_channels(surface) } else { 0 };
             surfaces.get(*target).map(|s| (s, channels))
@@ -295,7 +296,7 @@ fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Sur
         TextureImage::Depth { target } => surfaces.get(*target).map(|s| (s, 0)),
         TextureImage::Texels(_) => None,
     };
-    // Bytes of pixel and texel.
+    // Size of a pixel and of a texel in bytes.
     let sizes = |texture: &Texture| match &texture.image {
         TextureImage::Target { target } => (plan.targets[*target].format.bytes(), texture.format.bytes()),
         TextureImage::Texels(_) | TextureImage::Depth { .. } => (1, 1),
@@ -310,7 +311,7 @@ fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Sur
             .iter()
             .zip(words.images())
             .map(|(texture, image)| {
-                // Of texels of another size no lane holds anything.
+                // The lane has no colours for texels of another size.
                 let (pixel, texel) = sizes(texture);
                 let memory = surface(texture).filter(|_| pixel == texel);
                 Image { memory: memory.map(|(s, channels)| (&s.held[..], channels)), ..image }
@@ -321,7 +322,7 @@ fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Sur
     }
 }
 
-/// Compares what both sides hold at the end.
+/// Compares the final colours of the definition and the ideal.
 fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M::Lane>) -> Outcome {
     let format = plan.targets[options.target].format;
     let kept = surface::kept_channels(format) & options.channels;
@@ -350,7 +351,7 @@ fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M
                     worst = Some(pixel);
                 }
             }
-            // Most pixels are no candidates.
+            // Skips most pixels, which are no candidates.
             if let Some(worst) = worst.filter(|w| w.error().abs() > least) {
                 out.worst.push(worst);
                 if out.worst.len() >= 2 * WORST {

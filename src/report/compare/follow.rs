@@ -1,4 +1,4 @@
-//! The ideal takes every decision of the definition.
+//! Modes in which the ideal takes every decision of the definition.
 
 use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Meter};
@@ -9,7 +9,7 @@ use ninebit::rop::surface;
 use ninebit::state::Named;
 use ninebit::trace::{Observer, Part, Rule};
 
-/// Errors add up; their parts are told apart.
+/// Errors accumulate, and are split into parts.
 pub(super) struct Follow;
 
 /// Each rule starts from the definition's integers.
@@ -40,7 +40,7 @@ impl Method for PerOp {
     }
 }
 
-/// What a picture shows of a channel.
+/// Converts a stored channel to what the picture shows.
 fn shown_as<I: Ideal>(shown: u8, held: Paired<I>, observer: &mut impl Observer) -> Paired<I> {
     observer.observe(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
 }

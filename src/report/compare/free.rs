@@ -1,4 +1,4 @@
-//! The ideal decides for itself: two evaluations side by side, each with a surface of its own.
+//! The mode in which the ideal decides for itself: two evaluations, each with its own surface.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
 use std::marker::PhantomData;
@@ -13,7 +13,7 @@ use ninebit::raster::ideal::Outline;
 use ninebit::state::{Cull, FrontFace, Named};
 use ninebit::trace::{Decision, Observer, Part, Silent};
 
-/// The definition and the ideal run each on its own, and meet in the picture.
+/// The definition and the ideal are evaluated independently and compared in the picture.
 pub(super) struct Free;
 
 impl Method for Free {
@@ -48,7 +48,7 @@ impl Method for Free {
     }
 }
 
-/// The triangle before its vertices are snapped; none if it is culled.
+/// Returns the outline of a triangle before its vertices are snapped, or `None` if it is culled.
 fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
     let outline = Outline::new(planned.assembly.triangle(number).positions(), planned.perspective)?;
     let front = outline.counter_clockwise == (planned.front_face == FrontFace::CounterClockwise);
@@ -59,7 +59,7 @@ fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
     }
 }
 
-/// One pixel that either side covers.
+/// Evaluates one pixel that either side covers.
 fn pixel(
     draw: &Draw<'_, f64>,
     (fixed, outline): (Option<&TriangleContext<'_>>, Option<&Outline>),
@@ -85,13 +85,13 @@ fn pixel(
             *slot = depth.word();
         }
     }
-    // Where the definition has no such triangle the pixel is left out whatever the ideal holds.
+    // If the definition has no such triangle, the pixel is left out whatever the ideal holds.
     if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
         real_side(draw, context, outline, (i, j), band, ideal);
     }
     if covered == (true, true) {
         for (definition, ideal) in definition.decisions.iter().zip(&ideal.decisions) {
-            // A test that only one side passed ends the other side's list.
+            // The list of the side that fails a test ends there; the other goes on.
             debug_assert_eq!(definition.0, ideal.0);
             counts.decided(definition.0, definition.1 != ideal.1);
             diverged |= definition.1 != ideal.1;
@@ -101,7 +101,7 @@ fn pixel(
     band.states[at].drawn |= band.states[at].diverged;
 }
 
-/// The ideal's side of a pixel that it covers.
+/// Evaluates the ideal for a pixel that it covers.
 fn real_side<L: Lane>(
     draw: &Draw<'_, L>,
     context: &TriangleContext<'_>,
@@ -113,7 +113,7 @@ fn real_side<L: Lane>(
     let at = band.at(i, j);
     let fragment = Fragment {
         pixel: (i, j),
-        // Any sample will do: the ideal goes by its own weights.
+        // Any sample will do, because the ideal uses its own weights.
         e: [context.triangle.doubled_area, 0, 0],
         stored: band.words[at],
         weights: Some(outline.weights(i, j)),

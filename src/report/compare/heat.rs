@@ -1,23 +1,23 @@
-//! The errors of a comparison as a picture, with its scale.
+//! Heat map: the errors of a comparison as a picture, with a legend.
 #![allow(clippy::float_arithmetic, reason = "a picture of errors")]
 
 use super::Comparison;
 
-/// A comparison that has no picture.
+/// Reason why a comparison has no heat map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HeatError {
     /// No pixel differs, so there is nothing to scale by.
     #[error("there is nothing to show: no pixel of the frame differs from the ideal")]
     NoDifference,
-    /// The mode has no errors of pixels.
+    /// The mode has no errors per pixel.
     #[error("errors of single rules belong to no pixel")]
     NoPixels,
 }
 
-/// A picture: columns, rows, R, G, B, A.
+/// A picture: width, height, and R, G, B, A of its pixels.
 pub(super) type Picture = (u32, u32, Vec<[u8; 4]>);
 
-/// Steps of the scale: an error e counts in the first class whose number is at least |e|.
+/// Classes of the scale: upper end in steps of 1/255, colour, and label. An error e belongs to the first class whose upper end is at least |e|.
 const CLASSES: [(f64, [u8; 3], &str); 9] = [
     (0.5, [8, 12, 40], "0.5"),
     (1.0, [22, 50, 120], "1"),
@@ -30,21 +30,22 @@ const CLASSES: [(f64, [u8; 3], &str); 9] = [
     (f64::INFINITY, [255, 220, 230], "16+"),
 ];
 
-/// Not drawn, and left out because a decision differs.
+/// Colour of pixels that nothing drew.
 const EMPTY: [u8; 3] = [40, 40, 40];
+/// Colour of pixels that are left out because a decision differs.
 const DIVERGED: [u8; 3] = [200, 0, 200];
 
-/// Pixels of a font's dot.
+/// Size of a font dot in pixels.
 const DOT: u32 = 2;
 const LEGEND_ROWS: u32 = 36;
 const MARGIN: u32 = 8;
 const BOX: u32 = 16;
 
-/// The largest error of a pixel's channels by colour, and below the frame a legend: the upper end of each class in steps of 1/255,
-/// grey for pixels that nothing drew, magenta for those that are left out.
+/// Draws a heat map: the colour of a pixel shows the largest error of its channels. Below the frame is a legend with the upper end of each class in
+/// steps of 1/255, grey for pixels that nothing drew, and magenta for those that are left out.
 ///
 /// # Errors
-/// Nothing differs, or the mode has no pixels.
+/// Returns an error if no pixel differs, or the mode has no errors per pixel.
 pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
     if comparison.errors.is_empty() {
         return Err(HeatError::NoPixels);
@@ -80,23 +81,23 @@ pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
     Ok((width, rows + LEGEND_ROWS, pixels))
 }
 
-/// The colour of an error of so many steps of 1/255, without its sign.
+/// Returns the colour of an error magnitude in steps of 1/255.
 pub fn heat_color(error: f64) -> [u8; 3] {
     CLASSES.iter().find(|(most, ..)| error <= *most).map_or(EMPTY, |(_, color, _)| *color)
 }
 
-/// The classes of errors: the upper end of each, as a text, and its colour. Then pixels that nothing drew and pixels that are left out.
+/// Returns the label and colour of each class of errors, then those for pixels that nothing drew and for pixels that are left out.
 pub fn heat_classes() -> Vec<(&'static str, [u8; 3])> {
     let classes = CLASSES.iter().map(|(_, color, label)| (*label, *color));
     classes.chain([("nothing drawn", EMPTY), ("another decision", DIVERGED)]).collect()
 }
 
 impl Comparison {
-    /// The colours of the pixels' errors, row by row, without a legend.
+    /// Returns the colours of the pixels' errors, row by row, without a legend.
     pub fn heat(&self) -> Vec<[u8; 4]> {
         let shown = |errors: &[f32; 4]| {
             let largest = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(e.abs())).reduce(f64::max);
-            // Infinite marks a pixel that was drawn and left out; NaN is one that nothing drew.
+            // Infinity marks a pixel that was drawn and is left out; NaN one that nothing drew.
             let [r, g, b] = if errors[0].is_infinite() { DIVERGED } else { largest.map_or(EMPTY, heat_color) };
             [r, g, b, 255]
         };
@@ -104,7 +105,7 @@ impl Comparison {
     }
 }
 
-/// Digits and the few signs of the legend, 3 x 5 dots, row by row.
+/// Returns the glyph of a legend's character: 5 rows of 3 dots.
 fn glyph(character: char) -> [u8; 5] {
     match character {
         '0' => [7, 5, 5, 5, 7],

@@ -1,4 +1,4 @@
-//! What is counted while a band of rows is drawn.
+//! Counters for the drawing of a band of rows.
 
 use super::Statistics;
 use ninebit::number::Lane;
@@ -8,9 +8,9 @@ use ninebit::trace::{Decision, Observer, Rule, Step};
 /// Counts of a band.
 #[derive(Clone)]
 pub(super) struct Counts {
-    /// Errors of each rule, by its number.
+    /// Errors of each rule, indexed by the rule's number.
     pub(super) rules: Vec<Statistics>,
-    /// By decision: taken, differing.
+    /// For each decision, how often it was taken, and how often the two sides differ.
     pub(super) decisions: Vec<[u64; 2]>,
 }
 
@@ -34,7 +34,7 @@ impl Counts {
     }
 }
 
-/// Follows a lane that tells errors apart; `RULES` keeps the error of each rule.
+/// Observer that attributes errors to rules. With `RULES` it also records the error of each rule.
 pub(super) struct Meter<'a, const RULES: bool>(pub(super) &'a mut Counts);
 
 impl<const RULES: bool> Meter<'_, RULES> {
@@ -69,21 +69,21 @@ impl<const RULES: bool> Observer for Meter<'_, RULES> {
         weight
     }
     fn decided(&mut self, decision: Decision, outcome: i64, ideal: impl FnOnce() -> i64) {
-        // Depths of the ideal are not kept: it could not decide.
+        // The ideal keeps no depths, so it could not decide.
         if decision != Decision::DepthTest {
             self.0.decided(decision, outcome != ideal());
         }
     }
 }
 
-/// Notes the decisions of one fragment.
+/// Observer that records the decisions of one fragment.
 #[derive(Default)]
 pub(super) struct Log<'a> {
-    /// Decisions of a pixel, in the order in which they were taken.
+    /// Decisions and their outcomes, in order.
     pub(super) decisions: Vec<(Decision, i64)>,
-    /// Pixels of the textures' surfaces that have diverged, by texture.
+    /// For each texture that is a surface, the state of its pixels.
     pub(super) diverged: &'a [Option<super::draw::Seen<'a>>],
-    /// One of them was read.
+    /// Whether a diverged pixel was read.
     pub(super) tainted: bool,
 }
 

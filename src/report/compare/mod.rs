@@ -1,11 +1,10 @@
-//! The model against float64 arithmetic of the vendor's real-number text, over the same plan.
+//! Comparison of the model with float64 arithmetic of the vendor's real-number specification, over the same plan.
 //!
-//! [`Mode::Follow`] lets the ideal take every decision of the definition (coverage, texels, mux, tests), so that what is left is
-//! accumulated quantisation, told apart by [`Part`]. [`Mode::PerOp`] starts again from the definition's integers at each rule, so that
-//! each rule's own error shows. [`Mode::Free`] lets the ideal decide for itself, from vertices that are not snapped; pixels where the two
-//! decide differently are counted and left out of the error.
+//! In [`Mode::Follow`] the ideal takes every decision of the definition (coverage, texels, mux, tests). What remains is accumulated quantisation,
+//! split by [`Part`]. In [`Mode::PerOp`] each rule starts from the definition's integers, which shows each rule's own error. In [`Mode::Free`] the
+//! ideal decides for itself, from vertices that are not snapped; pixels where the two decide differently are counted and excluded from the error.
 //!
-//! All errors are the definition minus the ideal, in steps of 1/255 (weights: of 1/256).
+//! All errors are the definition minus the ideal, in steps of 1/255 (for weights, of 1/256).
 #![allow(clippy::float_arithmetic, reason = "statistics of errors; nothing of this is stored")]
 
 pub mod bound;
@@ -28,57 +27,57 @@ use ninebit::threads::on_threads;
 use ninebit::trace::{Decision, Part, Rule};
 
 named! {
-    /// What the ideal is allowed to decide.
+    /// The decisions that the ideal takes for itself.
     pub enum Mode {
-        /// Everything: end to end.
+        /// All of them: an end-to-end comparison.
         Free = "free",
-        /// Nothing: accumulated quantisation alone.
+        /// None: accumulated quantisation alone.
         Follow = "follow",
-        /// Nothing, and it starts from the definition's integers at each rule.
+        /// None, and each rule starts from the definition's integers.
         PerOp = "per-op",
     }
 }
 
-/// How to compare.
+/// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompareOptions {
-    /// What the ideal decides.
+    /// The decisions of the ideal.
     pub mode: Mode,
     /// Index of the render target that is compared.
     pub target: usize,
-    /// Threads; 0 takes one a core. The counts and extremes do not depend on it, sums only in their last bits.
+    /// Number of threads; 0 for one per core. Counts and extremes do not depend on it; sums may differ in their last bits.
     pub threads: usize,
-    /// Channels that count, bits R, G, B, A, as far as the surface keeps them; [`ALL_CHANNELS`] for all.
+    /// Mask of the compared channels (bits R, G, B, A), of those that the surface keeps; [`ALL_CHANNELS`] for all.
     pub channels: u8,
 }
 
-/// R, G, B and A.
+/// Mask of R, G, B and A.
 pub const ALL_CHANNELS: u8 = 15;
 
 /// Errors of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelError {
-    /// R, G, B or A, as 0 to 3.
+    /// Channel: 0 to 3 for R, G, B, A.
     pub channel: usize,
     /// Errors of the channel over all pixels.
     pub errors: Statistics,
-    /// The same errors, counted in steps of a byte.
+    /// Histogram of the errors in whole steps.
     pub histogram: Histogram,
 }
 
-/// What one rule did.
+/// Errors of one rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RuleError {
-    /// The rule that the errors arise in.
+    /// The rule.
     pub rule: Rule,
-    /// Its own errors, given exact inputs.
+    /// Errors of the rule itself, given exact inputs.
     pub errors: Statistics,
-    /// Between which two numbers they must lie (`docs/numerics.md`); none is stated for projective coordinates.
+    /// Lowest and highest permitted error (`docs/numerics.md`); `None` for projective coordinates.
     pub bound: Option<(f64, f64)>,
 }
 
 impl RuleError {
-    /// Whether an error lies outside the bound.
+    /// Returns whether an error exceeds the bound.
     pub fn exceeds(&self) -> bool {
         // Products of float64 are not exact either.
         const ROUNDING: f64 = 1e-6;
@@ -88,60 +87,60 @@ impl RuleError {
     }
 }
 
-/// How often something was decided, and how often the ideal would have decided otherwise.
+/// Number of times that a decision was taken, and that the ideal would have decided otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decided {
-    /// What is decided.
+    /// The decision.
     pub decision: Decision,
-    /// How often it was decided.
+    /// Number of times that it was taken.
     pub taken: u64,
-    /// How often the two sides differ.
+    /// Number of times that the two sides differ.
     pub differing: u64,
 }
 
-/// A pixel that is far off.
+/// A pixel with a large error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstPixel {
     /// Column, 0 on the left.
     pub x: u32,
     /// Row, 0 at the top.
     pub y: u32,
-    /// Channel R, G, B or A, as 0 to 3.
+    /// Channel: 0 to 3 for R, G, B, A.
     pub channel: usize,
-    /// What the surface shows.
+    /// Value that the surface shows.
     pub shown: u8,
-    /// What the ideal holds, in 255ths.
+    /// Value of the ideal, in 255ths.
     pub ideal: f64,
 }
 
-/// The outcome of a comparison.
+/// Result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// How it was made.
+    /// Mode of the comparison.
     pub mode: Mode,
     /// Name of the target.
     pub target: String,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
-    /// Pixels that some fragment was stored to.
+    /// Number of pixels to which a fragment was stored.
     pub drawn: u64,
-    /// Of those, pixels left out because a decision differs ([`Mode::Free`]).
+    /// Number of those that are left out because a decision differs ([`Mode::Free`]).
     pub diverged: u64,
-    /// Errors of R, G, B and A; without those that the surface does not keep. Empty for [`Mode::PerOp`].
+    /// Errors of the channels that the surface keeps. Empty for [`Mode::PerOp`].
     pub channels: Vec<ChannelError>,
-    /// What each part contributes to those errors, in the order of `Part::ALL`. The parts add up to the error. [`Mode::Follow`] only.
+    /// Contribution of each part to those errors, in the order of `Part::ALL`. In each pixel they add up to the error. [`Mode::Follow`] only.
     pub parts: Vec<(Part, Statistics)>,
-    /// The largest amount by which the parts of a pixel miss its error: float64 rounding. [`Mode::Follow`] only.
+    /// Largest difference between a pixel's error and the sum of its parts, due to float64 rounding. [`Mode::Follow`] only.
     pub unexplained: f64,
-    /// Each rule that was applied. [`Mode::PerOp`] only.
+    /// Errors of each applied rule. [`Mode::PerOp`] only.
     pub rules: Vec<RuleError>,
-    /// Decisions of both, and how often they differ.
+    /// Decisions, and how often the two sides differ.
     pub decisions: Vec<Decided>,
-    /// Pixels with the largest errors, largest first, one for each distance at most.
+    /// Pixels with the largest errors, largest first; each with its worst channel.
     pub worst: Vec<WorstPixel>,
-    /// Errors of R, G, B, A, row by row; NaN where nothing was drawn, infinite where the pixel is left out. Empty for [`Mode::PerOp`].
+    /// Errors of R, G, B, A, row by row; NaN where nothing was drawn, infinite where a pixel is left out. Empty for [`Mode::PerOp`].
     pub errors: Vec<[f32; 4]>,
 }
 
@@ -154,8 +153,8 @@ pub fn compare(plan: &Plan, options: &CompareOptions) -> Comparison {
     }
 }
 
-/// Evaluates the ideal alone, as [`Mode::Free`] does, in `f64` or `f32`: R, G, B, A of a target in 255ths, row by row; `None` where it draws
-/// nothing. `threads` is that of [`CompareOptions`].
+/// Evaluates the ideal alone, as [`Mode::Free`] does, in `f64` or `f32`. Returns R, G, B, A of a target in 255ths, row by row; `None` where nothing
+/// is drawn. `threads` is that of [`CompareOptions`].
 pub fn real_frame<L: Ideal + Send + Sync>(plan: &Plan, target: usize, threads: usize) -> Vec<Option<[L; 4]>> {
     on_threads(threads, || draw::held::<free::Real<L>>(plan, target))
 }

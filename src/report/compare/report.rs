@@ -1,4 +1,4 @@
-//! A comparison as text and as JSON.
+//! Prints a comparison as text and as JSON.
 #![allow(clippy::float_arithmetic, reason = "display of errors")]
 
 use super::statistics::BINS;
@@ -10,7 +10,7 @@ use ninebit::state::Named;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// The comparison for people.
+/// Returns the comparison as text.
 pub fn comparison_text(plan: &Plan, comparison: &Comparison) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -82,7 +82,7 @@ fn moments(errors: &Statistics) -> String {
     format!("{:>9.4}{:>9.4}{:>9.4}{:>9.4}", errors.max(), errors.mean(), errors.rms(), errors.bias())
 }
 
-/// Name of a bin: the error rounded to whole steps.
+/// Returns the name of a bin: the error rounded to whole steps.
 fn bin_name(bin: usize) -> String {
     match bin as i64 - (BINS / 2) as i64 {
         -8 => "<= -8".to_string(),
@@ -107,7 +107,7 @@ fn write_histogram(out: &mut String, c: &Comparison) -> std::fmt::Result {
     Ok(())
 }
 
-/// The comparison for programs: one JSON document.
+/// Returns the comparison as a JSON document.
 pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
     let channel = |error: &ChannelError| {
         let bins = (0..BINS).filter(|bin| error.histogram.0[*bin] > 0);
@@ -168,7 +168,7 @@ fn named(name: &str, kind: &str, errors: &Statistics) -> Value {
     value
 }
 
-/// Moments of errors as an object of a JSON document; `psnr` is null where nothing is off.
+/// Returns the moments of errors as a JSON object; `psnr` is null if there is no error.
 pub fn statistics_value(e: &Statistics) -> Value {
     let psnr = Some(e.psnr()).filter(|psnr| psnr.is_finite());
     let (low, high) = if e.count == 0 { (0.0, 0.0) } else { (e.low, e.high) };

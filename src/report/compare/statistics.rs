@@ -1,23 +1,23 @@
-//! Sums over many errors.
+//! Statistics of many errors.
 #![allow(clippy::float_arithmetic, reason = "statistics of errors")]
 
-/// Errors up to this many steps have a bin of their own; larger ones share the last.
+/// Number of bins: one for each whole number of steps, with one shared by all larger errors at each end.
 pub(super) const BINS: usize = 17;
 
 /// Count, extremes and moments of errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// How many errors were added.
+    /// Number of errors.
     pub count: u64,
-    /// The lowest; infinite of none.
+    /// Lowest error; infinity if there are none.
     pub low: f64,
-    /// The highest; minus infinite of none.
+    /// Highest error; minus infinity if there are none.
     pub high: f64,
-    /// The sum of the errors with their signs.
+    /// Sum of the signed errors.
     pub sum: f64,
-    /// The sum of their magnitudes.
+    /// Sum of the magnitudes.
     pub magnitude: f64,
-    /// The sum of their squares.
+    /// Sum of the squares.
     pub squares: f64,
 }
 
@@ -27,7 +27,7 @@ impl Default for Statistics {
     }
 }
 
-/// How many errors round to -8 or less, -7, ..., 7, 8 or more.
+/// Numbers of errors that round to -8 or less, -7, ..., 7, and 8 or more steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Histogram(pub [u64; BINS]);
 
@@ -35,11 +35,11 @@ impl Histogram {
     /// Adds an error.
     pub fn add(&mut self, error: f64) {
         let middle = (BINS / 2) as f64;
-        // Halves count upwards.
+        // Halves are rounded up.
         self.0[(error.clamp(-middle, middle) + middle + 0.5) as usize] += 1;
     }
 
-    /// Adds what another one has counted.
+    /// Adds the counts of another histogram.
     pub fn merge(&mut self, other: &Histogram) {
         self.0.iter_mut().zip(other.0).for_each(|(mine, other)| *mine += other);
     }
@@ -57,7 +57,7 @@ impl Statistics {
         self.squares += error * error;
     }
 
-    /// Adds what another one has counted.
+    /// Adds the errors of other statistics.
     pub fn merge(&mut self, other: &Statistics) {
         self.low = self.low.min(other.low);
         self.high = self.high.max(other.high);
@@ -71,27 +71,27 @@ impl Statistics {
         if self.count == 0 { 0.0 } else { sum / self.count as f64 }
     }
 
-    /// The largest magnitude.
+    /// Returns the largest magnitude; 0 without errors.
     pub fn max(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.high.abs().max(self.low.abs()) }
     }
 
-    /// The mean magnitude.
+    /// Returns the mean magnitude; 0 without errors.
     pub fn mean(&self) -> f64 {
         self.over_count(self.magnitude)
     }
 
-    /// The mean: how far the definition lies above the ideal.
+    /// Returns the mean: how far the definition lies above the ideal.
     pub fn bias(&self) -> f64 {
         self.over_count(self.sum)
     }
 
-    /// The root of the mean square.
+    /// Returns the root mean square.
     pub fn rms(&self) -> f64 {
         self.over_count(self.squares).sqrt()
     }
 
-    /// Peak signal to noise ratio in decibels; infinite without errors.
+    /// Returns the peak signal-to-noise ratio in decibels; infinite without errors.
     pub fn psnr(&self) -> f64 {
         20.0 * (255.0 / self.rms()).log10()
     }

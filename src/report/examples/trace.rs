@@ -1,4 +1,4 @@
-//! One pixel, and every integer on its way: what somebody needs who looks for the first number that differs from another implementation's.
+//! Traces one pixel with every integer on its way, to find the first number that differs from another implementation's.
 //!
 //! `cargo run -p ninebit-report --example trace`
 

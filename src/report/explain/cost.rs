@@ -1,4 +1,4 @@
-//! What a draw costs, from its plan alone.
+//! Cost of a draw, predicted from its plan.
 
 use ninebit::combiner::general::{BLUE, PlannedPortion};
 use ninebit::plan::PlannedDraw;
@@ -8,38 +8,38 @@ use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::stage::PlannedShaderStage;
 use ninebit::trace::Work;
 
-/// Work by kind, in the order of `Work::ALL`.
+/// Amounts of work by kind, in the order of `Work::ALL`.
 pub(super) type Amounts = [u64; Work::ALL.len()];
 
-/// What one fragment costs.
+/// Cost of one fragment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FragmentCost {
-    /// What each fragment takes, whatever tests say.
+    /// Work for every fragment, regardless of tests.
     pub shaded: Amounts,
-    /// On top of that, one that passes the tests.
+    /// Additional work for a fragment that passes the tests.
     pub stored: Amounts,
 }
 
-/// What a draw costs.
+/// Cost of a draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// Covered pixels, once for each triangle that covers them.
+    /// Number of fragments: covered pixels, once for each triangle that covers them.
     pub fragments: u64,
-    /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
+    /// Whether tests decide which fragments are stored; [`total`](Self::total) is then an upper bound.
     pub tested: bool,
-    /// Texture units drop fragments before they are shaded (TSH-10, KEY-1): all of the work is then the most that it can be.
+    /// Whether texture units drop fragments before they are shaded (TSH-10, KEY-1); all work is then an upper bound.
     pub kills: bool,
-    /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
+    /// Whether the level of detail decides how much texture units read (TEX-9); texels and filter steps are then upper bounds.
     pub lod_decides: bool,
-    /// The work of one fragment.
+    /// Work of one fragment.
     pub fragment: FragmentCost,
-    /// The draw is a pass over the target: something of it is drawn.
+    /// Whether anything is drawn, so that the draw is a pass over the target.
     pub seen: bool,
-    /// General stages that it runs; 0 if nothing of it is drawn.
+    /// Number of general stages that run; 0 if nothing is drawn.
     pub stages: u64,
-    /// Texture units that it reads; 0 if nothing of it is drawn.
+    /// Number of texture units that are read; 0 if nothing is drawn.
     pub units: u64,
-    /// Its fragments are blended with what the target holds.
+    /// Whether its fragments are blended with the target.
     pub blended: bool,
 }
 
@@ -64,7 +64,7 @@ impl Cost {
         }
     }
 
-    /// Passes, stages, units and blended passes with their names: what the draw is as a whole.
+    /// Returns the counts of the draw as a whole: passes, stages, units and blended passes, by name.
     pub fn counts(&self) -> [(&'static str, u64); 4] {
         [
             ("passes", self.seen.into()),
@@ -74,12 +74,12 @@ impl Cost {
         ]
     }
 
-    /// The work if `stored` fragments pass the tests.
+    /// Returns the work if `stored` fragments pass the tests.
     pub fn with(&self, stored: u64) -> Amounts {
         std::array::from_fn(|n| self.fragments * self.fragment.shaded[n] + stored * self.fragment.stored[n])
     }
 
-    /// The work if all fragments pass.
+    /// Returns the work if all fragments pass the tests.
     pub fn total(&self) -> Amounts {
         self.with(self.fragments)
     }
@@ -115,11 +115,11 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
     amounts
 }
 
-/// Texels and filter steps of a unit; the most that they can be where the lod decides.
+/// Returns the texels and filter steps of a unit; upper bounds if the level of detail decides.
 fn unit_cost(unit: &PlannedUnit) -> (u64, u64) {
     let level = |filter: Filter| match filter {
         Filter::Nearest => (1, 0),
-        // Two rows and their mix, in four channels.
+        // Two rows and their interpolation, in four channels.
         Filter::Linear => (4, 12),
     };
     let magnified = level(unit.state.mag_filter);
@@ -134,7 +134,7 @@ fn unit_cost(unit: &PlannedUnit) -> (u64, u64) {
     (magnified.0.max(minified.0), magnified.1.max(minified.1))
 }
 
-/// What the dot unit does for a stage: its own dot product, and a reflection if something is sampled in its direction.
+/// Returns the operations of the dot unit for a stage: its own dot product, and a reflection if a texture is sampled in its direction.
 fn dot_unit(stage: &PlannedShaderStage) -> u64 {
     let reflects = matches!(
         stage.state.operation,
@@ -144,7 +144,7 @@ fn dot_unit(stage: &PlannedShaderStage) -> u64 {
     product + if reflects && stage.live != 0 { REFLECTION_OPERATIONS } else { 0 }
 }
 
-/// Products and roundings of a portion.
+/// Returns the products and roundings of a portion.
 fn portion_cost(planned: &PlannedPortion, policies: &Policies) -> (u64, u64) {
     let portion = &planned.portion;
     let dots = [portion.ab_dot_product, portion.cd_dot_product];

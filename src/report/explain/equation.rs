@@ -1,5 +1,5 @@
-//! Stages, final combiner and blend as equations, of what is left in the plan: the order of a pixel, run on [`Printed`]. Inputs are written as
-//! in the combiner language.
+//! Equations of stages, final combiner and blend, as far as the plan has kept them: the order of a pixel evaluated on [`Printed`]. Inputs are written
+//! as in the combiner language.
 
 use ninebit::algebra::Algebra;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
@@ -16,13 +16,13 @@ use ninebit_program::text::words::{mapped, register};
 enum Term {
     Zero,
     One,
-    /// What is written as it is.
+    /// An atom, which is written as it is.
     Plain(String),
-    /// A register or a special of the final combiner, limited below.
+    /// A register or special input of the final combiner, clamped to 0 from below.
     Unsigned(String),
     Product(String),
     Sum(String),
-    /// A sum that can be above 1.
+    /// A sum that can exceed 1.
     Above(String),
 }
 
@@ -44,7 +44,7 @@ impl Term {
         }
     }
 
-    /// In brackets unless it is one word.
+    /// Returns the term, in parentheses unless it is one word.
     fn whole(self) -> String {
         match self {
             Term::Product(text) => format!("({text})"),
@@ -53,11 +53,11 @@ impl Term {
     }
 }
 
-/// Where a term stands among all.
+/// Index of a term.
 #[derive(Clone, Copy, Debug)]
 struct Text(usize);
 
-/// Writes down what the order does; every channel of a portion as its first.
+/// The algebra that prints the order of a pixel. A portion is printed once, as its first channel.
 #[derive(Debug, Default)]
 struct Printed {
     terms: Vec<Term>,
@@ -78,7 +78,7 @@ impl Printed {
         self.term(text).sum()
     }
 
-    /// The registers, each under its name: colour, blue and alpha as the component that an input reads.
+    /// Returns registers that hold their own names: colour, blue and alpha as the component that an input reads.
     fn registers(&mut self) -> Registers<Text> {
         let zero = self.of(Term::Zero);
         let mut registers = Registers::from_value(zero);
@@ -141,7 +141,7 @@ impl Algebra for Printed {
         self.of(term)
     }
     fn add(&mut self, rule: Rule, a: Text, b: Text) -> Text {
-        // Of a dot product's three channels the first says it.
+        // The first of a dot product's three terms stands for all.
         if rule == Rule::Cmb8 { a } else { self.plus(a, b) }
     }
     fn subtract(&mut self, _rule: Rule, a: Text, b: Text) -> Text {
@@ -211,7 +211,7 @@ impl Algebra for Printed {
     }
     fn least(&mut self, a: Text, b: Text) -> Text {
         let term = match (self.term(a), self.term(b)) {
-            // Nothing else is above 1.
+            // Nothing else exceeds 1.
             (Term::Above(sum), Term::One) => Term::Product(format!("min(1, {sum})")),
             (Term::Unsigned(name), Term::One) => Term::Plain(name),
             (a, Term::One) => a,
@@ -235,7 +235,7 @@ impl Algebra for Printed {
     }
 }
 
-/// What a stage computes, of what is needed.
+/// Returns the equations of a stage, as far as their results are needed.
 pub(super) fn stage(stage: &PlannedStage, mux_select: MuxSelect) -> Vec<String> {
     let mut lines = Vec::new();
     for (n, constant) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().enumerate() {
@@ -264,7 +264,7 @@ pub(super) fn stage(stage: &PlannedStage, mux_select: MuxSelect) -> Vec<String> 
     lines.iter().map(|line| format!("stage {}: {line}", stage.index)).collect()
 }
 
-/// Whether a product that is needed has the register for a factor.
+/// Returns whether a needed product reads the register.
 fn reads(planned: &PlannedPortion, register: Register) -> bool {
     (0..2).any(|n| {
         let inputs = &planned.portion.inputs[2 * n..2 * n + 2];
@@ -272,7 +272,7 @@ fn reads(planned: &PlannedPortion, register: Register) -> bool {
     })
 }
 
-/// What the final combiner computes, of what is needed.
+/// Returns the equations of the final combiner, as far as their results are needed.
 pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
     let state = &planned.state;
     let mut lines = Vec::new();
@@ -294,13 +294,13 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
     lines
 }
 
-/// The blend of what is written.
+/// Returns the equation of the blend, if there is one.
 pub(super) fn blend(planned: &PlannedDraw) -> Option<String> {
     let state = planned.blend.as_ref()?;
     let mut printed = Printed::default();
     let mut color = |name: &str| ["", "", "", ".a"].map(|suffix| printed.of(Term::Plain(format!("{name}{suffix}"))));
     let (source, destination, constant) = (color("fragment"), color("destination"), color("constant"));
-    // Alpha is blended like colour, but for a factor that is 1 there.
+    // Alpha is blended like colour, except that one factor is 1 there.
     let channel = if planned.blended & 7 == 0 { 3 } else { 0 };
     let values = blend::evaluate(state, channel, &source, &destination, &constant, &mut printed);
     Some(format!("blend.{} = {}", super::channels(planned.blended), printed.text(values.blended)))

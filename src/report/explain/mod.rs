@@ -1,8 +1,7 @@
-//! A plan in words: what each draw computes, what was left out and why, and what it will cost.
+//! Explanation of a plan: what each draw computes, what was left out and why, and its cost.
 //!
-//! The program is shown whole, in the combiner language, and then as equations of what is left of it:
-//! `spare0.rgb = expand(tex0) . expand(col0)`. Costs are predicted from the plan; a
-//! run counts the same ([`engine::count`]).
+//! The program is printed as a whole, in the combiner language, and then as equations of what is left of it: `spare0.rgb = expand(tex0) .
+//! expand(col0)`. Costs are predicted from the plan; a run counts the same ([`engine::count`]).
 
 mod cost;
 mod equation;
@@ -21,34 +20,34 @@ use ninebit::texture::planned::PlannedUnit;
 use ninebit_program::text::print;
 use ninebit_program::text::words::register;
 
-/// A draw in words.
+/// Explanation of a draw.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DrawExplanation {
     /// Name of the draw.
     pub name: String,
     /// Name of its target.
     pub target: String,
-    /// The vertex program that made its vertices, and how many there are.
+    /// The vertex program that computed its vertices, and the number of vertices.
     pub vertex_program: Option<(VertexProgram, usize)>,
-    /// Its pixel program in the combiner language, whole.
+    /// The whole pixel program in the combiner language.
     pub program: String,
-    /// What each general stage of it was written as in the language of an API; empty if it was written for the combiners.
+    /// For each general stage, the text in an API's language that it was made from; empty if the program was written for the combiners.
     pub program_origin: Vec<StageOrigin>,
-    /// What it computes, in order: what the plan has kept.
+    /// Equations of what the plan has kept, in order.
     pub equations: Vec<String>,
-    /// What has been cut off its triangles; `None`: nothing.
+    /// Description of the clipping of its triangles; `None` if nothing was clipped.
     pub clipping: Option<String>,
-    /// What nothing can see, and why.
+    /// State that has no effect, and why.
     pub dropped: Vec<String>,
-    /// What it will cost: what the plan has kept.
+    /// Cost of what the plan has kept.
     pub cost: Cost,
-    /// The cost of everything that the program asks for. A chip pays it, since it runs what it is told.
+    /// Cost of everything that the program asks for, which is what a chip does.
     pub asked: Cost,
 }
 
 /// Explains a plan of a scene, draw by draw.
 pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
-    // A scene that has a plan has this one too: leaving things out is not what makes scenes legal.
+    // A scene that has a plan also has this one: pruning does not make scenes legal.
     let whole = Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false });
     let whole = whole.as_ref().unwrap_or(plan);
     let cost = |plan: &Plan, planned| Cost::from_draw(planned, &plan.policies, engine::fragments(plan, planned));
@@ -69,7 +68,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
         .collect()
 }
 
-/// What RAS-6 has done to a draw's triangles.
+/// Describes the clipping of a draw's triangles (RAS-6).
 fn clipping(planned: &PlannedDraw) -> Option<String> {
     let clipping = &planned.assembly.clipping;
     if clipping.planes == 0 {
@@ -132,7 +131,7 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     lines
 }
 
-/// The fog register, as far as it is read: what its factor is a function of.
+/// Returns the equations of the fog register, as far as it is read.
 fn fog(planned: &PlannedDraw) -> Vec<String> {
     let mut lines = Vec::new();
     let colors = channels(planned.fog_channels & 7);
@@ -151,7 +150,7 @@ fn fog(planned: &PlannedDraw) -> Vec<String> {
     lines
 }
 
-/// Fog as a function of the coordinate d.
+/// Returns the fog factor as a function of the coordinate d.
 fn curve(function: &FogFunction) -> String {
     let FogFunction { mode, p0, p1, p2, .. } = function;
     let square = if *p2 == 0.0 { String::new() } else { format!(" + {p2} d^2") };
@@ -167,7 +166,7 @@ fn curve(function: &FogFunction) -> String {
     }
 }
 
-/// What a unit samples, and how.
+/// Returns the equation of what a unit samples.
 fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
     let texture = &scene.textures[unit.state.texture].name;
     let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
@@ -190,7 +189,7 @@ fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
     )
 }
 
-/// What a unit does beyond addressing and filtering.
+/// Describes what a unit does besides addressing and filtering.
 fn extras(unit: &PlannedUnit) -> String {
     let state = &unit.state;
     let mut extras = String::new();
@@ -209,7 +208,7 @@ fn extras(unit: &PlannedUnit) -> String {
     extras
 }
 
-/// How a unit filters: one word, or one for each side of lod 0 and one for levels.
+/// Describes a unit's filters: one word, or the filters for magnification and minification and the use of mip levels.
 fn filters(unit: &PlannedUnit) -> String {
     let state = &unit.state;
     let [min, mag] = [state.min_filter, state.mag_filter].map(|filter| filter.name().to_lowercase());
@@ -223,7 +222,7 @@ fn filters(unit: &PlannedUnit) -> String {
     }
 }
 
-/// The stencil test: what passes, and what is stored.
+/// Returns the equations of the stencil test: what passes, and what is stored.
 fn stencil(test: &StencilTest) -> Vec<String> {
     let masked = |name: &str, mask: u8| if mask == 255 { name.to_string() } else { format!("({name} & {mask:#04x})") };
     let reference = test.reference & test.mask;
@@ -256,7 +255,7 @@ fn comparison(function: CompareFunction) -> &'static str {
     }
 }
 
-/// What of the state is not in the plan, and why.
+/// Returns the state that is not in the plan, and why.
 fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
     if let Some(why) = planned.folded.invisible {
         return vec![format!("the whole draw: {}", why.name())];

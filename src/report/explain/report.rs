@@ -1,4 +1,4 @@
-//! An explanation as text and as JSON.
+//! Prints an explanation as text and as JSON.
 
 use super::{Cost, DrawExplanation};
 use ninebit::engine::DrawCounts;
@@ -9,7 +9,7 @@ use ninebit::trace::Work;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// The explanation for people. `counted` are the counts of a run, if there was one.
+/// Returns the explanation as text. `counted` are the counts of a run, if there was one.
 pub fn explanation_text(plan: &Plan, draws: &[DrawExplanation], counted: Option<&[DrawCounts]>) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -68,7 +68,7 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
     Ok(())
 }
 
-/// What a draw costs, as far as the plan has kept it and as it was asked for.
+/// Writes the cost of a draw after pruning and as asked.
 fn write_cost(out: &mut String, draw: &DrawExplanation, counted: Option<&DrawCounts>) -> std::fmt::Result {
     let (cost, asked) = (&draw.cost, &draw.asked);
     let most = if cost.tested { ", at most, because tests decide" } else { "" };
@@ -90,7 +90,7 @@ fn write_cost(out: &mut String, draw: &DrawExplanation, counted: Option<&DrawCou
     Ok(())
 }
 
-/// What all draws are and cost together, by name.
+/// Returns the total counts and work of all draws, by name.
 fn total(draws: &[DrawExplanation], of: fn(&DrawExplanation) -> &Cost) -> Vec<(&'static str, u64)> {
     let mut all: Vec<(&'static str, u64)> = Vec::new();
     for draw in draws {
@@ -106,7 +106,7 @@ fn total(draws: &[DrawExplanation], of: fn(&DrawExplanation) -> &Cost) -> Vec<(&
     all
 }
 
-/// The explanation for programs: one JSON document.
+/// Returns the explanation as a JSON document.
 pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<&[DrawCounts]>) -> String {
     let amounts = |amounts: &[u64]| -> Map<String, Value> {
         Work::ALL.iter().zip(amounts).map(|(work, n)| (work.name().replace(' ', "_"), (*n).into())).collect()

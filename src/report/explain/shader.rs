@@ -1,10 +1,10 @@
-//! The stages of a texture shader as equations: `dot1 = (s, t, r) of set 1 . ZeroToOne(tex0)`.
+//! Equations of texture shader stages: `dot1 = (s, t, r) of set 1 . ZeroToOne(tex0)`.
 
 use super::channels;
 use ninebit::state::ShaderOperation;
 use ninebit::texture::stage::PlannedShader;
 
-/// What a stage does before its unit samples, if it does.
+/// Returns the equations of a stage before its unit samples.
 pub(super) fn before(shader: &PlannedShader, index: usize) -> Vec<String> {
     let planned = &shader.stages[index];
     let state = &planned.state;
@@ -54,7 +54,7 @@ pub(super) fn before(shader: &PlannedShader, index: usize) -> Vec<String> {
     lines
 }
 
-/// What it does to what was sampled.
+/// Returns the equation that a stage applies to the sampled colour, if any.
 pub(super) fn after(shader: &PlannedShader, index: usize) -> Option<String> {
     let planned = &shader.stages[index];
     let ShaderOperation::BumpEnvironment { luminance: Some([scale, offset]), .. } = planned.state.operation else {
