@@ -10,7 +10,7 @@ use ninebit_vectors::units;
 fn digests(c: &mut Criterion) {
     let mut group = c.benchmark_group("sweep");
     let mut bench = |name: &str, sweep: &Exhaustive, rows: u64| {
-        let start = sweep.size / 3;
+        let start = sweep.size() / 3;
         group.throughput(Throughput::Elements(rows)).sample_size(10);
         group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| sweep.digest(start..start + rows)));
     };

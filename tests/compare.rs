@@ -9,7 +9,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit::trace::{Decision, Rule};
-use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Comparison, Mode, compare};
+use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Comparison, Mode, Statistics, compare};
 use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -81,8 +81,9 @@ fn parts_add_up_to_the_error() {
     random(600, |plan, scene| {
         let comparison = compare(plan, &options(Mode::Follow));
         assert!(comparison.unexplained < 1e-6, "{} {:?} {scene:?}", comparison.unexplained, plan.policies);
-        let total: f64 = comparison.channels.iter().map(|channel| channel.errors.sum).sum();
-        let parts: f64 = comparison.parts.iter().map(|part| part.1.sum).sum();
+        let sum = |errors: &Statistics| errors.bias() * errors.count as f64;
+        let total: f64 = comparison.channels.iter().map(|channel| sum(&channel.errors)).sum();
+        let parts: f64 = comparison.parts.iter().map(|part| sum(&part.1)).sum();
         assert!((total - parts).abs() < 1e-5 * (1.0 + comparison.drawn as f64), "{total} {parts}");
     });
 }

@@ -85,8 +85,8 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
         let most = own.iter().map(|name| {
             assert!(named.insert(name), "{name} stands there twice");
             let sweep = trees.get(name).unwrap_or_else(|| panic!("there is no tree {name}"));
-            assert_eq!(sweep.unit.name(), unit, "{name}");
-            bits(sweep.part.columns())
+            assert_eq!(sweep.unit().name(), unit, "{name}");
+            bits(sweep.part().columns())
         });
         // A name of an operation stands for what one number of its configuration does.
         assert!(most.max().is_none_or(|most| most == *said), "{unit}: {operation}");
@@ -108,13 +108,14 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
         for (n, column) in unit.inputs().into_iter().enumerate() {
             // Every choice that the unit has occurs in some tree: an operation that comes to be has none, and fails here.
             if let Kind::Name(names) = column.kind {
-                let taken: BTreeSet<i64> = swept.iter().flat_map(|sweep| numbers(&sweep.part.columns()[n])).collect();
+                let taken: BTreeSet<i64> = swept.iter().flat_map(|sweep| numbers(&sweep.part().columns()[n])).collect();
                 let missing: Vec<&str> =
                     numbers(&column).filter(|n| !taken.contains(n)).map(|n| names[n as usize]).collect();
                 assert!(missing.is_empty(), "{} {}: no tree has {missing:?}", unit.name(), column.name);
             } else if column.name.starts_with("in.") {
                 // And so does every input, unless it is one more channel of what another is.
-                let varies = swept.iter().any(|sweep| sweep.part.columns()[n].size() > 1 || sweep.part.is_followed(n));
+                let varies =
+                    swept.iter().any(|sweep| sweep.part().columns()[n].size() > 1 || sweep.part().is_followed(n));
                 let channel = [".g", ".b", ".r"].iter().any(|end| column.name.ends_with(end));
                 assert!(varies || channel || !above.is_empty(), "{} {}", unit.name(), column.name);
             }
@@ -138,13 +139,13 @@ fn both_chips_have_the_same_trees() {
     let mut count = 0;
     for (name, sweep) in trees() {
         let mut random = Random::new(2, &name);
-        if sweep.unit.profiles().len() == 1 || sweep.unit.name() == "compressed-block" {
+        if sweep.unit().profiles().len() == 1 || sweep.unit().name() == "compressed-block" {
             continue;
         }
-        let other = Exhaustive::from_part(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
-        let rows = sweep.size.min(500);
+        let other = Exhaustive::from_part(sweep.unit(), Profile::Nv10, sweep.part().clone()).unwrap();
+        let rows = sweep.size().min(500);
         for _ in 0..3 {
-            let start = random.below(u128::from(sweep.size - rows + 1)) as u64;
+            let start = random.below(u128::from(sweep.size() - rows + 1)) as u64;
             assert_eq!(sweep.digest(start..start + rows), other.digest(start..start + rows), "{name} from {start}");
         }
         count += 1;

@@ -33,7 +33,7 @@ fn ninebit(arguments: &[&str]) -> Output {
 /// All leaves of one unit, computed once for all tests.
 static LEAVES: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     let (folder, sweep) = (tempfile::tempdir().unwrap(), sweep("linear-step"));
-    (0..sweep.leaves).into_par_iter().for_each(|leaf| assert!(tree::work(folder.path(), &sweep, leaf).unwrap()));
+    (0..sweep.leaves()).into_par_iter().for_each(|leaf| assert!(tree::work(folder.path(), &sweep, leaf).unwrap()));
     folder
 });
 
@@ -57,7 +57,7 @@ fn the_root_depends_on_neither_shards_nor_order_nor_deaths() {
     let folder = tempfile::tempdir().unwrap();
     let shared = folder.path().join("shared");
     let root = tree::merge(&[LEAVES.path().to_path_buf()]).unwrap();
-    assert_eq!((root.rows, root.leaf.len() as u64), (1 << 24, sweep("linear-step").leaves));
+    assert_eq!((root.rows, root.leaf.len() as u64), (1 << 24, sweep("linear-step").leaves()));
     let mut random = Random::new(5, "shards");
     for count in [1, 2, 7, 64] {
         let shards = dealt(LEAVES.path(), folder.path(), count, &mut random);
@@ -176,13 +176,13 @@ fn a_part_has_the_rows_of_the_whole_that_it_allows() {
     let functions = ["Never", "Less", "Equal", "LessOrEqual", "Greater", "NotEqual", "GreaterOrEqual", "Always"];
     for (place, function) in (0..).zip(functions) {
         let some = part("alpha-test", &[&format!("cfg.function={function}")]);
-        assert_eq!(some.size, 1 << 16);
+        assert_eq!(some.size(), 1 << 16);
         assert_eq!(some.digest(0..1 << 16), whole.digest(place << 16..(place + 1) << 16), "{function}");
     }
     // In block lanes as row by row.
     let some = part("sum", &["in.a=-256", "in.b=3..4", "in.c=255..256", "in.d=-100..200"]);
     let rows = |b: u64, c: u64| (b * 513 + c) * 513 + 156..(b * 513 + c) * 513 + 457;
-    assert_eq!(some.size, 4 * 301);
+    assert_eq!(some.size(), 4 * 301);
     for (place, (b, c)) in (0..).zip([(259, 511), (259, 512), (260, 511), (260, 512)]) {
         assert_eq!(some.digest(place * 301..(place + 1) * 301), sweep("sum").digest(rows(b, c)), "{b} {c}");
     }
@@ -248,7 +248,7 @@ fn committed_trees_of_parts_are_what_the_model_says() {
         }
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
         assert_eq!(path.parent().unwrap().file_name().unwrap().to_str().unwrap(), tree.header.unit);
-        if sweep.size <= 1 << 16 {
+        if sweep.size() <= 1 << 16 {
             assert_eq!(sweep.leaf(0), tree.leaf[0], "{}", path.display());
         } else if QUICK.contains(&tree.header.unit.as_str()) {
             large.entry(tree.header.unit.clone()).or_default().push((tree, sweep));
@@ -257,7 +257,7 @@ fn committed_trees_of_parts_are_what_the_model_says() {
     large.into_par_iter().for_each(|(unit, trees)| {
         let mut random = Random::new(13, &unit);
         let (tree, sweep) = &trees[random.below(trees.len() as u128) as usize];
-        let leaf = random.below(u128::from(sweep.leaves)) as u64;
+        let leaf = random.below(u128::from(sweep.leaves())) as u64;
         assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.header.name());
     });
 }
@@ -294,7 +294,7 @@ fn parts_by_configuration_are_whole() {
                 let mut row: Vec<i64> = unit.inputs().iter().map(|c| c.nth(random.below(c.size()))).collect();
                 row[0] = value;
                 unit.fit(&mut row);
-                let columns = sweep.part.columns();
+                let columns = sweep.part().columns();
                 let kept: Vec<i64> =
                     row.iter().zip(columns).map(|(value, c)| c.nth(*value as u128 % c.size())).collect();
                 assert_eq!(outputs(unit, &row), outputs(unit, &kept), "{} {row:?}", tree.header.name());
@@ -321,12 +321,12 @@ fn committed_trees_are_what_the_model_says() {
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
         assert_eq!(path.file_stem().unwrap().to_str().unwrap(), tree.header.unit);
         names.push(tree.header.unit.clone());
-        let drawn = Random::new(11, &tree.header.unit).below(u128::from(sweep.leaves)) as u64;
-        let chosen: Vec<u64> = if sweep.size <= 1 << 23 { (0..sweep.leaves).collect() } else { vec![drawn] };
-        let nv10 = Exhaustive::new(sweep.unit, Profile::Nv10).unwrap();
+        let drawn = Random::new(11, &tree.header.unit).below(u128::from(sweep.leaves())) as u64;
+        let chosen: Vec<u64> = if sweep.size() <= 1 << 23 { (0..sweep.leaves()).collect() } else { vec![drawn] };
+        let nv10 = Exhaustive::new(sweep.unit(), Profile::Nv10).unwrap();
         chosen.into_par_iter().for_each(|leaf| {
             assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.header.unit);
-            if sweep.size <= 1 << 23 {
+            if sweep.size() <= 1 << 23 {
                 assert_eq!(nv10.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf} of nv10", tree.header.unit);
             }
         });
@@ -334,7 +334,7 @@ fn committed_trees_are_what_the_model_says() {
     // Every unit of at most 2^32 rows has one, and the product sum.
     let mut expected: Vec<&str> = vec!["depth", "sum"];
     let all = units::all().into_iter().filter_map(|unit| Exhaustive::new(unit, Profile::Nv2a));
-    expected.extend(all.filter(|sweep| sweep.size <= 1 << 32).map(|sweep| sweep.unit.name()));
+    expected.extend(all.filter(|sweep| sweep.size() <= 1 << 32).map(|sweep| sweep.unit().name()));
     expected.sort_unstable();
     assert_eq!(names, expected);
 }

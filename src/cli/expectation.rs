@@ -1,8 +1,8 @@
-//! What a scene is expected to show: `NAME.expect.ron` beside `NAME.ron`.
+//! Expectations of scenes: `NAME.expect.ron` beside `NAME.ron`.
 //!
-//! Equality is the rule: an expectation is the digest of a picture, our own or a captured one. Where something else is known (a
-//! photograph of a screen, a capture with a region that nobody can vouch for) a mask leaves pixels out, and a named allowance
-//! says how many may differ and by how much; an allowance needs the picture itself.
+//! An expectation normally requires equality: it is the digest of a picture, our own or a captured one. In other cases (a photograph of a screen, a
+//! capture with an unreliable region) a mask excludes pixels, and an allowance states how many pixels may differ and by how much. An allowance needs
+//! the picture itself.
 
 use std::path::Path;
 
@@ -18,134 +18,132 @@ use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_scene::image::{self, ImageError, ImageLimits, Rgba};
 use ninebit_scene::path::{PathError, resolve};
 
-/// The version of the format that is written and read.
+/// Version of the format.
 pub const VERSION: u32 = 1;
 
-/// What one target of a scene is expected to show.
+/// Expected picture of one target of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
-    /// The version of the format: [`VERSION`].
+    /// Version of the format: [`VERSION`].
     pub version: u32,
     /// Name of the target.
     pub target: String,
-    /// Columns of the picture.
+    /// Width of the picture.
     pub width: u32,
-    /// Rows of the picture.
+    /// Height of the picture.
     pub height: u32,
-    /// [`digest`] of the picture, pixels that the mask leaves out taken as 0, 0, 0, 0.
+    /// [`digest`] of the picture, in which masked pixels are taken as 0, 0, 0, 0.
     pub sha256: String,
     /// SHA-256 of the words of the target's depth buffer, four bytes each, little-endian: 256 depth + stencil.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<String>,
-    /// What picture that is, if it is not one of this program: the name of a capture. Such a digest is never written anew from
-    /// what this program draws.
+    /// Name of the capture, if the picture is one. Such a digest is never replaced by that of a drawn picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capture: Option<String>,
-    /// How many pixels are compared, which says what the mask is worth.
+    /// Number of pixels that the mask leaves to be compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels: Option<u64>,
-    /// An image in the same folder, of the same size: where its red is 0, the picture is not compared.
+    /// An image in the same folder, of the same size: pixels where its red is 0 are not compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mask: Option<String>,
-    /// What may differ all the same.
+    /// Differences that are accepted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub allowance: Option<Allowance>,
-    /// An image in the same folder, of the same size: the picture of this digest, to show where another one differs.
+    /// An image in the same folder, of the same size: the expected picture, to show where another one differs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture: Option<String>,
-    /// Files in the same folder that the scene needs and that are not handed out with it. Where one is not there, the scene is not
-    /// drawn.
+    /// Files in the same folder that the scene needs and that are not distributed with it. The scene is skipped if one is missing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub needs: Vec<String>,
 }
 
-/// Differences that are put up with, and why.
+/// Accepted differences.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Allowance {
     /// An image in the same folder: the expected picture itself.
     pub picture: String,
-    /// How many pixels may differ.
+    /// Maximum number of differing pixels.
     pub pixels: u64,
-    /// By how much any channel of a pixel may differ.
+    /// Maximum difference of a channel.
     pub difference: u8,
-    /// Why this is acceptable.
+    /// Reason why the differences are acceptable.
     pub reason: String,
 }
 
-/// How a picture differs from what was expected.
+/// Difference between a picture and its expectation.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Mismatch {
-    /// The size, as it is.
+    /// The size differs.
     #[error("the picture is {width} x {height}")]
     Size {
-        /// Columns of the picture that was drawn.
+        /// Width of the picture that was drawn.
         width: u32,
-        /// Rows of the picture that was drawn.
+        /// Height of the picture that was drawn.
         height: u32,
     },
-    /// The digest, as it is. Without the expected picture no more can be said.
+    /// The digest differs. Without the expected picture no more is known.
     #[error("the picture's digest is {sha256}")]
     Digest {
         /// SHA-256 of the picture that was drawn, in hexadecimal.
         sha256: String,
     },
-    /// The digest of the depth buffer, as it is; the picture is the expected one.
+    /// The digest of the depth buffer differs; the picture is as expected.
     #[error("the picture is as expected, the digest of its depths is {sha256}")]
     Depth {
-        /// SHA-256.
+        /// SHA-256 of the depth buffer that was drawn, in hexadecimal.
         sha256: String,
     },
-    /// More than is allowed.
+    /// The picture differs by more than is allowed.
     #[error("{pixels} pixels differ, by {difference} at most, the first at {},{}", .first[0], .first[1])]
     Pixels {
-        /// Pixels that differ.
+        /// Number of differing pixels.
         pixels: u64,
         /// Largest difference of a channel.
         difference: u8,
-        /// Column and row of the first one.
+        /// Column and row of the first differing pixel.
         first: [u32; 2],
     },
 }
 
-/// Why an expectation cannot be used.
+/// Reason why an expectation cannot be used.
 #[derive(Debug, Error)]
 pub enum ExpectationError {
-    /// Not an expectation.
+    /// The text is not an expectation.
     #[error("{0}")]
     Text(String),
-    /// More bytes than it may have.
+    /// The file exceeds its size limit.
     #[error("it is larger than {0}")]
     TooLarge(FileLimit),
-    /// A file it names is refused.
+    /// A file that it names is refused.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// An image it names is refused.
+    /// An image that it names is refused.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// The mask leaves another number of pixels.
+    /// The mask leaves a different number of pixels to be compared.
     #[error("{found} pixels are compared, not {expected}")]
     Pixels {
-        /// How many the expectation says.
+        /// Number of pixels according to the expectation.
         expected: u64,
-        /// As the mask has it.
+        /// Number of pixels according to the mask.
         found: u64,
     },
-    /// An image it names has another size.
+    /// An image that it names has a different size.
     #[error("`{name}` is {width} x {height}, not of the size expected")]
     Size {
         /// The image's file, as the expectation names it.
         name: String,
-        /// Columns that it has.
+        /// Width of the image.
         width: u32,
-        /// Rows that it has.
+        /// Height of the image.
         height: u32,
     },
 }
 
 impl ExpectationError {
-    /// The code of `docs/errors.md`.
+    /// Returns the error code, as `docs/errors.md` lists it.
     pub fn code(&self) -> &'static str {
         match self {
             ExpectationError::Path(error) => error.code(),
@@ -155,7 +153,7 @@ impl ExpectationError {
         }
     }
 
-    /// What to do about it.
+    /// Returns the advice to the user.
     pub fn help(&self) -> &'static str {
         match self {
             ExpectationError::TooLarge(_) => "is it an expectation? `ninebit replay --bless` writes one",
@@ -169,7 +167,7 @@ impl ExpectationError {
         }
     }
 
-    /// What a caller does about it.
+    /// Returns the kind of the error, which determines the exit status.
     pub fn kind(&self) -> ErrorKind {
         match self {
             ExpectationError::Path(error) if error.is_missing() => ErrorKind::Missing,
@@ -182,7 +180,7 @@ impl ExpectationError {
 }
 
 impl Expectation {
-    /// The strict expectation that `surface` meets.
+    /// Returns the expectation that `surface` meets exactly.
     pub fn from_surface(target: &str, surface: &Surface) -> Self {
         Expectation {
             version: VERSION,
@@ -194,10 +192,10 @@ impl Expectation {
         }
     }
 
-    /// Reads an expectation's text.
+    /// Parses an expectation.
     ///
     /// # Errors
-    /// The text is too long, is not RON of this form, or has another version.
+    /// Returns an error if the text is too long, is not RON of this form, or has another version.
     pub fn parse(text: &str) -> Result<Self, ExpectationError> {
         if text.len() as u64 > limits::EXPECTATION.bytes {
             return Err(ExpectationError::TooLarge(limits::EXPECTATION));
@@ -212,10 +210,10 @@ impl Expectation {
         Ok(expectation)
     }
 
-    /// Reads an expectation's file; `None` if there is none.
+    /// Reads an expectation's file. Returns `None` if it does not exist.
     ///
     /// # Errors
-    /// As [`parse`](Self::parse); the file cannot be read, or is not UTF-8.
+    /// The same as [`parse`](Self::parse), or if the file cannot be read or is not UTF-8.
     pub fn read(path: &Path) -> Result<Option<Self>, ExpectationError> {
         let bytes = match read::bytes(path, Kind::Regular, limits::EXPECTATION) {
             Ok(bytes) => bytes,
@@ -227,17 +225,17 @@ impl Expectation {
         Self::parse(&text).map(Some)
     }
 
-    /// The text of the expectation.
+    /// Returns the expectation as text.
     pub fn to_text(&self) -> String {
         let pretty = ron::ser::PrettyConfig::new().extensions(ron::extensions::Extensions::IMPLICIT_SOME);
         // Writing plain strings and numbers into memory cannot fail.
         ron::ser::to_string_pretty(self, pretty).unwrap_or_default() + "\n"
     }
 
-    /// Compares a surface with the expectation; images are looked for in `folder`. `None`: it is as expected.
+    /// Compares a surface with the expectation. Images are read from `folder`. Returns `None` if the surface is as expected.
     ///
     /// # Errors
-    /// The mask or the picture cannot be used, or the mask leaves another number of pixels than is stated.
+    /// Returns an error if the mask or the picture cannot be used, or the mask leaves another number of pixels than stated.
     pub fn compare(&self, surface: &Surface, folder: &Path) -> Result<Option<Mismatch>, ExpectationError> {
         let (width, height) = (surface.width, surface.height);
         if [width, height] != [self.width, self.height] {
@@ -268,10 +266,10 @@ impl Expectation {
         Ok((!accepted).then_some(mismatch))
     }
 
-    /// Whether each pixel is compared, row by row.
+    /// Returns whether each pixel is compared, row by row.
     ///
     /// # Errors
-    /// The mask cannot be used, or leaves another number of pixels than is stated.
+    /// Returns an error if the mask cannot be used, or leaves another number of pixels than stated.
     pub fn compared(&self, folder: &Path) -> Result<Vec<bool>, ExpectationError> {
         let compared = match &self.mask {
             Some(name) => self.image(folder, name)?.pixels.iter().map(|pixel| pixel[0] != 0).collect(),
@@ -284,10 +282,10 @@ impl Expectation {
         }
     }
 
-    /// The files of [`needs`](Self::needs) that are not in `folder`.
+    /// Returns the files of [`needs`](Self::needs) that are not in `folder`.
     ///
     /// # Errors
-    /// A name that is no plain one, or a place that the file system refuses.
+    /// Returns an error if a name is not a plain one, or the file system refuses the path.
     pub fn missing(&self, folder: &Path) -> Result<Vec<&str>, ExpectationError> {
         let mut missing = Vec::new();
         for name in &self.needs {
@@ -300,10 +298,10 @@ impl Expectation {
         Ok(missing)
     }
 
-    /// An image in `folder` that has the expected size.
+    /// Reads an image in `folder` that has the expected size.
     ///
     /// # Errors
-    /// The image cannot be used, or has another size.
+    /// Returns an error if the image cannot be used, or has another size.
     pub fn image(&self, folder: &Path, name: &str) -> Result<Rgba, ExpectationError> {
         let image = image::load(&resolve(folder, name)?, &ImageLimits::default())?;
         if [image.width, image.height] != [self.width, self.height] {
@@ -314,13 +312,13 @@ impl Expectation {
     }
 }
 
-/// What [`Expectation::depth`] is of a surface.
-pub fn depth_digest(surface: &Surface) -> String {
+/// Returns [`Expectation::depth`] of a surface.
+pub(crate) fn depth_digest(surface: &Surface) -> String {
     let words: Vec<u8> = surface.chip_depth_words().flat_map(u32::to_le_bytes).collect();
     hexadecimal(&Sha256::digest(words))
 }
 
-/// Sets pixels that are not compared to 0, 0, 0, 0 and takes the [`digest`].
+/// Sets pixels that are not compared to 0, 0, 0, 0. Returns the [`digest`].
 pub fn masked_digest(width: u32, height: u32, pixels: &mut [[u8; 4]], compared: &[bool]) -> String {
     for (pixel, compared) in pixels.iter_mut().zip(compared) {
         if !compared {
@@ -352,7 +350,7 @@ mod tests {
         assert!(Expectation::parse(&expectation.to_text().replace("version: 1", "version: 2")).is_err());
         assert!(Expectation::parse("(version: 1, colour: 2)").is_err());
         assert!(Expectation::parse(&" ".repeat((64 << 10) + 1)).is_err());
-        // However deep the brackets are, the form is refused at the first that does not belong.
+        // However deeply brackets are nested, the text is refused at the first that does not belong.
         for start in ["", "(version: ", "(needs: [", "(colour: ", "(allowance: (picture: "] {
             assert!(Expectation::parse(&(start.to_owned() + &"([".repeat(30_000))).is_err(), "{start}");
         }

@@ -1,7 +1,7 @@
-//! What the program `ninebit` is made of. Other programs take the crates below it: this one's interface follows the program's needs.
+//! Library of the program `ninebit`. Other programs should use the crates below it: this interface follows the program's needs.
 //!
 //! * [`main`] runs a command line.
-//! * [`replay`] holds scenes against what is [expected](expectation) of them; [`ninebit_scene::diff`] holds two pictures against each other.
+//! * [`replay`] compares scenes with their [expectations](expectation); [`ninebit_scene::diff`] compares two pictures.
 
 mod commands;
 pub mod expectation;
@@ -13,7 +13,7 @@ use std::ffi::OsString;
 
 pub use commands::main;
 
-/// Runs a command line, the program's name first, in this process; its exit status. A panic is the caller's.
+/// Runs a command line in this process, with the program's name first. Returns its exit status. Does not catch panics.
 pub fn run(arguments: &[OsString]) -> u8 {
     commands::run(arguments) as u8
 }

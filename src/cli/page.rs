@@ -1,17 +1,17 @@
-//! The page of `ninebit inspect`: markup, style, scripts, the model as a WebAssembly module, and a scene, in one text that asks for nothing else.
+//! The page of `ninebit inspect`: markup, style, scripts, the model as a WebAssembly module, and a scene, in one file that loads nothing else.
 //!
-//! Its scripts are modules in `src/web/page`. A page that is opened from a file can import none, so they stand behind one another in one inline script. The
-//! page's policy allows that script and that style by their hashes, WebAssembly, and nothing else.
+//! Its scripts are modules in `src/web/page`. A page that is opened from a file cannot import modules, so they are joined into one inline script. The
+//! page's content security policy allows that script and that style by their hashes, WebAssembly, and nothing else.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-/// The markup, with places for the rest.
+/// The markup, with placeholders for the other parts.
 const MARKUP: &str = include_str!("../web/page/page.html");
 const STYLE: &str = include_str!("../web/page/style.css");
-/// Each after those that it imports.
+/// The scripts, each after those that it imports.
 const MODULES: [&str; 6] = [
     include_str!("../web/page/elements.js"),
     include_str!("../web/page/model.js"),
@@ -20,12 +20,12 @@ const MODULES: [&str; 6] = [
     include_str!("../web/page/change.js"),
     include_str!("../web/page/main.js"),
 ];
-/// What `src/web/build` makes of `src/web`.
+/// The WebAssembly module that `src/web/build` makes from `src/web`.
 const MODULE: &[u8] = include_bytes!("../web/module.wasm.gz");
 /// The handbook of rules.
 const NUMERICS: &str = include_str!("../../docs/numerics.md");
 
-/// The page of that title with a scene's data.
+/// Returns the page with the given title and a scene's data.
 pub(crate) fn page(title: &str, data: &Value) -> String {
     let script = joined();
     let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())));
@@ -35,7 +35,7 @@ pub(crate) fn page(title: &str, data: &Value) -> String {
         hash(STYLE)
     );
     let title = format!("{} - Ninebit", escaped(title));
-    // No data can end its element.
+    // Escaped so that no data can end its element.
     let data = data.to_string().replace('<', "\\u003c");
     let parts = [
         ("policy", policy),
@@ -56,7 +56,7 @@ pub(crate) fn page(title: &str, data: &Value) -> String {
     page + rest
 }
 
-/// The modules as one script.
+/// Joins the modules to one script.
 fn joined() -> String {
     let mut script = String::from("\"use strict\";\n");
     for module in MODULES {
@@ -68,12 +68,12 @@ fn joined() -> String {
     script
 }
 
-/// A text as content of an element.
+/// Escapes a text as content of an element.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// The rules of the handbook by their ids: title, grade, and what it says of each.
+/// Returns the rules of the handbook by their ids: title, grade, and text.
 pub(crate) fn rules() -> Value {
     let mut rules = Map::new();
     for section in NUMERICS.split("\n### ").skip(1) {

@@ -1,8 +1,8 @@
-//! One of several runs that share some work.
+//! Division of work among several runs.
 
 use std::str::FromStr;
 
-/// The run `index`, from 1, of `count`.
+/// The run number `index`, from 1, of `count` runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: u64,
@@ -10,16 +10,16 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The only run.
-    pub const ALL: Shard = Shard { index: 1, count: 1 };
+    /// The only run, which has all the work.
+    pub(crate) const ALL: Shard = Shard { index: 1, count: 1 };
 
-    /// The shard `index` of `count`; `None` unless `1 <= index <= count`.
+    /// Returns the shard `index` of `count`, or `None` unless `1 <= index <= count`.
     pub fn new(index: u64, count: u64) -> Option<Self> {
         (1..=count).contains(&index).then_some(Shard { index, count })
     }
 
-    /// Whether a piece of work with that number belongs to it: every number belongs to one of the shards.
-    pub fn takes(self, number: u64) -> bool {
+    /// Returns whether the piece of work with the given number belongs to this shard. Every number belongs to exactly one of the shards.
+    pub(crate) fn takes(self, number: u64) -> bool {
         number % self.count == self.index - 1
     }
 }

@@ -42,16 +42,15 @@ pub struct Leaf {
 /// All rows of a unit, or of a part of it, on one chip.
 #[derive(Debug)]
 pub struct Exhaustive {
-    /// The unit whose inputs are all tried.
-    pub unit: &'static dyn Unit,
-    /// The chip whose rules it follows.
-    pub profile: Profile,
-    /// Which of the unit's rows.
-    pub part: Part,
-    /// Rows, those included whose inputs do not go together.
-    pub size: u64,
-    /// How many leaves the tree has.
-    pub leaves: u64,
+    unit: &'static dyn Unit,
+    /// The chip whose rules apply.
+    pub(crate) profile: Profile,
+    /// The part of the unit's rows.
+    part: Part,
+    /// Number of rows, including those that the unit does not accept.
+    size: u64,
+    /// Number of leaves.
+    leaves: u64,
     outputs: Vec<Output>,
     results: usize,
 }
@@ -76,6 +75,26 @@ impl Exhaustive {
             outputs: Output::from_columns(&results),
             results: results.len(),
         })
+    }
+
+    /// Returns the unit.
+    pub fn unit(&self) -> &'static dyn Unit {
+        self.unit
+    }
+
+    /// Returns the part of the unit's rows.
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    /// Returns the number of rows, including those that the unit does not accept.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Returns the number of leaves.
+    pub fn leaves(&self) -> u64 {
+        self.leaves
     }
 
     /// Returns the range of row indices in a leaf.

@@ -101,7 +101,7 @@ impl Part {
     }
 
     /// Returns whether another column is tied to this one.
-    pub(crate) fn is_followed(&self, index: usize) -> bool {
+    pub fn is_followed(&self, index: usize) -> bool {
         self.ties.iter().any(|[_, other]| *other == index)
     }
 

@@ -45,12 +45,12 @@ impl SweepHeader {
     /// Returns the description of a sweep by this program.
     pub fn new(sweep: &Exhaustive) -> SweepHeader {
         SweepHeader {
-            unit: sweep.unit.name().to_owned(),
-            only: sweep.part.texts().to_vec(),
+            unit: sweep.unit().name().to_owned(),
+            only: sweep.part().texts().to_vec(),
             profile: sweep.profile.name().to_owned(),
             behaviour_rev: BEHAVIOUR,
-            size: sweep.size,
-            leaves: sweep.leaves,
+            size: sweep.size(),
+            leaves: sweep.leaves(),
         }
     }
 
@@ -253,7 +253,9 @@ impl Tree {
             Exhaustive::from_part(unit, profile, part)
         });
         match sweep {
-            Some(sweep) if (sweep.size, sweep.leaves) == (tree.header.size, tree.header.leaves) => Ok((tree, sweep)),
+            Some(sweep) if (sweep.size(), sweep.leaves()) == (tree.header.size, tree.header.leaves) => {
+                Ok((tree, sweep))
+            }
             _ => {
                 let message = format!("this program has no sweep of {}", tree.header.text());
                 Err(VectorError::file("NB1005", path, message, help))

@@ -1,10 +1,10 @@
-//! The functions that a WebAssembly host calls.
+//! Functions that a WebAssembly host calls.
 //!
-//! The host writes into buffers of this module and reads from them; each is a vector that this module owns, and the functions below say where it lies and how
-//! long it is. No pointer comes in, so there is nothing to trust and no `unsafe` block: the lint is lifted for the exported names alone. WebAssembly here has one
-//! thread.
+//! The host writes to and reads from buffers of this module. Each buffer is a vector that this module owns, and the functions below return its
+//! address and length. No function takes a pointer, so there is nothing to trust and no `unsafe` block: the lint is lifted for the exported names
+//! only. WebAssembly has a single thread here.
 //!
-//! A panic ends the call by a trap. What it said is left in the answer, which the host can read before it starts a new instance.
+//! A panic ends the call with a trap. Its message is left in the answer, which the host can read before it starts a new instance.
 #![allow(unsafe_code, reason = "exported names are unsafe attributes; nothing else here is")]
 #![allow(unreachable_pub, reason = "the host reaches them")]
 
@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::Session;
 
-/// What host and module hand each other.
+/// Buffers that the host and the module exchange.
 #[derive(Default)]
 struct Buffers {
     request: Vec<u8>,
@@ -28,13 +28,13 @@ thread_local! {
     static SESSION: RefCell<Session> = RefCell::default();
 }
 
-/// Makes room for a request of so many bytes, and says where.
+/// Allocates the request buffer of `length` bytes. Returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_request(length: usize) -> *mut u8 {
     BUFFERS.with_borrow_mut(|buffers| room(&mut buffers.request, length))
 }
 
-/// Makes room for a file of so many bytes, and says where. The next request takes it.
+/// Allocates the file buffer of `length` bytes. Returns its address. The next request consumes the file.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_file(length: usize) -> *mut u8 {
     BUFFERS.with_borrow_mut(|buffers| room(&mut buffers.file, length))
@@ -46,7 +46,7 @@ fn room(buffer: &mut Vec<u8>, length: usize) -> *mut u8 {
     buffer.as_mut_ptr()
 }
 
-/// Answers the request that was written; the length of the answer.
+/// Answers the request in the buffer. Returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_call() -> usize {
     static HOOK: Once = Once::new();
@@ -69,19 +69,19 @@ pub extern "C" fn ninebit_call() -> usize {
     })
 }
 
-/// Where the answer lies.
+/// Returns the address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_answer() -> *const u8 {
     BUFFERS.with_borrow(|buffers| buffers.answer.as_ptr())
 }
 
-/// How long it is.
+/// Returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_answer_length() -> usize {
     BUFFERS.with_borrow(|buffers| buffers.answer.len())
 }
 
-/// Where the picture of the latest answer lies: R, G, B, A, row by row from the top.
+/// Returns the address of the latest answer's picture: R, G, B, A, row by row from the top.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_picture() -> *const u8 {
     SESSION.with_borrow(|session| session.picture().as_flattened().as_ptr())

@@ -1,4 +1,4 @@
-//! Pictures, and what they differ in.
+//! Pictures and their differences.
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
@@ -14,7 +14,7 @@ use crate::Refused;
 /// An answer and its picture.
 type Shown = (Value, Vec<[u8; 4]>);
 
-/// The plan of the first draws. Planned afresh: what later draws would paint over is not left out.
+/// Compiles the plan of the first draws. The scene is planned anew, so that nothing is pruned because later draws would cover it.
 pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result<Plan, Refused> {
     let mut part = scene.clone();
     part.draws.truncate(until + 1);
@@ -23,7 +23,7 @@ pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result
     Ok(Plan { policies, ..planned })
 }
 
-/// A target after all draws: its colours, or with `depth` the words of its depth buffer, the lowest byte first and the stencil last.
+/// Draws a target. The picture holds its colours or, with `depth`, the words of its depth buffer: depth with the lowest byte first, then the stencil.
 pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<Shown, Refused> {
     let frames = render(plan, &RenderOptions::default());
     let surface = &frames.surfaces[target];
@@ -49,7 +49,7 @@ fn picture(plan: &Plan, target: usize) -> Rgba {
     Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
 }
 
-/// The definition against float64.
+/// Compares the definition with float64 arithmetic.
 pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
     let options = CompareOptions { mode: Mode::Free, target, threads: 1, channels: ALL_CHANNELS };
     let found = compare(plan, &options);
@@ -67,19 +67,19 @@ pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
     (answer, found.heat())
 }
 
-/// The definition against itself under other policies.
+/// Compares the definition with itself under other policies.
 pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<Shown, Refused> {
     let other = Plan { policies, ..plan.clone() };
     between(&picture(plan, target), &picture(&other, target), false)
 }
 
-/// The definition against a picture from elsewhere. Screenshots have no alpha that means anything.
+/// Compares the definition with a picture from elsewhere. Alpha is ignored, because that of screenshots has no meaning.
 pub(crate) fn against_picture(plan: &Plan, target: usize, second: Option<&Rgba>) -> Result<Shown, Refused> {
     let second = second.ok_or("there is no second picture")?;
     between(&picture(plan, target), second, true)
 }
 
-/// Two pictures: the first in grey where they agree, the largest difference of a channel where not.
+/// Compares two pictures. The resulting picture shows the largest difference of each pixel's channels.
 fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Shown, Refused> {
     let options = Options { ignore_alpha, regions: 50 };
     let found = diff::compare(a, b, &options).map_err(|error| error.to_string())?;

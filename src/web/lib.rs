@@ -1,7 +1,7 @@
 //! The model in a browser.
 //!
-//! [`Session`] holds a scene and answers requests, JSON in and JSON out; pictures are bytes. `boundary` hands both to a WebAssembly host. The page of
-//! `ninebit inspect` is that host; `src/web/page` has its scripts. [`Session`] knows nothing of it.
+//! [`Session`] holds a scene and answers JSON requests with JSON; pictures are bytes. `boundary` exports both to a WebAssembly host. The page of
+//! `ninebit inspect` is such a host; its scripts are in `src/web/page`. [`Session`] does not depend on it.
 
 mod boundary;
 mod frame;
@@ -12,5 +12,5 @@ mod tree;
 
 pub use session::Session;
 
-/// What a request needs and does not say, or what it says and is not so.
+/// Reason why a request was refused, as a message.
 pub(crate) type Refused = String;

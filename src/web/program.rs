@@ -1,4 +1,4 @@
-//! Pixel programs: as state, as words, as text; parts of them changed.
+//! Pixel programs as JSON: their state, register words and text; edits of their parts.
 
 use std::fmt::Display;
 
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::Refused;
 
-/// A draw's program.
+/// Returns a draw's program as JSON.
 pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {
     let Combiners { stages, mux_select, final_combiner: last } = &draw.combiners;
     let portion = |portion: &Portion| {
@@ -61,7 +61,7 @@ fn final_input(input: &FinalInput) -> Value {
     json!({ "register": input.register.name(), "component": input.component.name(), "invert": input.invert })
 }
 
-/// The draw's program, in the combiner language, with one part changed: `path` as in [`value`].
+/// Returns the draw's program in the combiner language with one part changed. `path` is as in [`value`].
 pub(crate) fn changed(draw: &Draw, path: &Value, value: &Value) -> Result<String, Refused> {
     let mut combiners = draw.combiners.clone();
     let path: Vec<String> = path.as_array().into_iter().flatten().map(word).collect();
@@ -70,7 +70,7 @@ pub(crate) fn changed(draw: &Draw, path: &Value, value: &Value) -> Result<String
     Ok(written(&combiners))
 }
 
-/// Combiners as scenes write them. The state of the first constants is shared with stages that have none of their own: those are told apart by the text.
+/// Returns combiners as scenes write them.
 pub(crate) fn written(combiners: &Combiners) -> String {
     format!("CombinerText({})", quoted(&print(combiners)))
 }
@@ -84,7 +84,7 @@ fn set(combiners: &mut Combiners, path: &[&str], value: &Value) -> Result<(), Re
     match path {
         ["mux_select"] => choose(&mut combiners.mux_select, value),
         ["constants", n] => {
-            // Constants of the whole program: of the final combiner and of all stages that have the same.
+            // Constants of the whole program: those of the final combiner and of all stages with the same values.
             let slot = index(n, 2)?;
             let (before, after) = (last.constants[slot], color(value)?);
             last.constants[slot] = after;
@@ -179,7 +179,7 @@ fn color(value: &Value) -> Result<[u8; 4], Refused> {
     Ok([r, g, b, a])
 }
 
-/// A pasted program as scenes write it.
+/// Returns a pasted program as scenes write it.
 pub(crate) fn pasted(language: &str, program: &str) -> Result<String, Refused> {
     let program = program.trim();
     Ok(match language {
@@ -190,7 +190,7 @@ pub(crate) fn pasted(language: &str, program: &str) -> Result<String, Refused> {
     })
 }
 
-/// A text in quotes, with as many number signs as it needs.
+/// Returns a text as a raw string, with as many number signs as it needs.
 fn quoted(text: &str) -> String {
     let mut signs = String::from("#");
     while text.contains(&format!("\"{signs}")) {
@@ -199,7 +199,7 @@ fn quoted(text: &str) -> String {
     format!("r{signs}\"\n{}\"{signs}", text.trim_end().to_owned() + "\n")
 }
 
-/// The scene's text with another value in a field of a draw; a field that is not written is added.
+/// Replaces the value of a draw's field in the scene's text. A field that is not there is added.
 pub(crate) fn replaced(text: &str, draw: usize, field: &str, value: &str) -> Result<String, Refused> {
     let tree = outline(text);
     let number = draw.to_string();

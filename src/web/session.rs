@@ -1,4 +1,4 @@
-//! A scene, and what is asked of it.
+//! A session: a scene and the requests about it.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::{Refused, frame, program, shader, tree};
 
 /// A scene, the files that it names, and the latest picture.
 ///
-/// A request is an object whose `do` names what is wanted; the answer is an object, with `error` if it could not be done:
+/// A request is an object whose `do` names the action; the answer is an object, with a field `error` if the request was refused:
 ///
 /// | `do` | fields | answer |
 /// |---|---|---|
@@ -35,21 +35,21 @@ use crate::{Refused, frame, program, shader, tree};
 /// | `edit` | `draw`, `path`, `value` | `text`: the scene's text with that part of the program changed; `rewritten` if the program was in another language before |
 /// | `paste` | `draw`, `language`, `program` | `text`: the scene's text with that program |
 ///
-/// `draw`, `depth`, `heat`, `trace` and `alternatives` take `until`, a draw: what they say is so after it, not after the last.
+/// `draw`, `depth`, `heat`, `trace` and `alternatives` take `until`, the index of a draw: their answer is that after this draw instead of the last.
 #[derive(Debug, Default)]
 pub struct Session {
     files: Bundle,
     text: String,
     loaded: Option<(Scene, Plan)>,
     policies: Policies,
-    /// The plan up to a draw, as long as it is looked at.
+    /// The plan up to a draw, kept for requests with the same `until`.
     stepped: Option<(usize, Plan)>,
     second: Option<Rgba>,
     picture: Vec<[u8; 4]>,
 }
 
 impl Session {
-    /// Answers a request; `file` is what came with it.
+    /// Answers a request. `file` is the content of the file that came with it.
     pub fn answer(&mut self, request: &[u8], file: Vec<u8>) -> String {
         let answer = serde_json::from_slice(request)
             .map_err(|error| format!("the request is not JSON: {error}"))
@@ -57,7 +57,7 @@ impl Session {
         answer.unwrap_or_else(|refused| json!({ "error": refused })).to_string()
     }
 
-    /// The latest picture: R, G, B, A, row by row from the top.
+    /// Returns the latest picture: R, G, B, A, row by row from the top.
     pub fn picture(&self) -> &[[u8; 4]] {
         &self.picture
     }
@@ -146,8 +146,8 @@ impl Session {
         self.loaded.as_ref().ok_or_else(|| "there is no scene".to_owned())
     }
 
-    /// The scene's text with a draw's program, which was written for an API, in the combiner language, and its texture shader beside it. It must be the
-    /// same draw: what else such a program sets, coordinates that it makes, say, has no other place.
+    /// Returns the scene's text with a draw's API program rewritten as combiners and texture shader. Returns an error if the draw is not the same
+    /// then: other things that such a program sets, such as generated coordinates, have no other place.
     fn rewritten(&self, scene: &Scene, number: usize) -> Result<String, Refused> {
         let draw = drawn(scene, number)?;
         let mut text = program::replaced(&self.text, number, "program", &program::written(&draw.combiners))?;
@@ -169,7 +169,7 @@ impl Session {
         loaded.scene.draws == expected
     }
 
-    /// The plan of what is looked at: of all draws, or of those up to one.
+    /// Returns the plan of all draws, or of those up to `until`.
     fn plan(&mut self, until: Option<usize>) -> Result<&Plan, Refused> {
         self.step(until)?;
         self.shown(until)
@@ -194,7 +194,7 @@ impl Session {
         if number < count { Ok(number) } else { Err(format!("there is no target {number}; the scene has {count}")) }
     }
 
-    /// Reads a scene. What is wrong with it is the answer; then the one before stays.
+    /// Reads a scene. If it has errors, the answer holds them and the previous scene stays.
     fn open(&mut self, text: &str, name: &str) -> Value {
         match parse_with(text, Path::new(name), &Limits::default(), &self.files) {
             Ok(loaded) => {
@@ -213,7 +213,7 @@ impl Session {
     }
 }
 
-/// The policies of an object, rule to value; the others are the default.
+/// Reads policies from an object that maps rules to values; the others have their defaults.
 fn policies(values: &Value) -> Result<Policies, Refused> {
     let mut policies = Policies::default();
     for (rule, value) in values.as_object().into_iter().flatten() {
@@ -232,12 +232,12 @@ fn drawn(scene: &Scene, number: usize) -> Result<&Draw, Refused> {
     scene.draws.get(number).ok_or_else(|| format!("there is no draw {number}; the scene has {}", scene.draws.len()))
 }
 
-/// Findings as data: place, words, and the excerpt with carets.
+/// Returns findings as JSON: place, texts, and the rendered excerpt.
 fn findings(findings: &[Diagnostic], source: &Source) -> Value {
     let value = |finding: &Diagnostic| {
         let inside = finding.file.as_ref().map_or(source, |file| &file.source);
         let place = finding.span.as_ref().map(|span| inside.position(span.start));
-        // Where in the given text: of a finding about another file, where that one is named.
+        // Span in the given text; for a finding about another file, the place where that file is named.
         let span = finding.file.as_ref().map(|file| file.named.clone()).or(finding.span.clone());
         json!({
             "code": finding.code,
@@ -257,7 +257,7 @@ fn findings(findings: &[Diagnostic], source: &Source) -> Value {
     findings.iter().map(value).collect()
 }
 
-/// A place of a text in UTF-16 units, as scripts count.
+/// Converts a span of a text to UTF-16 units, as scripts count.
 pub(crate) fn units(text: &str, span: std::ops::Range<usize>) -> [usize; 2] {
     [span.start, span.end].map(|at| {
         let at = ninebit::diagnostic::floor_boundary(text, at);
@@ -285,7 +285,7 @@ fn described(scene: &Scene) -> Value {
     })
 }
 
-/// The pixel under each value of each rule that has alternatives, the others being as they are.
+/// Returns the pixel under each value of each rule with alternatives; the other rules keep their values.
 fn alternatives(plan: &Plan, target: usize, pixel: (u32, u32)) -> Result<Value, Refused> {
     let mut other = plan.clone();
     let mut rules = Vec::new();

@@ -1,8 +1,8 @@
-//! The texture shader of a draw as scenes write it.
+//! Writes the texture shader of a draw as scenes do.
 
 use ninebit::state::{DotMapping, Named, ShaderOperation, ShaderStage};
 
-/// A list with an entry for each unit; what its fields would be without being written is left out.
+/// Returns a list with an entry for each unit. Fields that have their default are left out.
 pub(crate) fn written(stages: &[ShaderStage]) -> String {
     let stages: Vec<String> = stages.iter().enumerate().map(|(unit, stage)| entry(unit, stage)).collect();
     format!("[{}]", stages.join(", "))
@@ -41,7 +41,7 @@ fn operation(operation: &ShaderOperation) -> String {
     }
 }
 
-/// The shortest decimals that read back as the same numbers.
+/// Returns the shortest decimals that are read back as the same numbers.
 fn numbers(all: &[f32]) -> String {
     let all: Vec<String> = all.iter().map(f32::to_string).collect();
     format!("({})", all.join(", "))

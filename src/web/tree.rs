@@ -1,9 +1,9 @@
-//! The values of a scene's text, for forms.
+//! The tree of values in a scene's text, for forms.
 
 use ninebit_scene::outline::{Content, Kind, Node, outline};
 use serde_json::{Value, json};
 
-/// The tree of a text. Places are UTF-16 units, as scripts count.
+/// Returns the tree of a text. Spans are in UTF-16 units, as scripts count.
 pub(crate) fn value(text: &str) -> Value {
     node(&outline(text), text, &Places::new(text))
 }
@@ -41,9 +41,9 @@ fn kind(kind: &Kind) -> Value {
     }
 }
 
-/// Bytes to UTF-16 units. Most texts have one byte a unit.
+/// Conversion from byte offsets to UTF-16 units. Most texts have one byte per unit.
 struct Places {
-    /// Where characters of several bytes end, and by how many bytes they and all before are longer than their units.
+    /// For each character of several bytes: its end, and by how many bytes the text up to there is longer than its UTF-16 units.
     wide: Vec<(usize, usize)>,
 }
 

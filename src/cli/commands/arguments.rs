@@ -1,4 +1,4 @@
-//! Arguments that several commands take, and what every command may use.
+//! Arguments that several commands share, and the context of every command.
 
 use clap::{Args, ValueEnum};
 use ninebit::state::Named;
@@ -16,7 +16,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// Prints data in this form.
+    /// Prints data in this format.
     pub(super) fn print(self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
         let printed = match self {
             Format::Text => write_text(&text()),
@@ -42,25 +42,25 @@ impl FormatArguments {
     }
 }
 
-/// The place of a text among names, upper and lower case alike.
+/// Returns the index of a text among names, ignoring case.
 pub(super) fn one_of(names: &[&str], text: &str) -> Result<usize, String> {
     let found = names.iter().position(|name| name.eq_ignore_ascii_case(text));
     found.ok_or_else(|| format!("not one of {}", names.join(", ")))
 }
 
-/// Reads one of an enumeration's names, upper and lower case alike.
+/// Parses the name of an enumeration's variant, ignoring case.
 pub(super) fn named<T: Named>(text: &str) -> Result<T, String> {
     one_of(T::NAMES, text).map(|index| T::ALL[index])
 }
 
-/// Reads a whole number from 0 to `MAX`.
+/// Parses a whole number from 0 to `MAX`.
 pub(super) fn up_to<const MAX: usize>(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|number| *number <= MAX).ok_or_else(|| format!("not a number from 0 to {MAX}"))
 }
 
-/// What every command may use.
+/// Context of every command.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Context {
-    /// Messages on stderr are coloured.
+    /// Whether messages on stderr are coloured.
     pub(super) color: bool,
 }

@@ -27,38 +27,38 @@ pub(crate) struct Arguments {
     format: FormatArguments,
 }
 
-/// What was measured of a scene.
+/// Measurements of a scene.
 #[derive(Debug, Serialize)]
 struct Measured {
     scene: String,
-    /// What drew it.
+    /// Name of the engine.
     engine: &'static str,
-    /// Covered pixels of all draws.
+    /// Number of covered pixels of all draws.
     shaded_pixels: u64,
     frames: u32,
-    /// Reading, checking and planning.
+    /// Time of reading, checking and planning.
     load_microseconds: f64,
-    /// Decoding textures, compiling draws, starting threads.
+    /// Time of decoding textures, compiling draws and starting threads.
     prepare_microseconds: f64,
-    /// The draws of a frame, without the clear.
+    /// Time of the draws of a frame, without the clear.
     frame_microseconds: Spread,
-    /// The same for a shaded pixel: a pixel counts once for each draw that shades it.
+    /// The same per shaded pixel. A pixel counts once for each draw that shades it.
     ns_per_shaded_pixel: Spread,
-    /// Of the fast engine: the share of the pixels of which the definition computed something, by the reason.
+    /// For the fast engine, the share of pixels for which the definition computed something, by reason.
     defined_share: Vec<Defined>,
-    /// The most memory that the process held resident while the scene was measured, where the system tells.
+    /// Peak resident memory of the process while the scene was measured, if the system reports it.
     peak_memory_bytes: Option<u64>,
 }
 
-/// What the fast engine left to the definition.
+/// Work that the fast engine left to the definition.
 #[derive(Debug, Serialize)]
 struct Defined {
     reason: &'static str,
-    /// Of all shaded pixels; above 1 where several things of a pixel were computed so.
+    /// Share of all shaded pixels; above 1 if several values of a pixel were computed that way.
     share: f64,
 }
 
-/// How some times are spread.
+/// Distribution of times.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Spread {
     least: f64,
@@ -68,7 +68,7 @@ struct Spread {
 }
 
 impl Spread {
-    /// Of times in ascending order, at least one, each times a factor.
+    /// Computes the distribution of times in ascending order, at least one, each multiplied by a factor.
     fn from_times(times: &[f64], factor: f64) -> Spread {
         let at = |tenths: usize| factor * times[(times.len() - 1) * tenths / 10];
         Spread { least: at(0), p10: at(1), median: at(5), p90: at(9) }
@@ -79,7 +79,7 @@ impl Spread {
 struct Document {
     format: &'static str,
     version: &'static str,
-    /// What was asked for.
+    /// The requested engine.
     engine: &'static str,
     isa: &'static str,
     threads: usize,
@@ -100,7 +100,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ));
     }
     let measured = each(&scenes, context, |path| {
-        // The peak of resident memory starts anew, where the system allows it; where not, earlier scenes count.
+        // Resets the peak of resident memory where the system allows it; elsewhere earlier scenes count.
         let _ = std::fs::write("/proc/self/clear_refs", "5");
         let mut last = Instant::now();
         let mut lap = || {
@@ -158,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     end
 }
 
-/// The most memory resident so far, in bytes.
+/// Returns the peak resident memory in bytes, or `None` if the system does not report it.
 fn peak_memory() -> Option<u64> {
     let status = page(Path::new("/proc/self/status"))?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

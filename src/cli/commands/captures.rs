@@ -42,10 +42,10 @@ pub(crate) struct CheckArguments {
     format: Format,
 }
 
-/// Differing frames that are told one by one.
+/// Maximum number of differing frames that are listed.
 const SHOWN: usize = 20;
 
-/// Runs one of them.
+/// Runs a subcommand.
 pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::List => list(),
@@ -67,11 +67,11 @@ fn list() -> Result<(), Failure> {
     Ok(write_text(&text)?)
 }
 
-/// What became of a frame.
+/// Result of a frame.
 struct Outcome {
     frame: Frame,
     exact: bool,
-    /// With the capture at hand: where the two differ, and what stands there.
+    /// If the captured picture is available: the difference, and the first differing pixel as drawn and as captured.
     difference: Option<(Difference, [[u8; 4]; 2])>,
 }
 
@@ -99,7 +99,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
 }
 
 impl Outcome {
-    /// Whether it is exact, or off as the table says. Without the capture it cannot be told how many pixels are off.
+    /// Returns whether the frame is exact, or differs as the table says. Without the captured picture the number of differing pixels is unknown.
     fn is_as_known(&self) -> bool {
         match (self.frame.open, &self.difference) {
             (None, _) => self.exact,
@@ -127,7 +127,7 @@ fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Resul
     if !outcome.frame.is(&capture.pixels) {
         return Err(invalid(format!("`{}` is not the picture that was measured", shown::path(&path))));
     }
-    // Text is the same in both.
+    // The areas of text are copied, so that they are equal.
     let mut masked = Rgba { width: SIZE.0, height: SIZE.1, pixels };
     for at in outcome.frame.text.iter().flat_map(captures::pixels) {
         masked.pixels[at] = capture.pixels[at];

@@ -16,19 +16,22 @@ use ninebit_lab::experiments;
 
 use super::scene::{apart, refused};
 
-/// The page that sweeps share with what is not made here, and the markers of their section in it.
+/// The page that contains the section of experiments.
 const STABILITY: &str = "stability.md";
+/// Name of that section in its markers.
 const SECTION: &str = "sweeps";
 
-/// Where everything goes if nobody says otherwise. What is in it keeps it out of version control.
+/// Default output folder. A file `.gitignore` in it keeps it out of version control.
 const FOLDER: &str = "ninebit-chart";
+/// Name and content of that file.
 const IGNORE: (&str, &str) = (".gitignore", "*\n");
 
-/// What marks the topmost folder of what is under version control.
+/// Names that mark the root of a folder under version control.
 const VERSIONED: [&str; 5] = [".git", ".hg", ".jj", ".svn", ".bzr"];
 
-/// Pixels along the sides of the surfaces that evaluators are timed on.
+/// Width and height in pixels of the surfaces that evaluators are timed on.
 const SIDE: usize = 256;
+/// The same with `--quick`.
 const QUICK_SIDE: usize = 16;
 
 #[derive(Debug, Args)]
@@ -62,7 +65,7 @@ enum Page {
 }
 
 impl Page {
-    /// The page, and the folder beside it.
+    /// Returns the names of the page and the folder beside it.
     fn names(self) -> [&'static str; 2] {
         match self {
             Page::Speed => ["speed-accuracy.md", "speed-accuracy"],
@@ -102,13 +105,13 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_below(&arguments.out.join(&file.path), &file.bytes)?;
     }
     if let Some(page) = page {
-        // What else is on it was read and is kept.
+        // The rest of the page was read and is kept.
         write_file(&arguments.out.join(&page.path), &page.bytes)?;
     }
     if failed > 0 { Err(Failure { exit: Exit::Internal, report: Report::Silent }) } else { Ok(()) }
 }
 
-/// Evaluators of a file.
+/// Reads evaluators from a file.
 fn measured_elsewhere(path: &Path) -> Result<Vec<Evaluator>, Failure> {
     const HELP: &str = "`benches/peers/evaluators.sh` writes such a file";
     let bytes = read::bytes(path, Kind::Stream, EVALUATORS).map_err(|error| {
@@ -124,7 +127,7 @@ fn measured_elsewhere(path: &Path) -> Result<Vec<Evaluator>, Failure> {
     })
 }
 
-/// Refuses to write over a page that is under version control, before anything is measured.
+/// Returns an error if a page under version control would be overwritten. Runs before any measurement.
 fn keep_versioned(folder: &Path, page: Page) -> Result<(), Failure> {
     let Some(path) = page.names().into_iter().map(|name| folder.join(name)).find(|path| path.exists()) else {
         return Ok(());
@@ -184,7 +187,7 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     Ok(measured)
 }
 
-/// What was measured; nothing if this program failed on it, which is said, and the rest goes on.
+/// Returns a measurement, or `None` if it ended in an internal error. Such an error is printed and recorded, and the others go on.
 fn unless_internal<T>(
     measured: Result<T, Failure>,
     name: String,
@@ -201,7 +204,7 @@ fn unless_internal<T>(
     }
 }
 
-/// The page with its section; without such a page, the section alone.
+/// Returns the page with its section replaced, or the section alone if there is no such page.
 fn stability_page(path: &Path, section: &str) -> File {
     let page = read::page(path).and_then(|page| replace_section(&page, SECTION, section));
     File::text(STABILITY, page.unwrap_or_else(|| section.to_owned()))

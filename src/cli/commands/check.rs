@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     arguments.format.print(|| text(&scene, &cost), || format!("{:#}", value()))
 }
 
-/// The cost as a table.
+/// Returns the cost as a table.
 fn text(scene: &Scene, cost: &Cost) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
@@ -39,7 +39,7 @@ fn text(scene: &Scene, cost: &Cost) -> String {
     text
 }
 
-/// A number of bytes for people, rounded up.
+/// Formats a number of bytes, rounded up.
 fn bytes(count: u64) -> String {
     match count {
         0..=9_999 => format!("{count} bytes"),

@@ -1,27 +1,27 @@
-//! What rendering a scene takes, estimated without rendering it.
+//! Cost of rendering a scene, estimated without rendering it.
 
 use ninebit::state::{Draw, Scene, Target, TextureImage, Topology};
 use serde::Serialize;
 
-/// The amounts that matter.
+/// Estimated cost of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Cost {
-    /// Draws of the scene.
+    /// Number of draws.
     pub(crate) draws: u64,
-    /// Triangles of all draws, before any are culled.
+    /// Number of triangles in all draws, before culling.
     pub(crate) triangles: u64,
-    /// Vertices of all draws.
+    /// Number of vertices in all draws.
     pub(crate) vertices: u64,
-    /// Pixels of all targets.
+    /// Number of pixels in all targets.
     pub(crate) target_pixels: u64,
-    /// Bytes of all textures' texels on the chip.
+    /// Size of all textures on the chip, in bytes.
     pub(crate) texture_bytes: u64,
-    /// Bytes that rendering holds at once, about.
+    /// Approximate memory for rendering, in bytes.
     pub(crate) memory_bytes: u64,
 }
 
 impl Cost {
-    /// Adds up a scene.
+    /// Estimates the cost of a scene.
     pub(crate) fn from_scene(scene: &Scene) -> Cost {
         let (mut texels, mut texture_bytes) = (0, 0);
         for texture in &scene.textures {
@@ -42,28 +42,28 @@ impl Cost {
             vertices,
             target_pixels,
             texture_bytes,
-            // Targets and texels are held as words.
+            // Targets and texels are stored as words of four bytes.
             memory_bytes: 4 * (words + texels) + scene.draws.iter().map(geometry).sum::<u64>(),
         }
     }
 }
 
-/// Bytes of a draw's state, in the scene and in the plan, about.
+/// Approximate size of a draw's state in scene and plan, in bytes.
 const DRAW: u64 = 4096;
 
-/// Bytes of a draw: its state, its vertices and indices, and what the plan makes of them.
+/// Returns the approximate size of a draw in bytes: its state, its vertices and indices, and their share of the plan.
 fn geometry(draw: &Draw) -> u64 {
-    // A window position and a corner.
+    // A window position and a snapped corner.
     let planned = 16 + 20;
     DRAW + (draw.vertices.bytes() + draw.vertices.len() * planned + size_of_val(&draw.indices[..])) as u64
 }
 
-/// Pixels of a target.
+/// Returns the number of pixels of a target.
 fn pixels(target: &Target) -> u64 {
     u64::from(target.width) * u64::from(target.height)
 }
 
-/// Triangles that a draw's indices form (RAS-4).
+/// Returns the number of triangles that a draw's indices form (RAS-4).
 fn triangles(draw: &Draw) -> u64 {
     let count = draw.indices.len() as u64;
     match draw.topology {

@@ -37,26 +37,26 @@ pub(crate) struct Arguments {
     output: Option<Destination>,
 }
 
-/// The most regions that can be asked for.
+/// Maximum of `--regions`.
 const MAXIMUM_REGIONS: usize = 1000;
 
-/// Everything that the report says.
+/// Content of the report.
 struct Findings<'a> {
     arguments: &'a Arguments,
     difference: Difference,
     scene: Option<SceneFindings<'a>>,
-    /// The picture of the difference: where it was written, and its scale.
+    /// Path of the difference picture, and its amplification.
     picture: Option<(String, u8)>,
 }
 
-/// What the scene has to say.
+/// Findings about the scene.
 struct SceneFindings<'a> {
     path: &'a Path,
     plan: Plan,
     target: String,
-    /// Pixels in which A and B differ from the scene's frame.
+    /// Numbers of pixels in which A and B differ from the scene's frame.
     different: [u64; 2],
-    /// The first pixel of each listed region.
+    /// Traces of the first pixel of each listed region.
     traces: Vec<PixelTrace>,
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     if findings.difference.different == 0 { Ok(()) } else { Err(Failure::difference()) }
 }
 
-/// Renders the scene, holds both pictures against its frame, traces the first pixels.
+/// Renders the scene, compares both pictures with its frame, and traces the first pixels of the regions.
 fn scene_findings<'a>(
     path: &'a Path,
     arguments: &Arguments,
@@ -125,15 +125,14 @@ fn scene_findings<'a>(
     for (count, picture) in different.iter_mut().zip(pictures) {
         *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;
     }
-    // The pixels lie within the target, whose size is the pictures'.
-    // All of them together are no longer than one may be.
+    // The pixels are inside the target, which has the pictures' size.
     let fragments = (FRAGMENTS / difference.regions.len().max(1) as u64).max(1);
     let trace = |first| engine::trace_last(&plan, target, first, None, fragments).ok();
     let traces = difference.regions.iter().filter_map(|region| trace(region.first)).collect();
     Ok(SceneFindings { path, plan, target: name, different, traces })
 }
 
-/// Writes the picture of the difference.
+/// Writes the difference picture. Returns its path and amplification.
 fn draw(destination: &Destination, arguments: &Arguments, a: &Rgba, b: &Rgba) -> Result<(String, u8), Failure> {
     let drawn = diff::highlight(a, b, arguments.ignore_alpha).map_err(|_| different_sizes(arguments, a, b))?;
     let picture = &drawn.picture;

@@ -1,4 +1,4 @@
-//! How frames are drawn: threads, engine, instruction set.
+//! Options for drawing: threads, engine, instruction set.
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -7,7 +7,7 @@ use ninebit::state::Named;
 
 use super::{Failure, up_to};
 
-/// How to draw. The picture depends on none of it.
+/// Options for drawing. The picture does not depend on them.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct EngineArguments {
     /// Threads; 0 takes all cores. The picture does not depend on it
@@ -22,7 +22,7 @@ pub(crate) struct EngineArguments {
 }
 
 impl EngineArguments {
-    /// The options that they stand for, `threads` being the number of threads.
+    /// Converts the arguments to render options.
     pub(crate) fn options(&self) -> Result<RenderOptions, Failure> {
         let isa = self.isa.as_deref().and_then(Isa::from_name);
         if let Some(isa) = isa.filter(|isa| !isa.is_available()) {
@@ -34,5 +34,5 @@ impl EngineArguments {
     }
 }
 
-/// The most threads that can be asked for.
+/// Maximum of `--threads`.
 pub(super) const MAXIMUM_THREADS: usize = 1024;

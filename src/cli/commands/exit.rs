@@ -1,4 +1,4 @@
-//! How commands end.
+//! Exit statuses and failures of commands.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(crate) enum Exit {
 }
 
 impl Exit {
-    /// The exit of that status; [`Exit::Internal`] if there is none.
+    /// Returns the exit with a status code, or [`Exit::Internal`] if there is none.
     pub(crate) fn from_code(code: u8) -> Self {
         use Exit::{Difference, Internal, Invalid, Limit, Missing, Output, Success, Usage};
         let all = [Success, Difference, Usage, Invalid, Missing, Limit, Output];
@@ -39,7 +39,7 @@ impl Exit {
     }
 }
 
-/// The exit statuses as help tells them.
+/// Help text about exit statuses.
 pub(crate) const HELP: &str = "Exit status:
   0  as expected
   1  a difference was found
@@ -50,72 +50,72 @@ pub(crate) const HELP: &str = "Exit status:
   6  internal error
   7  the output was not written";
 
-/// Why a command stopped: everything that stderr is to say, and the exit status.
+/// Reason why a command stopped: its message for stderr and its exit status.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    /// What the process exits with.
+    /// Exit status.
     pub(crate) exit: Exit,
-    /// What stderr says about it.
+    /// Message for stderr.
     pub(crate) report: Report,
 }
 
-/// What stderr says.
+/// Message for stderr.
 #[derive(Debug)]
 pub(crate) enum Report {
-    /// The exit status says it all, or something was printed already.
+    /// No message: the exit status is enough, or something was printed already.
     Silent,
     /// Finished text, ready to print.
     Text(String),
-    /// Everything that is wrong with a scene.
+    /// All errors of a scene.
     Scene(Box<SceneError>),
-    /// A message, its code and what to do.
+    /// A message with its code and advice.
     Message {
-        /// `NB` and four digits.
+        /// Error code: `NB` and four digits.
         code: Option<&'static str>,
-        /// One line, or more where that was made of [shown] ones.
+        /// The message: one line, or several lines that were made printable by [shown].
         message: String,
-        /// What to do, in one line.
+        /// Advice in one line.
         help: Option<String>,
     },
 }
 
 impl Failure {
-    /// Two things that were compared differ; what there is to say about it is on stdout.
+    /// Returns the failure of a comparison that found a difference, which was reported on stdout.
     pub(crate) fn difference() -> Self {
         Failure { exit: Exit::Difference, report: Report::Silent }
     }
 
-    /// Something that was given is not valid.
+    /// Returns the failure for an invalid input.
     pub(crate) fn invalid(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
         Failure { exit: Exit::Invalid, report: Report::message(Some(code), &message.into(), &help.into()) }
     }
 
-    /// A fault of this program.
+    /// Returns the failure for a fault of this program.
     pub(crate) fn fault(message: &str) -> Self {
         let help = "please report it, with the command line";
         Failure { exit: Exit::Internal, report: Report::message(Some("NB0801"), message, help) }
     }
 
-    /// Nothing of a scene can be measured.
+    /// Returns the failure for a scene of which nothing can be measured.
     pub(crate) fn unseen(scene: &Path) -> Self {
         let help = "look at the picture: is the mesh in view, and drawn into the first target?";
         Failure::invalid("NB0395", format!("no pixel of `{}` that has a truth is drawn", shown::path(scene)), help)
     }
 
-    /// The command line is wrong.
+    /// Returns the failure for an invalid command line.
     pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
         Failure { exit: Exit::Usage, report: Report::message(None, &message.into(), &help.into()) }
     }
 }
 
 impl Report {
-    /// A message of one line, whatever names are in it.
+    /// Returns a message of one line, whatever names it contains.
     pub(crate) fn message(code: Option<&'static str>, message: &str, help: &str) -> Self {
         let help = Some(shown::name(help).into_owned());
         Report::Message { code, message: shown::name(message).into_owned(), help }
     }
 
-    /// The text without colour.
+    /// Returns the text without colour.
     pub(crate) fn plain(&self) -> String {
         match self {
             Report::Silent => String::new(),
@@ -135,7 +135,7 @@ impl From<Panic> for Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         if error.is_broken_pipe() {
-            // The reader has seen enough.
+            // The reader has closed the pipe, which is no error.
             return Failure { exit: Exit::Success, report: Report::Silent };
         }
         let exit = if error.is_refused() { Exit::Usage } else { Exit::Output };
@@ -150,7 +150,7 @@ impl From<ImageError> for Failure {
             e if e.is_missing() => Exit::Missing,
             _ => Exit::Invalid,
         };
-        // The library speaks of images that scenes name; here the command line names them.
+        // The library's advice is about images that scenes name; here the command line names them.
         let help = if error.is_missing() {
             "check the spelling and the folder; upper and lower case count"
         } else {

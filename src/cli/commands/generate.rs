@@ -307,7 +307,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 impl HeightField {
-    /// The picture, which must not be where the result goes, and how it is read.
+    /// Reads the picture and its options. Returns an error if the output would overwrite it.
     fn load(&self, destination: &Destination) -> Result<(Rgba, normal_map::Options), Failure> {
         files::note(&self.height);
         destination.check()?;
@@ -347,12 +347,12 @@ fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
     Ok(destination.write(&encode_png(image.width, image.height, &image.pixels, Compression::Small)?)?)
 }
 
-/// The three values of an argument, of which clap has seen to it that there are three.
+/// Returns the three values of an argument; clap has checked that there are three.
 fn three<T: Copy + Default>(values: &[T]) -> [T; 3] {
     std::array::from_fn(|n| values.get(n).copied().unwrap_or_default())
 }
 
-/// A direction, which must not be the zero vector.
+/// Parses a direction. Returns an error for the zero vector.
 fn direction(values: &[f64], what: &str) -> Result<[f64; 3], Failure> {
     let vector = three(values);
     if vector == [0.0; 3] {
@@ -362,7 +362,7 @@ fn direction(values: &[f64], what: &str) -> Result<[f64; 3], Failure> {
     Ok(vector)
 }
 
-/// Tangent, binormal and normal of unit length, of which two are given.
+/// Returns tangent, binormal and normal of unit length, given tangent and normal.
 fn frame(tangent: &[f64], normal: &[f64]) -> Result<[Vector; 3], Failure> {
     let [tangent, normal] = [direction(tangent, "the right")?, direction(normal, "the outside")?].map(unit_or_zero);
     if !(-1e-6..=1e-6).contains(&dot(tangent, normal)) {
@@ -372,19 +372,19 @@ fn frame(tangent: &[f64], normal: &[f64]) -> Result<[Vector; 3], Failure> {
     Ok([tangent, cross(normal, tangent), normal])
 }
 
-/// Reads a finite number.
+/// Parses a finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "not a finite number".to_owned())
 }
 
-/// Reads the strength of the noise.
+/// Parses the strength of the noise.
 fn noise(text: &str) -> Result<f64, String> {
     let most = hemisphere::MAXIMUM_NOISE;
     let amount = finite(text)?;
     if (0.0..=most).contains(&amount) { Ok(amount) } else { Err(format!("not a number from 0 to {most}")) }
 }
 
-/// Reads the side of a cube map's face.
+/// Parses the side of a cube map's face.
 fn cube_side(text: &str) -> Result<u32, String> {
     let (least, most) = (cube::CUBE_SIDES.start(), cube::CUBE_SIDES.end());
     let side: Option<u32> = text.parse().ok();
@@ -392,7 +392,7 @@ fn cube_side(text: &str) -> Result<u32, String> {
         .ok_or_else(|| format!("not a power of two from {least} to {most}"))
 }
 
-/// Reads the side of an image.
+/// Returns the parser of an image's side.
 fn side() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(i64::from(*SIDES.start())..=i64::from(*SIDES.end()))
 }

@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
     }
     arguments.output.check()?;
-    // Where the scene lies is nobody's matter but its owner's.
+    // The page does not reveal the folder of the scene.
     let name = match arguments.scene.file_name() {
         Some(name) if arguments.scene != Path::new("-") => shown::path(Path::new(name)),
         _ => "scene.ron".to_owned(),
@@ -55,19 +55,19 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
 }
 
-/// The first target as a PNG, to be seen before the module has been compiled. None where other policies would draw another one.
+/// Returns the first target as a PNG, which is shown before the module is compiled. Returns `None` if the chosen policies may draw another picture.
 fn first_picture(plan: &Plan, policies: &Policies) -> Result<Option<String>, Failure> {
     if *policies != plan.policies {
         return Ok(None);
     }
     let frames = render(plan, &RenderOptions::default());
     let Some(surface) = frames.surfaces.first() else { return Ok(None) };
-    // Alpha is a channel like others here; the page's picture is opaque.
+    // The page's picture is opaque, whatever alpha the target has.
     let pixels: Vec<[u8; 4]> = surface.rgba8().into_iter().map(|[r, g, b, _]| [r, g, b, 255]).collect();
     Ok(Some(STANDARD.encode(encode_png(surface.width, surface.height, &pixels, Compression::Small)?)))
 }
 
-/// The rules that have alternatives.
+/// Returns the rules that have alternatives.
 fn alternatives() -> Value {
     let rule = |policy: &ninebit::state::Policy| {
         let values: Vec<Value> =
@@ -77,7 +77,7 @@ fn alternatives() -> Value {
     POLICIES.iter().map(rule).collect()
 }
 
-/// The value of each rule that is not at its default.
+/// Returns the value of each rule that is not at its default.
 fn chosen(policies: &Policies) -> Value {
     let differing = POLICIES.iter().filter(|policy| policies.chosen(policy.rule) != 0);
     Value::Object(differing.map(|p| (p.rule.to_string(), json!(p.values[policies.chosen(p.rule)].0))).collect())

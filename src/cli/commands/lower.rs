@@ -69,7 +69,7 @@ enum Given {
 }
 
 impl Form {
-    /// The language of its functions.
+    /// Returns the language of its functions, or `None` if the form has no functions.
     fn language(self) -> Option<Language> {
         match self {
             Form::Combiners | Form::Registers => None,
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(write_text(&out)?)
 }
 
-/// The text for every program.
+/// Prints or writes the generic text.
 fn generic(arguments: &Arguments) -> Result<(), Failure> {
     let text = Generic { chip: arguments.program.profile(), policies: arguments.policies.policies()? };
     match (arguments.to, &arguments.output) {
@@ -121,7 +121,7 @@ fn generic(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The programs of draws as text or as words.
+/// Returns the programs of draws as text or as register words.
 fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alone: bool) -> String {
     let mut out = String::new();
     for (number, draw) in draws {
@@ -129,7 +129,7 @@ fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alon
             out.push('\n');
         }
         if !alone {
-            // The name could be anything: not in a comment that it would end.
+            // The name may be any text, so it is not written in a comment that it could end.
             out.push_str(&format!("// draw {number} `{}`\n", shown::name(&draw.name)));
         }
         if let Some(program) = &draw.vertex_program {
@@ -146,7 +146,7 @@ fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alon
     out
 }
 
-/// Draws, or a program alone, as functions.
+/// Returns draws, or a program of its own, as functions.
 fn functions(
     arguments: &Arguments,
     path: &Path,
@@ -161,7 +161,7 @@ fn functions(
         textures: if arguments.textures == Given::Words { Textures::Words } else { Textures::Registers },
         fragment: arguments.fragment,
     };
-    // Whatever a draw's constants settle is left in: with `--uniform` others may be given.
+    // Nothing is pruned: with `--uniform` other constants may be passed.
     let plan = Plan::compile(scene, &PlanOptions { policies: options.policies, prune: false }).map_err(|errors| {
         let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
         Failure::invalid("NB0322", message, "`ninebit check` says where")

@@ -1,4 +1,4 @@
-//! The command `ninebit measure`: how far pictures are from the ground truth.
+//! The command `ninebit measure`: errors of pictures against the ground truth.
 
 use super::*;
 
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     measured.end()
 }
 
-/// The truth of the first target, rounded; black where there is none.
+/// Writes the truth of the first target, rounded to bytes; black where there is none.
 fn write_truth(plan: &Plan, truth: &Truth, destination: &Destination) -> Result<(), Failure> {
     let frame = evaluate(plan, truth, 0);
     let pixels: Vec<[u8; 4]> = frame

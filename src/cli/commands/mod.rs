@@ -1,4 +1,4 @@
-//! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
+//! The command line. Data goes to stdout and everything else to stderr; the exit status says what kind of thing happened.
 
 mod arguments;
 mod bench;
@@ -143,7 +143,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(exit as u8)
 }
 
-/// Parses the arguments and runs the command. A panic is the caller's.
+/// Parses the arguments and runs the command. Does not catch panics.
 pub(crate) fn run(arguments: &[OsString]) -> Exit {
     let color = wanted_color(arguments);
     let matches = Cli::command().color(color.for_clap()).try_get_matches_from(arguments);
@@ -180,7 +180,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
     ended(result, context.color)
 }
 
-/// The status of a command; what is left to say about it goes to stderr.
+/// Returns the exit status of a command, and prints its failure to stderr.
 fn ended(result: Result<(), Failure>, color: bool) -> Exit {
     match result {
         Ok(()) => Exit::Success,
@@ -191,13 +191,13 @@ fn ended(result: Result<(), Failure>, color: bool) -> Exit {
     }
 }
 
-/// Prints what the parser has to say: help goes to stdout, complaints to stderr.
+/// Prints the parser's message: help to stdout, errors to stderr.
 fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> {
     let plain = |argument: &OsString| *shown::path(Path::new(argument)) == *argument.as_os_str();
     let printed = if arguments.iter().all(plain) {
         error.print()
     } else {
-        // Colour would go with what must not be printed.
+        // Colours are lost together with the characters that must not be printed.
         let text = error.render().to_string();
         let text = shown::lines(&text);
         if error.use_stderr() {
@@ -213,12 +213,12 @@ fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> 
     Ok(flushed.map_err(|source| OutputError::Stdout { source })?)
 }
 
-/// Runs `work`; a panic becomes a message that says how to report it.
+/// Runs `work`. A panic becomes a message that says how to report it.
 fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
     catch_panic(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
 }
 
-/// The value of `--color`, found before the arguments are parsed because it also governs the parser's complaints.
+/// Returns the value of `--color`. It is found before the arguments are parsed, because it also applies to the parser's errors.
 fn wanted_color(arguments: &[OsString]) -> ColorChoice {
     let mut choice = ColorChoice::Auto;
     let mut texts = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());

@@ -1,4 +1,4 @@
-//! Options that name an output of one format.
+//! Options that name an output file of one format.
 
 use super::*;
 use std::ffi::OsStr;
@@ -7,28 +7,28 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use ninebit::frame::Surface;
 use ninebit::state::DepthFormat;
 
-/// Endings that promise another format than the one that is written.
+/// File extensions of picture formats. An output must not have one of another format.
 const FORMATS: [&str; 27] = [
     "png", "apng", "jpg", "jpeg", "jpe", "jfif", "gif", "bmp", "dib", "tga", "tif", "tiff", "webp", "avif", "heic",
     "jxl", "ppm", "pgm", "pnm", "pam", "dds", "ktx", "ktx2", "hdr", "exr", "qoi", "svg",
 ];
 
-/// Reads the name of a file of that format; `-` is stdout.
+/// Parses the name of an output file of a format; `-` is stdout.
 pub(crate) fn output(format: &'static str) -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(move |name| from_name(&name, format))
 }
 
-/// Reads the name of a file of depths: a PNG, or stored words; `-` is stdout.
+/// Parses the name of a depth file: a PNG, or stored words; `-` is stdout.
 pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(|name| from_name(&name, if is_png(Path::new(&name)) { "png" } else { "raw" }))
 }
 
-/// The upper 16 bits of each depth: what a PNG of depths holds.
+/// Returns the upper 16 bits of each depth, as a PNG of depths holds them.
 pub(crate) fn upper_depths(surface: &Surface, format: DepthFormat) -> Vec<u16> {
     surface.depths().map(|depth| (depth >> (format.bits() - 16)) as u16).collect()
 }
 
-/// Refuses a picture on stdout, where the report goes.
+/// Returns an error if the picture would go to stdout, where the report goes.
 pub(crate) fn beside_report(picture: Option<&Destination>) -> Result<(), Failure> {
     if picture == Some(&Destination::Stdout) {
         let message = "the picture and the report cannot both go to stdout";
@@ -37,12 +37,12 @@ pub(crate) fn beside_report(picture: Option<&Destination>) -> Result<(), Failure
     Ok(())
 }
 
-/// Whether a file's name says that it is a PNG.
+/// Returns whether a file has the extension of a PNG.
 pub(crate) fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
-/// A name may end as it likes, but not like another format.
+/// Converts a name to a destination. Any extension is allowed, except that of another format.
 fn from_name(name: &OsStr, format: &'static str) -> Result<Destination, String> {
     let path = Path::new(name);
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use ninebit::state::POLICIES;
 
-/// Prints every rule with alternatives; the default value is marked by a star.
+/// Prints every rule with alternatives; a star marks the default value.
 pub(crate) fn run() -> Result<(), Failure> {
     let mut text = String::from("Rules with alternatives. Choose with `--policy RULE=VALUE`; * is the default.\n");
     for policy in POLICIES {

@@ -1,4 +1,4 @@
-//! A pixel program in a file of its own, in any of the languages that a scene takes.
+//! Reads a pixel program from a file of its own, in any of the languages that scenes support.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use ninebit_scene::{ProgramLanguage, load_program};
 use super::scene::refused_beside;
 use super::{Context, Failure};
 
-/// The language of files of that name.
+/// Returns the language that a file's extension implies.
 fn language_of(path: &Path) -> Option<ProgramLanguage> {
     match path.extension()?.to_str()? {
         "rc" => Some(ProgramLanguage::Combiners),
@@ -27,7 +27,7 @@ fn languages() -> impl TypedValueParser<Value = ProgramLanguage> {
     PossibleValuesParser::new(all).try_map(|name| super::named(&name))
 }
 
-/// How a file is read that may be a scene or a program.
+/// Arguments for a file that may be a scene or a program.
 #[derive(Debug, Args)]
 pub(crate) struct ProgramArguments {
     /// The file is a program in this language. Without it `.rc`, `.words`, `.psdef` and `.psh` say so by themselves, and everything else is a scene
@@ -39,12 +39,12 @@ pub(crate) struct ProgramArguments {
 }
 
 impl ProgramArguments {
-    /// The language of a file that is no scene.
+    /// Returns the language of a program file, or `None` if the file is a scene.
     pub(crate) fn language(&self, path: &Path) -> Option<ProgramLanguage> {
         self.language.or_else(|| language_of(path))
     }
 
-    /// The program as that of the one draw of a scene, whose units all have a texture.
+    /// Reads the program as that of a scene with one draw, whose units all have a texture.
     pub(crate) fn read(
         &self,
         path: &Path,
@@ -56,12 +56,12 @@ impl ProgramArguments {
         loaded.map_err(|error| refused_beside(error, note, context))
     }
 
-    /// The name of the chip.
+    /// Returns the chip.
     pub(crate) fn profile(&self) -> Profile {
         self.profile
     }
 
-    /// The chip's name, as messages write it.
+    /// Returns the chip's name, as messages write it.
     pub(crate) fn profile_name(&self) -> &'static str {
         self.profile.name()
     }

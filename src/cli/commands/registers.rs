@@ -1,4 +1,4 @@
-//! The command `ninebit registers`: register words of a program, written and read.
+//! The command `ninebit registers`: prints the register words of programs with their meanings.
 
 use super::*;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// Prints the programs of a scene, or one of a file of its own, as register words.
+/// Prints the programs of a scene, or a program from a file of its own, as register words.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (path, program) = (&arguments.source, &arguments.program);
     let scene = match program.language(path) {

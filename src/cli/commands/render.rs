@@ -1,4 +1,4 @@
-//! The command `ninebit render`: scenes to pictures.
+//! The command `ninebit render`: renders scenes to pictures.
 
 use super::*;
 use std::time::Instant;
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
     };
     clock.lap("render");
-    // The picture takes its place in memory.
+    // Frees memory for the picture.
     drop(plan);
     let surface = &frames.surfaces[target];
     let pixels = surface.rgba8();
@@ -116,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(())
 }
 
-/// A depth buffer as the destination's name wants it.
+/// Encodes a depth buffer in the format that the destination's name implies.
 fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> Result<Vec<u8>, OutputError> {
     let bits = format.bits();
     match destination {
@@ -128,12 +128,12 @@ fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> 
     }
 }
 
-/// Words of so many bytes.
+/// Encodes words of `bytes` bytes each.
 fn little_endian(words: &[u32], bytes: usize) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect()
 }
 
-/// Wall-clock times of the steps.
+/// Stopwatch for the wall-clock times of steps.
 struct Clock {
     last: Instant,
     laps: serde_json::Map<String, serde_json::Value>,
@@ -144,7 +144,7 @@ impl Clock {
         Clock { last: Instant::now(), laps: serde_json::Map::new() }
     }
 
-    /// Ends a step.
+    /// Ends a step and records its time.
     fn lap(&mut self, step: &str) {
         let now = Instant::now();
         let spent = u64::try_from((now - self.last).as_micros()).unwrap_or(u64::MAX);

@@ -1,4 +1,4 @@
-//! The command `ninebit replay`: scenes against their expectations.
+//! The command `ninebit replay`: compares scenes with their expectations.
 
 use super::*;
 use std::ffi::OsStr;
@@ -43,17 +43,17 @@ pub(crate) struct Arguments {
     expected: Option<PathBuf>,
 }
 
-/// A report that is to be written.
+/// A requested report.
 #[derive(Clone, Debug)]
 enum Wanted {
-    /// Annotations and a step summary.
+    /// Annotations and a step summary for GitHub Actions.
     Github,
-    /// A document, and what makes it.
+    /// The function that makes a document, and its destination.
     File(fn(&[Replayed]) -> String, Destination),
 }
 
 impl Wanted {
-    /// Where the document goes.
+    /// Returns the document's destination.
     fn destination(&self) -> Option<&Destination> {
         match self {
             Wanted::Github => None,
@@ -62,7 +62,7 @@ impl Wanted {
     }
 }
 
-/// Replays scenes, writes reports, and ends with what is wrong with the worst of them.
+/// Replays scenes and writes reports. The exit status is that of the worst scene.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let options = options(arguments)?;
     let entries = entries(arguments)?;
@@ -71,13 +71,13 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     if stdout > 1 {
         return Err(Failure::usage("several reports cannot all go to stdout", "write all but one to files"));
     }
-    // Before anything is drawn or written. Expectations count as read even if they are yet to be written.
+    // Checked before anything is drawn or written. Expectations count as inputs even if they do not exist yet.
     for entry in &entries {
         files::note(&entry.path);
         files::note(&entry.path.with_extension("expect.ron"));
     }
     files::check(documents().filter_map(Destination::path))?;
-    // Reports may be meant to lie in them, also where nothing differs.
+    // Created even if nothing differs, because reports may go there.
     let mut exit = Exit::Success;
     for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
         if let Err(error) = make_folder(folder) {
@@ -127,7 +127,7 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
     })
 }
 
-/// The scenes that are meant.
+/// Returns the selected scenes.
 fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
     let filter = Filter::new(&arguments.filters).map_err(|error| {
         let help = "`*` stands for any characters, `?` for one, `{a,b}` for a or b, `[a-z]` for one of these";
@@ -139,7 +139,7 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
     let all = entries.len();
     entries.retain(|entry| filter.takes(entry));
     if entries.is_empty() {
-        // A run that looks at nothing must not pass for one that found nothing wrong.
+        // A run without scenes must not look like a successful one.
         let filtered = format!("the filter leaves none of {all} scenes");
         let (message, help) = match all {
             0 => ("there are no scenes here", "a scene is a file NAME.ron; look at the folder's name"),
@@ -150,7 +150,7 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
     Ok(part(entries, arguments.shard.unwrap_or(Shard::ALL)))
 }
 
-/// Writes the reports; what cannot be written is said, and the others are written all the same.
+/// Writes the reports. Prints the errors of those that cannot be written. Returns the resulting status.
 fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) -> Exit {
     let mut exit = Exit::Success;
     for wanted in reports {
@@ -165,27 +165,27 @@ fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) ->
     exit
 }
 
-/// Says that an output was not written; the status that goes with it.
+/// Prints that an output was not written. Returns the exit status.
 fn say(error: OutputError, context: Context) -> Exit {
     let failure = Failure::from(error);
     terminal::print(Level::Error, &failure.report, context.color);
     failure.exit
 }
 
-/// Annotations go to stdout, the summary to the file that GitHub Actions names.
+/// Prints annotations to stdout, and appends the summary to the file that GitHub Actions names.
 fn github(replayed: &[Replayed]) -> Result<(), OutputError> {
     write_stdout(report::annotations(replayed).as_bytes())?;
     let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()).map(PathBuf::from) else {
         return Ok(());
     };
     files::claim(&path)?;
-    // Other commands of the same step write there as well.
+    // Other commands of the same step also write to this file.
     let file = OpenOptions::new().append(true).create(true).open(&path);
     file.and_then(|mut file| file.write_all(report::step_summary(replayed).as_bytes()))
         .map_err(|source| OutputError::Write { path, source })
 }
 
-/// Whether a variable of the environment is set, and to something that means yes.
+/// Returns whether an environment variable is set, and not to a value that means no.
 fn set(name: &str) -> bool {
     std::env::var(name).is_ok_and(|value| !matches!(value.to_ascii_lowercase().as_str(), "" | "0" | "false"))
 }

@@ -1,4 +1,4 @@
-//! What the commands on scenes share: the file, the policies, the plan.
+//! Code that the commands on scenes share: the file, the policies, the plan.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::terminal::{self, Level};
 use super::{Context, Exit, Failure, Report};
 
-/// The scene and how to read it.
+/// Arguments for a scene and its policies.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
     /// The scene file, `-` for standard input
@@ -24,7 +24,7 @@ pub(crate) struct SceneArguments {
     policies: PolicyArguments,
 }
 
-/// The answers to what no capture decides.
+/// Arguments that choose alternatives of rules.
 #[derive(Debug, Default, Args)]
 pub(crate) struct PolicyArguments {
     /// Choose an alternative of a rule; `ninebit policies` lists them
@@ -45,7 +45,7 @@ pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) ->
     Ok((loaded.scene, Plan { policies, ..loaded.plan }))
 }
 
-/// The same of a scene that says what its picture ought to show.
+/// Reads, checks and plans a scene with a ground truth. Returns an error if it has none.
 pub(crate) fn load_with_truth(
     path: &Path,
     policies: &PolicyArguments,
@@ -70,12 +70,12 @@ fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Lo
 }
 
 impl PolicyArguments {
-    /// Whether none is chosen.
+    /// Returns whether no alternative is chosen.
     pub(crate) fn is_empty(&self) -> bool {
         self.policies.is_empty()
     }
 
-    /// The policies of the command line.
+    /// Returns the policies of the command line.
     pub(crate) fn policies(&self) -> Result<Policies, Failure> {
         let mut policies = Policies::DEFAULT;
         for assignment in &self.policies {
@@ -87,7 +87,7 @@ impl PolicyArguments {
     }
 }
 
-/// A scene that was not accepted.
+/// Converts a scene's errors to a failure.
 pub(crate) fn refused(error: SceneError) -> Failure {
     let exit = match error.kind() {
         ErrorKind::Invalid => Exit::Invalid,
@@ -97,31 +97,31 @@ pub(crate) fn refused(error: SceneError) -> Failure {
     Failure { exit, report: Report::Scene(Box::new(error)) }
 }
 
-/// Options or a program that stand for a scene which was not accepted; `note` is said under its findings.
+/// Converts the errors of options or a program that were read as a scene. `note` is printed below them.
 pub(crate) fn refused_beside(error: SceneError, note: &str, context: Context) -> Failure {
     let text = format!("{}\n{note}\n", error.render(context.color));
     Failure { report: Report::Text(text), ..refused(error) }
 }
 
-/// What became of several scenes.
+/// Results of work on several scenes.
 pub(crate) struct Each<T> {
-    /// What was made of those that are sound.
+    /// Results of the scenes without a failure.
     pub(crate) made: Vec<T>,
-    /// Those that are not, with what is wrong.
+    /// The scenes with a failure.
     pub(crate) failed: Vec<Failed>,
     exit: Exit,
 }
 
-/// A scene of which nothing was made.
+/// A scene with a failure.
 #[derive(Debug, Serialize)]
 pub(crate) struct Failed {
     scene: String,
-    /// Exit status that goes with it.
+    /// Exit status of the failure.
     exit: u8,
     message: String,
 }
 
-/// Does `work` for each scene, apart from the others: what is wrong with one is said, and the others go on.
+/// Runs `work` for each scene. The failure of a scene is printed, and the others go on.
 pub(crate) fn each<T>(
     scenes: &[&Path],
     context: Context,
@@ -145,7 +145,7 @@ pub(crate) fn each<T>(
 }
 
 impl<T> Each<T> {
-    /// The end of the command, once everything is printed: the status of the worst scene.
+    /// Returns the result of the command: the status of the worst scene.
     pub(crate) fn end(&self) -> Result<(), Failure> {
         match self.exit {
             Exit::Success => Ok(()),
@@ -154,7 +154,7 @@ impl<T> Each<T> {
     }
 }
 
-/// Runs `work`; a panic becomes a failure that names the scene.
+/// Runs `work`. A panic becomes a failure that names the scene.
 pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     catch_panic(work).unwrap_or_else(|mut panic| {
         panic.message = format!("{}, of `{}`", panic.message, shown::path(scene));
@@ -162,7 +162,7 @@ pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) 
     })
 }
 
-/// Index of the target of that name, or of the first.
+/// Returns the index of the named target, or of the first without a name.
 pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
     let Some(name) = name else { return Ok(0) };
     scene.targets.iter().position(|target| target.name == name).ok_or_else(|| {
@@ -171,7 +171,7 @@ pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, 
     })
 }
 
-/// The draws that are meant, with their numbers: one, or all.
+/// Returns the selected draws with their numbers: one, or all.
 pub(crate) fn chosen_draws(scene: &Scene, number: Option<usize>) -> Result<Vec<(usize, &Draw)>, Failure> {
     let all = scene.draws.iter().enumerate();
     let Some(number) = number else { return Ok(all.collect()) };

@@ -22,7 +22,7 @@ pub(crate) enum ColorChoice {
 }
 
 impl ColorChoice {
-    /// Whether messages on stderr are coloured.
+    /// Returns whether messages on stderr are coloured.
     pub(crate) fn on_stderr(self) -> bool {
         let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         match self {
@@ -34,7 +34,7 @@ impl ColorChoice {
         }
     }
 
-    /// The same, for the command line parser's own output.
+    /// Converts the choice for the command line parser.
     pub(crate) fn for_clap(self) -> clap::ColorChoice {
         match self {
             ColorChoice::Auto => clap::ColorChoice::Auto,
@@ -44,7 +44,7 @@ impl ColorChoice {
     }
 }
 
-/// What a line on stderr begins with.
+/// Severity of a message on stderr.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     /// `error`, in bold red.
@@ -53,7 +53,7 @@ pub(crate) enum Level {
     Warning,
 }
 
-/// Prints a report to stderr. A stderr that refuses is not worth another message.
+/// Prints a report to stderr. Errors of stderr are ignored.
 pub(crate) fn print(level: Level, report: &Report, color: bool) {
     let text = match report {
         Report::Silent => return,
@@ -73,17 +73,17 @@ pub(crate) fn print(level: Level, report: &Report, color: bool) {
     let _ = stderr().lock().write_all(text.as_bytes());
 }
 
-/// A progress bar on stderr; invisible unless stderr is a terminal, and for work that is soon done.
+/// A progress bar on stderr. It stays invisible if stderr is no terminal, and for short work.
 pub(crate) struct Progress {
     bar: ProgressBar,
     started: std::time::Instant,
 }
 
-/// Work shorter than this shows no bar.
+/// Time before the bar appears.
 const PATIENCE: Duration = Duration::from_millis(400);
 
 impl Progress {
-    /// A bar that has not appeared yet.
+    /// Returns a bar that is still invisible.
     pub(crate) fn new(what: &'static str, color: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         let template = if color {
@@ -98,7 +98,7 @@ impl Progress {
         Progress { bar, started: std::time::Instant::now() }
     }
 
-    /// Tells how far the work is. May be called from any thread.
+    /// Sets the progress. May be called from any thread.
     pub(crate) fn report(&self, done: u64, total: u64) {
         if self.bar.is_hidden() && stderr().is_terminal() && self.started.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Small)?)?)
 }
 
-/// What there is to know without looking at texels.
+/// Describes the texture without its texels.
 fn describe(opened: &Opened) -> String {
     let (texels, format) = (&opened.texels, opened.format);
     let (chain, words) = Level::chain(format, texels.width, texels.height, texels.levels, texels.border);
@@ -115,7 +115,7 @@ fn describe(opened: &Opened) -> String {
     text
 }
 
-/// Reads the name of a face in upper or lower case.
+/// Parses the name of a face, ignoring case.
 fn face(text: &str) -> Result<u32, String> {
     one_of(&FACES, text).map(|index| index as u32)
 }

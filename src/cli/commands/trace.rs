@@ -1,4 +1,4 @@
-//! The command `ninebit trace`: every step that made a pixel.
+//! The command `ninebit trace`: prints every step of a pixel.
 
 use super::*;
 use ninebit::engine::{FRAGMENTS, TraceError, Tracer};
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// Prints how one pixel came to be.
+/// Prints the steps of one pixel, or of a rectangle of pixels.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
     let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     })?)
 }
 
-/// Pixels that a rectangle may have.
+/// Maximum number of pixels in a rectangle.
 const MAX_PIXELS: u64 = 4096;
 
 fn rectangle(text: &str) -> Result<[u32; 4], String> {

@@ -53,7 +53,7 @@ pub(crate) enum Command {
     Adopt(adopt::Arguments),
 }
 
-/// Runs one of them.
+/// Runs a subcommand.
 pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::List(arguments) => list::run(arguments),
@@ -80,13 +80,13 @@ impl From<VectorError> for Failure {
     }
 }
 
-/// A chip lacks a unit.
+/// Returns the failure for a unit that a chip does not have.
 pub(super) fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
     let help = "`ninebit vectors list` says which chips have a unit";
     Failure::usage(format!("{} has no unit `{}`", profile.name(), unit.name()), help)
 }
 
-/// Reads the name of a unit.
+/// Parses the name of a unit.
 pub(super) fn unit(name: &str) -> Result<&'static dyn Unit, String> {
     units::by_name(name).ok_or_else(|| {
         let known: Vec<&str> = units::all().into_iter().map(Unit::name).collect();

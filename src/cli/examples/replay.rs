@@ -1,4 +1,4 @@
-//! Scenes of a folder, held against what is expected of them, as a program's own tests may do it.
+//! Compares the scenes of a folder with their expectations, as a program's own tests may do.
 //!
 //! `cargo run -p ninebit-cli --example replay`
 

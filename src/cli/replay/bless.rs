@@ -1,4 +1,4 @@
-//! Expectations written from what is drawn.
+//! Writes expectations from drawn pictures.
 
 use std::path::Path;
 
@@ -9,15 +9,15 @@ use ninebit::shown;
 use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_file};
 use ninebit_scene::path::resolve;
 
-/// Whether `surface` may be written down as what is expected: a capture and an allowance are somebody else's picture.
+/// Returns whether the expectation may be replaced: captures and allowances are pictures from elsewhere.
 pub(super) fn allowed(expectation: &Expectation) -> bool {
     expectation.capture.is_none() && expectation.allowance.is_none()
 }
 
-/// Writes the expectation that `surface` meets to `path`, in place of `before`, and the picture that it names.
+/// Writes the expectation that `surface` meets to `path`, replacing `before`, and the picture that it names.
 ///
 /// # Errors
-/// A mask that cannot be used; a file that cannot be written.
+/// Returns an error if the mask cannot be used, or a file cannot be written.
 pub(super) fn write(
     path: &Path,
     folder: &Path,
@@ -34,7 +34,7 @@ pub(super) fn write(
     expectation.depth = expectation.depth.map(|_| depth_digest(surface));
     if let Some(picture) = &expectation.picture {
         let png = encode_png(surface.width, surface.height, &pixels, Compression::Small).map_err(unwritten)?;
-        // The form of the name has been looked at even where there is no such file yet.
+        // The name is checked even if there is no such file yet.
         let place = match resolve(folder, picture) {
             Ok(place) => place,
             Err(error) if error.is_missing() => folder.join(picture),
@@ -46,12 +46,12 @@ pub(super) fn write(
     Ok(Outcome::Blessed { before: before.map(|before| before.sha256.clone()), after: expectation.sha256 })
 }
 
-/// An expectation that cannot be used.
+/// Returns the problem of an expectation that cannot be used.
 pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
     Problem::new(error.kind(), error.code(), format!("`{}`: {error}", shown::path(path)), error.help())
 }
 
-/// An output that was not written.
+/// Returns the problem of an output that was not written.
 pub(super) fn unwritten(error: OutputError) -> Problem {
     let (code, message, help) = (error.code(), error.to_string(), error.help());
     let text = format!("error[{code}]: {message}\n  help: {help}");

@@ -1,4 +1,4 @@
-//! What single change draws the picture that is expected.
+//! Search for the single change that draws the expected picture.
 
 use std::fmt;
 
@@ -9,19 +9,19 @@ use ninebit::state::{POLICIES, Policies};
 
 use super::outcome::Pixel;
 
-/// A change that draws what is expected.
+/// A change that draws the expected picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// Another value of one policy.
     Policy {
         /// Id of the policy's rule.
         rule: &'static str,
-        /// The policy's value that draws what is expected.
+        /// Value of the policy that draws the expected picture.
         value: &'static str,
-        /// What it means.
+        /// Meaning of the value.
         meaning: &'static str,
     },
-    /// The definition instead of the fast engine.
+    /// The scalar engine instead of the fast one.
     Engine,
 }
 
@@ -36,15 +36,15 @@ impl fmt::Display for Cause {
     }
 }
 
-/// A cause, the plan that has it, and what it draws.
+/// A cause, its plan, and the surface that it draws.
 pub(super) struct Found {
     pub(super) cause: Cause,
     pub(super) plan: Plan,
     pub(super) surface: Surface,
 }
 
-/// Looks for the one policy, or the engine, with which `matches` accepts the target. `first` is a pixel of which it is known what it has
-/// to be: a value that does not make it so need not be drawn.
+/// Searches for a policy value, or the engine, with which `matches` accepts the target. `first` is a pixel whose expected value is known: values that
+/// do not yield it need not be drawn.
 pub(super) fn find(
     plan: &Plan,
     render: &RenderOptions,

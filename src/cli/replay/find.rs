@@ -1,4 +1,4 @@
-//! Which scenes are replayed: files, folders and what is below them, filters, shards.
+//! Selection of the scenes to replay: files, folders and their content, filters, shards.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -12,35 +12,35 @@ use walkdir::WalkDir;
 use crate::shard::Shard;
 use ninebit::shown;
 
-/// What stands before `.ron` in the names of expectations.
+/// Extension before `.ron` in the names of expectations.
 const EXPECTATION: &str = "expect";
 
-/// The same of files that scenes share.
+/// Extension before `.ron` in the names of files that scenes share.
 const FAMILY: &str = "family";
 
-/// Something that was found where scenes were looked for.
+/// An entry that was found in the search for scenes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// What it is called in reports, and where its artifacts lie: the path without `.ron`, ordinary parts only, `/` between them.
+    /// Name in reports and of its artifacts: the path without `.ron`, with ordinary parts only and `/` between them.
     pub name: String,
-    /// Where it was found.
+    /// Path of the file or folder.
     pub path: PathBuf,
-    /// What it is.
+    /// Kind of the entry.
     pub kind: EntryKind,
 }
 
-/// What an [`Entry`] is.
+/// Kind of an [`Entry`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EntryKind {
-    /// A scene file, drawn and compared.
+    /// A scene file, which is drawn and compared.
     Scene,
-    /// An expectation whose scene is not there.
+    /// An expectation whose scene is missing.
     Orphan,
-    /// A folder, or something in one, that cannot be read, and why.
+    /// A folder or an entry in one that cannot be read, with the reason.
     Unreadable(String),
 }
 
-/// Scenes that cannot be told apart.
+/// Two scenes would have the same name in reports.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "`{}` and `{}` would both be called `{}` in reports",
@@ -51,19 +51,19 @@ pub enum EntryKind {
 pub struct FindError {
     /// The common name.
     pub name: String,
-    /// One of them.
+    /// Path of one scene.
     pub first: PathBuf,
-    /// Another one of that name.
+    /// Path of the other scene.
     pub second: PathBuf,
 }
 
-/// Lists the scenes of `places`, sorted by name, each once: files as they are, folders with all below them.
+/// Lists the scenes of `places`, sorted by name and without duplicates: files as they are, folders with everything below them.
 ///
-/// In a folder a scene is a file `NAME.ron` that is no expectation and no family (`NAME.family.ron`); what begins with a point is left out; links are followed. An
-/// expectation (`NAME.expect.ron`) stands for nothing, but for an [`EntryKind::Orphan`] if its scene is not there.
+/// In a folder, a scene is a file `NAME.ron` that is neither an expectation nor a family (`NAME.family.ron`). Names that begin with a dot are
+/// skipped; links are followed. An expectation (`NAME.expect.ron`) is listed only if its scene is missing, as [`EntryKind::Orphan`].
 ///
 /// # Errors
-/// Two different files have the same name.
+/// Returns an error if two different files have the same name.
 pub fn find(places: &[PathBuf]) -> Result<Vec<Entry>, FindError> {
     let mut found: BTreeMap<String, Entry> = BTreeMap::new();
     for place in places {
@@ -81,7 +81,7 @@ pub fn find(places: &[PathBuf]) -> Result<Vec<Entry>, FindError> {
     Ok(found.into_values().collect())
 }
 
-/// What is below a folder.
+/// Lists the entries below a folder.
 fn below(folder: &Path) -> Vec<Entry> {
     let visible = |name: &OsStr| !name.as_encoded_bytes().starts_with(b".") && before_extension(name).1 != Some(FAMILY);
     let walk = WalkDir::new(folder).follow_links(true).sort_by_file_name();
@@ -104,7 +104,7 @@ fn below(folder: &Path) -> Vec<Entry> {
         .collect()
 }
 
-/// What a file is; nothing for an expectation whose scene is there.
+/// Returns the entry of a file, or `None` for an expectation whose scene exists.
 fn file(path: &Path) -> Option<Entry> {
     let entry = |path: &Path, kind| Entry { name: name(path), path: path.to_path_buf(), kind };
     match before_extension(path.file_name().unwrap_or_default()) {
@@ -116,7 +116,7 @@ fn file(path: &Path) -> Option<Entry> {
     }
 }
 
-/// Of `NAME.KIND.ron` the name, which need not be text, and the kind.
+/// Splits `NAME.KIND.ron` into the name, which need not be UTF-8, and the kind.
 fn before_extension(name: &OsStr) -> (&OsStr, Option<&str>) {
     let name = Path::new(name);
     let stem = Path::new(name.file_stem().unwrap_or_default());
@@ -124,7 +124,7 @@ fn before_extension(name: &OsStr) -> (&OsStr, Option<&str>) {
     (stem.file_stem().unwrap_or_default(), kind)
 }
 
-/// [`Entry::name`] of a path.
+/// Returns [`Entry::name`] of a path.
 fn name(path: &Path) -> String {
     let part = |component| match component {
         Component::Normal(part) => Some(shown::lossless(Path::new(part))),
@@ -134,29 +134,30 @@ fn name(path: &Path) -> String {
     name.strip_suffix(".ron").map_or_else(|| name.clone(), str::to_owned)
 }
 
-/// Which of the scenes are meant, by their names.
+/// Filter for scenes by their names.
 #[derive(Clone, Debug)]
-pub struct Filter {
+pub(crate) struct Filter {
     included: Option<GlobSet>,
     excluded: GlobSet,
 }
 
-/// A pattern that is none.
+/// An invalid pattern.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{pattern}` is not a pattern: {reason}")]
-pub struct FilterError {
-    /// The pattern, as it was given.
-    pub pattern: String,
-    /// What is wrong with it.
-    pub reason: String,
+pub(crate) struct FilterError {
+    /// The pattern, as given.
+    pub(crate) pattern: String,
+    /// Reason why it is invalid.
+    pub(crate) reason: String,
 }
 
 impl Filter {
-    /// Takes what one of the patterns matches, or everything if there is none; but nothing that a pattern behind a `!` matches.
+    /// Returns a filter that accepts names that match one of the patterns, or all names if there is none, except those that match a pattern with a
+    /// leading `!`.
     ///
     /// # Errors
-    /// A pattern that is none.
-    pub fn new(patterns: &[String]) -> Result<Self, FilterError> {
+    /// Returns an error if a pattern is invalid.
+    pub(crate) fn new(patterns: &[String]) -> Result<Self, FilterError> {
         let (excluded, included): (Vec<&String>, Vec<&String>) = patterns.iter().partition(|p| p.starts_with('!'));
         Ok(Filter {
             included: if included.is_empty() { None } else { Some(set(&included)?) },
@@ -164,8 +165,8 @@ impl Filter {
         })
     }
 
-    /// Whether an entry is meant. Its name is compared, and its name with `.ron`.
-    pub fn takes(&self, entry: &Entry) -> bool {
+    /// Returns whether the filter accepts an entry: its name, or its name with `.ron`.
+    pub(crate) fn takes(&self, entry: &Entry) -> bool {
         let scene = format!("{}.ron", entry.name);
         let within = |set: &GlobSet| set.is_match(&entry.name) || set.is_match(&scene);
         self.included.as_ref().is_none_or(within) && !within(&self.excluded)
@@ -184,9 +185,9 @@ fn set(patterns: &[&String]) -> Result<GlobSet, FilterError> {
     builder.build().map_err(|error| refused("", error))
 }
 
-/// The entries of a shard. A scene's name alone decides which of several runs replays it, so that a new scene moves no other to another
-/// machine, where its pictures of an earlier run are not.
-pub fn part(entries: Vec<Entry>, shard: Shard) -> Vec<Entry> {
+/// Returns the entries of a shard. The shard depends only on a scene's name, so that a new scene does not move others to another machine, which does
+/// not have their pictures of an earlier run.
+pub(crate) fn part(entries: Vec<Entry>, shard: Shard) -> Vec<Entry> {
     let number = |name: &str| {
         let digest = Sha256::digest(name.as_bytes());
         digest.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte))
@@ -243,7 +244,7 @@ mod tests {
                 (1..=count).filter_map(|index| Some(part(all.clone(), Shard::new(index, count)?))).flatten().collect();
             joined.sort_by(|a, b| a.name.cmp(&b.name));
             assert_eq!(joined, all, "{count}");
-            // Whatever else there is, a scene stays where it is.
+            // A scene's shard does not depend on other scenes.
             for index in 1..=count {
                 let alone = |entry: &Entry| Shard::new(index, count).map(|shard| part(vec![entry.clone()], shard));
                 let one_by_one: Vec<Entry> = all.iter().filter_map(alone).flatten().collect();

@@ -1,8 +1,8 @@
-//! Scenes drawn again and held against what is expected of them: the golden test of any project that keeps scenes.
+//! Draws scenes and compares them with their expectations: golden tests for any project that keeps scenes.
 //!
-//! [`find()`] lists the scenes of files and folders, [`replay()`] draws them, each on one thread and many side by side, and says of each
-//! whether it shows what `NAME.expect.ron` beside it states. What is said of a scene depends on nothing but its files and the [`Options`]: not
-//! on the other scenes, their order or the threads. [`report`] writes it all down.
+//! [`find()`] lists the scenes of files and folders. [`replay()`] draws them, each on one thread and many in parallel, and compares each with
+//! `NAME.expect.ron` beside it. The result for a scene depends only on its files and the [`Options`], not on other scenes, their order or the number
+//! of threads. [`report`] prints the results.
 
 mod bless;
 mod cause;
@@ -22,36 +22,38 @@ use ninebit::threads::on_threads;
 use ninebit_files::catch_panic::catch_panic;
 
 pub use cause::Cause;
-pub use find::{Entry, EntryKind, Filter, FilterError, FindError, find, part};
-pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Summary, Traces};
+pub use find::{Entry, EntryKind, FindError, find};
+pub(crate) use find::{Filter, part};
+use outcome::Summary;
+pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
 
-/// How scenes are replayed.
+/// Options of a replay.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// How each scene is drawn; `threads` counts scenes that are drawn side by side, 0 as many as there are cores.
+    /// Options for drawing. `threads` is the number of scenes that are drawn in parallel; 0 means one per core.
     pub render: RenderOptions,
-    /// Answers to what no capture decides.
+    /// Policies for drawing.
     pub policies: Policies,
-    /// Only scenes of this chip; others are skipped.
+    /// If set, scenes of other chips are skipped.
     pub profile: Option<Profile>,
-    /// Write expectations that are missing or not met, from what is drawn.
+    /// Whether to write expectations that are missing or not met, from what is drawn.
     pub bless: bool,
-    /// A folder of pictures of an earlier run, as [`pictures`](Self::pictures) writes them: where a digest differs, they show where.
+    /// Folder with pictures of an earlier run, as [`pictures`](Self::pictures) writes them. They show where a picture with another digest differs.
     pub expected: Option<PathBuf>,
-    /// A folder that takes the picture of every scene.
+    /// Folder to which the picture of every scene is written.
     pub pictures: Option<PathBuf>,
-    /// A folder that takes what is known of every difference.
+    /// Folder to which the details of every difference are written.
     pub artifacts: Option<PathBuf>,
 }
 
-/// Replays scenes; what became of each, in the order of `entries`. `progress` is told how many are done, from any thread.
+/// Replays scenes. Returns their results in the order of `entries`. Calls `progress` with the number of finished scenes, from any thread.
 ///
-/// A panic while one of them is replayed is what became of that one: [`ProblemKind::Internal`].
+/// A panic becomes the result of its scene: [`ProblemKind::Internal`].
 pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + Sync)) -> Vec<Replayed> {
     each(entries, options.render.threads, progress, &|entry| scene::replay(entry, options))
 }
 
-/// Does `work` for each entry, apart from the others.
+/// Runs `work` for each entry. A panic affects only its entry.
 fn each(
     entries: &[Entry],
     threads: usize,

@@ -1,4 +1,4 @@
-//! What became of a scene.
+//! Results of replayed scenes.
 
 use std::path::PathBuf;
 
@@ -12,81 +12,81 @@ use ninebit_files::catch_panic::Panic;
 use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{self, CHANNELS, histogram_text, pixels, share};
 
-/// A scene that was replayed.
+/// Result of a replayed scene.
 #[derive(Clone, Debug)]
 pub struct Replayed {
-    /// What reports call it: [`Entry::name`](super::Entry::name).
+    /// Name in reports: [`Entry::name`](super::Entry::name).
     pub name: String,
-    /// The scene's file; of an expectation without scene that one.
+    /// The scene's file, or the expectation if it has no scene.
     pub path: PathBuf,
-    /// What became of it.
+    /// Outcome of the comparison.
     pub outcome: Outcome,
-    /// Pictures and other files of it that could not be written.
+    /// Problems with pictures and other files that could not be written.
     pub unwritten: Vec<Problem>,
 }
 
-/// What becomes of a scene.
+/// Outcome of a scene.
 #[derive(Clone, Debug)]
 pub enum Outcome {
-    /// It shows what is expected.
+    /// The picture is as expected.
     Match,
-    /// Its expectation was written.
+    /// The expectation was written.
     Blessed {
-        /// The digest that stood there, if there was one.
+        /// The previous digest, if there was one.
         before: Option<String>,
-        /// The digest that stands there now.
+        /// The new digest.
         after: String,
     },
-    /// It was not drawn, and why.
+    /// The scene was not drawn, with the reason.
     Skipped(String),
-    /// It shows something else.
+    /// The picture differs.
     Differs(Box<Difference>),
-    /// Nothing can be said about what it shows.
+    /// The scene could not be compared.
     Failed(Problem),
 }
 
-/// Whose problem it is.
+/// Origin of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProblemKind {
-    /// The scene's, or that of a file of it.
+    /// The scene, or one of its files.
     Scene(ErrorKind),
-    /// An output's, which was not written.
+    /// An output that was not written.
     Output,
     /// A fault of this program.
     Internal,
 }
 
-/// Why something could not be done.
+/// Reason why something could not be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// What a caller does about it.
+    /// Origin, which determines the exit status.
     pub kind: ProblemKind,
-    /// The code of `docs/errors.md`.
+    /// Error code, as `docs/errors.md` lists it.
     pub code: &'static str,
-    /// What is wrong, in one line.
+    /// Message in one line.
     pub message: String,
-    /// All there is to say, several lines.
+    /// Full message of several lines.
     pub text: String,
-    /// Line and column of the scene's file, from 1.
+    /// Line and column in the scene's file, from 1.
     pub place: Option<(usize, usize)>,
 }
 
 impl Problem {
-    /// A problem with something to do about it.
+    /// Returns a problem with advice to the user.
     pub(super) fn new(kind: ErrorKind, code: &'static str, message: impl Into<String>, help: &str) -> Self {
         let message = message.into();
         let text = format!("error[{code}]: {message}\n  help: {help}");
         Problem { kind: ProblemKind::Scene(kind), code, message, text, place: None }
     }
 
-    /// A fault of this program.
+    /// Returns the problem for a fault of this program.
     pub(super) fn internal(panic: &Panic) -> Self {
         let (code, message) = (Panic::CODE, panic.to_string());
         let text = format!("error[{code}]: {message}\n  help: {}", Panic::HELP);
         Problem { kind: ProblemKind::Internal, code, message, text, place: None }
     }
 
-    /// Exit status that goes with it.
+    /// Returns the exit status of the problem.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             ProblemKind::Scene(kind) => kind.exit_code(),
@@ -96,87 +96,87 @@ impl Problem {
     }
 }
 
-/// What there is to say where the expected picture is not known.
+/// Text for a difference whose expected picture is not known.
 const ONLY_DIGEST: &str = "\
 Only the digest of the expected picture is known, so it cannot be said where it differs. `--expected` takes a folder of
 pictures of an earlier run, `picture` in the expectation a file.
 ";
 
-/// How a scene differs from what is expected.
+/// Difference between a scene and its expectation.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// Name of the target.
     pub target: String,
-    /// The digest that is expected.
+    /// The expected digest.
     pub expected: String,
-    /// The digest of what is compared of the picture that was drawn.
+    /// Digest of the drawn picture, with masked pixels set to 0.
     pub drawn: String,
-    /// What the expectation says.
+    /// The mismatch that the comparison found.
     pub mismatch: Mismatch,
-    /// The one change that yields what is expected.
+    /// The single change that yields the expected picture, if one was found.
     pub cause: Option<Cause>,
-    /// What the expected picture shows, where it is known.
+    /// Comparison with the expected picture, if it is known.
     pub known: Option<Known>,
-    /// The picture that was drawn, a PNG.
+    /// The drawn picture as PNG.
     pub picture: Vec<u8>,
-    /// Something else that is worth saying.
+    /// Further remarks.
     pub remarks: Vec<String>,
 }
 
-/// Where an expected picture comes from.
+/// Origin of an expected picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// The picture that the expectation names.
+    /// The file of the picture.
     File(PathBuf),
-    /// It was drawn in another way, which yields the expected digest.
+    /// The picture was drawn with a [`Cause`] that yields the expected digest.
     Cause,
 }
 
-/// An expected picture and the drawn one beside each other.
+/// Comparison of the expected picture with the drawn one.
 #[derive(Clone, Debug)]
 pub struct Known {
-    /// Where the expected picture comes from.
+    /// Origin of the expected picture.
     pub origin: Origin,
-    /// The drawn picture less the expected one.
+    /// The drawn picture minus the expected one.
     pub difference: diff::Difference,
-    /// The first pixel that differs, in reading order.
+    /// The first differing pixel, row by row.
     pub first: Pixel,
-    /// Expected, drawn and amplified difference in one picture, a PNG.
+    /// Expected picture, drawn picture and amplified difference side by side, as PNG.
     pub panels: Vec<u8>,
-    /// How often the difference is amplified.
+    /// Amplification of the difference.
     pub scale: u8,
-    /// How the first pixel came to be.
+    /// Traces of the first differing pixel.
     pub traces: Option<Traces>,
 }
 
-/// A pixel of two pictures.
+/// A pixel that differs between two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
     /// Column, 0 on the left.
     pub x: u32,
     /// Row, 0 at the top.
     pub y: u32,
-    /// R, G, B, A that are expected.
+    /// Expected R, G, B, A.
     pub expected: [u8; 4],
-    /// R, G, B, A that were drawn.
+    /// Drawn R, G, B, A.
     pub drawn: [u8; 4],
 }
 
-/// How a pixel came to be, and how it comes to be as expected.
+/// Traces of a pixel as drawn and as expected.
 #[derive(Clone, Debug)]
 pub struct Traces {
-    /// Both as one text; or only the first, where it is not known how the expected pixel comes to be.
+    /// Both traces as text, or only that of the drawn pixel if no change yields the expected one.
     pub text: String,
-    /// Both side by side; empty if only one is known.
+    /// Both traces side by side; empty if only one is known.
     pub lines: Vec<SideBySideLine>,
-    /// The trace of the drawn pixel as a document.
+    /// Trace of the drawn pixel as JSON.
     pub drawn: Value,
-    /// The trace of the expected one.
+    /// Trace of the expected pixel as JSON, if known.
     pub expected: Option<Value>,
 }
 
 impl Difference {
-    /// One line that says it all.
+    /// Returns a summary in one line.
     pub fn verdict(&self) -> String {
         let mut text = match (&self.known, &self.mismatch) {
             (Some(known), _) => {
@@ -206,7 +206,7 @@ impl Difference {
         text
     }
 
-    /// All there is to say, several lines.
+    /// Returns the full description in several lines.
     pub fn text(&self) -> String {
         let mut text = format!("{}\n\n", self.verdict());
         text += &format!(
@@ -236,18 +236,18 @@ impl Difference {
     }
 }
 
-/// A colour as reports write it.
+/// Formats a colour for reports.
 pub(super) fn color([r, g, b, a]: [u8; 4]) -> String {
     format!("R {r} G {g} B {b} A {a}")
 }
 
-/// The beginning of a digest.
+/// Returns the first twelve digits of a digest.
 pub(super) fn short(digest: &str) -> String {
     digest.chars().take(12).collect()
 }
 
 impl Replayed {
-    /// What became of it, in a word.
+    /// Returns the outcome in one word.
     pub fn status(&self) -> &'static str {
         match &self.outcome {
             Outcome::Match => "match",
@@ -259,7 +259,7 @@ impl Replayed {
         }
     }
 
-    /// What there is to say about it in one [shown] line; empty for a match.
+    /// Returns a message in one line, made printable by [shown]; empty for a match.
     pub fn message(&self) -> String {
         let message = match &self.outcome {
             Outcome::Match => String::new(),
@@ -274,7 +274,7 @@ impl Replayed {
         shown::name(&message).into_owned()
     }
 
-    /// Exit status that goes with it.
+    /// Returns the exit status of the scene.
     pub fn exit_code(&self) -> u8 {
         let outcome = match &self.outcome {
             Outcome::Match | Outcome::Blessed { .. } | Outcome::Skipped(_) => 0,
@@ -285,26 +285,26 @@ impl Replayed {
     }
 }
 
-/// How many scenes ended in which way.
+/// Numbers of scenes by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Summary {
-    /// All scenes that were replayed.
-    pub scenes: usize,
-    /// Scenes that show what is expected.
-    pub matching: usize,
-    /// Expectations that were written.
-    pub blessed: usize,
-    /// Scenes that were not drawn, for want of files that are not handed out.
-    pub skipped: usize,
-    /// Not as expected.
-    pub differing: usize,
-    /// Refused, or without something that they need.
-    pub failed: usize,
+pub(crate) struct Summary {
+    /// Number of all scenes.
+    pub(crate) scenes: usize,
+    /// Number of scenes that are as expected.
+    pub(crate) matching: usize,
+    /// Number of expectations that were written.
+    pub(crate) blessed: usize,
+    /// Number of scenes that were not drawn.
+    pub(crate) skipped: usize,
+    /// Number of scenes that differ.
+    pub(crate) differing: usize,
+    /// Number of scenes that failed.
+    pub(crate) failed: usize,
 }
 
 impl Summary {
-    /// Counts how often each outcome occurs.
-    pub fn from_replays(all: &[Replayed]) -> Self {
+    /// Counts the outcomes.
+    pub(crate) fn from_replays(all: &[Replayed]) -> Self {
         let mut summary = Summary { scenes: all.len(), ..Summary::default() };
         for one in all {
             *match &one.outcome {

@@ -1,15 +1,15 @@
-//! Expected, drawn and amplified difference in one picture.
+//! Expected picture, drawn picture and amplified difference in one picture.
 
 use ninebit_scene::diff::{SizeError, highlight};
 use ninebit_scene::image::Rgba;
 
-/// Columns between two panels.
+/// Width of the gap between two panels, in pixels.
 pub(in crate::replay) const GAP: usize = 8;
 
-/// What stands between the panels: a grey that no frame is likely to end with, between black and white.
+/// Colour of the gaps: a grey that is unlikely at the edge of a frame.
 const BETWEEN: [u8; 4] = [96, 96, 96, 255];
 
-/// Expected, drawn, difference from left to right, opaque, and how often the difference is amplified.
+/// Returns expected picture, drawn picture and difference from left to right, opaque, and the amplification of the difference.
 pub(super) fn panels(expected: &Rgba, drawn: &Rgba) -> Result<(Rgba, u8), SizeError> {
     let difference = highlight(expected, drawn, false)?;
     let (width, height) = (expected.width as usize, expected.height as usize);

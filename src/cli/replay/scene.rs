@@ -1,4 +1,4 @@
-//! One scene: read, drawn, compared, looked into.
+//! Replay of one scene: it is read, drawn, compared and, if it differs, analysed.
 
 use std::path::{Path, PathBuf};
 
@@ -48,12 +48,12 @@ pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
     replayed
 }
 
-/// A scene's file of its own in a folder of artifacts.
+/// Returns the path of a scene's file in a folder of artifacts.
 fn place(folder: &Path, name: &str, extension: &str) -> PathBuf {
     folder.join(format!("{name}.{extension}"))
 }
 
-/// Writes what is known of a difference.
+/// Writes the details of a difference.
 fn write_artifacts(replayed: &mut Replayed, folder: &Path) {
     let Outcome::Differs(difference) = &replayed.outcome else { return };
     let mut files = vec![
@@ -132,10 +132,10 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
     }
 }
 
-/// A scene that is refused.
+/// Converts the errors of an invalid scene to a problem.
 fn not_accepted(error: &SceneError) -> Problem {
     let first = error.diagnostics.iter().find(|finding| finding.severity == Severity::Error);
-    // A place in a file that the scene names is where the scene names it.
+    // For an error in another file, the place is where the scene names that file.
     let span = first.and_then(|finding| finding.file.as_ref().map(|file| file.named.clone()).or(finding.span.clone()));
     let more = error.diagnostics.len() + error.suppressed;
     let message = first.map_or(String::new(), |finding| finding.message.clone());
@@ -152,7 +152,7 @@ fn png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, OutputErr
     encode_png(width, height, pixels, Compression::Fast)
 }
 
-/// A scene that is not as expected.
+/// A scene that is not as expected, with all that is needed to analyse it.
 struct Subject<'a> {
     entry: &'a Entry,
     folder: &'a Path,
@@ -185,7 +185,7 @@ impl Subject<'_> {
         Ok(difference)
     }
 
-    /// Pixels that are not compared become 0, 0, 0, 0; the digest.
+    /// Sets pixels that are not compared to 0, 0, 0, 0. Returns the digest.
     fn masked(&self, picture: &mut Rgba, compared: &[bool]) -> String {
         masked_digest(picture.width, picture.height, &mut picture.pixels, compared)
     }
@@ -211,7 +211,7 @@ impl Subject<'_> {
         Ok(())
     }
 
-    /// The picture that the digest is of, where one is found.
+    /// Returns the expected picture and its origin, if it is found.
     fn expected_picture(&self, compared: &[bool], remarks: &mut Vec<String>) -> Option<(Rgba, Origin)> {
         let expectation = self.expectation;
         let file =
@@ -240,7 +240,7 @@ impl Subject<'_> {
         Some((picture, Origin::File(path)))
     }
 
-    /// Both pictures, once the expected one is known; `None` if they are equal.
+    /// Compares both pictures. Returns `None` if they are equal.
     fn known(
         &self,
         expected: &Rgba,
@@ -279,7 +279,7 @@ impl Subject<'_> {
     }
 }
 
-/// The first pixel in which two pictures of one size differ.
+/// Returns the first pixel in which two pictures of the same size differ.
 fn first_pixel(expected: &Rgba, drawn: &Rgba) -> Option<Pixel> {
     let at = expected.pixels.iter().zip(&drawn.pixels).position(|(a, b)| a != b)?;
     let (x, y) = (at as u32 % expected.width, at as u32 / expected.width);

@@ -76,13 +76,13 @@ pub struct Accuracy {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pictures {
     /// Width in pixels.
-    pub width: u32,
+    pub(crate) width: u32,
     /// Height in pixels.
-    pub height: u32,
+    pub(crate) height: u32,
     /// The picture: R, G, B, A.
-    pub shown: Vec<[u8; 4]>,
+    pub(crate) shown: Vec<[u8; 4]>,
     /// The truth: R, G, B from 0 to 1; `None` where a pixel is not measured.
-    pub truth: Vec<Option<[f64; 3]>>,
+    pub(crate) truth: Vec<Option<[f64; 3]>>,
 }
 
 /// Measures a scene against its truth. Returns `None` if no pixel with a truth is drawn.

@@ -13,11 +13,11 @@ use ninebit::plan::Plan;
 #[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Median.
-    pub median: f64,
+    pub(crate) median: f64,
     /// Lower quartile.
-    pub lower: f64,
+    pub(crate) lower: f64,
     /// Upper quartile.
-    pub upper: f64,
+    pub(crate) upper: f64,
 }
 
 impl Spread {

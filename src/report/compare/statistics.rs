@@ -14,11 +14,11 @@ pub struct Statistics {
     /// Highest error; minus infinity if there are none.
     pub high: f64,
     /// Sum of the signed errors.
-    pub sum: f64,
+    sum: f64,
     /// Sum of the magnitudes.
-    pub magnitude: f64,
+    magnitude: f64,
     /// Sum of the squares.
-    pub squares: f64,
+    squares: f64,
 }
 
 impl Default for Statistics {

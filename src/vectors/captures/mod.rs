@@ -113,7 +113,7 @@ impl fmt::Debug for Frame {
 /// An error of this crate: rows of the table that no code draws, or frames that have no row.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} frames and rows do not meet: {}", .0.len(), .0[..self.0.len().min(3)].join("; "))]
-pub struct Unmatched(pub Vec<String>);
+pub struct Unmatched(Vec<String>);
 
 /// Returns the names of all suites, in the order of the table.
 pub fn suites() -> impl Iterator<Item = &'static str> {

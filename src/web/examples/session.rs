@@ -1,4 +1,4 @@
-//! The model as a page asks it: a scene is opened, and drawn.
+//! Uses the model as a page does: opens a scene and draws it.
 //!
 //! `cargo run -p ninebit-web --example session`
 

@@ -1,4 +1,4 @@
-//! What `ninebit diff` prints.
+//! Report of `ninebit diff`.
 
 use std::fmt::Write;
 
@@ -10,13 +10,13 @@ use serde_json::{Value, json};
 use super::{Findings, SceneFindings};
 use crate::replay::report::histograms;
 
-/// The channels that were compared, with their names.
+/// Returns the compared channels with their names.
 fn channels<'a>(findings: &'a Findings<'_>) -> Vec<(&'static str, &'a Histogram)> {
     let count = if findings.arguments.ignore_alpha { 3 } else { 4 };
     CHANNELS.into_iter().zip(&findings.difference.channels).take(count).collect()
 }
 
-/// The report for people.
+/// Returns the report as text.
 pub(super) fn text(findings: &Findings<'_>) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -88,7 +88,7 @@ fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result 
     }
 }
 
-/// The report for programs.
+/// Returns the report as JSON.
 pub(super) fn json(findings: &Findings<'_>) -> Value {
     let (arguments, difference) = (findings.arguments, &findings.difference);
     let regions: Vec<Value> = (0..)

@@ -1,7 +1,7 @@
-//! Faces and levels of a texture in one picture.
+//! Layout of a texture's faces and levels in one picture.
 //!
-//! Six faces make a cross: -X, +Z, +X, -Z in a row, +Y above and -Y below +Z. Level 0 stands on the left, the others below one another on
-//! its right. Layers of a volume stand in rows. What no texel covers is transparent.
+//! Six faces form a cross: -X, +Z, +X, -Z in a row, with +Y above and -Y below +Z. Level 0 is on the left, the others below one another on its right.
+//! Layers of a volume are in rows. What no texel covers is transparent.
 
 use std::ops::Range;
 
@@ -11,10 +11,10 @@ use ninebit_scene::image::Rgba;
 
 use super::source::Opened;
 
-/// Columns and rows of the cross, by face in the order +X, -X, +Y, -Y, +Z, -Z.
+/// Column and row of each face in the cross, in the order +X, -X, +Y, -Y, +Z, -Z.
 const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
 
-/// The picture of these faces of these levels.
+/// Returns the picture of the given faces and levels.
 pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) -> Rgba {
     let levels: Vec<Rgba> = levels.map(|level| of_level(opened, &faces, level)).collect();
     let Some((first, rest)) = levels.split_first() else { return empty(1, 1) };
@@ -30,11 +30,11 @@ pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) ->
     picture
 }
 
-/// One level: its face, or the cross of its faces.
+/// Returns the picture of one level: a face, the cross of its faces, or its layers.
 fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
     let show = |face: u32| {
         let shown = show::level(&opened.texels, opened.format, &opened.palette, opened.dithered, face, level);
-        // Faces and levels were counted before.
+        // The caller has checked that face and level exist.
         shown.map_or_else(|| empty(1, 1), |Shown { width, height, pixels }| Rgba { width, height, pixels })
     };
     if faces.len() == 1 {

@@ -1,4 +1,4 @@
-//! The texture that the command line names: a file, or one of a scene.
+//! Opens the texture that the command line names: a file, or a texture of a scene.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,21 +16,21 @@ use crate::commands::scene::{PolicyArguments, load};
 
 /// A texture and how it is read.
 pub(super) struct Opened {
-    /// As the command line has it.
+    /// Name, as given on the command line.
     pub(super) name: String,
     pub(super) kind: TextureKind,
     pub(super) format: TextureFormat,
     pub(super) texels: Texels,
-    /// Entries for P8; empty without.
+    /// Palette entries of P8; empty without a palette.
     pub(super) palette: Arc<[u32]>,
-    /// DXT1 is dithered.
+    /// Whether DXT1 is dithered.
     pub(super) dithered: bool,
-    /// Name of the render target that it is.
+    /// Name of the render target, if the texture reads one.
     pub(super) target: Option<String>,
 }
 
 impl Opened {
-    /// Six faces of a cube map, a volume's layers, else one.
+    /// Returns the number of faces of a cube map, or of layers otherwise.
     pub(super) fn faces(&self) -> u32 {
         if self.kind == TextureKind::Cube { CUBE_FACES } else { self.texels.layers }
     }
@@ -50,7 +50,7 @@ pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Fa
     of_file(arguments, path, name.clone())
 }
 
-/// What to write for the textures of a scene.
+/// Returns advice on how to name the textures of a scene.
 fn known(scene: &Scene, file: &str) -> String {
     let names: Vec<String> = scene.textures.iter().map(|texture| format!("`{file}:{}`", texture.name)).collect();
     if names.is_empty() { "it has none".to_owned() } else { format!("write {}", names.join(" or ")) }
@@ -93,13 +93,13 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
     Ok(Opened { name, kind, format, texels, palette, dithered, target: None })
 }
 
-/// Any sides make a rectangle.
+/// Returns the kind of a 2D texture: a rectangle unless both sides are powers of two.
 fn plain_kind(width: u32, height: u32) -> TextureKind {
     let powers = width.is_power_of_two() && height.is_power_of_two();
     if powers { TextureKind::TwoDimensional } else { TextureKind::Rectangle }
 }
 
-/// The texture of a scene, behind the colon at `end` of its name.
+/// Opens a texture of a scene. `end` is the position of the colon in `name`.
 fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -> Result<Opened, Failure> {
     let (path, texture) = (Path::new(&name[..end]), &name[end + 1..]);
     if arguments.profile.is_some() || arguments.format.is_some() {
@@ -139,7 +139,7 @@ fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -
     })
 }
 
-/// The palette of that name, or of the first unit that samples the texture; empty without.
+/// Returns the named palette, or that of the first unit that samples the texture; empty if there is none.
 fn palette(arguments: &Arguments, scene: &Scene, texture: usize) -> Result<Arc<[u32]>, Failure> {
     let index = match &arguments.palette {
         Some(_) if scene.textures[texture].format != TextureFormat::P8 => {

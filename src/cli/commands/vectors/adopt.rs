@@ -1,4 +1,4 @@
-//! The command `ninebit vectors adopt`: puts what a card answered into the repository.
+//! The command `ninebit vectors adopt`: records a card's results in the repository.
 
 use super::*;
 
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     device: Option<String>,
 }
 
-/// Records results of a card as truth.
+/// Records results of a card as ground truth.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (manifest, tables) = pack::open(&arguments.pack)?;
     let results = results::open(&arguments.results, &manifest)?;

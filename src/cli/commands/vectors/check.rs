@@ -5,7 +5,7 @@ use super::*;
 use ninebit_vectors::read::{Difference, Table};
 use rayon::prelude::*;
 
-/// Rows of a unit that are shown.
+/// Maximum number of rows that are shown for a unit.
 const SHOWN: usize = 5;
 
 #[derive(Debug, Args)]

@@ -1,4 +1,4 @@
-//! The command `ninebit vectors compare`: holds the answers of a card to a pack.
+//! The command `ninebit vectors compare`: compares a card's results with a pack.
 
 use super::*;
 
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if comparison.is_clean() { Ok(()) } else { Err(Failure::difference()) }
 }
 
-/// The comparison for people.
+/// Returns the comparison as text.
 fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String {
     let mut text = [&device.vendor, &device.renderer, &device.version].map(|name| shown::name(name)).join(", ") + "\n";
     let (profile, level, revision) = (&manifest.profile, &manifest.level, manifest.behaviour_rev);
@@ -84,7 +84,7 @@ fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String
     text
 }
 
-/// What differs of a unit.
+/// Writes the differences of a unit.
 fn details(unit: &UnitComparison, text: &mut String) {
     let differing = unit.asked - unit.exact;
     let _ = writeln!(text, "\n{}: {differing} of {} rows differ, by {} at most", unit.unit, unit.asked, unit.largest);

@@ -1,11 +1,11 @@
-//! The command `ninebit vectors diff`: shows how two packs differ.
+//! The command `ninebit vectors diff`: shows the differences of two packs.
 
 use super::*;
 use std::collections::HashMap;
 
 use ninebit_vectors::read::{Table, TableRow};
 
-/// Rows of a unit that are shown.
+/// Maximum number of rows that are shown for a unit.
 const SHOWN: usize = 3;
 
 #[derive(Debug, Args)]

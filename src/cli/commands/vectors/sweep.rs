@@ -1,4 +1,4 @@
-//! `ninebit vectors sweep`, `merge` and `digest`: every row of a unit as digests.
+//! The commands `ninebit vectors sweep`, `merge` and `digest`: digests of every row of a unit.
 
 use super::*;
 
@@ -50,7 +50,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         Failure::usage(format!("`{name}` has more than {MAX_ROWS} rows"), help)
     })?;
     make_folder(output)?;
-    let mine: Vec<u64> = (0..sweep.leaves).filter(|leaf| shard.takes(*leaf)).collect();
+    let mine: Vec<u64> = (0..sweep.leaves()).filter(|leaf| shard.takes(*leaf)).collect();
     let results: Vec<Result<bool, VectorError>> =
         on_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
     let results = results.into_iter().collect::<Result<Vec<bool>, _>>()?;
@@ -59,7 +59,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         (SweepHeader::new(&sweep).name(), profile.name(), mine.len(), mine.len() - computed);
     Ok(write_text(&format!(
         "{name} {profile}, shard {shard}: {leaves} of {} leaves, {computed} computed, {kept} were there\n",
-        sweep.leaves
+        sweep.leaves()
     ))?)
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct MergeArguments {
     output: Option<PathBuf>,
 }
 
-/// Joins leaves to a tree.
+/// Merges leaves into a tree.
 pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let tree = tree::merge(&arguments.folders)?;
     let destination = arguments.output.as_ref().map(|path| Destination::from(path.as_os_str()));
@@ -104,7 +104,7 @@ pub(crate) struct DigestArguments {
     threads: usize,
 }
 
-/// Computes trees, or some leaves of them, again.
+/// Recomputes trees, or some of their leaves.
 pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
     let mut differs = false;
     for path in &arguments.trees {

@@ -1,14 +1,13 @@
-//! The report for GitHub Actions: annotations on the files, and a summary of the step.
+//! Report for GitHub Actions: annotations on files, and a step summary.
 
 use crate::replay::{Outcome, Replayed, Summary};
 use ninebit::shown;
 
-/// Annotations of one kind that GitHub keeps of a step.
+/// Number of annotations of one kind that GitHub keeps for a step.
 const MAX_ANNOTATIONS: usize = 10;
 
-/// Lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, as more are dropped
-/// there.
-pub fn annotations(all: &[Replayed]) -> String {
+/// Returns lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, because GitHub drops more.
+pub(crate) fn annotations(all: &[Replayed]) -> String {
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
     let shown = if wrong.len() > MAX_ANNOTATIONS { MAX_ANNOTATIONS - 1 } else { wrong.len() };
     let mut out: String = wrong.iter().take(shown).map(|one| annotation(one)).collect();
@@ -35,18 +34,18 @@ fn annotation(one: &Replayed) -> String {
     format!("::error file={file}{place},title={title}::{}\n", data(&message))
 }
 
-/// The text of a workflow command.
+/// Escapes the message of a workflow command.
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
-/// A value before the text.
+/// Escapes a property of a workflow command.
 fn property(text: &str) -> String {
     data(text).replace(':', "%3A").replace(',', "%2C")
 }
 
-/// What a step's summary shows, as Markdown: the counts, and a table of the scenes that are not as expected.
-pub fn step_summary(all: &[Replayed]) -> String {
+/// Returns the step summary as Markdown: the counts, and a table of the scenes that are not as expected.
+pub(crate) fn step_summary(all: &[Replayed]) -> String {
     let mut out = format!("### ninebit replay\n\n{}\n", Summary::from_replays(all));
     let mut rows = all.iter().filter(|one| one.exit_code() != 0).peekable();
     if rows.peek().is_some() {
@@ -58,7 +57,7 @@ pub fn step_summary(all: &[Replayed]) -> String {
     out
 }
 
-/// A name or message in a table of Markdown. What Markdown gives a meaning to is escaped, and so is what GitHub makes links and mentions of.
+/// Escapes a name or message for a Markdown table: Markdown's special characters, and those from which GitHub makes links and mentions.
 fn cell(text: &str) -> String {
     let mut out = String::new();
     for c in shown::name(text).chars() {

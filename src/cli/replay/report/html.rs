@@ -1,4 +1,4 @@
-//! The report as one page that needs no other file.
+//! Report as an HTML page that needs no other file.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -12,7 +12,7 @@ use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
 
 const STYLE: &str = include_str!("style.css");
 
-/// A page with everything that is known of the scenes that are not as expected, and a list of all; pictures stand in it.
+/// Returns a page with all details of the scenes that are not as expected, and a list of all scenes. Pictures are embedded.
 pub fn html(all: &[Replayed]) -> String {
     let summary = Summary::from_replays(all);
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
@@ -99,7 +99,7 @@ fn difference(difference: &Difference) -> Markup {
 
 fn pictures(known: &Known) -> Markup {
     let (width, height) = (known.difference.width, known.difference.height);
-    // Each title is as wide as its panel. A tall picture does not fill the page's width, but is wide enough for its titles.
+    // Each title is as wide as its panel. A tall picture is narrower than the page, but wide enough for its titles.
     let [panel, gap] = [width as usize, GAP].map(|columns| format!("minmax(0, {columns}fr)"));
     let titles = format!("grid-template-columns: {panel} {gap} {panel} {gap} {panel}");
     let whole = 3 * width as usize + 2 * GAP;
@@ -134,7 +134,7 @@ fn histogram(known: &Known) -> Markup {
 
 fn traces(known: &Known, traces: &Traces) -> Markup {
     let first = &known.first;
-    // What both traces have before they part is there to be looked up; the block in which they part is shown whole.
+    // The common beginning of both traces is folded away; the block in which they diverge is shown completely.
     let parted = traces.lines.iter().position(SideBySideLine::differs).unwrap_or(0);
     let begin = traces.lines.iter().take(parted + 1).rposition(|line| line.heading.is_some()).unwrap_or(0);
     html! {
@@ -172,7 +172,7 @@ fn table(lines: &[SideBySideLine]) -> Markup {
     }
 }
 
-/// How a value came about, once if both traces say the same.
+/// Returns the formula of a value, once if it is the same in both traces.
 fn how(first: Option<&(String, String)>, second: Option<&(String, String)>) -> Markup {
     let (first, second) = (first.map(|(how, _)| how), second.map(|(how, _)| how));
     html! {

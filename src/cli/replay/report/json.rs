@@ -1,4 +1,4 @@
-//! The report for programs.
+//! Report as JSON.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed
 use ninebit::shown;
 use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
-/// One JSON document; `docs/replay.md` describes it.
+/// Returns the report as a JSON document; `docs/replay.md` describes it.
 pub fn json(all: &[Replayed]) -> String {
     let summary = Summary::from_replays(all);
     let document = json!({
@@ -60,7 +60,7 @@ fn difference(difference: &Difference) -> Value {
     })
 }
 
-/// Histograms of channels, by name.
+/// Returns the histograms of channels with their names.
 pub(crate) fn histograms<'h>(channels: impl IntoIterator<Item = (&'static str, &'h Histogram)>) -> Value {
     let channel = |(name, histogram): (&str, &Histogram)| {
         let bucket = |b: &Bucket| json!({ "from": b.from, "to": b.to, "pixels": b.pixels });

@@ -1,4 +1,4 @@
-//! The report as JUnit XML, which continuous integration services read.
+//! Report as JUnit XML, which continuous integration services read.
 
 use std::io;
 
@@ -8,9 +8,9 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 use crate::replay::{Outcome, Replayed, Summary};
 use ninebit::shown;
 
-/// One test case for each scene: its folder is the class, its verdict the message. Empty if the writer fails, which it does not in
-/// memory.
-pub fn junit(all: &[Replayed]) -> String {
+/// Returns one test case for each scene: its folder is the class, its verdict the message. The text is empty if the writer fails, which it does not
+/// in memory.
+pub(crate) fn junit(all: &[Replayed]) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = write(&mut writer, all).map(|()| writer.into_inner());
     written.ok().and_then(|bytes| String::from_utf8(bytes).ok()).map_or(String::new(), |text| text + "\n")
@@ -24,7 +24,7 @@ fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
             .map(|(name, count)| (name, count.to_string()));
     let counts = || counts.iter().map(|(name, count)| (*name, count.as_str()));
     writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
-    // The schema of Jenkins has no `skipped` here.
+    // Jenkins' schema has no `skipped` here.
     let suites = writer.create_element("testsuites").with_attributes(counts().filter(|(name, _)| *name != "skipped"));
     suites.write_inner_content(|writer| {
         let suite =

@@ -1,4 +1,4 @@
-//! What a replay found, in words and for programs. The same scenes give the same bytes: no times, no machine.
+//! Reports of a replay. The same scenes give the same bytes: reports contain neither times nor machines.
 
 mod github;
 mod html;
@@ -6,9 +6,9 @@ mod json;
 mod junit;
 mod text;
 
-pub use github::{annotations, step_summary};
+pub(crate) use github::{annotations, step_summary};
 pub use html::html;
 pub(crate) use json::histograms;
 pub use json::json;
-pub use junit::junit;
+pub(crate) use junit::junit;
 pub use text::text;

@@ -1,11 +1,11 @@
-//! The report for people.
+//! Report as text.
 
 use std::fmt::Write;
 
 use crate::replay::{Outcome, Replayed, Summary};
 use ninebit::shown;
 
-/// One line for each scene that is not as expected, all that is wrong with those that could not be drawn, and the counts.
+/// Returns one line for each scene that is not as expected, the full messages of those that failed, and the counts.
 pub fn text(all: &[Replayed]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
