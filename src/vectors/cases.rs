@@ -54,15 +54,15 @@ pub fn nth(columns: &[Column], mut place: u128, row: &mut [i64]) {
 pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: impl FnMut(&[i64], Origin)) {
     let columns = unit.inputs();
     let rows = level.rows();
-    let mut sieve = Sieve { unit, profile, seen: HashSet::new(), rows, each };
+    let mut filter = RowFilter { unit, profile, seen: HashSet::new(), rows, each };
     for row in unit.regressions() {
-        sieve.give(&row, Origin::Regression);
+        filter.offer(&row, Origin::Regression);
     }
     let mut row = vec![0; columns.len()];
     if size(&columns) <= rows as u128 {
         for place in 0..size(&columns) {
             nth(&columns, place, &mut row);
-            sieve.give(&row, Origin::Exhaustive);
+            filter.offer(&row, Origin::Exhaustive);
         }
         return;
     }
@@ -75,16 +75,16 @@ pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: i
                 *value = values[(place % values.len() as u128) as usize];
                 place /= values.len() as u128;
             }
-            sieve.give(&row, Origin::Boundary);
+            filter.offer(&row, Origin::Boundary);
         }
     } else {
-        sieve.draw(rows / 2, &mut row, Origin::Boundary, |row| {
+        filter.draw(rows / 2, &mut row, Origin::Boundary, |row| {
             for (values, value) in boundaries.iter().zip(row) {
                 *value = random.pick(values).unwrap_or_default();
             }
         });
     }
-    sieve.draw(rows, &mut row, Origin::Random, |row| {
+    filter.draw(rows, &mut row, Origin::Random, |row| {
         // A column at its boundary among arbitrary ones tells more than none, so each is at a boundary one time in four.
         for ((column, values), value) in columns.iter().zip(&boundaries).zip(row) {
             *value =
@@ -110,7 +110,7 @@ fn draw(column: &Column, random: &mut Random) -> i64 {
 }
 
 /// Filter that passes each row once, if the unit accepts it, up to a number of rows.
-struct Sieve<'u, F> {
+struct RowFilter<'u, F> {
     unit: &'u dyn Unit,
     profile: Profile,
     seen: HashSet<u64>,
@@ -118,8 +118,8 @@ struct Sieve<'u, F> {
     each: F,
 }
 
-impl<F: FnMut(&[i64], Origin)> Sieve<'_, F> {
-    fn give(&mut self, row: &[i64], origin: Origin) {
+impl<F: FnMut(&[i64], Origin)> RowFilter<'_, F> {
+    fn offer(&mut self, row: &[i64], origin: Origin) {
         if self.seen.len() >= self.rows || !self.unit.accepts(row, self.profile) {
             return;
         }
@@ -136,7 +136,7 @@ impl<F: FnMut(&[i64], Origin)> Sieve<'_, F> {
             }
             draw(row);
             self.unit.fit(row);
-            self.give(row, origin);
+            self.offer(row, origin);
         }
     }
 }

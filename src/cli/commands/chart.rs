@@ -14,7 +14,7 @@ use ninebit_lab::chart::timing::Effort;
 use ninebit_lab::chart::{curves, evaluators, surfaces};
 use ninebit_lab::experiments;
 
-use super::scene::{apart, refused};
+use super::scene::{isolated, refused};
 
 /// The page that contains the section of experiments.
 const STABILITY: &str = "stability.md";
@@ -154,7 +154,7 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     };
     let mut measured = Measured { quick: arguments.quick, ..Measured::default() };
     for entry in &entries {
-        let technique = apart(&entry.path, || techniques::measure(entry, &effort).map_err(technique_failure));
+        let technique = isolated(&entry.path, || techniques::measure(entry, &effort).map_err(technique_failure));
         if let Some(technique) = unless_internal(technique, entry.name(), &mut measured.failed, context)?.flatten() {
             let title = || techniques::title(&arguments.scenes, &entry.family);
             measured.titles.entry(entry.family.clone()).or_insert_with(title);
@@ -168,20 +168,20 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
         return Err(Failure::invalid("NB0396", message, help));
     }
     for (name, surface) in &surfaces {
-        let cost = apart(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));
+        let cost = isolated(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));
         measured.surfaces.extend(unless_internal(cost, (*name).to_owned(), &mut measured.failed, context)?);
         step();
     }
     for (mut curve, scenes) in curves {
         for scene in scenes {
-            let point = apart(Path::new(curve.counted), || scene.point(curve.counted, &effort).map_err(fault));
+            let point = isolated(Path::new(curve.counted), || scene.point(curve.counted, &effort).map_err(fault));
             let name = format!("a point of {}", curve.counted);
             curve.points.extend(unless_internal(point, name, &mut measured.failed, context)?);
             step();
         }
         measured.curves.push(curve);
     }
-    let evaluators = apart(Path::new("evaluators"), || evaluators::measure(side, &effort, &step).map_err(fault));
+    let evaluators = isolated(Path::new("evaluators"), || evaluators::measure(side, &effort, &step).map_err(fault));
     let evaluators = unless_internal(evaluators, "evaluators".to_owned(), &mut measured.failed, context)?;
     measured.evaluators = evaluators.unwrap_or_default();
     Ok(measured)
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn a_panic_is_said_and_the_rest_goes_on() {
         let (context, mut failed) = (Context { color: false }, Vec::new());
-        let panicked = apart(Path::new("a.ron"), || -> Result<u32, Failure> { panic!("a table") });
+        let panicked = isolated(Path::new("a.ron"), || -> Result<u32, Failure> { panic!("a table") });
         assert!(matches!(unless_internal(panicked, "a".to_owned(), &mut failed, context), Ok(None)));
         assert!(matches!(unless_internal(Ok(7), "b".to_owned(), &mut failed, context), Ok(Some(7))));
         let refused = Err::<u32, _>(Failure::unseen(Path::new("c.ron")));

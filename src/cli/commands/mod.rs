@@ -150,8 +150,8 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            let end = complain(&error, arguments);
-            return ended(end, color.on_stderr());
+            let end = print_parser_message(&error, arguments);
+            return finish(end, color.on_stderr());
         }
     };
     let context = Context { color: cli.color.on_stderr() };
@@ -177,11 +177,11 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Chart(arguments) => chart::run(&arguments, context),
         Command::Generate(command) => generate::run(&command),
     };
-    ended(result, context.color)
+    finish(result, context.color)
 }
 
 /// Returns the exit status of a command, and prints its failure to stderr.
-fn ended(result: Result<(), Failure>, color: bool) -> Exit {
+fn finish(result: Result<(), Failure>, color: bool) -> Exit {
     match result {
         Ok(()) => Exit::Success,
         Err(Failure { exit, report }) => {
@@ -192,7 +192,7 @@ fn ended(result: Result<(), Failure>, color: bool) -> Exit {
 }
 
 /// Prints the parser's message: help to stdout, errors to stderr.
-fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> {
+fn print_parser_message(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> {
     let plain = |argument: &OsString| *shown::path(Path::new(argument)) == *argument.as_os_str();
     let printed = if arguments.iter().all(plain) {
         error.print()
@@ -215,7 +215,7 @@ fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> 
 
 /// Runs `work`. A panic becomes a message that says how to report it.
 fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
-    catch_panic(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
+    catch_panic(work).unwrap_or_else(|panic| finish(Err(panic.into()), color))
 }
 
 /// Returns the value of `--color`. It is found before the arguments are parsed, because it also applies to the parser's errors.

@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let mut exit = Exit::Success;
     for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
         if let Err(error) = make_folder(folder) {
-            exit = say(error, context);
+            exit = report_unwritten(error, context);
         }
     }
     let replayed = {
@@ -159,14 +159,14 @@ fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) ->
             Wanted::File(document, destination) => destination.write(document(replayed).as_bytes()),
         };
         if let Err(error) = written {
-            exit = say(error, context);
+            exit = report_unwritten(error, context);
         }
     }
     exit
 }
 
 /// Prints that an output was not written. Returns the exit status.
-fn say(error: OutputError, context: Context) -> Exit {
+fn report_unwritten(error: OutputError, context: Context) -> Exit {
     let failure = Failure::from(error);
     terminal::print(Level::Error, &failure.report, context.color);
     failure.exit

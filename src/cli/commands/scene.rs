@@ -104,7 +104,7 @@ pub(crate) fn refused_beside(error: SceneError, note: &str, context: Context) ->
 }
 
 /// Results of work on several scenes.
-pub(crate) struct Each<T> {
+pub(crate) struct Batch<T> {
     /// Results of the scenes without a failure.
     pub(crate) made: Vec<T>,
     /// The scenes with a failure.
@@ -126,10 +126,10 @@ pub(crate) fn each<T>(
     scenes: &[&Path],
     context: Context,
     mut work: impl FnMut(&Path) -> Result<T, Failure>,
-) -> Each<T> {
-    let mut each = Each { made: Vec::new(), failed: Vec::new(), exit: Exit::Success };
+) -> Batch<T> {
+    let mut each = Batch { made: Vec::new(), failed: Vec::new(), exit: Exit::Success };
     for scene in scenes {
-        let failure = match apart(scene, || work(scene)) {
+        let failure = match isolated(scene, || work(scene)) {
             Ok(made) => {
                 each.made.push(made);
                 continue;
@@ -144,7 +144,7 @@ pub(crate) fn each<T>(
     each
 }
 
-impl<T> Each<T> {
+impl<T> Batch<T> {
     /// Returns the result of the command: the status of the worst scene.
     pub(crate) fn end(&self) -> Result<(), Failure> {
         match self.exit {
@@ -155,7 +155,7 @@ impl<T> Each<T> {
 }
 
 /// Runs `work`. A panic becomes a failure that names the scene.
-pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+pub(crate) fn isolated<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     catch_panic(work).unwrap_or_else(|mut panic| {
         panic.message = format!("{}, of `{}`", panic.message, shown::path(scene));
         Err(panic.into())

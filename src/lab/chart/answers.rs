@@ -23,7 +23,7 @@ fn row(cells: &[&str]) -> Row {
 }
 
 /// Describes a technique with its error and its cost on the chip.
-fn told(way: &Technique) -> String {
+fn describe(way: &Technique) -> String {
     let cost = &way.accuracy.cost.asked;
     let counts = [(cost.passes as f64, "pass"), (cost.stages, "stage"), (cost.fetches, "fetch")];
     let [passes, stages, fetches] = counts.map(|(count, what)| match number(count) {
@@ -169,7 +169,7 @@ fn one_pass(light: &Light<'_>) -> Option<String> {
     let exact = ways().next()?;
     let cheap = ways().min_by(|a, b| work(a).total_cmp(&work(b)).then(a.rms().total_cmp(&b.rms())))?;
     let worst = ways().next_back()?;
-    Some(format!("{}. Most exact: {}. Furthest off: {}", capital(&told(cheap)), told(exact), told(worst)))
+    Some(format!("{}. Most exact: {}. Furthest off: {}", capital(&describe(cheap)), describe(exact), describe(worst)))
 }
 
 fn cube_map(light: &Light<'_>) -> Option<String> {
@@ -184,7 +184,7 @@ fn cube_map(light: &Light<'_>) -> Option<String> {
 /// Describes error, cost, levels and normal angle of a technique.
 fn figures(way: &Technique) -> String {
     let turned = degrees(way).map_or(String::new(), |angle| format!(", normals {} degrees off", number(angle)));
-    format!("{}, {} levels{turned}", told(way), way.accuracy.banding.levels)
+    format!("{}, {} levels{turned}", describe(way), way.accuracy.banding.levels)
 }
 
 fn combiners_or_cube(smooth: &Light<'_>) -> Decided {
@@ -238,7 +238,7 @@ fn speeds(smooth: &Light<'_>) -> Decided {
     let speed = all.map(|way| 100.0 * vertex.time.median / way.time.median);
     let near =
         speed.iter().zip([100.0, 80.0, 50.0]).all(|(speed, claimed)| (speed - claimed).abs() <= MAX_SPEED_DEVIATION);
-    let (counts, speeds) = (all.map(told).join("; "), speed.map(number).join(" : "));
+    let (counts, speeds) = (all.map(describe).join("; "), speed.map(number).join(" : "));
     let text = format!("Of a chip's speed counts decide nothing: {counts}. This program's: {speeds}");
     Some((if near { "confirmed here" } else { "refuted here" }, text))
 }

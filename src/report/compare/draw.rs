@@ -67,11 +67,11 @@ pub(super) struct Images<'a, L> {
     /// Images with only the definition's words.
     pub(super) words: Vec<Image<'a, i32>>,
     /// For textures that are surfaces, the state of their pixels.
-    pub(super) states: Vec<Option<Seen<'a>>>,
+    pub(super) states: Vec<Option<SampledSurface<'a>>>,
 }
 
 /// Pixel states of a surface that is read as a texture.
-pub(super) struct Seen<'a> {
+pub(super) struct SampledSurface<'a> {
     /// Width in pixels.
     width: usize,
     states: &'a [State],
@@ -81,7 +81,7 @@ pub(super) struct Seen<'a> {
     texel: u32,
 }
 
-impl Seen<'_> {
+impl SampledSurface<'_> {
     /// Returns whether one of the pixels behind a texel has diverged.
     pub(super) fn diverged(&self, x: u32, y: u32) -> bool {
         let row = &self.states[y as usize * self.width..][..self.width];
@@ -203,7 +203,7 @@ impl WorstPixel {
 /// Draws everything that affects the target, and sums up the errors.
 pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Comparison {
     let reads_targets = plan.draws.iter().any(|planned| plan.reads_target(planned));
-    let work = || if reads_targets { whole::<M>(plan, options) } else { banded::<M>(plan, options) };
+    let work = || if reads_targets { on_surfaces::<M>(plan, options) } else { in_bands::<M>(plan, options) };
     summed(plan, options, on_threads(options.threads, work))
 }
 
@@ -216,7 +216,7 @@ fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) ->
 }
 
 /// Compares a target if no draw reads a surface: each band goes through all draws independently, and other targets do not matter.
-fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
+fn in_bands<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let height = plan.targets[options.target].height as usize;
     let surfaces: Vec<Surface<M::Lane>> = Vec::new();
     let words = texture_words(plan, &plan.draws, &surfaces);
@@ -241,7 +241,7 @@ fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
 }
 
 /// Compares a target by drawing on whole surfaces, one draw after the other.
-fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
+fn on_surfaces<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let (surfaces, counts) = surfaces::<M>(plan);
     let mut outcome = outcome::<M>(plan, options, &surfaces[options.target]);
     outcome.counts.merge(&counts);
@@ -303,7 +303,7 @@ fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Sur
     };
     let seen = |texture: &Texture| {
         let ((surface, _), (pixel, texel)) = (surface(texture)?, sizes(texture));
-        Some(Seen { width: surface.width, states: &surface.states, pixel, texel })
+        Some(SampledSurface { width: surface.width, states: &surface.states, pixel, texel })
     };
     Images {
         lane: plan

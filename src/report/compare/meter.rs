@@ -82,7 +82,7 @@ pub(super) struct Log<'a> {
     /// Decisions and their outcomes, in order.
     pub(super) decisions: Vec<(Decision, i64)>,
     /// For each texture that is a surface, the state of its pixels.
-    pub(super) diverged: &'a [Option<super::draw::Seen<'a>>],
+    pub(super) diverged: &'a [Option<super::draw::SampledSurface<'a>>],
     /// Whether a diverged pixel was read.
     pub(super) tainted: bool,
 }
