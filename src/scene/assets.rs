@@ -1,7 +1,7 @@
-//! Where the files that a scene names come from: its folder, or a bundle in memory.
+//! Sources of the files that a scene names: its folder, or a bundle in memory.
 //!
-//! The loader asks for a name and gets bytes, within a limit. A [`Folder`] is the file system; a [`Bundle`] needs none, so that scenes can be loaded where there
-//! is none; [`Gathered`] is a folder that keeps what was read, which makes a bundle.
+//! The loader resolves a name and gets the file's bytes, within a limit. A [`Folder`] reads the file system. A [`Bundle`] needs no file system. A
+//! [`Gathered`] reads a folder and keeps what it read, which makes a bundle.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -13,22 +13,22 @@ use ninebit_files::read::{self, Kind, ReadError};
 
 use crate::path::{self, PathError};
 
-/// A source of files. Names are those of [`path::resolve`].
+/// A source of files. Names have the form that [`path::resolve`] accepts.
 pub trait Assets: fmt::Debug {
-    /// The file `name` beside a scene in `folder`, as [`bytes`](Self::bytes) takes it.
+    /// Returns the path of the file `name`, beside a scene in `folder`, in the form that [`bytes`](Self::bytes) takes.
     ///
     /// # Errors
-    /// The name is not one, there is no such file, or it lies elsewhere.
+    /// The name is malformed, there is no such file, or it lies outside `folder`.
     fn resolve(&self, folder: &Path, name: &str) -> Result<PathBuf, PathError>;
 
-    /// What is in a file.
+    /// Returns the contents of a file.
     ///
     /// # Errors
-    /// It cannot be read, or is larger than the limit.
+    /// The file cannot be read, or is larger than the limit.
     fn bytes(&self, file: &Path, limit: FileLimit) -> Result<Vec<u8>, ReadError>;
 }
 
-/// Regular files of the scene's folder.
+/// The file system: regular files in the scene's folder.
 #[derive(Clone, Copy, Debug)]
 pub struct Folder;
 
@@ -42,10 +42,10 @@ impl Assets for Folder {
     }
 }
 
-/// Files in memory, by the names that scenes give them.
+/// Files in memory, under the names that scenes give them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bundle {
-    /// Names and contents.
+    /// Contents of the files by name.
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
@@ -61,7 +61,7 @@ impl Assets for Bundle {
     }
 }
 
-/// A [`Folder`] that keeps what was asked of it.
+/// A [`Folder`] that keeps every file it reads.
 #[derive(Debug, Default)]
 pub struct Gathered {
     names: RefCell<BTreeMap<PathBuf, Vec<String>>>,
@@ -69,7 +69,7 @@ pub struct Gathered {
 }
 
 impl Gathered {
-    /// What was read so far.
+    /// Returns the files that have been read so far.
     pub fn bundle(self) -> Bundle {
         self.bundle.into_inner()
     }

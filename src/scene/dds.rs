@@ -1,8 +1,8 @@
-//! Reads DDS files: textures as they lie in memory, with their levels and faces.
+//! Reads DDS files: textures with their levels and faces, stored as they lie in memory.
 //!
-//! Nothing in the header is believed: sides, levels and faces are held against the limits first, then against the number of bytes
-//! that follow. Flags that say which fields count are not needed for that, and files set them as they like; pitches are read only
-//! where rows may be padded. Texels come out as they are stored.
+//! Nothing in the header is trusted: sides, levels and faces are compared first with the limits, then with the number of bytes
+//! that follow. The flags that say which fields are valid are ignored: the reader does not need them, and writers set them at will. The
+//! pitch is read only to find out whether rows may be padded. Texels are returned as they are stored.
 
 use std::path::Path;
 
@@ -15,13 +15,13 @@ mod pixel_format;
 /// The first bytes of every DDS file.
 pub const SIGNATURE: [u8; 4] = *b"DDS ";
 
-/// Bytes of signature and header.
+/// Number of bytes of signature and header.
 const HEADER: usize = 128;
-/// Bytes of the further header that the four characters `DX10` announce.
+/// Number of bytes of the second header, which the four characters `DX10` announce.
 const FURTHER: usize = 20;
-/// Whatever the limits: products of sides, levels and faces stay within 64 bits.
+/// Largest side, whatever the limits are: products of sides, levels and faces stay within 64 bits.
 const LARGEST_SIDE: u32 = 1 << 20;
-/// Bytes of a palette: 256 entries of R, G, B, A.
+/// Number of bytes of a palette: 256 entries of R, G, B, A.
 const PALETTE: usize = 1024;
 
 const ALL_FACES: u32 = 0xfc00;
@@ -31,29 +31,29 @@ const VOLUME: u32 = 0x20_0000;
 /// Names of the faces, in their order in files and in the state.
 pub const FACES: [&str; CUBE_FACES as usize] = ["+X", "-X", "+Y", "-Y", "+Z", "-Z"];
 
-/// A texture as a DDS file holds it.
+/// Contents of a DDS file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dds {
-    /// Six faces; one picture otherwise.
+    /// Whether the file holds the six faces of a cube map instead of one picture.
     pub cube: bool,
-    /// Layers of a volume.
+    /// Number of layers of a volume texture, `None` for other textures.
     pub layers: Option<u32>,
-    /// Meaning of the words.
+    /// Format of the texels.
     pub format: TextureFormat,
-    /// Columns of level 0.
+    /// Number of columns of level 0.
     pub width: u32,
-    /// Rows of level 0.
+    /// Number of rows of level 0.
     pub height: u32,
-    /// Levels, at least 1, at most as many as the sides can be halved; of a volume the first alone is read.
+    /// Number of levels, from 1 to as many as the sides can be halved; 1 for a volume, whose other levels are not read.
     pub levels: u32,
-    /// Face after face, or layer after layer, in it level after level, as in [`Texels::words`](ninebit::state::Texels::words).
+    /// Face after face (or layer after layer), and within it level after level, as in [`Texels::words`](ninebit::state::Texels::words).
     pub words: Vec<u32>,
-    /// 256 words A8R8G8B8 where the format is [`TextureFormat::P8`].
+    /// 256 words A8R8G8B8 if the format is [`TextureFormat::P8`].
     pub palette: Option<Vec<u32>>,
 }
 
 impl Dds {
-    /// The words, read as another format of as many bits; `None` if there is no such reading, as of blocks.
+    /// Returns the words reinterpreted in another format of the same size; `None` if that is impossible, as with compressed blocks.
     pub fn words_as(&self, format: TextureFormat) -> Option<Vec<u32>> {
         let blocks = format.is_compressed() || self.format.is_compressed();
         if format != self.format && (blocks || format.bytes() != self.format.bytes()) {
@@ -64,7 +64,7 @@ impl Dds {
     }
 }
 
-/// What a header says, once it can be true.
+/// The fields of a header that has passed its first checks.
 struct Header {
     cube: bool,
     layers: Option<u32>,
@@ -72,17 +72,17 @@ struct Header {
     width: u32,
     height: u32,
     levels: u32,
-    /// Bytes that come before the texels.
+    /// Number of bytes before the texels.
     before: usize,
-    /// Bytes from row to row of level 0, if the file says so.
+    /// Number of bytes from row to row of level 0, if the file gives it.
     pitch: u32,
 }
 
 /// Decodes the contents of a DDS file; `path` names it in errors.
 ///
 /// # Errors
-/// The file is cut off or longer than its header says, its sides exceed the limits, a face is missing, or it holds what no texture unit
-/// of the model reads. No input makes this panic.
+/// The file is cut off or longer than its header says, its sides exceed the limits, a face is missing, or its texture is of a kind that no
+/// texture unit of the model reads. No input makes this panic.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, ImageError> {
     texture(bytes, limits).map_err(|fault| fault.of(path))
 }
@@ -138,7 +138,7 @@ fn texture(bytes: &[u8], limits: &ImageLimits) -> Result<Dds, ImageFault> {
     Ok(Dds { cube, layers, format, width, height, levels, words, palette })
 }
 
-/// Reads the header, and refuses what the model lacks.
+/// Reads the header; refuses kinds of textures that the model lacks.
 fn header(bytes: &[u8]) -> Result<Header, ImageFault> {
     let damaged = |reason: &str| ImageFault::Damaged(reason.to_owned());
     let unsupported = ImageFault::Unsupported;
@@ -191,14 +191,14 @@ fn header(bytes: &[u8]) -> Result<Header, ImageFault> {
     Ok(Header { cube, layers, format, width, height, levels, before, pitch })
 }
 
-/// Sides of each level, and its layers.
+/// Returns the columns, rows and layers of each level.
 fn sides(header: &Header) -> impl Iterator<Item = (u32, u32, u64)> {
     let (width, height, layers) = (header.width, header.height, header.layers.unwrap_or(1));
     (0..header.levels.min(32))
         .map(move |n| ((width >> n).max(1), (height >> n).max(1), u64::from((layers >> n).max(1))))
 }
 
-/// Words of a level in memory here.
+/// Returns the number of words of a decoded level.
 fn words(format: TextureFormat, width: u32, height: u32) -> u64 {
     if format.is_compressed() {
         u64::from(format.bytes() / 4) * u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4))
@@ -207,14 +207,15 @@ fn words(format: TextureFormat, width: u32, height: u32) -> u64 {
     }
 }
 
-/// Whether rows follow one another at once.
+/// How the rows of a level lie in the file.
 enum Rows {
+    /// Each row follows the one before at once.
     Tight,
     /// Each row is filled up to a multiple of four bytes.
     Padded,
 }
 
-/// How rows lie in so many bytes; `None` if no way fits. Padding exists only where the pitch of level 0 says so.
+/// Returns the layout that has exactly `bytes` bytes; `None` if neither has. Rows can only be padded if the pitch of level 0 says so.
 fn row_layout(header: &Header, bytes: u64) -> Option<Rows> {
     let faces = if header.cube { u64::from(CUBE_FACES) } else { 1 };
     let row = u64::from(header.format.bytes()) * u64::from(header.width);
@@ -228,7 +229,7 @@ fn row_layout(header: &Header, bytes: u64) -> Option<Rows> {
     }
 }
 
-/// Bytes of all levels of a face in the file.
+/// Returns the number of bytes of all levels of a face in the file.
 fn stored(header: &Header, padded: bool) -> u64 {
     let level = |(width, height, layers): (u32, u32, u64)| {
         if header.format.is_compressed() {
@@ -240,7 +241,7 @@ fn stored(header: &Header, padded: bool) -> u64 {
     sides(header).map(level).sum()
 }
 
-/// The texels of a file with padded rows, whose length has been checked.
+/// Removes the padding of rows; the length of `texels` has been checked.
 fn without_padding(header: &Header, texels: &[u8]) -> Vec<u8> {
     let mut tight = Vec::with_capacity(texels.len());
     let mut rest = texels;
@@ -257,7 +258,7 @@ fn without_padding(header: &Header, texels: &[u8]) -> Vec<u8> {
     tight
 }
 
-/// Entries R, G, B, A as words A8R8G8B8.
+/// Converts entries R, G, B, A into words A8R8G8B8.
 fn entries(palette: &[u8]) -> Vec<u32> {
     let word = |entry: &[u8; 4]| u32::from_be_bytes([entry[3], entry[0], entry[1], entry[2]]);
     palette.as_chunks::<4>().0.iter().map(word).collect()

@@ -1,4 +1,4 @@
-//! Why a scene was not accepted.
+//! The error that a scene was not accepted.
 
 use std::fmt;
 
@@ -6,19 +6,19 @@ use ninebit::diagnostic::{Diagnostic, ErrorKind, Severity, Source};
 
 use crate::render::render;
 
-/// Why a scene was not accepted: everything that is wrong with it.
+/// The error that a scene was not accepted: all its findings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
-    /// Errors and warnings, in the order of the text. At least one error.
+    /// Errors and warnings in the order of the text; at least one is an error.
     pub diagnostics: Vec<Diagnostic>,
-    /// Findings beyond the ones kept.
+    /// Number of findings that were not kept.
     pub suppressed: usize,
-    /// The text they point into.
+    /// The text that the findings point into.
     pub source: Source,
 }
 
 impl SceneError {
-    /// The findings as text for a terminal.
+    /// Returns the findings as text for a terminal.
     pub fn render(&self, color: bool) -> String {
         let mut text = render(&self.diagnostics, &self.source, color);
         if self.suppressed > 0 {
@@ -27,14 +27,14 @@ impl SceneError {
         text
     }
 
-    /// The kind that all errors share; [`ErrorKind::Invalid`] if they differ.
+    /// Returns the kind that all errors share, or [`ErrorKind::Invalid`] if they differ.
     pub fn kind(&self) -> ErrorKind {
         let mut kinds = self.diagnostics.iter().filter(|d| d.severity == Severity::Error).map(Diagnostic::kind);
         let first = kinds.next().unwrap_or(ErrorKind::Invalid);
         if kinds.all(|kind| kind == first) { first } else { ErrorKind::Invalid }
     }
 
-    /// Exit code of the command line.
+    /// Returns the exit code of the command line.
     pub fn exit_code(&self) -> u8 {
         self.kind().exit_code()
     }

@@ -1,7 +1,7 @@
-//! What several scenes share, in a file of its own: `family: "name.family.ron"`.
+//! Families: what several scenes share, in a file of its own, `family: "name.family.ron"`.
 //!
-//! The file's text is put behind the scene's, and both are read as one: names, targets and truth of the family are then values like
-//! others. Findings about the second text are taken to the file.
+//! The file's text is appended to the scene's, and both are read as one. Names, targets and truth of the family are then values like
+//! any others. Findings about the second text are moved to the file.
 
 use ninebit::place::Span;
 use std::path::Path;
@@ -15,22 +15,22 @@ use super::reader::Reader;
 use ninebit::diagnostic::{Diagnostic, File, Source};
 use ninebit::limits::Limits;
 
-/// A family that has been read and is well formed.
+/// The file of a family, which has been read and is well formed.
 pub(super) struct Family {
     file: Arc<File>,
 }
 
-/// The family that a scene names. Nothing is said of a scene that is broken: reading it will.
+/// Finds the family that a scene names; `None` if it names none. Errors of the scene itself are not reported here but when it is read.
 ///
 /// # Errors
-/// What is wrong with the file.
+/// The findings about the family's file.
 pub(super) fn find(
     text: &str,
     folder: &Path,
     limits: &Limits,
     assets: &dyn Assets,
 ) -> Result<Option<Family>, Vec<Diagnostic>> {
-    // Most scenes have none: they are not read twice.
+    // Most scenes have no family: this avoids reading them twice.
     if !text.contains("family") {
         return Ok(None);
     }
@@ -47,16 +47,16 @@ pub(super) fn find(
 }
 
 impl Family {
-    /// The file's text.
+    /// Returns the text of the file.
     pub(super) fn text(&self) -> &str {
         &self.file.source.text
     }
 
-    /// A finding about both texts, one behind the other, as one about the scene or about the file.
+    /// Turns a finding about the joined texts into one about the scene or about the family's file.
     pub(super) fn place(&self, mut finding: Diagnostic, scene: &str) -> Diagnostic {
         let start = scene.len() + 1;
         if let Some(file) = &finding.file {
-            // A third text, which the family names.
+            // The finding is about a third file, which the family names.
             if file.named.start >= start {
                 let named = self.file.named.clone();
                 finding.file = Some(Arc::new(File { source: file.source.clone(), named }));
@@ -83,7 +83,7 @@ impl Family {
         finding
     }
 
-    /// Places in the family become the place where the scene names it.
+    /// Replaces places in the family by the place where the scene names the family.
     pub(super) fn keep_inside(&self, spans: &mut DrawSpans, scene: &str) {
         let keep = |span: &mut Span| {
             if span.start > scene.len() {
@@ -97,7 +97,7 @@ impl Family {
     }
 }
 
-/// A place of another text, in words.
+/// Writes a label and its place in another text in words.
 fn said(source: &Source, at: usize, label: &str) -> String {
     let (line, column) = source.position(at);
     format!("{}:{line}:{column}: {label}", source.name)

@@ -1,4 +1,4 @@
-//! What is declared of a field of a scene beside its type: how it is read, its default, what the document says of it.
+//! What the declaration of a scene's field says besides its type: how the field is read, its default, and its text in the document.
 
 use std::ops::RangeInclusive;
 
@@ -13,12 +13,12 @@ use ninebit::state::Named;
 use ninebit::vertex::Viewer;
 use ninebit_program::{finding, warning};
 
-/// Words beyond so many stand in the text of the document.
+/// Longest list of words in the column of values; the document's text names the words of longer lists.
 const MAX_WORDS: usize = 9;
 
-/// A value that may be a default.
+/// A type whose values may be defaults.
 pub(super) trait Shown<'a>: Valued<'a> {
-    /// As it is written.
+    /// Returns the value as a scene writes it.
     fn shown(value: &Self::Value) -> String;
 }
 
@@ -43,7 +43,7 @@ valued!(
     AlphaReference => u8: alpha_reference
 );
 
-/// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
+/// Reads `Float(0.5)`, or a number of which the low eight bits count: APIs hold either a float or a word of 32 bits.
 fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, AlphaReference>) -> Option<u8> {
     if let ("Float", rest) = raw.split() {
         let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1..=1, [0.0; 4])?;
@@ -82,7 +82,7 @@ impl<'a, T: Named> Shown<'a> for Name<T> {
 impl<'a> Valued<'a> for ViewerWord {
     type Value = Viewer;
 
-    /// `Local`, `Infinite`, or `Infinite(x, y, z)`.
+    /// Reads `Local`, `Infinite`, or `Infinite(x, y, z)`.
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Viewer> {
         const VIEWERS: &[&str] = &["Local", "Infinite"];
         match reader.variant_of(raw, "viewer", VIEWERS, 1)? {
@@ -105,17 +105,17 @@ impl<'a> Shown<'a> for ViewerWord {
     }
 }
 
-/// Numbers as they are written in parentheses.
+/// Returns numbers as they are written in parentheses.
 pub(super) fn listed(values: &[impl ToString]) -> String {
     format!("({})", values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
 }
 
-/// What the document says of a field.
+/// The row of a field in the document.
 pub(super) struct Field {
     pub(super) name: &'static str,
-    /// Of this and the fields behind it that have none.
+    /// The text for this field and for those behind it whose own is empty.
     pub(super) meaning: &'static str,
-    /// What it may be, where that is neither told by its meaning nor by its type.
+    /// The permitted values, where neither the meaning nor the type tells them.
     pub(super) values: String,
     pub(super) default: String,
 }
@@ -134,7 +134,7 @@ impl Field {
         Field { default: default.into(), ..self }
     }
 
-    /// With a default as it is written.
+    /// Sets the default to a value, as a scene writes it.
     pub(super) fn written(self, default: &str) -> Self {
         self.or(format!("`{default}`"))
     }
@@ -143,7 +143,7 @@ impl Field {
         Field { values: format!("{} to {}", range.start().to_string(), range.end().to_string()), ..self }
     }
 
-    /// One of some words, of which the first is the default.
+    /// Sets the values to some words, of which the first is the default.
     pub(super) fn one_of(self, words: &[&str]) -> Self {
         Field { values: quoted(words), ..self }.written(words[0])
     }
@@ -153,12 +153,12 @@ impl Field {
     }
 }
 
-/// What the document says of a limit.
+/// Returns a limit's default, for the document.
 pub(super) fn limit(of: fn(&Limits) -> u32) -> u32 {
     of(&Limits::default())
 }
 
-/// The method by which a field is read, as its declaration says.
+/// Defines the method that reads a field as its declaration says.
 macro_rules! read_field {
     ($field:ident $type:ty, [$(or $words:literal)?]) => {};
     ($field:ident $type:ty, [] $default:expr) => {
@@ -236,7 +236,7 @@ macro_rules! read_field {
 }
 pub(super) use read_field;
 
-/// What the document says of a field, as its declaration does.
+/// Describes a field for the document as its declaration says.
 macro_rules! described_field {
     ($field:expr, $type:ty, []) => { $field };
     ($field:expr, $type:ty, [or $words:literal]) => { $field.or($words) };

@@ -1,16 +1,16 @@
-//! What the values of a type look like in a scene's text.
+//! Describes what the values of a type look like in a scene's text.
 
 use super::raw::{Entries, Few, Raw, Reserved, Tuple};
 use super::reader::Name;
 use ninebit::state::Named;
 
-/// A name, and what its value may be.
+/// The name of a field or variant, and a function that returns the form of its value.
 pub(super) type Entry = (&'static str, fn() -> Form);
 
-/// What a value may be.
+/// The form of a value.
 #[derive(Clone, Copy)]
 pub(super) enum Form {
-    /// Fields in parentheses: names, and the form of each.
+    /// Fields in parentheses, with the name and form of each.
     Fields(fn() -> Vec<Entry>),
     /// A list in square brackets.
     List(fn() -> Form),
@@ -18,15 +18,15 @@ pub(super) enum Form {
     Tuple(fn() -> Form),
     /// A table in braces.
     Table(fn() -> Form),
-    /// A word, and in parentheses what belongs to it.
+    /// A word, with a value of its own form in parentheses.
     Variant(&'static [Entry]),
-    /// This, or a text that names something: of a texture unit, its texture.
+    /// A value of the given form, or a text that gives the field of that name: of a texture unit, its texture.
     OrName(fn() -> Form, &'static str),
     /// A value without parts.
     Value(Kind),
 }
 
-/// What a value without parts is.
+/// The kind of a value without parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A colour: three or four bytes in parentheses, or `Float(...)`, or a name.
@@ -48,9 +48,9 @@ pub enum Kind {
     Other,
 }
 
-/// A type of which it is known what its values look like.
+/// A type whose values have a known form.
 pub(super) trait Described {
-    /// What they look like.
+    /// Returns the form of the type's values.
     fn form() -> Form;
 }
 

@@ -1,8 +1,8 @@
-//! Reads PNG, TGA and DDS files that nobody has looked at before.
+//! Reads PNG, TGA and DDS files that are not trusted.
 //!
-//! The order matters: kind of file and its size, then the header against the limits, then the decoder, which runs under
-//! [`catch_panic`] because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
-//! so compressed text and profiles are never unpacked. Bytes come out as they are stored: no gamma, no colour management.
+//! The order of checks matters: the kind of the file and its size, then the header against the limits, then the decoder, which runs under
+//! [`catch_panic`] because decoders panic on some malformed files. Only the chunks of a PNG that decide its pixels reach the decoder,
+//! so compressed text and profiles are never unpacked. Bytes are returned as they are stored: no gamma, no colour management.
 
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
@@ -18,14 +18,14 @@ use ninebit_files::read::ReadError;
 
 mod png;
 
-/// What an image file may ask for.
+/// Limits of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageLimits {
-    /// Columns and rows, each.
+    /// Largest number of columns, and of rows.
     pub maximum_side: u32,
-    /// Bytes of the decoded pixels at four bytes each.
+    /// Largest size of the decoded pixels, in bytes, at four bytes a pixel.
     pub maximum_decoded_bytes: u64,
-    /// Bytes of the file.
+    /// Largest size of the file, in bytes.
     pub maximum_file_bytes: u64,
 }
 
@@ -44,90 +44,90 @@ impl ImageLimits {
 /// A decoded image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rgba {
-    /// Pixels across.
+    /// Number of columns.
     pub width: u32,
-    /// Pixels down.
+    /// Number of rows.
     pub height: u32,
-    /// `width * height` pixels R, G, B, A, row by row from the top. Files without alpha give 255.
+    /// `width * height` pixels R, G, B, A, row by row from the top. Alpha is 255 if the file has none.
     pub pixels: Vec<[u8; 4]>,
 }
 
-/// What an image file may be.
+/// Contents of an image file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Contents {
-    /// Pixels, of a PNG or TGA file.
+    /// Pixels of a PNG or TGA file.
     Picture(Rgba),
-    /// Texels of a format, of a DDS file.
+    /// Texels of a DDS file.
     Texture(Dds),
 }
 
-/// Why an image was not read.
+/// The error that an image was not read.
 #[derive(Debug, Error)]
 #[error("image `{}` {fault}", ninebit::shown::path(path))]
 pub struct ImageError {
-    /// The file that was to be read.
+    /// Path of the image file.
     pub path: PathBuf,
     /// What is wrong with it.
     pub fault: ImageFault,
 }
 
-/// What is wrong with an image.
+/// The fault of an image file.
 #[derive(Debug, Error)]
 pub enum ImageFault {
     /// There is no such file.
     #[error("does not exist")]
     Missing,
-    /// A folder, a device, a pipe.
+    /// The path is a folder, a device or a pipe.
     #[error("is not a regular file")]
     NotAFile,
-    /// The file system refused.
+    /// The file system refused to read it.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
-    /// None of the kinds that are read.
+    /// The file has none of the supported formats; the text says which were expected.
     #[error("is {0}")]
     Format(&'static str),
-    /// More bytes than [`ImageLimits::maximum_file_bytes`].
+    /// The file has more bytes than [`ImageLimits::maximum_file_bytes`].
     #[error("is larger than {0}")]
     FileBytes(FileLimit),
-    /// More columns or rows than allowed.
+    /// The image has more columns or rows than allowed.
     #[error("is {width} x {height}; a side may have {limit} pixels at most")]
     Side {
-        /// Columns that it has.
+        /// Number of its columns.
         width: u32,
-        /// Rows that it has.
+        /// Number of its rows.
         height: u32,
-        /// The most of either: [`ImageLimits::maximum_side`].
+        /// The largest side: [`ImageLimits::maximum_side`].
         limit: u32,
     },
-    /// More pixels than allowed.
+    /// The image has more pixels than allowed.
     #[error("decodes to {bytes} bytes; {limit} are allowed")]
     DecodedBytes {
-        /// Bytes that its pixels need.
+        /// Number of bytes that its pixels need.
         bytes: u64,
-        /// The most: [`ImageLimits::maximum_decoded_bytes`].
+        /// The largest number: [`ImageLimits::maximum_decoded_bytes`].
         limit: u64,
     },
-    /// The contents make no sense: what the reader said.
+    /// The contents make no sense; the text says why.
     #[error("is damaged: {0}")]
     Damaged(String),
-    /// A DDS file of what no texture unit of the model reads.
+    /// A DDS file holds a kind of texture that no texture unit of the model reads.
     #[error("holds {0}, which this program does not read")]
     Unsupported(String),
-    /// A cube map without these of its six faces.
+    /// A cube map lacks these of its six faces.
     #[error("is a cube map without {}", .0.join(", "))]
     MissingFaces(Vec<&'static str>),
-    /// The channels have this many bits.
+    /// The channels have more than 8 bits: this many.
     #[error("has {0} bits a channel; 8 are the most")]
     Depth(u8),
 }
 
 impl ImageFault {
-    /// That it is wrong with this file.
+    /// Makes the error that the file at `path` has this fault.
     pub(super) fn of(self, path: &Path) -> ImageError {
         ImageError { path: path.to_path_buf(), fault: self }
     }
 
-    /// Stable code, and what to do about it.
+    /// Returns the stable code, and the help: what to do about the fault.
     fn told(&self) -> (&'static str, &'static str) {
         let smaller = "scale the image down; `ninebit limits` prints what is allowed";
         match self {
@@ -155,22 +155,22 @@ impl ImageFault {
 }
 
 impl ImageError {
-    /// The code of `docs/errors.md`.
+    /// Returns the code, which `docs/errors.md` lists.
     pub fn code(&self) -> &'static str {
         self.fault.told().0
     }
 
-    /// What to do about it.
+    /// Returns what to do about it.
     pub fn help(&self) -> &'static str {
         self.fault.told().1
     }
 
-    /// The file is sound as far as looked at, but asks for more than is allowed.
+    /// Returns whether the file exceeds a limit, without another fault having been found.
     pub fn is_limit(&self) -> bool {
         matches!(self.fault, ImageFault::FileBytes(_) | ImageFault::Side { .. } | ImageFault::DecodedBytes { .. })
     }
 
-    /// There is no such file.
+    /// Returns whether there is no such file.
     pub fn is_missing(&self) -> bool {
         matches!(self.fault, ImageFault::Missing)
     }
@@ -178,7 +178,7 @@ impl ImageError {
 
 /// Reads the PNG or TGA file at `path`.
 ///
-/// A PNG is known by its first eight bytes, whatever its name; a TGA has no such mark and is known by its extension.
+/// A PNG is recognised by its first eight bytes, whatever its name; a TGA has no such mark and is recognised by its extension.
 ///
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
@@ -187,7 +187,8 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
     decode(&bytes, path, limits)
 }
 
-/// Reads the PNG or TGA file at `path`, or a grey PNG of 16 bits, and says whether it is one: its pixels are then [`pixel_of_word`].
+/// Reads the PNG or TGA file at `path`, which may also be a grey PNG of 16 bits. Returns the pixels, and whether they are those of 16-bit words, as
+/// [`pixel_of_word`] makes them.
 ///
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
@@ -196,12 +197,12 @@ pub fn load_words(path: &Path, limits: &ImageLimits) -> Result<(Rgba, bool), Ima
     picture(&bytes, path, limits, 16).map_err(|fault| fault.of(path))
 }
 
-/// The pixel that stands for a word of 16 bits.
+/// Returns the pixel that stands for a word of 16 bits: the high byte in red, the low byte in green.
 pub fn pixel_of_word(word: u16) -> [u8; 4] {
     [(word >> 8) as u8, word as u8, 0, 255]
 }
 
-/// Reads the PNG, TGA or DDS file at `path`. A DDS is known by its first four bytes, whatever its name.
+/// Reads the PNG, TGA or DDS file at `path`. A DDS is recognised by its first four bytes, whatever its name.
 ///
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
@@ -212,7 +213,7 @@ pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
 /// Decodes the contents of a PNG, TGA or DDS file; `path` gives the extension and names the file in errors.
 ///
 /// # Errors
-/// As [`open`], less those of reading.
+/// Those of [`open`], except for errors of reading.
 pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
     if bytes.starts_with(&dds::SIGNATURE) {
         return dds::decode(bytes, path, limits).map(Contents::Texture);
@@ -226,12 +227,12 @@ pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Conte
 /// Decodes the contents of an image file; `path` gives the extension and names the file in errors.
 ///
 /// # Errors
-/// As [`load`], less those of reading.
+/// Those of [`load`], except for errors of reading.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
     picture(bytes, path, limits, 8).map(|(picture, _)| picture).map_err(|fault| fault.of(path))
 }
 
-/// The pixels, and whether they are words of 16 bits; `bits`: the most of a channel.
+/// Decodes a PNG or TGA file whose channels have at most `bits` bits. Returns the pixels, and whether they are those of 16-bit words.
 fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits, bits: u8) -> Result<(Rgba, bool), ImageFault> {
     let damaged = |reason: &str| ImageFault::Damaged(reason.to_owned());
     let (format, header, bytes) = if bytes.starts_with(&png::SIGNATURE) {
@@ -251,7 +252,7 @@ fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits, bits: u8) -> Result<
     let mut allowed = image::Limits::default();
     allowed.max_image_width = Some(limits.maximum_side);
     allowed.max_image_height = Some(limits.maximum_side);
-    // The decoder's own row buffers come on top of the pixels.
+    // The decoder needs its row buffers in addition to the pixels.
     allowed.max_alloc = Some(limits.maximum_decoded_bytes.saturating_add(4 << 20));
     let decoded = catch_panic::quietly(|| {
         let mut reader = image::ImageReader::with_format(Cursor::new(&*bytes), format);
@@ -263,23 +264,23 @@ fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits, bits: u8) -> Result<
     Ok((to_rgba(decoded)?, header.bits > 8))
 }
 
-/// What a header says, before anything is decoded.
+/// The fields of a header, which is read before anything is decoded.
 #[derive(Clone, Copy, Debug)]
 struct Header {
     width: u32,
     height: u32,
-    /// Bits a channel.
+    /// Number of bits of a channel.
     bits: u8,
 }
 
-/// The header of a TGA file; `None` when the file ends within it.
+/// Reads the header of a TGA file; `None` if the file ends within it.
 fn tga_header(bytes: &[u8]) -> Option<Header> {
     let header: &[u8; 18] = bytes.first_chunk()?;
     let side = |low: usize| u32::from(u16::from_le_bytes([header[low], header[low + 1]]));
     Some(Header { width: side(12), height: side(14), bits: 8 })
 }
 
-/// Holds a header against the limits.
+/// Compares a header with the limits.
 fn check_header(Header { width, height, .. }: Header, limits: &ImageLimits) -> Result<(), ImageFault> {
     if width == 0 || height == 0 {
         return Err(ImageFault::Damaged(format!("it is {width} x {height}")));
@@ -294,7 +295,7 @@ fn check_header(Header { width, height, .. }: Header, limits: &ImageLimits) -> R
     Ok(())
 }
 
-/// Spreads what the decoder gave to R, G, B, A. Grey counts for all three colours.
+/// Converts the decoder's pixels into R, G, B, A. Grey stands for all three colours.
 fn to_rgba(decoded: DynamicImage) -> Result<Rgba, ImageFault> {
     let (width, height) = (decoded.width(), decoded.height());
     let pixels = match decoded {
@@ -303,7 +304,7 @@ fn to_rgba(decoded: DynamicImage) -> Result<Rgba, ImageFault> {
         DynamicImage::ImageRgb8(color) => color.pixels().map(|p| [p[0], p[1], p[2], 255]).collect(),
         DynamicImage::ImageRgba8(color) => color.pixels().map(|p| p.0).collect(),
         DynamicImage::ImageLuma16(grey) => grey.pixels().map(|p| pixel_of_word(p[0])).collect(),
-        // Colours of 16 bits; a decoder that widens must not slip through.
+        // Colours of 16 bits are refused here too, in case a decoder widens its pixels.
         _ => return Err(ImageFault::Depth(16)),
     };
     Ok(Rgba { width, height, pixels })

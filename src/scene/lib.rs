@@ -1,7 +1,7 @@
-//! The scene front end: text in, checked state out.
+//! The front end of scenes: reads text, returns checked state.
 //!
-//! [`load`] reads a file, [`parse`] a text. What they return draws without further checks; what they refuse comes back as
-//! [`Diagnostic`]s that point into the text, all of them at once. The format is described in `docs/scene-format.md`.
+//! [`load`] reads a file, [`parse`] a text. Scenes that they return can be drawn without further checks. Scenes that they refuse are returned as
+//! [`Diagnostic`]s that point into the text, all of them at once. `docs/scene-format.md` describes the format.
 
 pub mod assets;
 pub mod dds;
@@ -48,40 +48,40 @@ pub use written::register_words;
 /// A scene that was read and checked.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// What to draw.
+    /// State of the scene.
     pub scene: Scene,
-    /// How it is drawn: planned with [`PlanOptions::default`](ninebit::plan::PlanOptions).
+    /// Plan of the scene, made with [`PlanOptions::default`](ninebit::plan::PlanOptions).
     pub plan: Plan,
-    /// What is probably not meant.
+    /// Findings about what is probably unintended.
     pub warnings: Vec<Diagnostic>,
-    /// The text that the warnings and the places point into.
+    /// The text that the warnings and places point into.
     pub source: Source,
-    /// Places of the draws, in their order.
+    /// Places of the draws in the text, in the order of the draws.
     pub draw_spans: Vec<DrawSpans>,
-    /// What its picture ought to show, if it says so.
+    /// What the picture ought to show, if the scene has a truth.
     pub truth: Option<Truth>,
 }
 
 impl Loaded {
-    /// The warnings as text for a terminal; empty if there are none.
+    /// Returns the warnings as text for a terminal; empty if there are none.
     pub fn render_warnings(&self, color: bool) -> String {
         render(&self.warnings, &self.source, color)
     }
 }
 
-/// Reads and checks the scene file at `path`; the files it names are looked for in its folder. `-` is standard input, whose files are looked for in the current
-/// folder.
+/// Reads and checks the scene file at `path`. The files that the scene names are looked for in its folder. The path `-` is standard input; its
+/// files are looked for in the current folder.
 ///
 /// # Errors
-/// The file is missing, too large or not UTF-8; the scene is not one; a file that it names cannot be used.
+/// The file is missing, too large or not UTF-8; it is no valid scene; a file that it names cannot be used.
 pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
     load_with(path, limits, &Folder)
 }
 
-/// [`load`], with the files that the scene names from elsewhere.
+/// Like [`load`], but reads the files that the scene names from `assets`.
 ///
 /// # Errors
-/// As [`load`].
+/// Those of [`load`].
 pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
     let name = shown::lossless(path);
     let fail = |finding: Diagnostic, text: String| SceneError {
@@ -120,11 +120,11 @@ fn too_large(limit: FileLimit) -> Diagnostic {
         .help("move repeated vertex lists to `names`, use generated meshes, or split the scene")
 }
 
-/// Reads a pixel program from a file of its own, as that of the one draw of a scene for the chip `profile`: one pixel, and in each unit a white texture
-/// of one texel.
+/// Reads a pixel program from a file of its own, as the program of a scene's only draw for the chip `profile`. The draw has one pixel, and each unit
+/// has a white texture of one texel.
 ///
 /// # Errors
-/// The file is missing, too large or not UTF-8; it is no program of the language; the chip does not take it.
+/// The file is missing, too large or not UTF-8; it is no program of the language; the chip cannot run it.
 pub fn load_program(
     path: &Path,
     language: ProgramLanguage,
@@ -140,19 +140,19 @@ pub fn load_program(
     found.ok_or(SceneError { diagnostics, suppressed, source })
 }
 
-/// Reads and checks a scene from its text. `origin` is its path: messages name it, and the files that the scene names are looked
+/// Reads and checks a scene from its text. `origin` is the path of the text: messages show it, and the files that the scene names are looked
 /// for in its folder.
 ///
 /// # Errors
-/// Everything that is wrong with it.
+/// All findings about the scene.
 pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
     parse_with(text, origin, limits, &Folder)
 }
 
-/// [`parse`], with the files that the scene names from elsewhere.
+/// Like [`parse`], but reads the files that the scene names from `assets`.
 ///
 /// # Errors
-/// As [`parse`].
+/// Those of [`parse`].
 pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source { name: shown::lossless(origin), text: text.to_owned() };
@@ -165,7 +165,7 @@ pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Asset
         Ok(family) => family,
         Err(diagnostics) => return Err(SceneError { diagnostics, suppressed: 0, source }),
     };
-    // Both texts in one, so that a place in either is a number of bytes.
+    // Both texts are joined, so that a place in either is one number of bytes.
     let whole = family.as_ref().map(|family| format!("{text}\n{}", family.text()));
     let whole = whole.as_deref().unwrap_or(text);
     let mut reader = reader::Reader::new(whole, folder, limits, assets);

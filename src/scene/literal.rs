@@ -1,18 +1,18 @@
-//! Texts and numbers as the notation of scene files writes them.
+//! Reads literals of scene files: texts in quotes, and numbers.
 
 use ninebit::place::Span;
 
 /// A text in quotes.
 pub(super) struct Literal<'a> {
     value: &'a str,
-    /// What stands between the quotes.
+    /// Range of the text between the quotes.
     inside: Span,
-    /// Whether a backslash means what it says.
+    /// Whether the text is raw: a backslash then stands for itself.
     raw: bool,
 }
 
 impl<'a> Literal<'a> {
-    /// `None` if the value is something else.
+    /// Recognises a text in quotes; `None` if the value is something else.
     pub(super) fn from_text(value: &'a str) -> Option<Self> {
         let signs = value.strip_prefix('r').map(|rest| rest.bytes().take_while(|byte| *byte == b'#').count());
         let start = signs.map_or(1, |signs| signs + 2);
@@ -21,7 +21,7 @@ impl<'a> Literal<'a> {
         quotes.then(|| Literal { value, inside: start..end, raw: signs.is_some() })
     }
 
-    /// What it says, and where in the value each character starts.
+    /// Returns the characters that the text stands for, and where in the value each one starts.
     pub(super) fn characters(&self) -> impl Iterator<Item = (char, usize)> {
         let mut at = self.inside.start;
         std::iter::from_fn(move || {
@@ -34,13 +34,13 @@ impl<'a> Literal<'a> {
         })
     }
 
-    /// Where it ends in the value.
+    /// Returns the place in the value where the text ends.
     pub(super) fn end(&self) -> usize {
         self.inside.end
     }
 }
 
-/// The character that a text in quotes goes on with, and its length there.
+/// Reads the next character of a text in quotes. Returns it and its length in the source; `None` if an escape is malformed.
 pub(super) fn character(literal: &str) -> Option<(char, usize)> {
     let first = literal.chars().next()?;
     if first != '\\' {
@@ -67,16 +67,17 @@ pub(super) fn character(literal: &str) -> Option<(char, usize)> {
     })
 }
 
-/// A number as it may be written.
+/// A type of numbers that scenes write.
 pub(super) trait Number: Sized + Copy + Default {
-    /// `Ok(None)`: it does not fit.
+    /// Reads a number; `Ok(None)` if it does not fit into the type.
     ///
     /// # Errors
     /// The text is no such number.
     fn number(text: &str) -> Result<Option<Self>, ()>;
 }
 
-/// A whole number: decimal, or in digits of base 16, 8 or 2 behind `0x`, `0o`, `0b`; with `_` between digits. `Ok(None)` if it is below 0 or beyond 64 bits.
+/// Reads a whole number: decimal, or in base 16, 8 or 2 after `0x`, `0o`, `0b`; `_` may separate digits. Returns `Ok(None)` below 0 or
+/// beyond 64 bits.
 fn whole(text: &str) -> Result<Option<u64>, ()> {
     let (negative, digits) = match text.as_bytes().first() {
         Some(b'-') => (true, &text[1..]),

@@ -1,11 +1,11 @@
-//! Meshes with tangent frames, the same on every machine.
+//! Makes meshes with tangent bases, the same on every machine.
 //!
-//! Everything here is addition, subtraction, multiplication, division and rounding of IEEE numbers in a fixed order; sine and
+//! All arithmetic is addition, subtraction, multiplication, division and rounding of IEEE numbers in a fixed order. Sine and
 //! cosine come from [`circle`], not from the system's library, whose last bits differ between systems.
 //!
-//! Conventions: right-handed object space, y up. Triangles are counter-clockwise seen from the side the normal points to. Texture
-//! coordinate s grows to the right and t downward, as rows of an image do. The tangent points along s; the binormal points
-//! *against* t, upward on the image, as the green of a [normal map](crate::generate::normal_map) does, so that tangent x
+//! Conventions: object space is right-handed, with y up. Triangles are counter-clockwise seen from the side that the normal points to. Texture
+//! coordinate s grows to the right and t downward, like the rows of an image. The tangent points along s. The binormal points
+//! *against* t, which is upward on the image, as the green of a [normal map](crate::generate::normal_map) does; so tangent x
 //! binormal = normal.
 #![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
@@ -21,28 +21,28 @@ pub use round::{cylinder, torus};
 pub use tangent::{Surface, mesh};
 pub use wavefront::read as wavefront;
 
-/// The most vertices that a mesh here may have.
+/// Largest number of vertices of a generated mesh.
 pub const MAXIMUM_VERTICES: u32 = 1 << 20;
 
-/// Vertices and triangles. The vertex lists have the same length; all vectors are of unit length (to rounding).
+/// Vertices and triangles. All lists of vertices have the same length; all vectors but positions are of unit length, to rounding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// x, y, z in object space.
+    /// Positions x, y, z in object space.
     pub positions: Vec<[f32; 3]>,
-    /// Out of the surface.
+    /// Normals, which point out of the surface.
     pub normals: Vec<[f32; 3]>,
-    /// Along increasing s.
+    /// Tangents, which point along increasing s.
     pub tangents: Vec<[f32; 3]>,
-    /// Along decreasing t.
+    /// Binormals, which point along decreasing t.
     pub binormals: Vec<[f32; 3]>,
-    /// s and t of each vertex.
+    /// Texture coordinates s and t.
     pub texture_coordinates: Vec<[f32; 2]>,
-    /// Three a triangle. Draws share them.
+    /// Three indices for each triangle. Draws share them.
     pub indices: Arc<[u32]>,
 }
 
 impl Mesh {
-    /// Adds a vertex: its place, its tangent, binormal and normal, and s and t.
+    /// Adds a vertex with its position, its tangent, binormal and normal, and its texture coordinates.
     fn push(&mut self, position: [f32; 3], [tangent, binormal, normal]: [[f32; 3]; 3], coordinates: [f32; 2]) {
         self.positions.push(position);
         self.normals.push(normal);
@@ -52,44 +52,44 @@ impl Mesh {
     }
 }
 
-/// A vector as vertices have it.
+/// Rounds a vector to the precision of vertices.
 fn narrow(v: [f64; 3]) -> [f32; 3] {
     v.map(|c| c as f32)
 }
 
-/// s and t at a corner of a lattice of so many cells.
+/// Returns s and t at a corner of a lattice of `cells` cells.
 fn across(at: [u32; 2], cells: [u32; 2], repeat: [f32; 2]) -> [f32; 2] {
     [0, 1].map(|n| at[n] as f32 / cells[n] as f32 * repeat[n])
 }
 
-/// Why there is no such mesh.
+/// The error that a mesh cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MeshError {
-    /// Not enough divisions for the shape.
+    /// The shape needs more divisions.
     #[error("a {shape} needs at least {minimum} {what}, not {given}")]
     TooCoarse {
-        /// The shape's name, as messages write it.
+        /// Name of the shape in messages.
         shape: &'static str,
-        /// What is counted.
+        /// What the divisions are called in messages.
         what: &'static str,
-        /// The least that makes such a shape.
+        /// Smallest number of divisions of the shape.
         minimum: u32,
-        /// How many were asked for.
+        /// Number of divisions that was asked for.
         given: u32,
     },
-    /// More than [`MAXIMUM_VERTICES`].
+    /// The mesh would have more than [`MAXIMUM_VERTICES`].
     #[error("a {shape} of {vertices} vertices is too fine; {MAXIMUM_VERTICES} are allowed")]
     TooFine {
-        /// The shape's name, as messages write it.
+        /// Name of the shape in messages.
         shape: &'static str,
-        /// What it would have.
+        /// Number of vertices that it would have.
         vertices: u64,
     },
 }
 
-/// A rectangle in the xy plane, centred on the origin, facing +z, cut into `columns` x `rows` cells of two triangles each.
+/// Makes a rectangle in the xy plane, centred on the origin, facing +z, of `columns` x `rows` cells with two triangles each.
 ///
-/// `size` is its width and height; the texture is repeated `repeat` times along s and t, and its first row lies at the top.
+/// `size` is its width and height. The texture is repeated `repeat` times along s and t; its first row lies at the top.
 ///
 /// # Errors
 /// No columns or rows, or too many vertices.
@@ -99,7 +99,7 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
     let mut mesh = with_room("grid", columns, rows)?;
     for row in 0..=rows {
         for column in 0..=columns {
-            // (2i - n) / 2n: exactly symmetric about the centre.
+            // (2i - n) / 2n is exactly symmetric about the centre.
             let x = (2.0 * column as f32 - columns as f32) / (2.0 * columns as f32) * size[0];
             let y = (rows as f32 - 2.0 * row as f32) / (2.0 * rows as f32) * size[1];
             let basis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -110,10 +110,10 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
     Ok(mesh)
 }
 
-/// A sphere about the origin with its poles on the y axis: `slices` around, `stacks` from the north pole to the south pole.
+/// Makes a sphere about the origin with its poles on the y axis. It has `slices` around the axis and `stacks` from pole to pole.
 ///
-/// s = 0 lies at +z, grows eastward (to the right seen
-/// from outside), and is `repeat[0]` when it is back there; t is 0 at the north pole and `repeat[1]` at the south pole.
+/// s is 0 at +z and grows eastward (to the right seen
+/// from outside), up to `repeat[0]` back at +z; t is 0 at the north pole and `repeat[1]` at the south pole.
 ///
 /// # Errors
 /// Fewer than 3 slices or 2 stacks, or too many vertices.
@@ -122,7 +122,7 @@ pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result
     at_least("sphere", "stacks", 2, stacks)?;
     let mut mesh = with_room("sphere", slices, stacks)?;
     for stack in 0..=stacks {
-        // Half a turn from pole to pole.
+        // From pole to pole is half a turn.
         let [sin_polar, cos_polar] = circle(stack, 2 * stacks);
         for slice in 0..=slices {
             let [sin_azimuth, cos_azimuth] = circle(slice, slices);
@@ -150,23 +150,23 @@ pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result
     Ok(mesh)
 }
 
-/// Sine and cosine of `numerator / denominator` of a full turn.
+/// Returns sine and cosine of `numerator / denominator` of a full turn.
 ///
-/// The angle is brought into the first eighth of a turn in integers, so the symmetries are exact: quarter turns give exactly 0 and
-/// 1, and sin(-a) = -sin(a). There, Taylor polynomials of degree 15 and 14 in f64 are off by less than 3e-16.
+/// The angle is reduced to the first eighth of a turn in integers, so symmetries are exact: quarter turns give exactly 0 and
+/// 1, and sin(-a) = -sin(a). In that eighth, Taylor polynomials of degree 15 and 14 in f64 are off by less than 3e-16.
 ///
-/// `denominator` must not be 0; it may be up to 2^28.
+/// `denominator` must be from 1 to 2^28.
 pub fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
     debug_assert!(denominator > 0 && denominator <= 1 << 28);
     let (n, d) = (u64::from(numerator % denominator), u64::from(denominator));
-    // In eighths of a turn: `octant`, and `rest / d` of the next.
+    // The angle is `octant` eighths of a turn, plus `rest / d` of the next.
     let octant = 8 * n / d;
     let rest = 8 * n % d;
-    // Odd octants are measured back from their far end.
+    // In odd octants the angle is measured back from their end.
     let eighths = if octant % 2 == 0 { rest } else { d - rest };
     let angle = eighths as f64 / d as f64 * std::f64::consts::FRAC_PI_4;
     let (sin, cos) = if eighths == d {
-        // Between two octants: the two polynomials may differ in the last bit, the two symmetries must not.
+        // On the border of two octants the polynomials may differ in the last bit, but the symmetries have to be exact.
         [std::f64::consts::FRAC_1_SQRT_2; 2].into()
     } else {
         (sin_eighth(angle), cos_eighth(angle))
@@ -183,32 +183,32 @@ pub fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
     }
 }
 
-/// Sine for 0 <= x <= pi / 4.
+/// Returns the sine of x, for 0 <= x <= pi / 4.
 fn sin_eighth(x: f64) -> f64 {
     x * series(x * x, 7, 1.0)
 }
 
-/// Cosine for 0 <= x <= pi / 4.
+/// Returns the cosine of x, for 0 <= x <= pi / 4.
 fn cos_eighth(x: f64) -> f64 {
     series(x * x, 8, 0.0)
 }
 
-/// 1 - y/((1 + odd) (2 + odd)) (1 - y/((3 + odd) (4 + odd)) (1 - ...)) of so many terms, innermost first.
+/// Returns 1 - y/((1 + odd) (2 + odd)) (1 - y/((3 + odd) (4 + odd)) (1 - ...)) with `terms` terms, innermost first.
 fn series(y: f64, terms: u32, odd: f64) -> f64 {
     let double = |k| 2.0 * f64::from(k) + odd;
     (1..=terms).rev().map(double).fold(1.0, |sum, double| 1.0 - y / ((double - 1.0) * double) * sum)
 }
 
-/// Corners of a cell in a lattice of rows of `columns + 1` vertices: upper left, upper right, lower left, lower right.
+/// Returns the corners of a cell in a lattice whose rows have `columns + 1` vertices: upper left, upper right, lower left, lower right.
 fn cell(columns: u32, row: u32, column: u32) -> [u32; 4] {
     let upper = row * (columns + 1) + column;
     let lower = upper + columns + 1;
     [upper, upper + 1, lower, lower + 1]
 }
 
-/// Two triangles for each cell of a mesh of so many columns and rows.
+/// Returns the indices of two triangles for each cell of a lattice.
 fn cells(columns: u32, rows: u32) -> impl Iterator<Item = u32> {
-    // A range that is mapped has a known length: collected, it is written where it stays.
+    // Mapping a range keeps its length known, so that collecting the indices allocates once.
     (0..6 * columns * rows).map(move |n| {
         let [a, b, c, d] = cell(columns, n / 6 / columns, n / 6 % columns);
         [a, c, d, a, d, b][n as usize % 6]
@@ -219,7 +219,7 @@ fn at_least(shape: &'static str, what: &'static str, minimum: u32, given: u32) -
     if given < minimum { Err(MeshError::TooCoarse { shape, what, minimum, given }) } else { Ok(()) }
 }
 
-/// An empty mesh with room for the vertices of a lattice of `columns` x `rows` cells.
+/// Returns an empty mesh with room for the vertices of a lattice of `columns` x `rows` cells.
 fn with_room(shape: &'static str, columns: u32, rows: u32) -> Result<Mesh, MeshError> {
     let vertices = (u64::from(columns) + 1).saturating_mul(u64::from(rows) + 1);
     if vertices > u64::from(MAXIMUM_VERTICES) {
@@ -247,7 +247,7 @@ mod tests {
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     }
 
-    /// Frames are orthonormal and right-handed, triangles face outward, indices are in range.
+    /// Checks that bases are orthonormal and right-handed, that triangles face outward, and that indices are in range.
     pub(super) fn check(mesh: &Mesh) {
         assert_eq!(
             [mesh.normals.len(), mesh.tangents.len(), mesh.binormals.len(), mesh.texture_coordinates.len()],
@@ -279,11 +279,11 @@ mod tests {
         for n in 0..=4096 {
             let [sin, cos] = circle(n, 4096);
             let angle = f64::from(n) / 4096.0 * std::f64::consts::TAU;
-            // The reference multiplies a rounded angle: 1e-15 of that is its own.
+            // The reference multiplies a rounded angle, which contributes 1e-15 of the difference.
             assert!((sin - angle.sin()).abs() < 2e-15 && (cos - angle.cos()).abs() < 2e-15, "{n}: {sin} {cos}");
             assert!((sin * sin + cos * cos - 1.0).abs() < 6e-16, "{n}");
         }
-        // In the first eighth the reference is good to its last bit.
+        // In the first eighth the reference is exact to its last bit.
         for n in 0..=512 {
             let angle = f64::from(n) / 512.0 * std::f64::consts::FRAC_PI_4;
             assert!((sin_eighth(angle) - angle.sin()).abs() < 3e-16 && (cos_eighth(angle) - angle.cos()).abs() < 3e-16);
@@ -327,7 +327,7 @@ mod tests {
             check(&mesh);
             assert_eq!(mesh.indices.len() as u32, slices * (stacks - 1) * 6);
             assert!(mesh.positions.iter().all(|p| (dot(*p, *p) - 4.0).abs() < 2e-6));
-            // The seam's two columns are the same points.
+            // The first and the last column, at the seam, are the same points.
             for stack in 0..=stacks {
                 let first = (stack * (slices + 1)) as usize;
                 assert_eq!(mesh.positions[first], mesh.positions[first + slices as usize]);

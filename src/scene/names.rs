@@ -1,4 +1,4 @@
-//! Values that are defined once and used by name, as the reader keeps them.
+//! Tables of values that are defined once and used by name, as the reader keeps them.
 
 use ninebit::place::Span;
 use std::any::Any;
@@ -12,23 +12,23 @@ use super::wording::{closest, shorten};
 use ninebit::state::{Palette, Target, Texture};
 use ninebit_program::finding;
 
-/// Names of one kind, where each is defined, and whether something uses it.
+/// The names of one kind of values, with the place of each definition and whether it is used.
 #[derive(Default)]
 pub(crate) struct Index {
     pub(super) what: &'static str,
-    /// How to define one.
+    /// The help that says how to define a value.
     pub(super) define: String,
-    /// Numbers of those that are listed; of others nothing is known, and nothing said.
+    /// Index of each name in `list`; `None` for a name whose definition was not read, about which nothing is reported.
     pub(super) by_name: HashMap<String, Option<usize>>,
     pub(super) list: Vec<Known>,
-    /// There are more of which nothing is known, and nothing said.
+    /// Whether there are more definitions that were not read: unknown names are then not reported.
     pub(super) unread: bool,
 }
 
 pub(crate) struct Known {
     pub(super) name: String,
     pub(super) place: Span,
-    /// What is wrong keeps its name but has no index.
+    /// Index of the value; `None` if the definition is wrong.
     pub(super) index: Option<usize>,
     pub(super) used: bool,
 }
@@ -43,22 +43,22 @@ impl Index {
         self.list.push(Known { name, place, index, used: false });
     }
 
-    /// Names of which nothing is known.
+    /// Registers names whose definitions are not read.
     pub(super) fn without(&mut self, names: impl Iterator<Item = String>) {
         self.by_name = names.map(|name| (name, None)).collect();
     }
 
-    /// Where a name of the list is defined.
+    /// Returns the place of the definition with this number.
     pub(super) fn place(&self, number: usize) -> Span {
         self.list.get(number).map(|known| known.place.clone()).unwrap_or_default()
     }
 
-    /// Where that name is defined.
+    /// Returns the place where a name is defined.
     pub(super) fn place_of(&self, name: &str) -> Option<Span> {
         self.by_name.get(name)?.map(|number| self.place(number))
     }
 
-    /// The finding that a name is not defined.
+    /// Makes the finding that a name is not defined.
     pub(super) fn unknown(&self, name: &str, place: Span) -> Diagnostic {
         let known = self.list.iter().map(|known| known.name.as_str());
         let help = match closest(name, known.clone()) {
@@ -73,25 +73,25 @@ impl Index {
     }
 }
 
-/// What is known of a definition.
+/// State of a definition while a table is read.
 pub(crate) enum State {
     Waiting,
     Active,
-    /// What it means, which the readers of its table know; `None`: the definition is wrong, which has been recorded.
+    /// The value has been read, and its type is known to the table's readers. It is `None` if the definition is wrong, which has been recorded.
     Done(Option<Box<dyn Any>>),
 }
 
-/// The names of one kind of thing, and where each is defined.
+/// The definitions of one kind of values.
 #[derive(Default)]
 pub(crate) struct Table<'a> {
     pub(super) index: Index,
     pub(super) definitions: Vec<(Raw<'a, ()>, State)>,
 }
 
-/// The names that a scene defines, by what they name.
+/// The tables of the field `names`.
 #[derive(Default)]
 pub(crate) struct Names<'a> {
-    /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.
+    /// Mesh files that have been read, by name; `None` if the file cannot be read, which has been recorded.
     pub(super) mesh_files: HashMap<String, Option<Arc<Mesh>>>,
     pub(super) vectors: Table<'a>,
     pub(super) colors: Table<'a>,
@@ -102,28 +102,28 @@ pub(crate) struct Names<'a> {
     pub(super) blends: Table<'a>,
 }
 
-/// The targets, and where they were named.
+/// The render targets, with their names.
 #[derive(Default)]
 pub(crate) struct Targets<'a> {
     pub(super) list: Vec<Target>,
     pub(super) index: Index,
-    /// Targets that begin as a texture, which are read later.
+    /// Targets that begin with the words of a texture, and the texture's name; textures are read later.
     pub(super) begins: Vec<(usize, Raw<'a, String>)>,
 }
 
-/// The textures, and where they were named.
+/// The textures, with their names.
 #[derive(Default)]
 pub(crate) struct Textures {
     pub(super) list: Vec<Texture>,
-    /// Palette of each texture of the list, where it has one of its own.
+    /// For each texture of the list, the index of its own palette.
     pub(super) palette_of: Vec<Option<usize>>,
     pub(super) palettes: Palettes,
     pub(super) index: Index,
-    /// Bytes that textures may still take.
+    /// Number of bytes that further textures may take.
     pub(super) left: u64,
 }
 
-/// The palettes, and where they were named.
+/// The palettes, with their names.
 #[derive(Default)]
 pub(crate) struct Palettes {
     pub(super) list: Vec<Palette>,

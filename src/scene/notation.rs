@@ -1,53 +1,53 @@
-//! RON, the notation of scene files: checks a text once, and takes its brackets apart.
+//! RON, the notation of scene files: checks a text once, and splits its brackets into parts.
 //!
-//! [`Notation::check`] goes through a text once, says where it is not well formed, and notes where each bracket closes. Afterwards
-//! [`Notation::parts`] takes one bracket apart at its commas and passes over the brackets inside it, so that every level of a scene is read
-//! once. What the parts have to be is the matter of [`source`](super::source).
+//! [`Notation::check`] goes through a text once, reports where it is not well formed, and notes where each bracket closes. Afterwards
+//! [`Notation::parts`] splits one bracket at its commas and skips the brackets inside it, so that every level of a scene is read
+//! once. What the parts have to be is up to [`source`](super::source).
 
 use super::literal::character;
 use ninebit::place::Span;
 
-/// A text, and where the brackets of what has been checked of it open and close.
+/// A text, and the places of the brackets in what has been checked of it.
 #[derive(Debug)]
 pub(super) struct Notation<'a> {
     pub(super) text: &'a str,
-    /// In the order in which they open.
+    /// Places where each bracket opens and closes, in the order in which they open.
     brackets: Vec<(usize, usize)>,
 }
 
-/// What stands between two commas of a bracket.
+/// A part of a bracket: the text between two commas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part<'a> {
-    /// What stands before the colon.
+    /// The text before the colon.
     pub(super) name: Option<&'a str>,
-    /// Without white space and comments around it.
+    /// The value, without white space and comments around it.
     pub(super) value: &'a str,
 }
 
-/// The parts of a bracket.
+/// A bracket, split into its parts.
 #[derive(Debug, PartialEq)]
 pub(super) struct Bracket<'a> {
-    /// `(`, `[` or `{`.
+    /// The opening bracket: `(`, `[` or `{`.
     pub(super) open: u8,
-    /// All of them with names, or none.
+    /// The parts; either all have names or none has.
     pub(super) parts: Vec<Part<'a>>,
 }
 
-/// Why a text is not well formed, and where.
+/// The first place where a text is not well formed.
 #[derive(Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) kind: FaultKind,
     pub(super) place: Span,
 }
 
-/// What is wrong with a text.
+/// Kind of a fault in a text.
 #[derive(Debug, PartialEq)]
 pub(super) enum FaultKind {
     /// It does not start with an opening parenthesis.
     Start,
-    /// It ends too early; the innermost bracket that is open.
+    /// The text ends too early. Holds the place of the innermost bracket that is open, if any.
     End(Option<usize>),
-    /// A comma is missing, or the closing bracket.
+    /// A comma or the closing bracket is missing.
     Comma,
     /// A colon is missing.
     Colon,
@@ -55,7 +55,7 @@ pub(super) enum FaultKind {
     Close(u8),
     /// A text in quotes does not end.
     Quote,
-    /// A text in quotes has a backslash with nothing known behind it.
+    /// A text in quotes has an unknown escape.
     Escape,
     /// A comment does not end.
     Comment,
@@ -65,7 +65,7 @@ pub(super) enum FaultKind {
     Character(char),
     /// There is no extension of the notation that is called so.
     Extension,
-    /// Too many brackets inside each other.
+    /// Too many brackets are nested.
     Nesting,
 }
 
@@ -75,12 +75,12 @@ impl FaultKind {
     }
 }
 
-/// Extensions of the notation that a text may ask for; those that change what is read hold anyway.
+/// Extensions that a text may enable. Those that affect what is read are enabled in any case.
 const EXTENSIONS: [&str; 4] = ["implicit_some", "unwrap_newtypes", "unwrap_variant_newtypes", "explicit_struct_names"];
 
 /// A bracket that has not been closed yet.
 struct Open {
-    /// Its number among all brackets.
+    /// Index in the list of all brackets.
     index: usize,
     close: u8,
     /// Whether its parts have names, once that is known.
@@ -94,13 +94,13 @@ impl<'a> Notation<'a> {
         Notation { text, brackets: Vec::new() }
     }
 
-    /// Checks a part of the text, which holds one value in parentheses, and gives that value. Parts are checked in their order.
+    /// Checks a part of the text, which has to hold one value in parentheses, and returns that value. Parts are checked in the order of the text.
     ///
     /// # Errors
-    /// The first place where it is not well formed.
+    /// The first place where the part is not well formed.
     pub(super) fn check(&mut self, part: Span, nesting: usize) -> Result<&'a str, Fault> {
         let before = self.brackets.len();
-        // Of a text that is not well formed nothing is taken apart.
+        // A text that is not well formed is never split.
         self.walk(part, nesting).inspect_err(|_| self.brackets.truncate(before))
     }
 
@@ -113,7 +113,8 @@ impl<'a> Notation<'a> {
             return Err(FaultKind::Start.at(at..at + called.len()));
         }
         let mut open: Vec<Open> = Vec::new();
-        // Of the current part of the innermost bracket: whether a colon, and whether a value has come; a word may be followed by parentheses.
+        // State of the current part of the innermost bracket: whether a colon and a value have been seen, and whether parentheses may follow the
+        // value.
         let (mut colon, mut value, mut callable) = (false, false, false);
         loop {
             at = blank(text, at)?;
@@ -202,13 +203,13 @@ impl<'a> Notation<'a> {
         Err(FaultKind::End(bracket).at(end..end))
     }
 
-    /// Where in the text a part of it lies.
+    /// Returns the place of a slice of the text.
     pub(super) fn range(&self, part: &str) -> Span {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
         start..(start + part.len()).min(self.text.len())
     }
 
-    /// The parts of a value that is a bracket; `None` if it is something else.
+    /// Splits a value that is a bracket; `None` if it is something else.
     pub(super) fn parts(&self, value: &'a str) -> Option<Bracket<'a>> {
         let open = *value.as_bytes().first().filter(|byte| matches!(byte, b'(' | b'[' | b'{'))?;
         let start = self.range(value).start;
@@ -216,7 +217,7 @@ impl<'a> Notation<'a> {
         let text = &self.text[..self.brackets[index].1];
         let mut inner = &self.brackets[index + 1..];
         let mut parts = Vec::new();
-        // Of the current part: its name, where its value starts, and where the last of it ends that is neither white space nor comment.
+        // State of the current part: its name, the start of its value, and the end of the last token that is neither white space nor comment.
         let (mut name, mut first, mut end) = (None, None, 0);
         let mut at = start + 1;
         loop {
@@ -254,23 +255,23 @@ impl<'a> Notation<'a> {
         Some(Bracket { open, parts })
     }
 
-    /// The parts of a bracket of this kind.
+    /// Returns the parts of a value that is a bracket of the kind `open`.
     pub(super) fn parts_in(&self, value: &'a str, open: u8) -> Option<Vec<Part<'a>>> {
         self.parts(value).filter(|bracket| bracket.open == open).map(|bracket| bracket.parts)
     }
 
-    /// The values of a bracket of this kind, if none has a name.
+    /// Returns the values in a bracket of the kind `open`, if none has a name.
     pub(super) fn items(&self, value: &'a str, open: u8) -> Option<Vec<&'a str>> {
         self.parts_in(value, open)?.into_iter().map(|part| part.name.is_none().then_some(part.value)).collect()
     }
 
-    /// The names and values of a bracket of this kind, if all have names.
+    /// Returns the names and values in a bracket of the kind `open`, if all have names.
     pub(super) fn entries(&self, value: &'a str, open: u8) -> Option<Vec<(&'a str, &'a str)>> {
         self.parts_in(value, open)?.into_iter().map(|part| Some((part.name?, part.value))).collect()
     }
 }
 
-/// The place behind `#![enable(...)]`, as often as it stands there, and what is blank behind it.
+/// Returns the place after all attributes `#![enable(...)]` and the blank text behind them.
 fn attributes(text: &str, mut at: usize) -> Result<usize, Fault> {
     while text[at..].starts_with('#') {
         let unexpected = || FaultKind::Character('#').at(at..at + 1);
@@ -290,7 +291,7 @@ fn attributes(text: &str, mut at: usize) -> Result<usize, Fault> {
     Ok(at)
 }
 
-/// The place behind white space and comments.
+/// Returns the place after white space and comments.
 fn blank(text: &str, mut at: usize) -> Result<usize, Fault> {
     loop {
         match text.as_bytes().get(at) {
@@ -309,7 +310,7 @@ fn blank(text: &str, mut at: usize) -> Result<usize, Fault> {
     }
 }
 
-/// The place behind the comment, with those nested in it, that starts at `start` with `/*`.
+/// Returns the place after the comment that starts with `/*` at `start`, including the comments nested in it.
 fn comment(text: &str, start: usize) -> Result<usize, Fault> {
     let bytes = text.as_bytes();
     let (mut depth, mut at) = (1, start + 2);
@@ -326,23 +327,23 @@ fn comment(text: &str, start: usize) -> Result<usize, Fault> {
     Err(FaultKind::Comment.at(start + 2..text.len()))
 }
 
-/// The word that a value starts with (empty if none), and what follows it.
+/// Returns the word that a value starts with (empty if none), and the text that follows it.
 pub(super) fn word(value: &str) -> (&str, &str) {
     let end = value.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(value.len());
     let head = &value[..end];
     if head.starts_with(|c: char| c.is_ascii_digit()) { ("", value) } else { (head, trim(&value[end..])) }
 }
 
-/// The text without white space and comments before it, and without white space behind it.
+/// Returns the text without white space and comments in front, and without white space at the end.
 pub(super) fn trim(text: &str) -> &str {
     let text = text.trim_end();
     blank(text, 0).map_or("", |start| &text[start..])
 }
 
-/// The place behind a value that is no bracket: a text in quotes, a character, a number or a word.
+/// Returns the place after a value that is not a bracket: a text in quotes, a character, a number or a word.
 fn scalar(text: &str, start: usize) -> Result<usize, Fault> {
     let bytes = &text.as_bytes()[start..];
-    // Texts and characters of bytes are well formed, and of no use here.
+    // Byte strings and byte characters are well formed, but no field reads them.
     let at = start + usize::from(matches!(bytes, [b'b', b'"' | b'\'', ..] | [b'b', b'r', b'"' | b'#', ..]));
     match &text.as_bytes()[at..] {
         [b'"', ..] => quoted(text, at, b'"'),
@@ -359,7 +360,7 @@ fn scalar(text: &str, start: usize) -> Result<usize, Fault> {
     }
 }
 
-/// The place behind the text or character in quotes that starts at `start`.
+/// Returns the place after the text or character in quotes that starts at `start`.
 fn quoted(text: &str, start: usize, quote: u8) -> Result<usize, Fault> {
     let bytes = text.as_bytes();
     let mut at = start + 1;
@@ -379,7 +380,7 @@ fn quoted(text: &str, start: usize, quote: u8) -> Result<usize, Fault> {
     }
 }
 
-/// The place behind the text `r#"..."#`, with any number of signs, whose `r` is at `start`.
+/// Returns the place after the text `r#"..."#`, with any number of `#`, whose `r` is at `start`.
 fn raw(text: &str, start: usize) -> Result<usize, Fault> {
     let signs = text[start + 1..].bytes().take_while(|byte| *byte == b'#').count();
     let inside = start + 1 + signs + 1;
@@ -397,7 +398,7 @@ fn raw(text: &str, start: usize) -> Result<usize, Fault> {
 mod tests {
     use super::*;
 
-    /// The kind of the first fault, and the text there.
+    /// Returns the kind of the first fault, and the text there.
     fn fault(text: &str) -> Option<(FaultKind, &str)> {
         Notation::new(text).check(0..text.len(), 8).err().map(|fault| (fault.kind, &text[fault.place]))
     }

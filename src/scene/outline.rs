@@ -1,7 +1,7 @@
-//! A scene's text as a tree of values with their places, so that a program can change one value and leave all other text as it is.
+//! Represents a scene's text as a tree of values with their places, so that a program can change one value and leave all other text as it is.
 //!
-//! What may stand where is read off the types of a scene: each says its `Form`. The text is taken apart at its brackets, as the reader
-//! does; what is written in an unusual way is one value without parts.
+//! What each value may be is taken from the types of a scene, which tell their `Form`. The text is split at its brackets, as the reader
+//! does. A value that is written in an unusual way becomes one value without parts.
 
 use super::fields as source;
 pub use super::form::Kind;
@@ -10,46 +10,46 @@ use super::notation::Notation;
 use super::raw::Raw;
 use ninebit::place::Span;
 
-/// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
+/// Largest number of values in a tree: nobody wants a form for each vertex of a large mesh.
 const MAX_VALUES: usize = 4000;
 
-/// A value in a scene's text.
+/// A node of the tree: a value in a scene's text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// What it is called: the field, the key, or the number in its list.
+    /// The name of the field, the key, or the index in its list.
     pub label: String,
-    /// Bytes of the text.
+    /// Range of bytes in the text.
     pub span: Span,
-    /// What it is.
+    /// What the value is.
     pub content: Content,
 }
 
-/// What a [`Node`] is.
+/// Content of a [`Node`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// A value without parts.
     Value(Kind),
     /// A value with parts.
     Group {
-        /// The parts that it is made of, in order.
+        /// The parts in order.
         parts: Vec<Node>,
-        /// Fields that are not written, with what they may be, and how the group reads with one: what goes before `field: value` and behind it.
+        /// Names and kinds of the fields that are not written.
         absent: Vec<(&'static str, Kind)>,
-        /// The text around an added field.
+        /// The texts before and after `field: value` when one of these fields is added to the group.
         around: [String; 2],
     },
 }
 
-/// The values of a scene. Of a text that is no scene, what can be made out.
+/// Makes the tree of a scene's text. Of a text that is not a scene, the tree holds what can be recognised.
 pub fn outline(text: &str) -> Node {
     let mut notation = Notation::new(text);
-    // What is not well formed is one value.
+    // A text that is not well formed is one value.
     let scene = notation.check(0..text.len(), usize::MAX).unwrap_or(text);
     Walker { notation, left: MAX_VALUES }.node("scene".to_owned(), scene, source::Scene::form())
 }
 
 impl Node {
-    /// The part at the end of a path of labels.
+    /// Returns the part at the end of a path of labels.
     pub fn at(&self, path: &[&str]) -> Option<&Node> {
         let Some((first, rest)) = path.split_first() else { return Some(self) };
         let Content::Group { parts, .. } = &self.content else { return None };
@@ -87,7 +87,7 @@ impl<'a> Walker<'a> {
             Form::Variant(variants) => {
                 let (head, rest) = Raw::<()>::new(text).split();
                 let Some((name, of)) = variants.iter().find(|(name, _)| *name == head) else { return other };
-                // `Window([...])`: the parentheses hold one value; `Matrix(...)`: they are those of the fields.
+                // In `Window([...])` the parentheses hold one value; in `Matrix(...)` they belong to the fields.
                 let inside = match of() {
                     Form::Fields(_) => Some(rest),
                     _ => self.notation.items(rest, b'(').and_then(|items| items.first().copied()),
@@ -136,7 +136,7 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// Fields of values without parts.
+/// Returns those of the fields whose values have no parts and may be offered to be added.
 fn values(fields: impl Iterator<Item = Entry>) -> Vec<(&'static str, Kind)> {
     let value = |(name, form): Entry| match form() {
         Form::Value(kind @ (Kind::Color | Kind::Whole { .. } | Kind::Number | Kind::Choice(_))) => Some((name, kind)),
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(read(&["textures", "t", "source"]).0, "Solid(width: 8, height: 8, color: (1, 2, 3))");
     }
 
-    /// Every field that is offered can be added, to a group and to what is only a name.
+    /// Every field that is offered can be added, both to a group and to a unit that is only a name.
     #[test]
     fn fields_are_added_where_they_are_not_written() {
         let tree = outline(SCENE);

@@ -1,47 +1,47 @@
-//! Names of files inside a scene, resolved so that they cannot leave the scene's folder.
+//! Resolves names of files in a scene, so that they cannot leave the scene's folder.
 //!
-//! A scene may come from anywhere. The files it names are found by the same rule on every system: relative, `/` between the
-//! parts, every part an ordinary name. Links are followed, but what they lead to must lie under the folder as well.
+//! Scenes are untrusted. The rule for names is the same on every system: relative, with `/` between the
+//! parts, every part an ordinary name. Links are followed, but their targets have to lie in the folder as well.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why a name was not accepted.
+/// The error that a name was not accepted.
 #[derive(Debug, Error)]
 #[error("`{name}` {fault}")]
 pub struct PathError {
-    /// The name as given, shortened for messages.
+    /// The name, shortened for messages.
     pub name: String,
-    /// What is wrong with it.
+    /// The fault of the name.
     pub fault: PathFault,
 }
 
-/// What is wrong with a name.
+/// The fault of a name.
 #[derive(Debug, Error)]
 pub enum PathFault {
-    /// It is not a plain relative one, for this reason.
+    /// The name is not a plain relative path; the text says why.
     #[error("is not a plain relative path: {0}")]
     Form(&'static str),
-    /// There is no such file in this folder.
+    /// There is no such file in the given folder.
     #[error("does not exist in `{}`", ninebit::shown::path(.0))]
     Missing(PathBuf),
-    /// A link leads out of the folder, which must not be left.
+    /// A link leads out of the given folder.
     #[error("leads out of `{}`", ninebit::shown::path(.0))]
     Escape(PathBuf),
-    /// The file system refused.
+    /// The file system refused access.
     #[error("cannot be reached: {0}")]
     Unreachable(io::Error),
 }
 
 impl PathFault {
-    /// That it is wrong with this name.
+    /// Makes the error that a name has this fault.
     fn of(self, name: &str) -> PathError {
         PathError { name: shorten(name), fault: self }
     }
 
-    /// Stable code, and what to do about it.
+    /// Returns the stable code, and the help: what to do about the fault.
     fn told(&self) -> (&'static str, &'static str) {
         match self {
             PathFault::Form(_) => (
@@ -58,22 +58,22 @@ impl PathFault {
 }
 
 impl PathError {
-    /// There is no file of that name.
+    /// Makes the error that there is no file of a name.
     pub(crate) fn missing(folder: &Path, name: &str) -> PathError {
         PathFault::Missing(folder.to_path_buf()).of(name)
     }
 
-    /// The code of `docs/errors.md`.
+    /// Returns the code, which `docs/errors.md` lists.
     pub fn code(&self) -> &'static str {
         self.fault.told().0
     }
 
-    /// What to do about it.
+    /// Returns what to do about it.
     pub fn help(&self) -> &'static str {
         self.fault.told().1
     }
 
-    /// The file is not there (as opposed to: it may not be used).
+    /// Returns whether the file does not exist; other errors concern files that may not be used.
     pub fn is_missing(&self) -> bool {
         matches!(self.fault, PathFault::Missing(_))
     }
@@ -81,12 +81,12 @@ impl PathError {
 
 /// Finds the file `name` under `folder`.
 ///
-/// The result is canonical: no links are left in it, and it starts with the canonical form of `folder`. The file may still be
-/// of any kind; whoever opens it checks that it is a regular one.
+/// The result is canonical: it contains no links, and starts with the canonical form of `folder`. The file may be
+/// of any kind; whoever opens it has to check that it is a regular file.
 ///
 /// # Errors
-/// The name is not relative, has `..`, `.`, an empty part, a backslash, a colon or a control character; the file is missing; a
-/// link leads out of `folder`; the file system refuses.
+/// The name is absolute, or has `..`, `.`, an empty part, a backslash, a colon or a control character; the file is missing; a
+/// link leads out of `folder`; the file system refuses access.
 pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
     check(name)?;
     // The path of a scene in the current folder has an empty parent.
@@ -103,7 +103,7 @@ pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
     Ok(file)
 }
 
-/// Whether `name` has the form of a plain relative path.
+/// Checks that `name` has the form of a plain relative path.
 ///
 /// # Errors
 /// [`PathFault::Form`].
@@ -111,7 +111,7 @@ pub(crate) fn check(name: &str) -> Result<(), PathError> {
     objection(name).map_or(Ok(()), |reason| Err(PathFault::Form(reason).of(name)))
 }
 
-/// What is wrong with the form of `name`, if anything. Decided on the text alone, alike on every system.
+/// Returns what is wrong with the form of `name`, if anything. The decision uses the text alone, so it is the same on every system.
 fn objection(name: &str) -> Option<&'static str> {
     let whole = [
         (name.is_empty(), "it is empty"),
@@ -129,7 +129,7 @@ fn objection(name: &str) -> Option<&'static str> {
     whole.or_else(|| name.split('/').find_map(part))
 }
 
-/// A name as it appears in messages: no control characters, at most 120 characters.
+/// Returns a name for messages: without control characters, and at most 120 characters long.
 fn shorten(name: &str) -> String {
     name.chars().take(120).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }

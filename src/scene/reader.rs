@@ -1,4 +1,4 @@
-//! Reads raw values, gathers what is wrong with them, and says it in the words of the format.
+//! Reads raw values, collects what is wrong with them, and reports it in the terms of the format.
 
 use ninebit::place::Span;
 use std::collections::HashMap;
@@ -18,49 +18,49 @@ use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
 use ninebit_program::finding;
 
-/// A structure has no field of this name.
+/// Code of an unknown field.
 pub(super) const UNKNOWN: &str = "NB0201";
-/// A field is missing that has no default.
+/// Code of a missing field that has no default.
 pub(super) const MISSING: &str = "NB0202";
-/// A field is given twice.
+/// Code of a field that is given twice.
 pub(super) const TWICE: &str = "NB0203";
-/// A value is none of the words.
+/// Code of an unknown word.
 pub(super) const WORD: &str = "NB0204";
-/// A value is of another kind.
+/// Code of a value of the wrong kind.
 pub(super) const KIND: &str = "NB0205";
-/// A value is out of range.
+/// Code of a value that is out of range.
 pub(super) const RANGE: &str = "NB0206";
-/// A number is not finite.
+/// Code of a number that is not finite.
 pub(super) const FINITE: &str = "NB0207";
-/// There are too few values or too many.
+/// Code of too few or too many values.
 pub(super) const COUNT: &str = "NB0211";
 
-/// What a text stands for that needs nothing but itself.
+/// A type whose values can be read without the context of a draw.
 pub(super) trait Valued<'a>: Sized {
-    /// What is read of it.
+    /// What a value is read as.
     type Value;
 
-    /// Reads it; `None` once the reason has been recorded.
+    /// Reads the value. Returns `None` after recording what is wrong.
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Value>;
 }
 
-/// Findings beyond this many are only counted.
+/// Number of findings that are kept; further ones are only counted.
 const MAX_DIAGNOSTICS: usize = 64;
 
-/// The text under examination and the findings so far.
+/// The text that is read, and the findings so far.
 pub(super) struct Reader<'a> {
     pub(super) notation: Notation<'a>,
     pub(super) limits: &'a Limits,
-    /// Where files come from.
+    /// Source of the files that the scene names.
     pub(super) assets: &'a dyn Assets,
-    /// Set as soon as it is known; nv2a before, which allows more.
+    /// The scene's profile. Before that has been read it is NV2A, which allows more.
     pub(super) profile: Profile,
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) errors: usize,
     pub(super) suppressed: usize,
-    /// Where the files lie that the scene names.
+    /// Folder of the files that the scene names.
     pub(super) folder: &'a Path,
-    /// Matrices inside each other, and names followed, so far.
+    /// Current nesting of matrices and of names that stand for others.
     pub(super) depth: usize,
     pub(super) names: Names<'a>,
     pub(super) targets: Targets<'a>,
@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
         let error = diagnostic.severity == super::Severity::Error;
         if error && self.errors == 0 {
-            // Warnings come again when the errors are gone; until then they would only hide them.
+            // Warnings are repeated once the errors are mended; until then they would only hide them.
             self.diagnostics.clear();
             self.suppressed = 0;
         }
@@ -103,28 +103,28 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Records why there is no such value.
+    /// Records a finding and returns `None`.
     pub(super) fn refuse<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
         self.push(diagnostic);
         None
     }
 
-    /// Records what a check found. `None` if it found something.
+    /// Records a finding if there is one. Returns `None` if so.
     pub(super) fn accept(&mut self, finding: Option<Diagnostic>) -> Option<()> {
         finding.map_or(Some(()), |finding| self.refuse(finding))
     }
 
-    /// What the chip and the limits take of textures.
+    /// Returns the checks of textures for the profile and the limits.
     pub(super) fn texture_checks(&self) -> TextureChecks {
         TextureChecks { profile: self.profile, largest_side: self.limits.texture_side }
     }
 
-    /// Whether a further error would only be counted: its words need not be chosen.
+    /// Returns whether a further error would only be counted, so that its message need not be made.
     pub(super) fn is_full(&self) -> bool {
         self.errors > 0 && self.diagnostics.len() >= MAX_DIAGNOSTICS
     }
 
-    /// Where in the file a part of its text lies.
+    /// Returns the place of a slice of the text.
     pub(super) fn range(&self, part: &str) -> Span {
         self.notation.range(part)
     }
@@ -133,35 +133,35 @@ impl<'a> Reader<'a> {
         self.range(raw.text)
     }
 
-    /// Where a field stands, if it is written.
+    /// Returns the place of a field, if it is written.
     pub(super) fn place<T>(&self, field: &Option<Raw<'a, T>>) -> Option<Span> {
         field.as_ref().map(|raw| self.span(raw))
     }
 
-    /// Checks a part of the text. `None` once the reason has been recorded why it is not well formed.
+    /// Checks that a part of the text is well formed. Returns `None` after recording where it is not.
     pub(super) fn check<T>(&mut self, text: &'a str) -> Option<Raw<'a, T>> {
         let checked = self.notation.check(self.range(text), self.limits.nesting);
         checked.map(Raw::new).map_err(|fault| self.push(self.syntax(fault))).ok()
     }
 
-    /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
+    /// Reads a value that is well formed. Returns `None` after recording what is wrong.
     pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
         T::read(&self.notation, raw.text)
             .map_err(|mismatch| self.push(self.mismatch(raw.text, &mismatch, T::EXPECTED)))
             .ok()
     }
 
-    /// Reads the value if it can be read; says nothing otherwise.
+    /// Reads a value if possible; records nothing.
     pub(super) fn attempt<T: Expected<'a>>(&self, text: &'a str) -> Option<T> {
         T::read(&self.notation, text).ok()
     }
 
-    /// What a value means that is needed on its own; `None` once the reason that it means nothing has been recorded.
+    /// Reads a value that needs no further context. Returns `None` after recording what is wrong.
     pub(super) fn value<T: Valued<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T::Value> {
         T::value(self, raw)
     }
 
-    /// Reads something inside a value that may hold others of its kind.
+    /// Reads something one level deeper in a value that may contain others of its kind.
     pub(super) fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> T {
         self.depth += 1;
         let value = read(self);
@@ -169,12 +169,12 @@ impl<'a> Reader<'a> {
         value
     }
 
-    /// The first character of a value, which stands for the whole.
+    /// Returns the place of a value's first character, which stands for the whole value in messages.
     pub(super) fn opening(&self, text: &str) -> Span {
         self.range(text.get(..1).unwrap_or(text))
     }
 
-    /// The value of a field that must be there.
+    /// Returns the value of a field that has to be written, after recording a finding if it is not.
     pub(super) fn required<T>(
         &mut self,
         raw: &Option<Raw<'a, T>>,
@@ -190,7 +190,7 @@ impl<'a> Reader<'a> {
         *raw
     }
 
-    /// A name out of a state enumeration.
+    /// Reads the name of a value of a state enumeration.
     pub(super) fn name<T: Named>(&mut self, raw: &Raw<'a, Name<T>>) -> Option<T> {
         let (head, rest) = raw.split();
         if let (Some(value), "") = (T::from_name(head), rest) {
@@ -199,8 +199,8 @@ impl<'a> Reader<'a> {
         self.unknown_variant(raw, &words(T::TYPE), T::NAMES)
     }
 
-    /// Splits `Variant(...)`: the index in `variants`, and the text after the identifier. `None` once the reason has been
-    /// recorded.
+    /// Splits `Variant(...)`. Returns the index of the variant in `variants` and the text after it, or `None` after recording that it is not
+    /// one of them.
     pub(super) fn variant<T>(
         &mut self,
         raw: &Raw<'a, T>,
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// [`variant`](Self::variant) where the first `plain` variants take nothing in parentheses.
+    /// Splits `Variant(...)` like [`variant`](Self::variant), but refuses parentheses after the first `plain` variants.
     pub(super) fn variant_of<T>(
         &mut self,
         raw: &Raw<'a, T>,
@@ -229,12 +229,12 @@ impl<'a> Reader<'a> {
         Some((index, rest))
     }
 
-    /// Which of some words a field is; the first if it is not written.
+    /// Returns the index of a field's word in `words`: the first if the field is not written.
     pub(super) fn choice<T>(&mut self, raw: &Option<Raw<'a, T>>, what: &str, words: &[&'static str]) -> Option<usize> {
         raw.as_ref().map_or(Some(0), |raw| self.variant(raw, what, words).map(|(index, _)| index))
     }
 
-    /// What a field is that may be left out. `None` where it is written, and wrong.
+    /// Reads an optional field. Returns `Some(None)` if it is not written, and `None` if it is wrong.
     pub(super) fn perhaps<T, U>(
         &mut self,
         field: &Option<Raw<'a, T>>,
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
         field.as_ref().map_or(Some(None), |raw| read(self, raw).map(Some))
     }
 
-    /// Records that the value is none of `known`.
+    /// Records that a value is none of `known`.
     pub(super) fn unknown_variant<T, U>(&mut self, raw: &Raw<'a, T>, what: &str, known: &[&'static str]) -> Option<U> {
         let (head, rest) = raw.split();
         let list = quoted(known);
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
         self.refuse(diagnostic)
     }
 
-    /// So many finite numbers in parentheses; those not written keep `defaults`.
+    /// Reads finite numbers in parentheses. Their number has to be in `counts`; numbers that are not written keep `defaults`.
     pub(super) fn numbers(
         &mut self,
         raw: &Raw<'a, Numbers>,
@@ -276,7 +276,7 @@ impl<'a> Reader<'a> {
         self.numbers_written(raw, what, counts, defaults).map(|(values, _)| values)
     }
 
-    /// The same, and how many are written.
+    /// Reads numbers like [`numbers`](Self::numbers). Also returns how many are written.
     pub(super) fn numbers_written(
         &mut self,
         raw: &Raw<'a, Numbers>,
@@ -298,7 +298,7 @@ impl<'a> Reader<'a> {
         {
             (values, count)
         } else {
-            // Something is wrong: read it again, number by number, to find out which.
+            // Something is wrong: the numbers are read again one by one to find out which.
             let parts = self.read(&raw.as_other::<Tuple<'a, f32>>())?.0;
             if counts.contains(&parts.len()) {
                 parts.iter().for_each(|part| _ = self.finite(part));
@@ -315,7 +315,7 @@ impl<'a> Reader<'a> {
         Some((values, count))
     }
 
-    /// A number that is neither infinite nor NaN.
+    /// Reads a number that is neither infinite nor NaN.
     pub(super) fn finite(&mut self, raw: &Raw<'a, f32>) -> Option<f32> {
         let value = self.read(raw)?;
         if value.is_finite() {
@@ -326,7 +326,7 @@ impl<'a> Reader<'a> {
         self.refuse(finding(FINITE, self.span(raw), message, "not a finite number", help).rule("NUM-0"))
     }
 
-    /// A number in `range`; `said` adds to the finding that it is not.
+    /// Reads a number in `range`; `said` adds to the finding that it is outside.
     pub(super) fn within<T: Valued<'a, Value = T> + PartialOrd + Display>(
         &mut self,
         raw: &Raw<'a, T>,
@@ -342,7 +342,7 @@ impl<'a> Reader<'a> {
         self.refuse(said(finding.label("out of range").help(format!("write {} to {}", range.start(), range.end()))))
     }
 
-    /// A whole number from 1 to a limit; `code` is that of greater ones.
+    /// Reads a whole number from 1 to `limit`; `code` is the code of numbers beyond it.
     pub(super) fn up_to(&mut self, raw: &Raw<'a, u32>, what: &str, limit: u32, code: &'static str) -> Option<u32> {
         let value = self.read(raw)?;
         if value <= limit {
@@ -352,7 +352,7 @@ impl<'a> Reader<'a> {
         self.refuse(finding(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"), "too large", help))
     }
 
-    /// As many flags in parentheses as `defaults` has; `counted` says how many of what, `said` adds to the finding that they are not.
+    /// Reads as many flags in parentheses as `defaults` has. `counted` is the message for another number of flags; `said` adds to the finding.
     pub(super) fn flags<const N: usize>(
         &mut self,
         raw: &Raw<'a, Tuple<'a, bool>>,
@@ -372,7 +372,7 @@ impl<'a> Reader<'a> {
         Some(flags)
     }
 
-    /// Records that the format reserves something that is not built.
+    /// Records that the format reserves something that is not implemented.
     pub(super) fn not_built(&mut self, span: Span, what: &str) {
         self.push(
             Diagnostic::error("NB0401", span, format!("not built yet: {what}"))
@@ -382,7 +382,7 @@ impl<'a> Reader<'a> {
         );
     }
 
-    /// Refuses a field on NV10 that is written and `needs` NV2A: what it is, and the rule.
+    /// Refuses a field that is written on NV10 if it `needs` NV2A. `what` is its name in the message.
     pub(super) fn needs_nv2a<T>(
         &mut self,
         field: &Option<Raw<'a, T>>,
@@ -395,19 +395,19 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Refuses a field that is reserved.
+    /// Refuses a reserved field.
     pub(super) fn reserve(&mut self, field: &Option<Raw<'a, Reserved>>, what: &str) {
         if let Some(raw) = field {
             self.not_built(self.span(raw), what);
         }
     }
 
-    /// The entries of a table, without the ones whose key is wrong or was there before.
+    /// Reads the entries of a table, except those whose key is wrong or occurred before.
     pub(super) fn table<T>(&mut self, what: &str, field: &Option<Raw<'a, Entries<'a, T>>>) -> Vec<Entry<'a, T>> {
         self.tables(what, field, &None)
     }
 
-    /// The entries of a table of the scene and of one that it shares with others.
+    /// Reads the entries of a table of the scene, and of one that it shares with other scenes.
     pub(super) fn tables<T>(
         &mut self,
         what: &str,
@@ -433,7 +433,7 @@ impl<'a> Reader<'a> {
         table
     }
 
-    /// Why a value is not what is expected, in the words of the format.
+    /// Makes the finding that a value is not what is expected, in the terms of the format.
     fn mismatch(&self, text: &'a str, mismatch: &Mismatch<'a>, expected: &str) -> Diagnostic {
         let found = || format!("expected {expected}, found {}", describe(text));
         match mismatch {
@@ -457,7 +457,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// An error of the notation itself.
+    /// Makes the finding of a fault in the notation.
     fn syntax(&self, Fault { kind, place }: Fault) -> Diagnostic {
         let at = shorten(&self.notation.text[place.clone()]);
         let examples = "see docs/scene-format.md for examples";
@@ -513,12 +513,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Words in backquotes, with commas between them.
+/// Returns words in backquotes, separated by commas.
 pub(super) fn quoted(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// "3", or "2 to 4".
+/// Writes a range of counts: "3", or "2 to 4".
 fn wanted(counts: &RangeInclusive<usize>) -> String {
     let (least, most) = (counts.start(), counts.end());
     if least == most { format!("{most}") } else { format!("{least} to {most}") }
@@ -527,17 +527,17 @@ fn wanted(counts: &RangeInclusive<usize>) -> String {
 /// An entry of a table.
 pub(super) struct Entry<'a, T> {
     pub(super) name: String,
-    /// Of the name.
+    /// Place of the name.
     pub(super) place: Span,
     pub(super) value: Raw<'a, T>,
-    /// Other scenes may use it.
+    /// Whether the entry comes from a table that other scenes may use.
     pub(super) shared: bool,
 }
 
-/// Marks a value that is a name out of the state enumeration `T`.
+/// A value that is the name of a `T`, which is a state enumeration.
 pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);
 
-/// How much more of something there is than a limit allows.
+/// Makes the finding that there is more of something than a limit allows.
 pub(super) fn too_many(
     code: &'static str,
     place: Span,

@@ -1,4 +1,4 @@
-//! Findings as text with the offending lines and carets under the exact values.
+//! Renders findings as text, with the lines in question and carets under the values.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use ninebit::place::Span;
@@ -6,12 +6,12 @@ use ninebit::place::Span;
 use ninebit::diagnostic::{Diagnostic, Severity, Source, floor_boundary};
 use ninebit::shown;
 
-/// Longest excerpt of a line on either side of a mark, in bytes: scenes of one endless line stay readable.
+/// Longest excerpt of a long line on either side of a mark, in bytes, so that scenes of one endless line stay readable.
 const MARGIN: usize = 200;
-/// Lines with marks up to here are shown from their start.
+/// Distance from the start of a line, in bytes, up to which a mark is shown with the start of its line.
 const LONG_LINE: usize = 1000;
 
-/// Renders `diagnostics`, one after the other, a blank line between them.
+/// Renders `diagnostics` one after the other, separated by blank lines.
 pub fn render(diagnostics: &[Diagnostic], source: &Source, color: bool) -> String {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
     let mut text = String::new();
@@ -55,7 +55,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
     group
 }
 
-/// Adds the line around a place; of a value of many lines, the first. Places `beside` it stand in the same line.
+/// Adds the line around a place: the first line if the value has several. The places `beside` it are in the same line.
 fn excerpt<'a>(
     group: Group<'a>,
     source: &'a Source,
@@ -68,7 +68,7 @@ fn excerpt<'a>(
     let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
     let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
     let (line, column) = source.position(start);
-    // The renderer counts columns from the start of what it gets; of an endless line it gets a part, and the column is ours.
+    // The renderer counts columns from the start of its excerpt, so for a part of a long line the column is given explicitly.
     let whole = start - line_start <= LONG_LINE;
     let from = if whole { line_start } else { floor_boundary(text, start - MARGIN) };
     let last = beside.iter().map(|(place, _)| place.end).fold(span.end, usize::max).min(start + LONG_LINE);

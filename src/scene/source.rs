@@ -1,33 +1,33 @@
-//! What may be written where: the fields of a scene file, as they are read.
+//! Reads the values of a scene file from their text, and declares the structures with their fields.
 //!
-//! Every field is the unread text of a value ([`Raw`]). Fields are optional here; what happens to an absent one stands where it is
-//! used, and in `docs/scene-format.md`. Variants (`Window(...)`, `File(...)`) are taken apart by their readers.
+//! Every field is the unread text of a value ([`Raw`]). All fields are optional here: the code that uses a field decides what holds if it is
+//! absent, and `docs/scene-format.md` says so. Variants (`Window(...)`, `File(...)`) are split by their readers.
 
 use super::literal::{Literal, Number};
 use super::notation::{Notation, trim};
 use super::raw::{Entries, Few, Numbers, Raw, Tuple};
 
-/// Why a value is not what is expected.
+/// The reason that a value is not what is expected.
 pub(super) enum Mismatch<'a> {
-    /// It is of another kind.
+    /// The value is of another kind.
     Kind,
-    /// It is a whole number, and too large or too small.
+    /// The value is a whole number that is too large or too small.
     Range,
-    /// It has a field of this name, and may have these.
+    /// The value has an unknown field; holds its name and those that exist.
     Unknown(&'a str, &'static [&'static str]),
-    /// It has a field of this name twice.
+    /// The value has a field of this name twice.
     Twice(&'a str),
 }
 
-/// What is read of a well-formed text.
+/// A type that can be read from a well-formed text.
 pub(super) trait Expected<'a>: Sized {
-    /// What it looks like, in the singular, with its article, for "expected ...".
+    /// Description in the singular, with an article, for "expected ...".
     const EXPECTED: &'static str;
 
-    /// Reads the text of a value, down to the next brackets inside it.
+    /// Reads the text of a value, except for the brackets inside it.
     ///
     /// # Errors
-    /// The first reason why it is not what is expected.
+    /// The first reason that the text is not what is expected.
     fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>>;
 }
 
@@ -88,7 +88,7 @@ fn few<'a, N: Number>(notation: &Notation<'a>, text: &'a str) -> Result<Few<N>, 
     Ok(Few { values, count: items.len() })
 }
 
-/// The fields of a structure that are written, by their place in `names`. Before the parentheses may stand what it is called here.
+/// Reads the written fields of a structure, and passes each to `field` with its index in `names`. `called` may stand before the parentheses.
 pub(super) fn fields<'a>(
     notation: &Notation<'a>,
     text: &'a str,
@@ -103,7 +103,7 @@ pub(super) fn fields<'a>(
         if std::mem::replace(&mut written[index], true) {
             return Err(Mismatch::Twice(name));
         }
-        // As the notation has it, a field may say that it is not there, or that it is.
+        // As in RON, a value may be `None` or `Some(...)`.
         let some = value.strip_prefix("Some").and_then(|rest| notation.items(trim(rest), b'('));
         match some.as_deref() {
             _ if value == "None" => {}
@@ -114,40 +114,40 @@ pub(super) fn fields<'a>(
     Ok(())
 }
 
-/// Declares structures: their fields, how each is read, and what the document says of it. How to read a declaration: [`fields`](super::fields).
+/// Declares structures: their fields, how each is read, and its text in the document. [`fields`](super::fields) explains declarations.
 macro_rules! source {
     ($($(#[doc = $about:literal])* struct $name:ident $($called:literal)? {
         $($(#[doc = $meaning:literal])* $field:ident : $type:ty $([$($read:tt)*])? $(= $default:expr)?),* $(,)?
     })+) => {
-        /// The structures and their fields, as the document describes them.
+        /// The structures with the descriptions of their fields.
         pub(crate) const STRUCTURES: &[Structure] = &[$((stringify!($name), $name::described)),+];
     $(
         $(#[doc = $about])*
         #[derive(Default)]
         pub(crate) struct $name<'a> {
-            /// Where it is said that a field is missing: the first character.
+            /// Text at which a missing field is reported: the first character.
             pub(crate) opening: &'a str,
-            /// What is said to lack it.
+            /// Name of the structure in messages.
             pub(crate) called: &'static str,
             $(pub(crate) $field: Option<Raw<'a, $type>>),*
         }
         impl<'a> $name<'a> {
             $(read_field!($field $type, [$($($read)*)?] $($default)?);)*
 
-            /// The fields, as the document describes them.
+            /// Returns the descriptions of the fields.
             fn described() -> Vec<Field> {
                 vec![$(described_field!(
                     Field::new::<$type>(stringify!($field), concat!($($meaning),*)), $type, [$($($read)*)?] $($default)?
                 )),*]
             }
 
-            /// These fields, and where they are not written those of another.
+            /// Returns these fields; those that are not written are taken from `other`.
             #[allow(dead_code, reason = "asked of a few")]
             pub(crate) fn or(self, other: Self) -> Self {
                 $name { opening: self.opening, called: self.called, $($field: self.$field.or(other.$field)),* }
             }
 
-            /// The fields that are written, with their texts.
+            /// Returns the names and texts of the fields that are written.
             #[allow(dead_code, reason = "asked of a few")]
             pub(crate) fn written(&self) -> impl Iterator<Item = (&'static str, &'a str)> {
                 [$((stringify!($field), self.$field.as_ref().map(|raw| raw.text))),*]
@@ -194,19 +194,19 @@ pub(super) struct Program;
 pub(super) struct BlendSource;
 /// `File(...)`, `Texels(...)` and so on.
 pub(super) struct ImageSource;
-/// The state of a unit, or just the name of its texture.
+/// The state of a unit, or only the name of its texture.
 pub(super) struct Unit;
-/// A stage of the texture shader: its fields, or just its operation.
+/// A stage of the texture shader: its fields, or only its operation.
 pub(super) struct ShaderStage;
-/// What a stage of the texture shader does.
+/// Operation of a stage of the texture shader.
 pub(super) struct ShaderOperation;
-/// What of a mesh goes into a vertex.
+/// Source of a vertex attribute.
 pub(super) struct Attribute;
 /// A constant of a vertex program: numbers, `Matrix(...)`, `Color(...)`.
 pub(super) struct ShaderConstant;
-/// How a coordinate set is made: `(s: ..., t: ...)`, a word, or `None`.
+/// Source of a coordinate set: `(s: ..., t: ...)`, a word, or `None`.
 pub(super) struct CoordinateSource;
-/// Where a component of a coordinate set comes from.
+/// Source of a component of a coordinate set.
 pub(super) struct Generator;
 /// An input of a combiner portion.
 pub(super) struct Input;
@@ -214,7 +214,7 @@ pub(super) struct Input;
 pub(super) struct FinalInput;
 /// A destination of a combiner portion.
 pub(super) struct Output;
-/// Where the normals of a truth come from.
+/// Source of the normals of a truth.
 pub(super) struct NormalSource;
 /// An argument of a texture stage.
 pub(super) struct StageArgument;
@@ -225,5 +225,5 @@ pub(super) struct TransformFlags;
 pub(super) struct ViewerWord;
 /// A byte, or `Float(...)`.
 pub(super) struct AlphaReference;
-/// A word without further meaning to the types: one of a few.
+/// One of a few words, which only its reader knows.
 pub(super) struct Word;

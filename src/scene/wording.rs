@@ -1,11 +1,11 @@
-//! Words and places of messages: what a value looks like, and what was probably meant.
+//! Makes texts of messages: describes values, and finds what was probably meant.
 
 use super::diagnostic::Diagnostic;
 pub(super) use super::diagnostic::shorten;
 use ninebit::place::Span;
 pub(super) use ninebit_program::spelling::closest;
 
-/// The finding that a name is taken.
+/// Makes the finding that a name is defined twice.
 pub(super) fn twice(what: &str, name: &str, place: Span, first: Span) -> Diagnostic {
     Diagnostic::error("NB0209", place, format!("the {what} \"{}\" is defined twice", shorten(name)))
         .label("again here")
@@ -13,7 +13,7 @@ pub(super) fn twice(what: &str, name: &str, place: Span, first: Span) -> Diagnos
         .help("give one of them another name")
 }
 
-/// "ShadeModel" as "shade model".
+/// Writes the name of a type as words: "ShadeModel" as "shade model".
 pub(super) fn words(name: &str) -> String {
     let mut words = String::with_capacity(name.len() + 2);
     for letter in name.chars() {
@@ -25,7 +25,7 @@ pub(super) fn words(name: &str) -> String {
     words
 }
 
-/// What a value looks like, for messages.
+/// Describes what a value looks like.
 pub(super) fn describe(text: &str) -> String {
     match text.chars().next() {
         None => "nothing".to_owned(),

@@ -1,11 +1,11 @@
-//! Values in the notation of scene files.
+//! Writes values in the notation of scene files.
 
 use std::fmt::Write;
 
 use ninebit::state::{Named, Profile};
 use ninebit_program::registers::{RegisterWords, Word};
 
-/// Register words as a pixel program: `RegisterWords(nv10: (...))`. Words of 0 at the end of a list are left out.
+/// Writes register words as a pixel program: `RegisterWords(nv10: (...))`. Words of 0 at the end of a list are left out.
 pub fn register_words(words: &RegisterWords) -> String {
     let mut out = String::from("RegisterWords(");
     out.push_str(match words.chip {

@@ -1,4 +1,4 @@
-//! Which texture format the pixel format of a DDS file is: by its masks, bit by bit.
+//! Finds the texture format that the pixel format of a DDS file describes: its masks have to agree bit by bit.
 
 use ninebit::state::TextureFormat;
 
@@ -9,17 +9,17 @@ const PALETTE_OF_256: u32 = 0x20;
 const COLORS: u32 = 0x40;
 const LUMINANCE: u32 = 0x2_0000;
 
-/// As the header has it.
+/// The pixel format as the header has it.
 pub(super) struct PixelFormat {
     pub(super) flags: u32,
     pub(super) four_characters: [u8; 4],
-    /// Bits of a texel.
+    /// Number of bits of a texel.
     pub(super) bits: u32,
-    /// Of red (or luminance), green, blue and alpha.
+    /// Masks of red (or luminance), green, blue and alpha.
     pub(super) masks: [u32; 4],
 }
 
-/// Formats by bits and the masks of red, green, blue and alpha.
+/// Formats with their number of bits and their masks of red, green, blue and alpha.
 const BY_MASKS: &[(TextureFormat, u32, [u32; 4])] = &[
     (TextureFormat::A8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000]),
     (TextureFormat::X8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0]),
@@ -33,7 +33,7 @@ const BY_MASKS: &[(TextureFormat, u32, [u32; 4])] = &[
     (TextureFormat::A4R4G4B4, 16, [0xf00, 0xf0, 0xf, 0xf000]),
 ];
 
-/// Formats by bits and the masks of luminance, nothing, nothing and alpha.
+/// Formats with their number of bits and their masks of luminance, nothing, nothing and alpha.
 const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 4])] = &[
     (TextureFormat::L8, 8, [0xff, 0, 0, 0]),
     (TextureFormat::A8L8, 16, [0xff, 0, 0, 0xff00]),
@@ -41,12 +41,12 @@ const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 4])] = &[
 ];
 
 impl PixelFormat {
-    /// The format is a number of the header that follows.
+    /// Returns whether a second header follows, whose DXGI number tells the format.
     pub(super) fn has_further_header(&self) -> bool {
         self.flags & FOUR_CHARACTERS != 0 && self.four_characters == *b"DX10"
     }
 
-    /// The texture format; what the file holds if there is none.
+    /// Returns the texture format; the error says what the file holds instead.
     pub(super) fn format(&self) -> Result<TextureFormat, String> {
         if self.flags & FOUR_CHARACTERS != 0 {
             return of_four_characters(self.four_characters);
@@ -82,7 +82,7 @@ impl PixelFormat {
 fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
     match &text {
         b"DXT1" => Ok(TextureFormat::Dxt1),
-        // The same blocks; colours were multiplied by alpha before, which is their user's business.
+        // The blocks are the same. Colours were multiplied by alpha beforehand, which is up to whoever uses them.
         b"DXT2" | b"DXT3" => Ok(TextureFormat::Dxt3),
         b"DXT4" | b"DXT5" => Ok(TextureFormat::Dxt5),
         _ if text.iter().all(u8::is_ascii_graphic) => Err(format!("{} texels", text.escape_ascii())),
@@ -97,7 +97,7 @@ fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
     }
 }
 
-/// The texture format of a number of DXGI; what the file holds if there is none.
+/// Returns the texture format of a DXGI number; the error says what the file holds instead.
 pub(super) fn of_number(number: u32) -> Result<TextureFormat, String> {
     Ok(match number {
         28 => TextureFormat::A8B8G8R8,
@@ -120,11 +120,11 @@ pub(super) fn of_number(number: u32) -> Result<TextureFormat, String> {
     })
 }
 
-/// Direct3D's numbers of depth formats, which a texture unit compares with: shadow maps.
+/// Direct3D's numbers of depth formats, which make shadow maps: a texture unit compares with them.
 const DEPTHS: [(u32, &str); 7] =
     [(70, "D16_LOCKABLE"), (71, "D32"), (73, "D15S1"), (75, "D24S8"), (77, "D24X8"), (79, "D24X4S4"), (80, "D16")];
 
-/// Names of numbers that are often met.
+/// Names of DXGI formats that are often met and not supported.
 const REFUSED: [(u32, &str); 15] = [
     (2, "R32G32B32A32_FLOAT"),
     (10, "R16G16B16A16_FLOAT"),

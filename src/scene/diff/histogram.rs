@@ -1,23 +1,23 @@
-//! How often each difference occurs in a channel.
+//! Counts how often each difference occurs in a channel.
 
-/// Differences up to this size have a bucket each; beyond, buckets double.
+/// Differences up to this size have a bucket each; the sizes of the buckets beyond double.
 const EXACT: i16 = 4;
 
-/// Counts of the signed differences of one channel; 0 is not counted.
+/// Counts of the signed differences of one channel, without the difference 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Histogram {
-    /// Index: difference + 255.
+    /// Count of each difference, at index difference + 255.
     counts: Vec<u64>,
 }
 
-/// Some neighbouring differences.
+/// A range of neighbouring differences and how many pixels fall into it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
-    /// The lowest difference.
+    /// Lowest difference, inclusive.
     pub from: i16,
-    /// The highest difference.
+    /// Highest difference, inclusive.
     pub to: i16,
-    /// Pixels with a difference from `from` to `to`.
+    /// Number of pixels with a difference from `from` to `to`.
     pub pixels: u64,
 }
 
@@ -28,7 +28,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Counts a difference of -255 to 255.
+    /// Counts one difference from -255 to 255.
     pub(super) fn add(&mut self, step: i16) {
         if step != 0
             && let Some(count) = self.counts.get_mut((step + 255) as usize)
@@ -37,30 +37,30 @@ impl Histogram {
         }
     }
 
-    /// Pixels that differ in this channel.
+    /// Returns the number of pixels that differ in this channel.
     pub fn different(&self) -> u64 {
         self.counts.iter().sum()
     }
 
-    /// The largest difference, without its sign.
+    /// Returns the largest absolute difference.
     pub fn largest(&self) -> u8 {
         let occurring = self.counts.iter().zip(-255_i16..).filter(|(count, _)| **count > 0);
         occurring.map(|(_, step)| step.unsigned_abs() as u8).max().unwrap_or(0)
     }
 
-    /// Pixels whose difference is `from` to `to`.
+    /// Returns the number of pixels whose difference lies between `from` and `to`, inclusive.
     pub fn between(&self, from: i16, to: i16) -> u64 {
         (from..=to).filter_map(|step| self.counts.get(usize::try_from(step + 255).ok()?)).sum()
     }
 
-    /// The buckets that are not empty, from the most negative difference up: one each for -4 to 4, wider ones beyond.
+    /// Returns the buckets that are not empty, the most negative difference first. The differences -4 to 4 have one bucket each.
     pub fn buckets(&self) -> Vec<Bucket> {
         let filled = |(from, to)| Bucket { from, to, pixels: self.between(from, to) };
         ranges().into_iter().map(filled).filter(|bucket| bucket.pixels > 0).collect()
     }
 }
 
-/// Every bucket's lowest and highest difference, ascending.
+/// Returns the lowest and highest difference of every bucket, ascending.
 pub fn ranges() -> Vec<(i16, i16)> {
     let mut positive: Vec<(i16, i16)> = (1..=EXACT).map(|step| (step, step)).collect();
     let mut from = EXACT + 1;

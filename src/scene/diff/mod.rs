@@ -1,7 +1,7 @@
-//! Two pictures held against each other: which pixels differ, where, and by how much.
+//! Compares two pictures: which pixels differ, where, and by how much.
 //!
-//! The comparison is exact. A pixel differs when one of its bytes does; differences are signed, second picture less first, in steps of
-//! 1/255. Differing pixels that touch, corners included, form a [`Region`].
+//! The comparison is exact. A pixel differs if one of its bytes does. Differences are signed, second picture minus first, in steps of
+//! 1/255. Differing pixels that touch, even at corners, form a [`Region`].
 
 mod histogram;
 mod picture;
@@ -17,12 +17,12 @@ pub use words::{CHANNELS, histogram_text, pixels, share};
 use crate::image::Rgba;
 use region::Regions;
 
-/// How to compare.
+/// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Alpha does not count: screenshots often have none.
+    /// Whether differences of alpha are ignored: screenshots often have no alpha.
     pub ignore_alpha: bool,
-    /// The most regions that are kept, the largest ones.
+    /// Number of regions to keep; the largest ones are kept.
     pub regions: usize,
 }
 
@@ -32,48 +32,48 @@ impl Default for Options {
     }
 }
 
-/// What two pictures differ in.
+/// Result of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Columns of both.
+    /// Number of columns of both pictures.
     pub width: u32,
-    /// Rows of both.
+    /// Number of rows of both pictures.
     pub height: u32,
-    /// Pixels that differ.
+    /// Number of pixels that differ.
     pub different: u64,
-    /// The signed differences of R, G, B, A. Alpha's is empty if it does not count.
+    /// Signed differences of R, G, B and A. Alpha's histogram is empty if alpha is ignored.
     pub channels: [Histogram; 4],
-    /// The largest regions, largest first; of equal ones, the first in reading order.
+    /// The largest regions, the largest first; regions of equal size are in reading order.
     pub regions: Vec<Region>,
-    /// All regions, kept or not.
+    /// Number of all regions, including those that were not kept.
     pub region_count: u64,
 }
 
 impl Difference {
-    /// Pixels of each picture.
+    /// Returns the number of pixels of each picture.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// The largest difference of any channel, without its sign.
+    /// Returns the largest absolute difference of any channel.
     pub fn largest(&self) -> u8 {
         self.channels.iter().map(Histogram::largest).max().unwrap_or(0)
     }
 }
 
-/// Pictures that cannot be compared.
+/// The error that two pictures differ in size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("pictures of {} x {} and {} x {} cannot be compared", first.0, first.1, second.0, second.1)]
 pub struct SizeError {
-    /// Columns and rows of the first.
+    /// Columns and rows of the first picture.
     pub first: (u32, u32),
-    /// Columns and rows of the second.
+    /// Columns and rows of the second picture.
     pub second: (u32, u32),
 }
 
 /// Compares two pictures of the same size.
 ///
-/// The time is linear in the pixels; the memory besides the pictures depends on their width only.
+/// Takes time linear in the number of pixels, and memory that depends only on the width of the pictures.
 ///
 /// # Errors
 /// The sizes differ.
@@ -107,7 +107,7 @@ pub fn compare(a: &Rgba, b: &Rgba, options: &Options) -> Result<Difference, Size
     })
 }
 
-/// Counts the pixels that differ, and nothing else.
+/// Returns the number of pixels that differ.
 ///
 /// # Errors
 /// The sizes differ.
@@ -122,7 +122,7 @@ fn same_size(a: &Rgba, b: &Rgba) -> Result<(), SizeError> {
     if first == second { Ok(()) } else { Err(SizeError { first, second }) }
 }
 
-/// Second less first, R, G, B, A.
+/// Returns the differences of R, G, B and A, second pixel minus first.
 fn steps(a: [u8; 4], b: [u8; 4], ignore_alpha: bool) -> [i16; 4] {
     let mut steps = [0, 1, 2, 3].map(|n| i16::from(b[n]) - i16::from(a[n]));
     if ignore_alpha {
@@ -131,7 +131,7 @@ fn steps(a: [u8; 4], b: [u8; 4], ignore_alpha: bool) -> [i16; 4] {
     steps
 }
 
-/// A difference without its sign.
+/// Returns the absolute value of a difference.
 fn largest(step: i16) -> u8 {
     step.unsigned_abs().min(255) as u8
 }

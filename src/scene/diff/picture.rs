@@ -1,15 +1,15 @@
-//! The difference as a picture.
+//! Draws a difference as a picture.
 
 use super::{SizeError, largest, same_size, steps};
 use crate::image::Rgba;
 
-/// A picture of a difference, and how to read it.
+/// A picture of a difference, with the scale of its colours.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Highlighted {
-    /// Opaque. Equal pixels: a dark grey version of the first picture, 0 to 63. Differing pixels: the differences of R, G and B without
-    /// their signs, or of alpha where that is larger, times `scale`.
+    /// Opaque picture. An equal pixel is dark grey (0 to 63), by the brightness of the first picture. In a differing pixel, R, G and B are their
+    /// absolute differences, or that of alpha where it is larger, times `scale`.
     pub picture: Rgba,
-    /// A power of two: the largest that takes no difference past 255.
+    /// The factor: the largest power of two that takes no difference beyond 255.
     pub scale: u8,
 }
 

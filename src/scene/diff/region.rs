@@ -1,30 +1,30 @@
-//! Connected differing pixels.
+//! Finds connected regions of differing pixels.
 //!
-//! Rows are taken from the top. A region is open while the last row has a run of it; each run of the next row joins the open regions
-//! that it touches. What no run of the new row joins is complete, so only as many regions are held as one row has runs, and those
-//! that are to be kept.
+//! Rows are taken from the top. A region is open while the last row has a run of its pixels. Each run of the next row joins the open
+//! regions that it touches. A region that no run of the new row joins is complete. So the memory holds no more open regions than a row
+//! has runs, and the regions that are to be kept.
 
-/// Differing pixels that touch, corners included.
+/// A region: differing pixels that touch, even at corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// First column of the smallest rectangle around it.
+    /// First column of its bounding rectangle.
     pub x: u32,
-    /// The first row of its frame.
+    /// First row of its bounding rectangle.
     pub y: u32,
-    /// Columns of its frame.
+    /// Number of columns of its bounding rectangle.
     pub width: u32,
-    /// Rows of its frame.
+    /// Number of rows of its bounding rectangle.
     pub height: u32,
-    /// How many pixels belong to it.
+    /// Number of pixels of the region.
     pub pixels: u64,
     /// Column and row of its first pixel in reading order.
     pub first: (u32, u32),
-    /// The largest difference of R, G, B, A, without signs.
+    /// Largest absolute differences of R, G, B and A.
     pub largest: [u8; 4],
 }
 
 impl Region {
-    /// Order of the report: most pixels first, then reading order.
+    /// Returns the key by which reports are sorted: most pixels first, then reading order.
     fn key(&self) -> (std::cmp::Reverse<u64>, u32, u32) {
         (std::cmp::Reverse(self.pixels), self.first.1, self.first.0)
     }
@@ -42,7 +42,7 @@ impl Region {
     }
 }
 
-/// A run of differing pixels in one row: columns from `start` up to, not including, `end`.
+/// A run of differing pixels in one row: columns `start..end`.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     start: u32,
@@ -51,20 +51,20 @@ struct Run {
     region: usize,
 }
 
-/// What was found.
+/// Result of a search.
 pub(super) struct Found {
     pub(super) kept: Vec<Region>,
     pub(super) count: u64,
     pub(super) pixels: u64,
 }
 
-/// Regions in the making.
+/// State of a search.
 pub(super) struct Regions {
-    /// Regions that reach the last row; then those of the row at hand, one a run.
+    /// Regions that reach the last row, followed by those of the current row, one for each run.
     open: Vec<Region>,
     /// Runs of the last row.
     above: Vec<Run>,
-    /// Runs of the row at hand.
+    /// Runs of the current row.
     row: Vec<Run>,
     keep: usize,
     kept: Vec<Region>,
@@ -77,7 +77,7 @@ impl Regions {
         Regions { open: Vec::new(), above: Vec::new(), row: Vec::new(), keep, kept: Vec::new(), count: 0, pixels: 0 }
     }
 
-    /// A differing pixel; pixels come in reading order.
+    /// Adds a differing pixel. Pixels are added in reading order.
     pub(super) fn pixel(&mut self, x: u32, y: u32, largest: [u8; 4]) {
         self.pixels += 1;
         let pixel = Region { x, y, width: 1, height: 1, pixels: 1, first: (x, y), largest };
@@ -93,7 +93,7 @@ impl Regions {
         }
     }
 
-    /// The row is complete.
+    /// Ends a row: joins its runs with the open regions that they touch.
     pub(super) fn end_row(&mut self) {
         if self.open.is_empty() {
             return;
@@ -117,7 +117,7 @@ impl Regions {
         self.close(&mut parents);
     }
 
-    /// Keeps open what the row reaches, under new numbers; the rest is complete.
+    /// Renumbers the regions that the current row reaches, which stay open, and completes the others.
     fn close(&mut self, parents: &mut [usize]) {
         let mut number = vec![usize::MAX; parents.len()];
         let mut open = Vec::with_capacity(self.row.len());
@@ -161,7 +161,7 @@ impl Regions {
     }
 }
 
-/// The representative of a region that may have been joined to others; shortens the way to it.
+/// Returns the representative of a region that may have been joined to others, and shortens the path to it.
 fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
         parents[at] = parents[parents[at]];

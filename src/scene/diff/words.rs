@@ -1,15 +1,15 @@
-//! Differences in words.
+//! Writes differences as text.
 
 use std::fmt::Write;
 
 use super::Histogram;
 use ninebit::shown;
 
-/// Names of the channels in the order of a pixel's bytes.
+/// Names of the channels, in the order of a pixel's bytes.
 pub const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
-/// The histograms of some channels as a table: a line for each difference that occurs, then how many pixels differ and by how much.
-/// `title` heads the column of differences.
+/// Returns the histograms of some channels as a table: one line for each bucket that occurs, then how many pixels differ and by how much at
+/// most. `title` is the head of the column of differences.
 pub fn histogram_text(title: &str, channels: &[(&str, &Histogram)]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -45,12 +45,12 @@ fn write_histogram(out: &mut String, title: &str, channels: &[(&str, &Histogram)
     writeln!(out)
 }
 
-/// `1 pixel`, `2 pixels`.
+/// Returns a number of pixels in words: `1 pixel`, `2 pixels`.
 pub fn pixels(count: u64) -> String {
     shown::count(count, "pixel")
 }
 
-/// A share in percent, rounded to two digits; what is not nothing, and not all, is not shown as such.
+/// Returns a share in percent, rounded to two digits. A share that is neither none nor all is never shown as 0 % or 100 %.
 pub fn share(part: u64, whole: u64) -> String {
     let hundredths = (u128::from(part) * 20_000 + u128::from(whole)) / (2 * u128::from(whole.max(1)));
     match hundredths {

@@ -1,4 +1,4 @@
-//! A scene from text to a picture in memory: what a test of an emulator needs.
+//! Renders a scene from its text to a picture in memory, as a test of an emulator would.
 //!
 //! `cargo run -p ninebit-scene --example render`
 

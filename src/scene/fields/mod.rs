@@ -1,21 +1,21 @@
-//! Fields of the structures of a scene: what is declared of each beside its type, and the tables of `docs/scene-format.md`, which are made of that.
+//! Declarations of the fields of a scene's structures, and the tables of `docs/scene-format.md` that are made of them.
 //!
-//! In brackets behind the type of a field stands how it is read, behind `=` its default. The comments are the document's; a field without one shares the
-//! row of the field before.
+//! Behind the type of a field stands, in brackets, how it is read, and behind `=` its default. Its comment is the document's text; a field without a
+//! comment shares the row of the field before.
 //!
-//! | declared | read by the method of its name |
+//! | declaration | what the method of the field's name returns |
 //! |---|---|
 //! | `= default` | the value, or the default if it is absent or wrong |
-//! | `[required]` | the unread value; that it is missing is an error |
+//! | `[required]` | the unread value; it is an error if it is missing |
 //! | `[required value]`, `[required numbers ...]` | the value |
-//! | `[in range, "a lod bias"]` | the value within that range; what it is called, for the error |
+//! | `[in range, "a lod bias"]` | the value within that range; the text names it in errors |
 //! | `[up to limit, "NB0606", "the width of a target"]` | 1 to a limit of `ninebit limits`, another error beyond |
-//! | `[numbers range, "a normal"]` | so many numbers in parentheses; of the default those that are not written |
-//! | `[flags "four"]` | so many flags in parentheses |
-//! | `[color]` | a colour; its default is bytes |
-//! | `[one of "axis": "Horizontal", "Vertical"]` | the index of the word; that of the first if it is absent |
+//! | `[numbers range, "a normal"]` | as many numbers in parentheses; numbers that are not written are those of the default |
+//! | `[flags "four"]` | as many flags in parentheses |
+//! | `[color]` | a colour; the default is given in bytes |
+//! | `[one of "axis": "Horizontal", "Vertical"]` | the index of the word; that of the first if the field is absent |
 //! | `[any]` | a number, also one that is not finite |
-//! | `[or "words"]` | nothing: its readers say what holds where it is absent, the document in these words |
+//! | `[or "words"]` | no method of its own: whoever reads the field decides what holds if it is absent, and the document says so in these words |
 
 mod program;
 mod scene;
@@ -35,22 +35,23 @@ pub(crate) use program::*;
 pub(crate) use scene::*;
 pub(crate) use texture::*;
 
-/// Names of structures, and the fields of each.
+/// The name of a structure, and a function that returns its fields.
 pub(super) type Structure = (&'static str, fn() -> Vec<Field>);
 
 fn declared() -> impl Iterator<Item = &'static Structure> {
     scene::STRUCTURES.iter().chain(texture::STRUCTURES).chain(program::STRUCTURES)
 }
 
-/// The structures of a scene, by the names of their declarations.
+/// Returns the names of a scene's structures, as they are declared.
 pub fn structures() -> Vec<&'static str> {
     declared().map(|(name, _)| *name).collect()
 }
 
-/// Codes of what is wrong with a field as such.
+/// Codes of the errors of single fields.
 pub const CODES: [&str; 8] = [UNKNOWN, MISSING, TWICE, WORD, KIND, RANGE, FINITE, COUNT];
 
-/// The fields of one structure, or of several, with what each is called in a scene, as a table of Markdown. `None`: there is no such structure.
+/// Returns the fields of one or several structures as a table of Markdown. Each is given as its name in a scene and its declared name. Returns `None`
+/// if there is no such structure.
 pub fn table(of: &[(&str, &str)]) -> Option<String> {
     let mut rows: Vec<[String; 5]> = Vec::new();
     for (called, structure) in of {
@@ -76,7 +77,7 @@ pub fn table(of: &[(&str, &str)]) -> Option<String> {
     Some(table.replace("| --- ", "|---"))
 }
 
-/// A row for each field that has a meaning, and those behind it without one.
+/// Makes a row for each field that has a meaning, together with the fields behind it that have none.
 fn rows_of(fields: &[Field]) -> Vec<Vec<String>> {
     let groups = fields.chunk_by(|_, next| next.meaning.is_empty());
     let row = |group: &[Field]| {

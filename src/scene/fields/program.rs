@@ -1,4 +1,4 @@
-//! The fields of pixel programs.
+//! Declares the fields of pixel programs.
 
 use super::*;
 use ninebit::state::{Bias, MuxSelect, Scale};

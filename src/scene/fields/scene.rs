@@ -1,4 +1,4 @@
-//! Fields of a scene: what it draws into and from what vertices, raster operations, truth.
+//! Declares the fields of a scene: targets, vertices, raster operations and the truth.
 
 use super::*;
 use crate::generate::{SIDES, hemisphere, normal_map};
@@ -9,7 +9,7 @@ use ninebit::state::{
 };
 use ninebit::vertex::fog::{FogEvaluation, FogSource};
 
-/// What four flags stand for.
+/// The help of four flags, which says what they stand for.
 pub(super) const CHANNELS: &str = "they stand for red, green, blue and alpha: `(true, true, true, false)`";
 
 source! {

@@ -1,9 +1,9 @@
-//! Fields of textures, of the units that sample them, and of texture shaders.
+//! Declares the fields of textures, of the units that sample them, and of texture shaders.
 
 use super::*;
 use ninebit::state::{AddressMode, LARGEST_VOLUME, MipFilter, ShadowReference};
 
-/// The largest of an unsigned 4.8: limits and biases of the lod (TEX-9).
+/// The largest unsigned 4.8 number: bound of the limits and biases of the lod (TEX-9).
 const MAX_LOD: f32 = 4095.0 / 256.0;
 
 source! {

@@ -1,6 +1,6 @@
-//! Cube maps: of the direction itself, brought to unit length, of half vectors, and of the light of a sky.
+//! Generates cube maps that hold directions of unit length, half vectors, or the light of a sky.
 //!
-//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`], colours as
+//! A texel's direction is the one that passes through its centre (TEX-12). Vectors are stored as in [`normal_map`], colours as
 //! 0..255 for 0..1; alpha is 255.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
@@ -11,29 +11,29 @@ use crate::vector::{minus, plus, unit_or_zero};
 use ninebit::state::Named;
 use ninebit::texture::cube::Face;
 
-/// Sides of the faces of a cube map.
+/// Permitted sides of a face, in texels.
 pub const CUBE_SIDES: std::ops::RangeInclusive<u32> = 1..=1024;
 
-/// What a texel holds.
+/// What the texels of a cube map hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Content {
-    /// The direction that meets it.
+    /// The texel's direction.
     Direction,
-    /// The same with sixteen bits for x and y, two's complement of which 32768 stand for 1, as `R16B16` holds them and the remap
-    /// `HiloHemisphere` reads them (TSH-3), which takes z for positive.
+    /// The texel's direction, with sixteen bits each for x and y: two's complement, where 32768 stands for 1. This is the layout of `R16B16`, and
+    /// the mapping `HiloHemisphere` reads it (TSH-3). That mapping takes z for positive.
     Halves,
-    /// The unit vector half-way between the direction, which points to the viewer, and that to a light.
+    /// The unit vector half-way between the direction, which points to the viewer, and the direction to a light.
     Half {
-        /// Toward the light, of any length but zero.
+        /// Direction toward the light, of any length but zero.
         light: [f64; 3],
-        /// The map is looked up with the direction *from* the viewer instead, as positions in camera space are.
+        /// Whether the map is looked up with the direction *from* the viewer instead, as positions in camera space are.
         from_viewer: bool,
     },
-    /// The light that meets a surface whose normal is the direction.
+    /// The light that falls on a surface whose normal is the texel's direction.
     Sky(HemisphereLight),
 }
 
-/// The six faces, in the order in which a cube map stores them. `side` is brought into [`CUBE_SIDES`].
+/// Generates the six faces, in the order in which a cube map stores them. `side` is clamped to [`CUBE_SIDES`].
 pub fn faces(side: u32, content: Content) -> Vec<Rgba> {
     let side = side.clamp(*CUBE_SIDES.start(), *CUBE_SIDES.end());
     let face = |face: &Face| {
@@ -44,7 +44,7 @@ pub fn faces(side: u32, content: Content) -> Vec<Rgba> {
     Face::ALL.iter().map(face).collect()
 }
 
-/// The unit direction that meets the centre of a texel.
+/// Returns the unit direction through the centre of a texel.
 fn direction(face: Face, column: u32, row: u32, side: u32) -> Vector {
     let along = |index: u32| (2.0 * f64::from(index) + 1.0 - f64::from(side)) / f64::from(side);
     let mut direction = [0.0; 3];
@@ -54,7 +54,7 @@ fn direction(face: Face, column: u32, row: u32, side: u32) -> Vector {
     unit_or_zero(direction)
 }
 
-/// The bytes for a unit direction.
+/// Returns the bytes of a texel with the given unit direction.
 fn texel(direction: Vector, content: Content) -> [u8; 4] {
     let [r, g, b] = match content {
         Content::Halves => return halves(direction),
@@ -65,15 +65,15 @@ fn texel(direction: Vector, content: Content) -> [u8; 4] {
     [r, g, b, 255]
 }
 
-/// x in alpha and red, y in green and blue, the high byte first. A direction with a z below 0 keeps the x and y that are left of it.
+/// Stores x in alpha and red and y in green and blue, the high byte first. The sign of z is lost.
 fn halves([x, y, _]: Vector) -> [u8; 4] {
-    // In range but for 1 itself, where the conversion saturates; the offset makes truncation a floor.
+    // All values are in range but 1 itself, where the conversion saturates. The offset turns truncation into a floor.
     let half = |n: f64| (((n * 32768.0 + 32768.5) as u32).min(65535) as u16 ^ 0x8000).to_be_bytes();
     let ([x_high, x_low], [y_high, y_low]) = (half(x), half(y));
     [x_low, y_high, y_low, x_high]
 }
 
-/// The unit vector half-way between a direction, toward the viewer or from it, and that to a light; zero if nothing lies half-way.
+/// Returns the unit vector half-way between a direction, toward the viewer or from it, and the direction to a light; zero if they are opposite.
 fn half(direction: Vector, light: [f64; 3], from_viewer: bool) -> Vector {
     let combine = if from_viewer { minus } else { plus };
     unit_or_zero(combine(unit_or_zero(light), direction))
@@ -117,7 +117,7 @@ mod tests {
         let between = half([1.0, 0.0, 0.0], light, false);
         assert!((between[0] - between[2]).abs() < 1e-12 && between[0] > 0.7);
         assert_eq!(half([-1.0, 0.0, 0.0], light, true), between);
-        // The light behind the viewer's line: nothing lies half-way.
+        // The light is behind the viewer's line of sight: nothing lies half-way.
         assert_eq!(half([0.0, 0.0, -1.0], light, false), [0.0; 3]);
     }
 

@@ -1,17 +1,17 @@
-//! DDS files of cube maps, one level, A8R8G8B8.
+//! Writes DDS files of cube maps with one level in A8R8G8B8.
 
 use crate::image::Rgba;
 
-/// Caps, height, width and pixel format are given.
+/// Flags: caps, height, width and pixel format are given.
 const FLAGS: u32 = 0x1007;
-/// RGB with alpha.
+/// Flags of the pixel format: RGB with alpha.
 const PIXEL_FLAGS: u32 = 0x41;
-/// A texture that is complex, being a cube.
+/// Caps: a texture that is complex, being a cube.
 const CAPS: u32 = 0x1008;
-/// All six faces.
+/// Further caps: a cube with all six faces.
 const CUBE: u32 = 0xfe00;
 
-/// The bytes of a file with these faces, which have the same size, in the order +X, -X, +Y, -Y, +Z, -Z.
+/// Returns the bytes of a file with these faces, which have the same size and the order +X, -X, +Y, -Y, +Z, -Z.
 pub fn cube(faces: &[Rgba]) -> Vec<u8> {
     let (width, height) = faces.first().map_or((0, 0), |face| (face.width, face.height));
     let mut words = [0_u32; 31];

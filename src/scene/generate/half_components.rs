@@ -1,13 +1,13 @@
-//! Half components of normals: what is positive, or what is negative, of one component, as an unsigned texture.
+//! Half components of normals: the positive or the negative part of one component, as an unsigned texture.
 //!
-//! Without signed arithmetic a product f g is f+ g+ + f- g- - f+ g- - f- g+, where f+ is f where it is positive and f- is -f where it is
-//! negative. All four channels of a texel hold the half component.
+//! Without signed arithmetic a product f g is f+ g+ + f- g- - f+ g- - f- g+, where f+ is f where it is positive, else 0, and f- is -f where it is
+//! negative, else 0. All four channels of a texel hold the half component.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / in a fixed order, rounded")]
 
 use super::normal_map::decode;
 use super::*;
 
-/// The half component of each texel of a normal map: `axis` is 0 for x, 1 for y, 2 for z.
+/// Returns the half component of each texel of a normal map. `axis` is 0 for x, 1 for y, 2 for z.
 pub fn of_normals(normals: &Rgba, axis: usize, negative: bool) -> Rgba {
     let texel = |[r, g, b, _]: &[u8; 4]| {
         let component = decode([*r, *g, *b]).get(axis).copied().unwrap_or(0.0);

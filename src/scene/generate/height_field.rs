@@ -1,21 +1,21 @@
-//! Height fields of weathered rock, and of plain noise, in integers.
+//! Generates height fields of weathered rock and of plain noise, in integers.
 //!
-//! Three things make the picture: blocks and chips (cells around scattered points, each a plane of its own level and tilt), the
-//! rounding of their edges, and weathering (fractal value noise, which also bends the edges of the cells). All of it is
-//! periodic, so the image tiles without a seam.
+//! The picture has three ingredients: blocks and chips (cells around scattered points, each of them a plane of its own height and tilt),
+//! rounded edges, and weathering (fractal value noise, which also bends the edges of the cells). All of them are periodic, so the image tiles
+//! without a seam.
 
 use super::hash::hash;
 use super::*;
 
-/// One in the 16.16 fixed-point numbers used here.
+/// The number 1 in the 16.16 fixed-point numbers used here.
 const ONE: i64 = 1 << 16;
 
-/// A tileable height field of `side` x `side` pixels, grey: R = G = B = height, A = 255. The lowest point is 0, the highest 255.
+/// Generates a tileable height field of rock: `side` x `side` grey pixels, R = G = B = height, A = 255. The lowest point is 0, the highest 255.
 ///
-/// The same `side` and `seed` give the same bytes everywhere. `side` is brought into [`SIDES`].
+/// The same `side` and `seed` give the same bytes on every machine. `side` is clamped to [`SIDES`].
 pub fn rocks(side: u32, seed: u64) -> Rgba {
     let side = side.clamp(*SIDES.start(), *SIDES.end());
-    // Four samples a pixel: where one block stands above another the step is not a staircase.
+    // Four samples for each pixel smooth the steps where one block stands above another.
     let point = |column: u32, row: u32| {
         let along = |index: u32| i64::from(index) * ONE / i64::from(2 * side);
         rock(along(column), along(row), seed)
@@ -30,7 +30,7 @@ pub fn rocks(side: u32, seed: u64) -> Rgba {
     picture(side, heights)
 }
 
-/// Heights as bytes, over the whole range.
+/// Converts heights into bytes that use the whole range 0 to 255.
 fn picture(side: u32, heights: Vec<i64>) -> Rgba {
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let span = (heights.iter().copied().max().unwrap_or(0) - lowest).max(1);
@@ -44,10 +44,10 @@ fn picture(side: u32, heights: Vec<i64>) -> Rgba {
     Rgba { width: side, height: side, pixels }
 }
 
-/// A tileable height field of value noise summed over `octaves`, the first of `cells` x `cells` cells, each further one twice as fine and
-/// half as strong. Grey as [`rocks`]; the lowest point is 0, the highest 255.
+/// Generates a tileable height field of value noise, summed over `octaves`. The first octave has `cells` x `cells` cells; each further one is twice
+/// as fine and half as strong. Pixels and heights are as those of [`rocks`].
 ///
-/// `side` is brought into [`SIDES`], `cells` into 1..=256, `octaves` into 1..=8.
+/// `side` is clamped to [`SIDES`], `cells` to 1..=256, `octaves` to 1..=8.
 pub fn noise_field(side: u32, cells: u32, octaves: u32, seed: u64) -> Rgba {
     let side = side.clamp(*SIDES.start(), *SIDES.end());
     let (cells, octaves) = (i64::from(cells.clamp(1, 256)), octaves.clamp(1, 8));
@@ -56,9 +56,9 @@ pub fn noise_field(side: u32, cells: u32, octaves: u32, seed: u64) -> Rgba {
     picture(side, points.map(|(x, y)| fractal(along(x), along(y), cells, octaves, seed)).collect())
 }
 
-/// Height at a point of the unit square, 16.16 as its coordinates.
+/// Returns the height at a point of the unit square; height and coordinates are 16.16.
 fn rock(u: i64, v: i64, seed: u64) -> i64 {
-    // The places of blocks and chips are bent: weathered edges are not straight.
+    // Blocks and chips are sampled at displaced points: weathered edges are not straight.
     let bend = |salt: u64| fractal(u, v, 6, 4, seed ^ salt) - ONE / 2;
     let (bent_u, bent_v) = (u + bend(0xb1) / 9, v + bend(0xb2) / 9);
 
@@ -73,21 +73,21 @@ fn rock(u: i64, v: i64, seed: u64) -> i64 {
     swell * 40 / 100 + block * 40 / 100 + chip * 8 / 100 + weather * 34 / 100 + grain * 26 / 100
 }
 
-/// How high a worn block is at a distance from its edge: 0 on it, 1 from `width` on, steep at the edge and level at the top.
+/// Returns the height of a worn block at a distance from its edge: 0 at the edge, where it is steep, rising to 1 at `width` and level from there on.
 fn round(edge: i64, width: i64) -> i64 {
     let below = (width - edge).max(0) * ONE / width;
     ONE - below * below / ONE
 }
 
-/// A point's place among the facets.
+/// The facet at a point.
 struct Facet {
-    /// Height of the facet's plane there, 16.16, about 0..1.
+    /// Height of the facet's plane at the point, 16.16, about 0..1.
     height: i64,
-    /// Distance to the next facet, as the difference of the distances to the two nearest centres, in cells.
+    /// Distance to the edge, in cells: the difference of the distances to the two nearest centres.
     edge: i64,
 }
 
-/// Facets around one centre in each of `cells` x `cells` cells of the unit square.
+/// Finds the facet at a point. There is one centre in each of `cells` x `cells` cells of the unit square.
 fn facets(u: i64, v: i64, cells: i64, seed: u64) -> Facet {
     let (x, y) = (u * cells, v * cells);
     let (cell_x, cell_y) = (x.div_euclid(ONE), y.div_euclid(ONE));
@@ -114,7 +114,7 @@ fn facets(u: i64, v: i64, cells: i64, seed: u64) -> Facet {
     Facet { height, edge: root(second) - root(nearest) }
 }
 
-/// Ridges: the folds of value noise, sharpest at the top.
+/// Returns ridges: folded value noise, sharpest at its highest points.
 fn ridged(u: i64, v: i64, cells: i64, octaves: u32, seed: u64) -> i64 {
     summed(octaves, seed, |octave, seed| {
         let fold = ONE - (2 * noise(u, v, cells << octave, seed) - ONE).abs();
@@ -122,12 +122,12 @@ fn ridged(u: i64, v: i64, cells: i64, octaves: u32, seed: u64) -> i64 {
     })
 }
 
-/// Value noise summed over octaves, each half as strong and twice as fine, 0..1.
+/// Returns value noise summed over octaves, each twice as fine and half as strong as the one before; 0..1.
 fn fractal(u: i64, v: i64, cells: i64, octaves: u32, seed: u64) -> i64 {
     summed(octaves, seed, |octave, seed| noise(u, v, cells << octave, seed))
 }
 
-/// The mean of what octaves are, each with a seed of its own and half as strong.
+/// Returns the weighted mean of octaves, each with a seed of its own and half the weight of the one before.
 fn summed(octaves: u32, seed: u64, of: impl Fn(u32, u64) -> i64) -> i64 {
     let (mut sum, mut weight, mut total) = (0, ONE, 0);
     for octave in 0..octaves {
@@ -138,7 +138,7 @@ fn summed(octaves: u32, seed: u64, of: impl Fn(u32, u64) -> i64) -> i64 {
     sum * ONE / total
 }
 
-/// Value noise on a lattice of `cells` x `cells`, periodic in the unit square, 0..1.
+/// Returns value noise on a lattice of `cells` x `cells`, periodic in the unit square; 0..1.
 fn noise(u: i64, v: i64, cells: i64, seed: u64) -> i64 {
     let (x, y) = (u * cells, v * cells);
     let (i, j) = (x.div_euclid(ONE), y.div_euclid(ONE));
@@ -149,12 +149,12 @@ fn noise(u: i64, v: i64, cells: i64, seed: u64) -> i64 {
     mix(mix(corner(0, 0), corner(1, 0), s), mix(corner(0, 1), corner(1, 1), s), t)
 }
 
-/// 3t^2 - 2t^3.
+/// Returns 3t^2 - 2t^3.
 fn smooth(t: i64) -> i64 {
     t * t / ONE * (3 * ONE - 2 * t) / ONE
 }
 
-/// The integer square root of a non-negative number.
+/// Returns the integer square root of a number that is not negative.
 fn root(value: i64) -> i64 {
     value.isqrt()
 }
@@ -182,7 +182,7 @@ mod tests {
         let field = noise_field(32, 4, 3, 5);
         assert_eq!(field.pixels.iter().map(|p| p[0]).min(), Some(0));
         assert_eq!(field.pixels.iter().map(|p| p[0]).max(), Some(255));
-        // Across the seam it is no steeper than elsewhere.
+        // Neighbours across the seam differ no more than others.
         let step = |a: usize, b: usize| i16::from(field.pixels[a][0]).abs_diff(i16::from(field.pixels[b][0]));
         let seam = (0..32).map(|y| step(32 * y + 31, 32 * y)).max();
         let inside = (0..32).flat_map(|y| (0..31).map(move |x| 32 * y + x)).map(|at| step(at, at + 1)).max();

@@ -1,31 +1,31 @@
-//! The normal map of a hemisphere that lies in a flat surface.
+//! Generates the normal map of a hemisphere on a flat surface.
 //!
-//! The image is the square from -1 to 1 along x and y, and a texel's normal is taken at the texel's centre: (x, y,
-//! sqrt(1 - x^2 - y^2)) inside the unit circle, outside (0, 0, 1), or the zero vector if asked for. Orientation and bytes are those of
+//! The image is the square from -1 to 1 along x and y, and a texel's normal is taken at the texel's centre. Inside the unit circle it is (x, y,
+//! sqrt(1 - x^2 - y^2)); outside it is (0, 0, 1), or the zero vector if asked for. Orientation and bytes are those of
 //! [`normal_map`], with 255 in alpha.
 //!
-//! A hemisphere holds every direction that a surface can face, so it shows what a light does to all of them; and its normals turn
-//! slowly and evenly, so it shows every step of the bytes. Noise breaks the steps up: it is added to the exact normals of
-//! the sphere, before they are brought back to unit length and become bytes; the flat surface around it stays flat.
+//! A hemisphere holds every direction that a surface can face, so it shows what a light does to all of them. Its normals turn
+//! slowly and evenly, so it also shows every step of the bytes. Noise breaks the steps up: it is added to the exact normals of
+//! the sphere before they are normalised and converted to bytes. The flat surface around the sphere stays flat.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use super::hash::hash;
 use super::normal_map::encode;
 use super::*;
 
-/// The strongest noise. No normal vanishes up to here: noise is at most 0.5 sqrt 3 < 1 long.
+/// The strongest noise. Up to here no normal vanishes: the noise is at most 0.5 sqrt 3 < 1 long.
 pub const MAXIMUM_NOISE: f64 = 0.5;
 
-/// What kind of hemisphere.
+/// Options of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Columns and rows.
+    /// Number of columns, and of rows.
     pub size: u32,
-    /// The most that is added to a component of a normal of the sphere, up or down; every amount up to it is as likely. 0 is no noise.
+    /// Largest amount that is added to or subtracted from a component of the sphere's normals. Amounts are distributed evenly; 0 is no noise.
     pub noise: f64,
-    /// Chooses the noise: equal seeds give equal pictures.
+    /// Seed of the noise: equal seeds give equal pictures.
     pub seed: u64,
-    /// Outside the circle is the zero vector, bytes of 128, in place of a flat surface: no light shows there.
+    /// Whether the map holds the zero vector (bytes of 128) outside the circle instead of a flat surface: light shows nothing there.
     pub zero_outside: bool,
 }
 
@@ -35,9 +35,9 @@ impl Default for Options {
     }
 }
 
-/// The normal map of a hemisphere.
+/// Generates the normal map.
 ///
-/// `options.size` is brought into [`SIDES`], `options.noise` into 0..=[`MAXIMUM_NOISE`]; NaN is no noise.
+/// `options.size` is clamped to [`SIDES`], `options.noise` to 0..=[`MAXIMUM_NOISE`]; NaN is no noise.
 pub fn normals(options: &Options) -> Rgba {
     let size = options.size.clamp(*SIDES.start(), *SIDES.end());
     let pixels = vectors(options).into_iter().map(|normal| {
@@ -47,7 +47,7 @@ pub fn normals(options: &Options) -> Rgba {
     Rgba { width: size, height: size, pixels: pixels.collect() }
 }
 
-/// The same normals before they become bytes, row by row from the top.
+/// Returns the normals of the same map before they become bytes, row by row from the top.
 pub fn vectors(options: &Options) -> Vec<[f64; 3]> {
     let size = options.size.clamp(*SIDES.start(), *SIDES.end());
     let noise = if options.noise > 0.0 { options.noise.min(MAXIMUM_NOISE) } else { 0.0 };
@@ -67,33 +67,33 @@ pub fn vectors(options: &Options) -> Vec<[f64; 3]> {
     vectors
 }
 
-/// The normal around the hemisphere.
+/// Returns the normal outside the sphere.
 fn outside(zero: bool) -> [f64; 3] {
     if zero { [0.0; 3] } else { [0.0, 0.0, 1.0] }
 }
 
-/// The normal at any point of the image, s and t from 0 to 1 across it; without noise.
+/// Returns the normal, without noise, at any point of the image; s and t go from 0 to 1 across it.
 pub fn normal_at([s, t]: [f64; 2], zero_outside: bool) -> [f64; 3] {
     let (x, y) = (2.0 * s - 1.0, 1.0 - 2.0 * t);
     let square = x * x + y * y;
     if square < 1.0 { [x, y, (1.0 - square).sqrt()] } else { outside(zero_outside) }
 }
 
-/// The normal of the sphere at the centre of a texel, unless the texel lies outside it.
+/// Returns the normal of the sphere at the centre of a texel; `None` if the texel lies outside the sphere.
 fn on_sphere(column: u32, row: u32, size: u32) -> Option<[f64; 3]> {
-    // (2i + 1 - size) / size: exactly symmetric about the middle.
+    // (2i + 1 - size) / size is exactly symmetric about the middle.
     let along = |index: u32| (2.0 * f64::from(index) + 1.0 - f64::from(size)) / f64::from(size);
     let (x, y) = (along(column), -along(row));
     let square = x * x + y * y;
     (square < 1.0).then(|| [x, y, (1.0 - square).sqrt()])
 }
 
-/// -1 to 1 in 65536 even steps.
+/// Maps 65536 values to -1 to 1 in even steps.
 fn signed_unit(random: u16) -> f64 {
     (2.0 * f64::from(random) - 65535.0) / 65535.0
 }
 
-/// The vector brought to unit length, and turned out of the surface where noise has turned it inward.
+/// Normalises a vector, and turns it outward where noise has turned it into the surface.
 fn unit([x, y, z]: [f64; 3]) -> [f64; 3] {
     let length = (x * x + y * y + z * z).sqrt();
     [x / length, y / length, z.abs() / length]
@@ -103,7 +103,7 @@ fn unit([x, y, z]: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// What a byte stands for.
+    /// Returns the component that a byte stands for.
     fn decode(byte: u8) -> f64 {
         (f64::from(byte) - 128.0) / 127.0
     }
@@ -116,7 +116,7 @@ mod tests {
         (x * x + y * y + z * z).sqrt()
     }
 
-    /// Half a step of the bytes in each of three components.
+    /// Returns the length of the largest rounding error: half a step of the bytes in each of three components.
     fn rounding() -> f64 {
         3.0_f64.sqrt() * 0.5 / 127.0
     }
@@ -165,7 +165,7 @@ mod tests {
         for (x, y) in [(0, 0), (63, 0), (0, 63), (63, 63)] {
             assert_eq!(at(x, y), [128, 128, 255, 255]);
         }
-        // The four texels about the middle face almost straight out, a little right and up where they lie so.
+        // The four texels about the middle face almost straight out, turned a little toward their corner.
         assert_eq!(at(32, 31), [130, 130, 255, 255]);
         assert_eq!(at(31, 32), [126, 126, 255, 255]);
         // 63/64 to the left, and up.
@@ -188,13 +188,13 @@ mod tests {
             pairs.map(|(a, b)| length([a[0] - b[0], a[1] - b[1], a[2] - b[2]])).fold(0.0, f64::max)
         };
         let (weak, strong) = (moved(0.02), moved(0.1));
-        // At most the diagonal of the cube of noise, its chord after normalising, and the rounding of two maps.
+        // At most the diagonal of the cube of noise, lengthened by normalising, and the rounding of two maps.
         assert!(weak > 0.02 && weak < 2.0 * 0.02 * 3.0_f64.sqrt() + 2.0 * rounding(), "{weak}");
         assert!(strong > 0.1 && strong < 2.0 * 0.1 * 3.0_f64.sqrt() + 2.0 * rounding(), "{strong}");
         // The surface around stays flat.
         let strongest = normals(&Options { size: 64, noise: MAXIMUM_NOISE, ..Options::default() });
         assert!([0, 63, 64 * 63, 64 * 64 - 1].iter().all(|index| strongest.pixels[*index] == [128, 128, 255, 255]));
-        // Up and down alike.
+        // Noise goes up as often as down.
         let mean = |vectors: &[[f64; 3]]| vectors.iter().map(|v| v[0]).sum::<f64>() / vectors.len() as f64;
         let noisy = decoded(&normals(&Options { size: 64, noise: 0.1, ..Options::default() }));
         assert!((mean(&noisy) - mean(&clean)).abs() < 0.005);
@@ -208,7 +208,7 @@ mod tests {
         assert_ne!(normals(&noisy), normals(&Options { noise: 0.0, ..noisy }));
         let clean = Options { noise: 0.0, ..noisy };
         assert_eq!(normals(&clean), normals(&Options { seed: 2, ..clean }), "no noise, no seed");
-        // Some of the bytes themselves, worked out apart from this program: every machine makes these.
+        // Some bytes, computed independently of this program: every machine has to make these.
         assert_eq!(normals(&noisy).pixels[16 * 32 + 8..][..2], [[68, 122, 240, 255], [87, 131, 248, 255]]);
     }
 

@@ -1,10 +1,10 @@
-//! Normal maps from height fields, by the three-texel triangle.
+//! Generates normal maps from height fields, by the triangle of three texels.
 //!
-//! For every texel the texel itself, its right neighbour and the neighbour above it are three points of the surface. The two
-//! edges from the texel span a triangle, and the normalised cross product of the edges is the texel's normal. Two neighbours
-//! instead of four keep every crease one texel wide; the map is half a texel off its height field, down and to the left.
+//! Every texel, its right neighbour and the neighbour above it are three points of the surface. The two
+//! edges from the texel span a triangle, and the normalised cross product of the edges is the texel's normal. Using two neighbours
+//! instead of four keeps every crease one texel wide; the map is shifted by half a texel against its height field, down and to the left.
 //!
-//! Orientation: x to the right, **y upward on the image**, z out of it. Red, green and blue are x, y and z; so a slope that faces the
+//! Orientation: x points right, **y points up on the image**, z out of it. Red, green and blue are x, y and z; so a slope that faces the
 //! top of the image is more green. With texture coordinates that grow downward, y is the direction of *decreasing* t.
 //!
 //! A component n in -1..1 is stored as the byte 128 + round(127 n): 0 is 128, -1 is 1, 1 is 255. The byte 0 does not occur. Alpha keeps
@@ -13,25 +13,25 @@
 
 use super::*;
 
-/// Which channel of the input is the height, 0 the lowest.
+/// The channel of an image that holds heights, where 0 is the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeightChannel {
-    /// Red: that of a grey image.
+    /// Red, as for a grey image.
     #[default]
     Red,
-    /// Alpha: that of an image which carries its height along, a normal map of this module among them.
+    /// Alpha, as for an image that carries its heights along; normal maps of this module do.
     Alpha,
 }
 
-/// How a height field is read.
+/// Options for reading a height field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many texels high a height of 255 is. Negative turns hills into pits.
+    /// Height of the byte 255, in texels. A negative scale turns hills into pits.
     pub scale: f64,
-    /// The image repeats: the right neighbour of the last column is the first column, likewise for rows. Otherwise the last column
+    /// Whether the image repeats: the right neighbour of the last column is then the first column, likewise for rows. Otherwise the last column
     /// and the first row take the slope of their inner neighbours.
     pub wrap: bool,
-    /// The channel that holds the height.
+    /// The channel that holds the heights.
     pub channel: HeightChannel,
 }
 
@@ -41,14 +41,14 @@ impl Default for Options {
     }
 }
 
-/// The normal map of a height field of the same size.
+/// Generates the normal map of a height field, of the same size.
 ///
 /// `options.scale` must be finite; its magnitude is limited to 2^20.
 pub fn from_height(height: &Rgba, options: &Options) -> Rgba {
     from_height_along(height, options, &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 }
 
-/// The same on a surface of which tangent, binormal and normal are given: the normals become directions around it.
+/// Generates the normal map on a surface whose tangent, binormal and normal are `frame`: the normals become directions in that surface's space.
 pub fn from_height_along(height: &Rgba, options: &Options, frame: &[Vector; 3]) -> Rgba {
     let texels = normals(height, options).into_iter().zip(&height.pixels);
     let along = |n: Vector| [0, 1, 2].map(|axis| n[0] * frame[0][axis] + n[1] * frame[1][axis] + n[2] * frame[2][axis]);
@@ -59,7 +59,7 @@ pub fn from_height_along(height: &Rgba, options: &Options, frame: &[Vector; 3]) 
     Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
 }
 
-/// The height of a texel.
+/// Returns the height of a texel.
 fn byte([red, _, _, alpha]: [u8; 4], channel: HeightChannel) -> u8 {
     match channel {
         HeightChannel::Red => red,
@@ -67,7 +67,7 @@ fn byte([red, _, _, alpha]: [u8; 4], channel: HeightChannel) -> u8 {
     }
 }
 
-/// The unit normals of a height field's texels, before they become bytes; row by row from the top.
+/// Returns the unit normals of a height field's texels before they become bytes, row by row from the top.
 ///
 /// `options.scale` must be finite; its magnitude is limited to 2^20.
 pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
@@ -77,7 +77,7 @@ pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
     let mut normals = Vec::with_capacity(height.pixels.len());
     for y in 0..rows {
         for x in 0..columns {
-            // Rise from `from` to `to`, in steps of the height byte.
+            // Difference from `from` to `to`, in steps of the height's byte.
             let rise = |from: u8, to: u8| f64::from(i16::from(to) - i16::from(from));
             let right = match (x + 1 < columns, options.wrap) {
                 (true, _) => rise(at(x, y), at(x + 1, y)),
@@ -95,7 +95,7 @@ pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
     normals
 }
 
-/// The height at a point, in texels from the centre of the first one: the bilinear mix of the texels around, 0 to 255.
+/// Returns the height at a point by bilinear interpolation, 0 to 255. The point is given in texels from the centre of the first texel.
 pub(super) fn height_at(height: &Rgba, options: &Options, x: f64, y: f64) -> f64 {
     let (left, top) = (x.floor(), y.floor());
     let at = |x: f64, y: f64| {
@@ -111,19 +111,19 @@ pub(super) fn height_at(height: &Rgba, options: &Options, x: f64, y: f64) -> f64
     mix(row(top), row(top + 1.0), y - top)
 }
 
-/// The normal of the triangle with the edges (1, 0, right) and (0, 1, up): their cross product (-right, -up, 1), normalised.
+/// Returns the normal of the triangle with the edges (1, 0, right) and (0, 1, up): their cross product (-right, -up, 1), normalised.
 fn normal(right: f64, up: f64) -> [f64; 3] {
     let length = (right * right + up * up + 1.0).sqrt();
     [-right / length, -up / length, 1.0 / length]
 }
 
-/// Bytes of a vector of components in -1..1: 128 + round(127 n).
+/// Returns the bytes of a vector with components in -1..1: 128 + round(127 n).
 pub fn encode(vector: [f64; 3]) -> [u8; 3] {
-    // The sum is positive, so the conversion's truncation is a floor; out of range it saturates.
+    // The sum is positive, so truncation is a floor; the conversion saturates.
     vector.map(|n| (128.5 + 127.0 * n) as u8)
 }
 
-/// The vector that such bytes stand for.
+/// Returns the vector that bytes stand for: the inverse of [`encode`].
 pub fn decode(bytes: [u8; 3]) -> [f64; 3] {
     bytes.map(|byte| (f64::from(byte) - 128.0) / 127.0)
 }
@@ -141,7 +141,7 @@ mod tests {
     fn a_flat_field_points_out_of_the_image() {
         let map = from_height(&field(2, &[&[9, 9], &[9, 9]]), &Options::default());
         assert_eq!(map.pixels, [[128, 128, 255, 9]; 4]);
-        // A ceiling, whose normal points down.
+        // A ceiling: its normal points down.
         let ceiling = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
         let map = from_height_along(&field(2, &[&[9, 9], &[9, 9]]), &Options::default(), &ceiling);
         assert_eq!(map.pixels, [[128, 1, 128, 9]; 4]);
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn slopes_face_where_they_should() {
-        // A rise of one texel a texel: 45 degrees, 127 / sqrt 2 = 89.8.
+        // It rises by one texel for each texel: 45 degrees, 127 / sqrt 2 = 89.8.
         let options = Options { scale: 255.0, wrap: false, ..Options::default() };
         let to_the_right = from_height(&field(3, &[&[0, 1, 2], &[0, 1, 2]]), &options);
         assert!(to_the_right.pixels.iter().all(|p| p[..3] == [38, 128, 218]), "{:?}", to_the_right.pixels);

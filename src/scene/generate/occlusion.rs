@@ -1,20 +1,20 @@
-//! How much of the sky each texel of a height field sees.
+//! Computes how much of the sky each texel of a height field sees.
 //!
-//! Around a texel rays go out in sixteen directions, up to 24 texels far; the steepest slope along a ray is its horizon. A flat
-//! surface weighs the sky by the cosine, so what is left above a horizon at angle h is cos^2 h of a direction's share.
+//! From each texel, rays go out in sixteen directions, up to 24 texels far; the steepest slope along a ray is its horizon. A flat
+//! surface weights the sky by the cosine, so a horizon at angle h leaves cos^2 h of a direction's share.
 #![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use super::normal_map::{Options, height_at};
 use super::*;
 use crate::mesh::circle;
 
-/// Directions about a texel.
+/// Number of directions about a texel.
 const RAYS: u32 = 16;
 
-/// How far a ray goes, in texels.
+/// Length of a ray, in texels.
 const MAX_RAY: u32 = 24;
 
-/// The share of the sky that each texel sees, 0 to 1, row by row from the top. `options` says how heights are read, as for a normal map.
+/// Returns the share of the sky that each texel sees, 0 to 1, row by row from the top. `options` says how heights are read, as for a normal map.
 pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
     let scale = options.scale / 255.0;
     let directions: Vec<[f64; 2]> = (0..RAYS).map(|ray| circle(ray, RAYS)).collect();
@@ -38,7 +38,7 @@ pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
     open
 }
 
-/// The same as bytes, grey; alpha holds it as well.
+/// Returns the same shares as a picture, with the byte of the share in all four channels.
 pub fn picture(height: &Rgba, options: &Options) -> Rgba {
     let pixels = open_sky(height, options).into_iter().map(|open| [byte(open); 4]);
     Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
@@ -65,14 +65,14 @@ mod tests {
         let open = open_sky(&field(8, &heights), &Options::default());
         assert_eq!(open[45], 1.0);
         assert!(open[9] < 0.5, "{}", open[9]);
-        // Next to the peak, in its lee.
+        // Next to the peak, which hides a part of the sky.
         assert!(open[44] < 1.0 && open[44] > open[9], "{}", open[44]);
     }
 
     #[test]
     fn a_slope_of_45_degrees_takes_its_share() {
-        // One texel higher a texel to the right, everywhere. Downhill everything is open; uphill, at an angle a from the slope,
-        // 1 / (1 + cos^2 a), whose mean over the half circle is 1 / sqrt 2.
+        // The field rises by one texel for each texel to the right. Downhill all is open. Uphill, at an angle a from the slope, 1 / (1 + cos^2 a)
+        // is open, whose mean over the half circle is 1 / sqrt 2.
         let slope: Vec<u8> = (0..16).collect();
         let options = Options { scale: 255.0, wrap: false, ..Options::default() };
         let open = open_sky(&field(16, &slope), &options);

@@ -1,14 +1,14 @@
-//! Tables of powers for dependent reads: a texture whose rows hold v^n.
+//! Generates tables of powers for dependent reads: textures whose rows hold v^n.
 //!
-//! R, G and B are v to the power n, alpha is u, taken at the centres of texels: u = (column + 1/2) / width, v = (row + 1/2) / height.
+//! R, G and B are v to the power n and alpha is u, at the centres of texels: u = (column + 1/2) / width, v = (row + 1/2) / height.
 #![allow(clippy::float_arithmetic, reason = "input data: f64 products in a fixed order, rounded")]
 
 use super::*;
 
-/// Sides of a table.
+/// Permitted sides of a table.
 pub const TABLE_SIDES: std::ops::RangeInclusive<u32> = 1..=4096;
 
-/// A table of `width` columns and `height` rows, both brought into [`TABLE_SIDES`].
+/// Generates a table of `width` columns and `height` rows, both clamped to [`TABLE_SIDES`].
 pub fn table(width: u32, height: u32, exponent: u32) -> Rgba {
     let [width, height] = [width, height].map(|side| side.clamp(*TABLE_SIDES.start(), *TABLE_SIDES.end()));
     let centre = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side);
@@ -19,7 +19,7 @@ pub fn table(width: u32, height: u32, exponent: u32) -> Rgba {
     Rgba { width, height, pixels: (0..height).flat_map(row).collect() }
 }
 
-/// `base` multiplied by itself, `exponent` times in all.
+/// Returns `base` to the power `exponent`, by repeated squaring.
 pub(crate) fn power(base: f64, exponent: u32) -> f64 {
     let (mut result, mut square, mut left) = (1.0, base, exponent);
     while left > 0 {

@@ -1,6 +1,6 @@
-//! How much of the sky a surface sees, and the light that follows from it.
+//! Computes how much of the sky a surface sees, and the light that follows from it.
 //!
-//! The light of a far sky and ground over the half sphere around a normal depends on nothing but the angle between the normal and the sky's
+//! The light that a distant sky and ground send over the half sphere around a normal depends only on the angle between the normal and the sky's
 //! axis. Truths compute it, and cube maps hold it for every normal.
 #![allow(clippy::float_arithmetic, reason = "input data and references: f64, + - * / and roots in a fixed order")]
 
@@ -8,9 +8,9 @@ use crate::vector::{Vector, dot, unit_or_zero};
 use ninebit::state::named;
 
 named! {
-    /// How much of the sky a surface sees, over the angle q between its normal and the sky's axis.
+    /// The share of the sky that a surface sees, by the angle q between its normal and the sky's axis.
     pub enum Integral {
-        /// 1 - sin q / 2 on the upper half, sin q / 2 on the lower.
+        /// 1 - sin q / 2 on the upper half of directions, sin q / 2 on the lower.
         Exact,
         /// 1/2 + cos q / 2.
         Simplified,
@@ -20,24 +20,24 @@ named! {
 /// Light from all around: a sky and a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HemisphereLight {
-    /// Toward the middle of the sky, in the space of the normals; any length.
+    /// Direction toward the middle of the sky, in the space of the normals, of any length.
     pub axis: [f64; 3],
-    /// R, G, B of the sky; 1 is full.
+    /// R, G and B of the sky; 1 is full.
     pub sky: [f64; 3],
-    /// R, G, B of the ground.
+    /// R, G and B of the ground; 1 is full.
     pub ground: [f64; 3],
-    /// How much of the sky a surface sees.
+    /// How the share of the sky is computed.
     pub integral: Integral,
 }
 
 impl HemisphereLight {
-    /// R, G, B of the light that meets a surface with this unit normal.
+    /// Returns R, G and B of the light that falls on a surface with this unit normal.
     pub fn at(&self, normal: [f64; 3]) -> [f64; 3] {
         let sky = self.share(normal);
         [0, 1, 2].map(|n| sky * self.sky[n] + (1.0 - sky) * self.ground[n])
     }
 
-    /// The share of the sky, 0 to 1.
+    /// Returns the share of the sky that the surface sees, 0 to 1.
     fn share(&self, normal: Vector) -> f64 {
         let cosine = dot(normal, unit_or_zero(self.axis)).clamp(-1.0, 1.0);
         match self.integral {
@@ -50,7 +50,7 @@ impl HemisphereLight {
     }
 }
 
-/// A colour's bytes as numbers from 0 to 1.
+/// Converts a colour's bytes into numbers from 0 to 1.
 pub fn color(bytes: [u8; 3]) -> [f64; 3] {
     bytes.map(|byte| f64::from(byte) / 255.0)
 }
@@ -70,7 +70,7 @@ mod tests {
             assert_eq!(of(integral, [0.0, 0.0, -1.0]), [0.0, 1.0, 0.5]);
             assert_eq!(of(integral, [1.0, 0.0, 0.0]), [0.5, 0.5, 0.5]);
         }
-        // Between them they do not: at 30 degrees 0.75 and 0.933.
+        // In between they differ: 0.75 and 0.933 at 30 degrees.
         let tilted = [0.5, 0.0, 0.75_f64.sqrt()];
         assert!((of(Integral::Exact, tilted)[0] - 0.75).abs() < 1e-12);
         assert!((of(Integral::Simplified, tilted)[0] - 0.933_012_701_892_219).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! The outer structure of a PNG file: its chunks.
+//! Reads the outer structure of a PNG file: its chunks.
 
 use super::Header;
 
@@ -8,27 +8,27 @@ pub(super) const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 /// A PNG reduced to the chunks that decide its pixels.
 #[derive(Debug)]
 pub(super) struct Essential {
-    /// What IHDR says.
+    /// Contents of the chunk IHDR.
     pub(super) header: Header,
-    /// Signature, IHDR, PLTE, tRNS, IDAT and IEND, as they stood.
+    /// Signature, IHDR, PLTE, tRNS, IDAT and IEND, unchanged.
     pub(super) bytes: Vec<u8>,
 }
 
 /// Walks the chunks and keeps the essential ones.
 ///
-/// Compressed text and colour profiles stay behind: they can hold a thousand times their size and say nothing about the
-/// pixels. A palette that is not a whole number of colours is refused here, because it makes decoders index past its end. A
-/// last chunk that is cut off is kept as far as it goes; the decoder reports it.
+/// Compressed text and colour profiles are left out: they can unpack to a thousand times their size and do not affect the
+/// pixels. A palette that is not a whole number of colours is refused here, because it makes decoders index past its end. If the
+/// last chunk is cut off, what there is of it is kept; the decoder reports it.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// A description of what is wrong.
 pub(super) fn essential(bytes: &[u8]) -> Result<Essential, &'static str> {
     let mut rest = bytes.strip_prefix(&SIGNATURE).ok_or("the signature is missing")?;
     let mut header = None;
     let mut kept = SIGNATURE.to_vec();
     while let Some((&[a, b, c, d, kind @ ..], _)) = rest.split_first_chunk::<8>() {
         let length = u32::from_be_bytes([a, b, c, d]) as usize;
-        // Length, kind, data, checksum.
+        // A chunk is its length, kind, data and checksum.
         let whole = length.saturating_add(12);
         let chunk = &rest[..whole.min(rest.len())];
         let data = &chunk[8..chunk.len().min(length.saturating_add(8))];
@@ -49,7 +49,7 @@ pub(super) fn essential(bytes: &[u8]) -> Result<Essential, &'static str> {
                 kept.extend_from_slice(chunk);
             }
             b"tRNS" | b"IDAT" | b"IEND" => kept.extend_from_slice(chunk),
-            // Bit 5 of the first letter marks what a reader may skip.
+            // Bit 5 of the first letter marks chunks that a reader may skip.
             _ if kind[0] & 0x20 == 0 => return Err("it has a chunk that may not be skipped and that no reader knows"),
             _ => {}
         }

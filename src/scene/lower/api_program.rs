@@ -1,4 +1,4 @@
-//! Programs in the language of an API, which become combiners for each draw.
+//! Lowers programs in the language of an API to combiners, for each draw.
 
 use super::pixel_shader::ShaderProgram;
 use super::program_text::{ProgramText, placed};
@@ -11,29 +11,29 @@ use ninebit_program::texture_stages::{self as stages, TextureStages};
 
 /// A program of an API.
 pub(super) enum ApiProgram {
-    /// Texture stages of Direct3D.
+    /// Texture stages of Direct3D, and the text they were written in, if any.
     Stages(TextureStages, Option<ProgramText>),
-    /// Texture environments of OpenGL.
+    /// Texture environments of OpenGL, and the text they were written in, if any.
     Environment(TextureEnvironment, Option<ProgramText>),
-    /// Direct3D, version 1.1 of pixel shaders.
+    /// A pixel shader of Direct3D, version 1.1.
     Shader(Box<ShaderProgram>),
 }
 
-/// What of a draw the lowering depends on, or changes.
+/// State of a draw that the lowering depends on or changes.
 pub(super) struct Around {
-    /// Fog is enabled.
+    /// Whether fog is enabled.
     pub(super) fog: bool,
-    /// The draw has a texture shader of its own.
+    /// Whether the draw has a texture shader of its own.
     pub(super) shader: bool,
-    /// The draw has generators of its own.
+    /// Whether the draw has generators of its own.
     pub(super) generators: bool,
-    /// How the coordinate sets are made, if not all are as they were given.
+    /// How the coordinate sets are made; `None` if all are used as they are given.
     pub(super) sets: Option<[CoordinateSet; 4]>,
-    /// Sets that are written at the end: the set s, t and r come from, q being 1.
+    /// For each set that is rewritten at the end, the set that its s, t and r come from; its q becomes 1.
     pub(super) without_q: [Option<usize>; 4],
 }
 
-/// What it becomes in a draw.
+/// A program that has been lowered for a draw.
 pub(super) struct Lowered {
     pub(super) combiners: Combiners,
     pub(super) origins: Vec<StageOrigin>,
@@ -41,19 +41,19 @@ pub(super) struct Lowered {
 }
 
 impl Lowered {
-    /// Combiners as they are written, which leave the units as they are.
+    /// Wraps combiners that were written as such, which leave the units unchanged.
     pub(super) fn as_written(combiners: Combiners, units: &Units) -> Self {
         Lowered { combiners, origins: Vec::new(), shader: units.shader }
     }
 }
 
 impl ApiProgram {
-    /// The units whose instructions read a cube map.
+    /// Returns the units whose instructions read a cube map.
     pub(super) fn cubes(&self) -> [bool; TEXTURE_UNITS] {
         if let ApiProgram::Shader(program) = self { program.cubes() } else { [false; TEXTURE_UNITS] }
     }
 
-    /// Lowers the program for a draw; the default program once the reason that it has no form has been recorded.
+    /// Lowers the program for a draw. If it cannot be lowered, records the findings and returns the default program.
     pub(super) fn lower(&self, reader: &mut Reader<'_>, units: &Units, around: &mut Around) -> Lowered {
         let profile = reader.profile;
         let signed = units.bound.map(|unit| unit.is_some_and(|unit| unit.signed != [false; 4]));
@@ -90,7 +90,7 @@ impl ApiProgram {
         match lowered {
             Ok((combiners, origins)) => Lowered { combiners, origins, shader },
             Err(findings) => {
-                // Several draws may share a program: each finding once.
+                // Several draws may share a program: each finding is recorded once.
                 for finding in findings {
                     if !reader.diagnostics.contains(&finding) {
                         reader.push(finding);
@@ -102,8 +102,8 @@ impl ApiProgram {
     }
 }
 
-/// Coordinate sets of the units: chosen, or made of generators or a stage's transform. A made one takes the set of the unit's number if no
-/// other unit reads that as it was given, or else one that none reads.
+/// Assigns coordinate sets to the units: a chosen set, or one made by generators or a stage's transform. A set that is made gets the number of its
+/// unit, unless another unit reads the set of that number as it was given; it then gets the first number that no unit reads.
 fn generate(
     changes: &[stages::UnitChange; TEXTURE_UNITS],
     profile: Profile,
@@ -127,7 +127,7 @@ fn generate(
         };
         let Some((what, label, place)) = made else { continue };
         if around.generators {
-            // Flags that another stage has brought in: it has been complained of.
+            // These flags come from another stage, about which there has been a finding.
             if place.is_empty() {
                 continue;
             }
@@ -149,7 +149,7 @@ fn generate(
     }
 }
 
-/// What keeps a unit from looking up where the texture before it moves the coordinates.
+/// Returns the finding that a unit cannot look up where the texture before it moves the coordinates, if so.
 fn objection(
     reader: &Reader<'_>,
     units: &Units,
@@ -173,7 +173,7 @@ fn objection(
     })
 }
 
-/// A name with its place; the default without one if nothing is written.
+/// Reads a name and its place into `slot`, which stays unchanged if nothing is written.
 pub(super) fn name_at<'a, T: ninebit::state::Named>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, crate::reader::Name<T>>>,

@@ -1,27 +1,27 @@
-//! What of a mesh goes into the vertices.
+//! Vertex attributes made of meshes.
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::matrix::{dot, normalize, subtract};
 use super::*;
 use crate::mesh::Mesh;
 
-/// What of a mesh goes into one output of its vertices.
+/// Source of one attribute of the vertices.
 pub(super) enum Source {
-    /// The same for all.
+    /// A colour for all vertices.
     Color(VertexColor),
-    /// The same for all, and how many are written.
+    /// Coordinates for all vertices, and how many of the four are written.
     Coordinates([f32; 4], usize),
     Position,
     Normal,
     Tangent,
     Binormal,
     TextureCoordinates,
-    /// Toward a light.
+    /// The vector toward a light.
     Light {
         light: Light,
         tangent_space: bool,
     },
-    /// Half-way between a light and the viewer.
+    /// The half vector between a light and the viewer.
     Half {
         light: Light,
         viewer: [f32; 3],
@@ -29,7 +29,7 @@ pub(super) enum Source {
     },
 }
 
-/// Where a light stands, in object space.
+/// Position of a light, or direction toward it, in object space.
 #[derive(Clone, Copy)]
 pub(super) enum Light {
     Position([f32; 3]),
@@ -39,7 +39,7 @@ pub(super) enum Light {
 const SOURCES: &[&str] =
     &["Position", "Normal", "Tangent", "Binormal", "TextureCoordinates", "LightVector", "HalfVector"];
 
-/// Reads the source of an output; `color` says whether the output is a colour.
+/// Reads the source of an attribute; `color` says whether the attribute is a colour.
 pub(super) fn source<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribute>, color: bool) -> Option<Source> {
     let (head, _) = raw.split();
     if color && (raw.is_text() || matches!(head, "" | "Float" | "Vector")) {
@@ -76,7 +76,7 @@ fn point<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, what: &str) -> Opt
     reader.numbers(raw, what, 3..=3, [0.0; 4]).map(|[x, y, z, _]| [x, y, z])
 }
 
-/// Where a light or an eye is: exactly one of the two is given. `None` once the reason that it is not has been recorded.
+/// Reads a position or a direction, of which exactly one has to be given. Returns `None` if that fails, with the reason recorded.
 pub(super) fn place<'a>(
     reader: &mut Reader<'a>,
     text: &'a str,
@@ -99,7 +99,7 @@ pub(super) fn place<'a>(
     }
 }
 
-/// Where the attributes of a mesh go.
+/// Sources of the vertices' attributes.
 pub(super) struct Outputs {
     pub(super) diffuse: Source,
     pub(super) specular: Source,
@@ -107,7 +107,7 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// How many components each coordinate set has: vectors of a mesh three, texture coordinates two.
+    /// Returns the number of components of each coordinate set: three for vectors of a mesh, two for texture coordinates.
     pub(super) fn dimensions(&self) -> [usize; 4] {
         [0, 1, 2, 3].map(|set| match &self.coordinates[set] {
             Source::Coordinates(_, written) => *written,
@@ -119,7 +119,7 @@ impl Outputs {
     }
 }
 
-/// The vertices of a mesh; positions are left in object space.
+/// Makes the vertices of a mesh; positions are left in object space.
 pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vertices {
     let vertex = |index: usize| {
         let [x, y, z] = mesh.positions[index];
@@ -142,6 +142,7 @@ pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vertices {
     (0..mesh.positions.len()).map(vertex).collect()
 }
 
+/// Evaluates a source at a vertex of a mesh.
 pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     let extend = |v: [f32; 3]| [v[0], v[1], v[2], 1.0];
     let position = mesh.positions[index];
@@ -150,7 +151,7 @@ pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
         Light::Direction(direction) => normalize(*direction),
     };
     let into = |vector: [f32; 3], tangent_space: bool| {
-        // A light exactly at the vertex has no direction: zero, not NaN.
+        // A light exactly at the vertex has no direction: the vector is zero, not NaN.
         let vector = if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] };
         if !tangent_space {
             return extend(vector);

@@ -1,15 +1,15 @@
-//! Colours: bytes as they are, or floats.
+//! Reads colours, as bytes or as floats.
 #![allow(clippy::float_arithmetic, reason = "NUM-0: constants given as floats become bytes here")]
 
 use super::*;
 use crate::raw::Few;
 
-/// A constant colour: four bytes.
+/// Reads a constant colour.
 pub(super) fn constant<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<[u8; 4]> {
     reader.value(raw).map(bytes)
 }
 
-/// A colour as a constant.
+/// Converts a colour into the four bytes of a constant.
 pub(super) fn bytes(color: VertexColor) -> [u8; 4] {
     match color {
         VertexColor::Bytes(bytes) => bytes,
@@ -17,7 +17,7 @@ pub(super) fn bytes(color: VertexColor) -> [u8; 4] {
     }
 }
 
-/// Constants 0 and 1; the ones not written are zero.
+/// Reads the constants 0 and 1; those that are not written are zero.
 pub(super) fn constants<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Color>>) -> [[u8; 4]; 2] {
     let mut constants = [[0; 4]; 2];
     let Some(parts) = reader.read(raw) else { return constants };
@@ -34,12 +34,12 @@ pub(super) fn constants<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, sou
     constants
 }
 
-/// NUM-0: clamped to 0..1, then floor(255 c + 0.5), which is exact in 64 bits.
+/// Converts a float to a byte by NUM-0: clamped to 0..1, then floor(255 c + 0.5), which is exact in 64 bits.
 fn byte(value: f32) -> u8 {
     (255.0 * f64::from(value.clamp(0.0, 1.0)) + 0.5).floor() as u8
 }
 
-/// A colour as floats: of a byte n / 255, which NUM-0 makes the same byte again.
+/// Converts a colour into floats: a byte n becomes n / 255, which NUM-0 turns into the same byte again.
 pub(super) fn floats(color: VertexColor) -> [f32; 4] {
     match color {
         VertexColor::Floats(floats) => floats,
@@ -47,7 +47,7 @@ pub(super) fn floats(color: VertexColor) -> [f32; 4] {
     }
 }
 
-/// A colour that is not a name.
+/// Reads a colour that is not a name.
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
     let (head, rest) = raw.split();
     if head.is_empty() && raw.text.starts_with('(') {
@@ -72,14 +72,14 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
     reader.numbers(&numbers, "a colour", 3..=4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
 }
 
-/// Three or four bytes.
+/// Reads a colour of three or four bytes.
 fn three_or_four<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
     match reader.attempt::<Few<u8>>(raw.text) {
         Some(Few { values: [r, g, b, _], count: 3 }) => return Some(VertexColor::Bytes([r, g, b, 255])),
         Some(Few { values, count: 4 }) => return Some(VertexColor::Bytes(values)),
         _ => {}
     }
-    // Something is wrong: find out what.
+    // Something is wrong: this finds out what.
     let parts = reader.read(&raw.as_other::<Tuple<'a, u8>>())?.0;
     let mut wrong = false;
     for part in &parts {

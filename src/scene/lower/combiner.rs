@@ -1,11 +1,11 @@
-//! `Combiners(...)`: register combiners field by field.
+//! Lowers `Combiners(...)`: register combiners, given field by field.
 
 use super::input::{final_input, general_input};
 use super::*;
 use ninebit::legality::{Help, Notation, stage_count};
 use ninebit_program::{Part, Place, Places};
 
-/// The words of scene files.
+/// The notation of combiners as fields of a scene.
 pub(super) struct Fields;
 
 impl Notation for Fields {
@@ -27,7 +27,7 @@ impl Notation for Fields {
     }
 }
 
-/// A program as it is written, and where its parts stand. `None` once the reason has been recorded.
+/// Reads a program and the places of its parts. Returns `None` if that fails, with the reason recorded.
 pub(super) fn combiners<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Combiners, Places)> {
     let fields = reader.read(&Raw::<source::Combiners<'a>>::new(text))?;
     let shared = fields.constants.as_ref().map(|raw| color::constants(reader, raw)).unwrap_or_default();
@@ -73,7 +73,7 @@ fn stages<'a>(
     Some(stages)
 }
 
-/// Constants of one stage or of the final combiner.
+/// Reads the constants of one stage or of the final combiner, if it has its own.
 fn own_constants<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, Tuple<'a, source::Color>>>,

@@ -1,4 +1,4 @@
-//! Draws, in the order of the text.
+//! Lowers draws, in the order of the text.
 
 use std::collections::HashMap;
 
@@ -8,13 +8,13 @@ use super::program::Program;
 use super::*;
 use crate::mesh::Mesh;
 
-/// A draw and what else is known of it.
+/// A lowered draw, with what the rest of the lowering needs of it.
 pub(super) struct Drawn {
     pub(super) draw: Draw,
     pub(super) spans: DrawSpans,
-    /// The mesh that its vertices are of, where the scene has a truth to ask for it.
+    /// The mesh that its vertices are taken from. It is kept only if the scene has a truth.
     pub(super) mesh: Option<Arc<Mesh>>,
-    /// Whether it takes part in the scene's truth, if it says so, and where it does.
+    /// The field `truth`, if written: whether the draw takes part in the scene's truth, and the place of the field.
     pub(super) truth: Option<(bool, Span)>,
 }
 
@@ -66,7 +66,7 @@ pub(super) fn draws<'a>(
     draws
 }
 
-/// Vertices and indices that the scene may still have.
+/// Numbers of vertices and indices that the rest of the scene may have.
 struct Budget {
     vertices: usize,
     indices: usize,
@@ -181,13 +181,13 @@ fn clear<'a>(
     Some(Drawn { draw, spans, mesh: None, truth: None })
 }
 
-/// The scissor of a draw.
+/// Reads the scissor of a draw.
 fn scissor<'a>(reader: &mut Reader<'a>, target: Option<usize>, fields: &source::Draw<'a>) -> Option<Rectangle> {
     let (raw, target) = (fields.scissor.as_ref()?, reader.targets.list.get(target?)?.clone());
     raster::clip(reader, &target, "scissor", raw)
 }
 
-/// Warns of states in the text of a program that the draw does not say: each once, though several draws may share the program.
+/// Warns of states in a program's text that the draw does not have. Each is reported once, though several draws may share the program.
 fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program) {
     for (finding, field) in &program.asides {
         let said = fields.written().any(|(name, _)| name == *field);
@@ -218,7 +218,7 @@ impl Budget {
     }
 }
 
-/// A draw may not sample what it draws into, and had better sample something drawn before.
+/// Refuses a draw that samples its own target, and warns of one that samples a target nothing was drawn into.
 fn feedback(reader: &mut Reader<'_>, sampled: Option<usize>, target: usize, place: &Span, written: &[bool]) {
     let Some(sampled) = sampled else { return };
     let name = reader.targets.list.get(sampled).map_or("", |target| target.name.as_str());
@@ -233,7 +233,7 @@ fn feedback(reader: &mut Reader<'_>, sampled: Option<usize>, target: usize, plac
     }
 }
 
-/// The indices: as written, of the mesh, or one for each vertex.
+/// Returns the indices: those that are written, those of the mesh, or one for each vertex in order.
 fn indices<'a>(
     reader: &mut Reader<'a>,
     fields: &source::Draw<'a>,
@@ -258,7 +258,7 @@ fn indices<'a>(
     };
     let indices = reader.read(raw)?;
     if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
-        // Read again to find the place.
+        // The list is read again to find the place.
         let list = reader.read(&Raw::<source::List<'a, u32>>::new(raw.text));
         let place = list.and_then(|list| list.get(at).map(|raw| reader.span(raw)));
         let place = place.unwrap_or_else(|| reader.span(raw));
@@ -276,7 +276,7 @@ fn indices<'a>(
     Some(indices.into())
 }
 
-/// Whether so many indices make whole primitives.
+/// Checks that `count` indices make whole primitives.
 fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, topology: Topology) {
     let (fits, wanted) = match topology {
         Topology::Triangles => (count.is_multiple_of(3), "three for each"),

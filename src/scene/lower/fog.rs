@@ -1,15 +1,15 @@
-//! The fog of a draw: its colour, its function, and where the function's coordinate comes from.
+//! Lowers the fog of a draw: its colour, its function, and the source of the function's coordinate.
 
 use super::*;
 use ninebit::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
 
-/// Fog as it was written.
+/// The fog of a draw.
 pub(super) struct FogFields {
-    /// The state of the pixel pipe. Without a function the vertices give factors.
+    /// State of the pixel pipe. If it has no function, the vertices give fog factors.
     pub(super) state: Fog,
-    /// Of the function's coordinate.
+    /// Source of the function's coordinate.
     pub(super) source: FogSource,
-    /// Where the function stands in the text.
+    /// Place of the function in the text.
     pub(super) place: Span,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Fog<
     fog
 }
 
-/// The parameters of a mode: as they are, or of the usual range or density.
+/// Reads the parameters of a mode, or computes them from the range or density.
 fn function<'a>(
     reader: &mut Reader<'a>,
     fields: &source::Fog<'a>,

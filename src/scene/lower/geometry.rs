@@ -1,4 +1,4 @@
-//! Where the vertices of a draw come from, and what the vertex side makes of them.
+//! Lowers the sources of vertices, and runs the vertex side on them.
 
 use std::rc::Rc;
 
@@ -10,30 +10,30 @@ use ninebit::vertex::fog::{self as vertex_fog, FogSource};
 use ninebit::vertex::texgen::CoordinateSet;
 use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
-/// The vertices of a draw as they were described.
+/// The vertices of a draw, as its source describes them.
 pub(super) struct Geometry {
     pub(super) positions: Positions,
     pub(super) vertices: Vertices,
     pub(super) spans: VertexSpans,
-    /// The mesh that they are of, with its triangles.
+    /// The mesh that the vertices are taken from, with its triangles.
     pub(super) mesh: Option<Arc<Mesh>>,
-    /// What generated coordinates and fog start from.
+    /// The vertices before any transform, from which coordinates and fog are generated.
     pub(super) objects: Objects,
     pub(super) model_view: Rows,
-    /// The vertex program that made them.
+    /// The vertex program that made the vertices.
     pub(super) program: Option<VertexProgram>,
 }
 
-/// The vertices that a draw starts from.
+/// The vertices that a source starts from.
 pub(super) enum Given {
-    /// Of a mesh, and where that stands.
+    /// The vertices of a mesh, and the place of the mesh in the text.
     Mesh(Arc<Mesh>, Span),
-    /// Vertices that the scene lists.
+    /// Vertices that are listed in the scene.
     Listed(Rc<VertexData>),
 }
 
 impl Given {
-    /// Reads which of the two there is. `None` once the reason that it cannot be read has been recorded.
+    /// Reads whichever of the two is given. Returns `None` if that fails, with the reason recorded.
     pub(super) fn read<'a>(
         reader: &mut Reader<'a>,
         vertices: &Option<Raw<'a, source::VertexList>>,
@@ -54,7 +54,7 @@ impl Given {
         if let Given::Mesh(mesh, _) = self { Some(mesh) } else { None }
     }
 
-    /// How many vertices there are.
+    /// Returns the number of vertices.
     pub(super) fn count(&self) -> usize {
         match self {
             Given::Mesh(mesh, _) => mesh.positions.len(),
@@ -62,7 +62,7 @@ impl Given {
         }
     }
 
-    /// Where they stand.
+    /// Returns the places of the vertices in the text.
     pub(super) fn spans(&self) -> VertexSpans {
         match self {
             Given::Mesh(_, place) => VertexSpans::All(place.clone()),
@@ -73,16 +73,16 @@ impl Given {
 
 /// The vertices of a draw before any transform.
 pub(super) enum Objects {
-    /// Of a mesh, and how many components each coordinate set has.
+    /// The vertices of a mesh, and the number of components of each coordinate set.
     Mesh(Arc<Mesh>, [usize; 4]),
-    /// Vertices that the scene lists.
+    /// Vertices that are listed in the scene.
     Listed(Rc<VertexData>),
-    /// What a vertex program made: its positions are those of the vertices, its fog coordinates these.
+    /// Vertices that a vertex program made: their positions are the program's, their fog coordinates are these.
     Program(Vec<f32>),
 }
 
 impl Objects {
-    /// The object that vertex `index` is of.
+    /// Returns what the vertex side needs to know of vertex `index`.
     fn at(&self, index: usize, vertex: &Vertex) -> ObjectVertex {
         match self {
             Objects::Mesh(mesh, dimensions) => {
@@ -105,7 +105,7 @@ impl Objects {
 }
 
 impl Geometry {
-    /// Writes coordinate sets anew: s, t and r of the set that is named, q = 1.
+    /// Rewrites coordinate sets: each takes s, t and r of the given set, and q = 1.
     pub(super) fn without_q(&mut self, sets: &[Option<usize>; 4]) {
         if sets.iter().all(Option::is_none) {
             return;
@@ -123,7 +123,7 @@ impl Geometry {
     }
 }
 
-/// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
+/// Applies generated texture coordinates, texture matrices and fog to the vertices. Returns `false` if that fails, with a finding recorded.
 pub(super) fn vertex_side(
     reader: &mut Reader<'_>,
     geometry: &mut Geometry,
@@ -137,7 +137,7 @@ pub(super) fn vertex_side(
         && geometry.program.as_ref().is_some_and(|program| program.writes_fog)
         && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
     {
-        // Infinite factors are limited; with a mode FOG-4 and FOG-5 say what a NaN gives.
+        // Infinite factors are clamped. With a mode, FOG-4 and FOG-5 say what a NaN gives.
         let message = format!("oFog of vertex {index} is not a number");
         let label = "what the vertex program makes of it";
         let help = "look for 0 times infinity, rsq of 0, and differences of infinities";
@@ -171,7 +171,7 @@ pub(super) fn vertex_side(
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
         if let Some(function) = &fog.state.function {
-            // It may be anything: FOG-4 and FOG-5 say what becomes of what is not finite.
+            // The coordinate may be any float: FOG-4 and FOG-5 say what becomes of those that are not finite.
             let coordinate = vertex_fog::coordinate(fog.source, &eye, vertex.position);
             vertex.fog = vertex_fog::passed(function, reader.profile, coordinate);
             vertex.fog_coordinate = Some(coordinate);
@@ -188,7 +188,7 @@ pub(super) fn vertex_side(
     true
 }
 
-/// What the fixed vertex pipe does, and a vertex program in its place has to do itself.
+/// Finds state of the fixed vertex pipe beside a vertex program, which takes the place of that pipe.
 fn beside_program(program: &VertexProgram, sets: bool, fog: &fog::FogFields, draw: &Span) -> Option<Diagnostic> {
     if sets {
         let message = "coordinates are generated or multiplied beside a vertex program";
@@ -306,7 +306,7 @@ fn outputs<'a>(reader: &mut Reader<'a>, fields: &source::MatrixVertices<'a>) -> 
     Outputs { diffuse, specular, coordinates }
 }
 
-/// The viewport of a draw; without one the whole target.
+/// Reads the viewport of a draw, which is the whole target by default.
 pub(super) fn viewport<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::Viewport<'a>>>,

@@ -1,16 +1,16 @@
-//! Inputs of the combiners: register, component, mapping.
+//! Lowers inputs of the combiners: register, component, mapping.
 
 use super::*;
 use ninebit::legality::{final_mapping, only_final};
 
-/// An input taken apart: index of the mapping (`None`: none written), the register, the component if written.
+/// The parts of an input: index of the mapping, register, and component; mapping and component are `None` if they are not written.
 struct Parts<'a, R> {
     mapping: Option<usize>,
     register: R,
     component: Option<(Component, Raw<'a, source::Word>)>,
 }
 
-/// `Register`, `(Register, Component)`, `Mapping(Register)` or `Mapping(Register, Component)`.
+/// Reads `Register`, `(Register, Component)`, `Mapping(Register)` or `Mapping(Register, Component)`.
 fn parts<'a, R: Named>(
     reader: &mut Reader<'a>,
     raw: Raw<'a, source::Word>,
@@ -46,7 +46,7 @@ fn parts<'a, R: Named>(
     };
     let name = register.split().0;
     if R::from_name(name).is_none() && FinalRegister::from_name(name).is_some() {
-        // Known, but not here.
+        // The register exists, but not in this combiner.
         return parts(reader, register, &[]);
     }
     let component = match component {
@@ -56,7 +56,7 @@ fn parts<'a, R: Named>(
     Some(Parts { mapping, register: reader.name(&register.as_other())?, component })
 }
 
-/// An input of a general portion, and where its component stands if it is written.
+/// Reads an input of a general portion. Also returns the place of its component if it is written.
 pub(super) fn general_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::Input>,
@@ -69,7 +69,7 @@ pub(super) fn general_input<'a>(
     Some((CombinerInput { register, component, mapping }, place))
 }
 
-/// An input of the final combiner, and where its component stands if it is written. `alpha`: it is G.
+/// Reads an input of the final combiner; `alpha` says that it is G. Also returns the place of its component if it is written.
 pub(super) fn final_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::FinalInput>,

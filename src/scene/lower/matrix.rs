@@ -1,4 +1,4 @@
-//! Matrices: four rows, or built from a few parameters. Column vectors: a position p becomes M p.
+//! Lowers matrices: four rows, or built from a few parameters. Vectors are columns: a position p becomes M p.
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::*;
@@ -7,13 +7,13 @@ use ninebit::vertex::Rows;
 pub(super) const IDENTITY: Rows =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
-/// Deepest product of products: each level reads its text again.
+/// Deepest nesting of products: each level reads its text again.
 const MAX_PRODUCT_DEPTH: usize = 16;
 
 const KINDS: &[&str] =
     &["Identity", "Rows", "Product", "Transpose", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
 
-/// A matrix that is no name. Not a number anywhere in it is an error.
+/// Reads a matrix that is not a name. A matrix that is not finite is an error.
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
     if reader.depth > MAX_PRODUCT_DEPTH {
         let place = reader.opening(raw.text);
@@ -52,7 +52,7 @@ fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) 
     reader.numbers(&Raw::<Numbers>::new(text), what, count..=count, [0.0; 4])
 }
 
-/// Four rows of four numbers.
+/// Reads four rows of four numbers.
 fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Option<Rows> {
     let parts = reader.read(raw)?.0;
     if parts.len() != 4 {
@@ -68,7 +68,7 @@ fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Optio
     Some(rows)
 }
 
-/// Matrices multiplied from left to right: the last one acts on a position first.
+/// Reads a product. It is multiplied from left to right, so the last matrix acts on a position first.
 fn product<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>) -> Option<Rows> {
     let mut result = IDENTITY;
     for (index, part) in reader.read(raw)?.0.iter().enumerate() {
@@ -78,7 +78,7 @@ fn product<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>
     Some(result)
 }
 
-/// One matrix, its rows as columns.
+/// Reads the transpose of one matrix.
 fn transpose<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
         let help = "write `Transpose(\"world\")`";
@@ -88,6 +88,7 @@ fn transpose<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix
     Some(std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row])))
 }
 
+/// Returns the product a b.
 fn multiply(a: &Rows, b: &Rows) -> Rows {
     let mut result = [[0.0; 4]; 4];
     for (row, left) in result.iter_mut().zip(a) {
@@ -98,7 +99,7 @@ fn multiply(a: &Rows, b: &Rows) -> Rows {
     result
 }
 
-/// The rotation of a quaternion of any length but zero.
+/// Returns the rotation of a quaternion of any length but zero.
 fn rotation([x, y, z, w]: [f32; 4]) -> Rows {
     let s = 2.0 / (x * x + y * y + z * z + w * w);
     [
@@ -109,7 +110,7 @@ fn rotation([x, y, z, w]: [f32; 4]) -> Rows {
     ]
 }
 
-/// OpenGL's frustum or orthographic box: the viewer looks along -z, depth -1 at `near` and 1 at `far`.
+/// Reads OpenGL's frustum or orthographic box: the viewer looks along -z, and depth is -1 at `near` and 1 at `far`.
 fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, perspective: bool) -> Option<Rows> {
     let box_ = reader.read(raw)?;
     let (l, r) = (box_.left(reader), box_.right(reader));
@@ -134,7 +135,7 @@ fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, p
     })
 }
 
-/// From the world to a viewer at `eye` who looks at `center`.
+/// Reads the matrix from world space to a viewer at `eye` who looks at `center`.
 fn look_at<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::LookAt<'a>>) -> Option<Rows> {
     let view = reader.read(raw)?;
     let (eye, center, up) = (view.eye(reader), view.center(reader), view.up(reader));
@@ -166,7 +167,7 @@ fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Of unit length; not a number for the zero vector.
+/// Returns the vector of unit length in the same direction; NaN for the zero vector.
 pub(super) fn normalize(v: [f32; 3]) -> [f32; 3] {
     let length = dot(v, v).sqrt();
     v.map(|component| component / length)

@@ -1,4 +1,4 @@
-//! Meshes: generated, listed, from files.
+//! Lowers meshes: generated, listed, or from files.
 
 use super::program_text::ProgramText;
 use super::*;
@@ -6,7 +6,7 @@ use crate::mesh::{self, Mesh, MeshError, Surface};
 
 const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 
-/// A mesh from its description.
+/// Reads a mesh from its description.
 pub(super) fn mesh<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Arc<Mesh>> {
     let (kind, rest) = reader.variant(raw, "mesh", KINDS)?;
     let mesh = match KINDS[kind] {
@@ -48,12 +48,12 @@ pub(super) fn mesh<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource
     }
 }
 
-/// The two numbers of a pair.
+/// Returns the first two of four numbers.
 fn pair([a, b, ..]: [f32; 4]) -> [f32; 2] {
     [a, b]
 }
 
-/// Listed vertices as a mesh: position, normal (if it is not zero) and the first coordinate set.
+/// Makes a mesh of listed vertices: positions, normals that are not zero, and the first coordinate set.
 fn triangles<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Mesh> {
     let fields = reader.read(&Raw::<source::Triangles<'a>>::new(text))?;
     let vertices = fields.vertices(reader);
@@ -93,7 +93,7 @@ fn triangles<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Mesh> {
     Some(mesh::mesh(&surface))
 }
 
-/// A file is read once, however many draws name it.
+/// Reads a mesh from a file; a file is read once, however many draws name it.
 fn wavefront<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Arc<Mesh>> {
     let fields = source::ProgramFile { called: "mesh", ..reader.read(&Raw::new(text))? };
     let raw = fields.file(reader)?;

@@ -1,4 +1,4 @@
-//! From the fields of the file to the checked state, one file per part of the scene.
+//! Lowers the fields of a scene to checked state; each part of the scene has a file.
 
 mod api_program;
 mod attribute;
@@ -49,24 +49,23 @@ use ninebit_program::{finding, warning};
 pub use program::ProgramLanguage;
 pub(super) use program_file::program_file;
 
-/// Bytes of the text.
-/// Where the draws of a scene stand in its text, for errors that are found later.
+/// Places of a draw in the scene's text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawSpans {
     /// The draw's name, or the start of the draw.
     pub draw: Span,
-    /// Its vertices; of a generated mesh, the mesh for each.
+    /// Places of its vertices.
     pub vertices: VertexSpans,
-    /// Its texture units; empty for unbound ones.
+    /// Places of its texture units; empty for units that are not bound.
     pub units: [Span; ninebit::state::TEXTURE_UNITS],
 }
 
 /// Places of vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VertexSpans {
-    /// One for each.
+    /// A place for each vertex.
     Each(Vec<Span>),
-    /// All were made by what stands here.
+    /// One place for all vertices, such as the mesh that makes them.
     All(Span),
 }
 
@@ -77,7 +76,7 @@ impl Default for VertexSpans {
 }
 
 impl DrawSpans {
-    /// The place of a vertex; of the draw if there is no such vertex.
+    /// Returns the place of a vertex, or that of the draw if there is no such vertex.
     pub fn vertex(&self, index: usize) -> Span {
         match &self.vertices {
             VertexSpans::Each(spans) => spans.get(index).cloned().unwrap_or_else(|| self.draw.clone()),
@@ -86,21 +85,22 @@ impl DrawSpans {
     }
 }
 
-/// A whole scene.
+/// A whole scene that has been lowered.
 pub(super) struct Found {
     pub(super) scene: Scene,
     pub(super) plan: Plan,
     pub(super) truth: Option<Truth>,
-    /// Places of the draws.
+    /// Places of the draws, in their order.
     pub(super) spans: Vec<DrawSpans>,
 }
 
-/// The text of what a scene shares with others. `None` once the reason that it cannot be read has been recorded.
+/// Reads the text that a scene shares with others. Returns `None` after recording what is wrong.
 pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, named: &Raw<'a, String>) -> Option<Arc<File>> {
     program_text::text_file(reader, named, reader.limits.program_file())
 }
 
-/// Reads and checks a whole scene; `family` is the text of the file that it names for what it shares with others. Findings are in the reader; `None` if there are errors.
+/// Reads and checks a whole scene. `family` is the text of its family's file, if it names one. Returns `None` if there are errors; the reader
+/// has them.
 pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&'a str>) -> Option<Found> {
     if trim(text).is_empty() {
         return reader.refuse(
@@ -118,7 +118,7 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
     let profile = file.profile(reader);
     reader.profile = profile.and_then(|raw| reader.name(&raw)).unwrap_or(Profile::Nv2a);
     if let Some(raw) = &file.family {
-        // What it names has been read; this finds what is no name.
+        // The file has been read already; this finds a field that is not a text.
         reader.read(raw);
     }
     let shared = family.and_then(|text| reader.check::<source::Family<'a>>(text)).and_then(|raw| reader.read(&raw));
@@ -130,7 +130,7 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
     let described = file.truth.is_some() || shared.truth.is_some();
     let draws = draw::draws(reader, &file.draws, described);
     let truth = truth::truth(reader, &file.truth, &shared.truth, &draws);
-    // Named meshes and lists of vertices are not needed beside the plan.
+    // Nothing needs named meshes and vertex lists beside the plan.
     names::warn_unused(reader);
     let textures = std::mem::take(&mut reader.textures);
     textures.warn_unused(reader);
@@ -148,7 +148,7 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
     plan(reader, &scene, &spans).map(|plan| Found { scene, plan, truth, spans })
 }
 
-/// Whether this program reads that version of the format.
+/// Returns whether this program reads the scene's version of the format.
 fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Span) -> bool {
     let Some(raw) = &file.version else {
         reader.push(
@@ -169,7 +169,7 @@ fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Span)
     version == Some(1)
 }
 
-/// Plans the scene: only the plan sees positions and coordinates outside the rasteriser's domain.
+/// Plans the scene. Only the plan finds positions and coordinates outside the rasteriser's domain.
 fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<Plan> {
     let errors = match Plan::compile_within(scene, &PlanOptions::default(), reader.limits) {
         Ok(plan) => return Some(plan),

@@ -1,4 +1,4 @@
-//! The tables of values that are defined once and used by name.
+//! Reads the tables of values that are defined once and used by name.
 
 use std::any::Any;
 use std::rc::Rc;
@@ -11,11 +11,11 @@ use crate::names::{Index, Known, State, Table};
 use crate::reader::{Entry, Valued};
 use ninebit::vertex::Rows;
 
-/// Longest chain of names that stand for names.
+/// Longest chain of names that stand for other names.
 const LONGEST_CHAIN: usize = 32;
 
 impl Index {
-    /// The index of that name; `None` once the reason has been recorded. `of`: this, in the reader.
+    /// Finds the index that a name has in the table `of` the reader. Returns `None` after recording what is wrong.
     pub(super) fn find<'a>(
         reader: &mut Reader<'a>,
         of: for<'r> fn(&'r mut Reader<'a>) -> &'r mut Index,
@@ -32,7 +32,7 @@ impl Index {
             None if !index.unread => {}
             _ => return None,
         }
-        // What is meant is looked for only where somebody reads it: names and uses may be thousands.
+        // Similar names are looked for only if the finding is kept: there may be thousands of names and uses.
         let unknown = if full { Diagnostic::error("NB0208", place, "") } else { index.unknown(&name, place) };
         reader.refuse(unknown)
     }
@@ -46,15 +46,15 @@ impl Index {
     }
 }
 
-/// What is written in a table of definitions, and elsewhere as such or as the name of one.
+/// A type whose values may be defined in a table and used by name.
 pub(crate) trait Tabled<'a>: Sized + 'static {
-    /// What it means.
+    /// What a value of the type is lowered to.
     type Meaning: Clone + 'static;
 
-    /// Reads one that is no name.
+    /// Reads a value that is not a name.
     fn literal(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Meaning>;
 
-    /// Where those with names are.
+    /// Returns the table of named values.
     fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a>;
 }
 
@@ -70,7 +70,7 @@ impl<'a, S: Tabled<'a>> Valued<'a> for S {
     }
 }
 
-/// What a definition of a table means; whether it may be the name of another.
+/// Returns the value of a definition, which `may_be_name` allows to be the name of another.
 fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_name: bool) -> Option<S::Meaning> {
     let depth = reader.depth;
     let Table { index, definitions } = S::table(reader);
@@ -101,14 +101,14 @@ fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_nam
     value
 }
 
-/// Reads every definition of a table, used or not.
+/// Reads every definition of a table, whether it is used or not.
 fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries: Vec<Entry<'a, S>>, chains: bool) {
     let count = entries.len();
     let table = S::table(reader);
     table.index = index;
     for (number, entry) in entries.into_iter().enumerate() {
         table.index.add(entry.name, entry.place, Some(number));
-        // Other scenes may use what is shared.
+        // Other scenes may use shared definitions.
         table.index.list[number].used = entry.shared;
         table.definitions.push((entry.value.as_other(), State::Waiting));
     }
@@ -117,8 +117,8 @@ fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries:
     }
 }
 
-/// The tables in their order, each of which may use those before it: whether a definition may be the name of another, what one is called, how one
-/// is read that is no name.
+/// Declares the tables, each of which may use those before it: whether a definition may be the name of another, what the values are called in
+/// messages, and how a value that is not a name is read.
 macro_rules! tables {
     ($($table:ident $chains:literal, $what:literal: $source:ty => $meaning:ty, |$reader:ident, $raw:ident| $read:expr;)+) => {
         $(impl<'a> Tabled<'a> for $source {
@@ -144,7 +144,7 @@ macro_rules! tables {
             )+
         }
 
-        /// Warns of what nothing refers to. Nothing is known by its name afterwards.
+        /// Warns of definitions that nothing refers to, and forgets all names.
         pub(super) fn warn_unused(reader: &mut Reader<'_>) {
             let names = std::mem::take(&mut reader.names);
             $(names.$table.index.warn_unused(reader);)+

@@ -1,17 +1,17 @@
-//! Palettes: the colours that texels of P8 stand for.
+//! Lowers palettes: the colours that texels of P8 stand for.
 
 use super::*;
 use crate::names::{Index, Palettes};
 
 impl Palettes {
-    /// Adds one that is not found by name.
+    /// Adds a palette that cannot be found by name. Returns its index.
     pub(super) fn add(&mut self, name: &str, words: Vec<u32>) -> usize {
         self.list.push(Palette { name: name.to_owned(), entries: words.into() });
         self.list.len() - 1
     }
 }
 
-/// The palette of that name; `None` once the reason has been recorded.
+/// Finds the palette of a name. Returns `None` after recording what is wrong.
 pub(super) fn find<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
     Index::find(reader, |reader| &mut reader.textures.palettes.index, raw)
 }
@@ -27,7 +27,7 @@ pub(super) fn palettes<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Entries
     }
 }
 
-/// Words A8R8G8B8 in hexadecimal, any number in each text.
+/// Reads words A8R8G8B8 in hexadecimal, any number in each text.
 fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -> Option<Vec<u32>> {
     const HELP: &str = "write 32, 64, 128 or 256 words A8R8G8B8 of 8 hexadecimal digits";
     let list = reader.read(raw)?;
@@ -53,7 +53,7 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
     Some(words)
 }
 
-/// The finding that a format needs no palette.
+/// Makes the finding that a texture's format reads no palette.
 pub(super) fn not_read(place: Span, format: TextureFormat) -> Diagnostic {
     Diagnostic::error("NB0234", place, format!("a texture of format {} reads no palette", format.name()))
         .label("never read")

@@ -1,4 +1,4 @@
-//! `PixelShader(...)`: Direct3D pixel shaders, version 1.1.
+//! Lowers `PixelShader(...)`: Direct3D pixel shaders, version 1.1.
 
 use super::api_program::{ApiProgram, Around};
 use super::program_text::ProgramText;
@@ -7,7 +7,7 @@ use super::*;
 use ninebit_program::c_source::Style;
 use ninebit_program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
 
-/// A shader, where its bytes stand, and what the API sets beside it.
+/// A shader with its text, and the constants and bump states that the API sets beside it.
 pub(super) struct ShaderProgram {
     program: PixelShader,
     text: ProgramText,
@@ -15,7 +15,7 @@ pub(super) struct ShaderProgram {
     bumps: [Bump; TEXTURE_UNITS],
 }
 
-/// Reads the text, or the fields, in the parentheses.
+/// Reads the text or the fields in the parentheses.
 pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ApiProgram> {
     let (mut constants, mut bumps) = ([None; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
     let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
@@ -51,7 +51,7 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option
     (reader.errors == errors).then_some(shader)
 }
 
-/// Reads a shader's text, beside which the API sets constants and bump states.
+/// Reads the text of a shader for which the API sets constants and bump states.
 pub(super) fn shader(
     reader: &mut Reader<'_>,
     text: ProgramText,
@@ -74,7 +74,7 @@ pub(super) fn shader(
     Some(ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
 }
 
-/// The number in the name of a register. `None` once the reason that it is none has been recorded.
+/// Returns the number in a register's name. Returns `None` after recording that it is not a register.
 fn register(reader: &mut Reader<'_>, name: &str, place: Span, letter: char, count: usize, what: &str) -> Option<usize> {
     let digits = name.strip_prefix(letter).filter(|digits| digits.len() == 1);
     let index = digits.and_then(|digits| digits.parse::<usize>().ok()).filter(|index| *index < count);
@@ -93,7 +93,7 @@ fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>)
 }
 
 impl ShaderProgram {
-    /// The units whose instructions read a cube map.
+    /// Returns the units whose instructions read a cube map.
     pub(super) fn cubes(&self) -> [bool; TEXTURE_UNITS] {
         let mut cubes = [false; TEXTURE_UNITS];
         for texture in &self.program.textures {
@@ -105,7 +105,7 @@ impl ShaderProgram {
         cubes
     }
 
-    /// Combiners, their origins, and the texture shader in its place.
+    /// Lowers the shader to combiners with their origins, and writes its texture instructions into `shader`.
     pub(super) fn lower(
         &self,
         reader: &mut Reader<'_>,
@@ -126,7 +126,7 @@ impl ShaderProgram {
                 unsampled(reader, units, index);
             }
             let Some(using) = using else {
-                // On nv10 all units sample; nothing reads what this one gives.
+                // On Nv10 all units sample, but nothing reads the result of this one.
                 if reader.profile == Profile::Nv2a {
                     shader[index].operation = ShaderOperation::None;
                 }
@@ -142,8 +142,8 @@ impl ShaderProgram {
     }
 }
 
-/// `texkill` looks at s, t and r; the chip tests q as well (TSH-10), so that it reads a set whose q is 1: its own, or one that no other unit
-/// reads.
+/// Gives each `texkill` a coordinate set whose q is 1: its own, or one that no other unit reads. The instruction looks at s, t and r, but the chip
+/// tests q as well (TSH-10).
 fn without_q(shader: &mut [ShaderStage; TEXTURE_UNITS], sets: &mut [Option<usize>; 4]) {
     for index in 0..TEXTURE_UNITS {
         if !matches!(shader[index].operation, ShaderOperation::CullFragment { .. }) {
@@ -161,7 +161,7 @@ fn without_q(shader: &mut [ShaderStage; TEXTURE_UNITS], sets: &mut [Option<usize
     }
 }
 
-/// The warning that a texture is bound for nothing.
+/// Warns that a unit has a texture that is not sampled.
 fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
     let place = units.places[index].clone();
     let label = format!("no instruction of the pixel shader samples into t{index}");
@@ -169,7 +169,7 @@ fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
     reader.push(warning("NB0905", place, format!("unit {index} has a texture that is not sampled"), label, help));
 }
 
-/// What keeps a unit from doing what the shader asks of it.
+/// Returns the finding that a unit cannot do what the shader asks of it, if so.
 fn objection(reader: &Reader<'_>, units: &Units, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
     let place = using.span.clone();
     if shader {

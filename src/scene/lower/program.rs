@@ -1,4 +1,4 @@
-//! Pixel programs: which language one is in, and what all of them have in common.
+//! Lowers pixel programs of all languages.
 
 use std::path::Path;
 
@@ -13,28 +13,28 @@ use ninebit_program::text::{self, words::Words};
 use ninebit_program::{Aside, Pasted, Places};
 use ninebit_program::{combiner_calls, texture_environment as environment, texture_stages as stages};
 
-/// A program as a draw takes it.
+/// A pixel program of a draw.
 pub(crate) struct Program {
     pub(super) form: Form,
-    /// What its text says of the draw besides.
+    /// What the program's text says about the draw besides the program.
     pub(super) asides: Asides,
 }
 
-/// Warnings about states in a pasted text, each with the field of the draw that says the same.
+/// Warnings about states in a pasted text, each with the draw's field for the same state.
 pub(super) type Asides = Vec<(Diagnostic, &'static str)>;
 
-/// What a program is written in.
+/// Form of a program.
 pub(super) enum Form {
-    /// Written for the combiners.
+    /// A program for the combiners.
     Combiners(ProgramData),
-    /// Written for an API: what it becomes depends on the draw.
+    /// A program for an API: what it is lowered to depends on the draw.
     Api(ApiProgram),
 }
 
-/// A program for the combiners, and what only a draw can judge.
+/// A program for the combiners, and the places that only a draw can judge.
 pub(super) struct ProgramData {
     pub(super) combiners: Combiners,
-    /// The first place that reads each texture unit.
+    /// For each texture unit, the first place that reads it.
     pub(super) reads: [Option<Span>; 4],
 }
 
@@ -71,14 +71,14 @@ pub(super) fn program<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Program
             Form::Combiners(judge(reader, combiners, &places, &Words, inside.as_ref()))
         }
     };
-    // A draw finds more about what is written for an API.
+    // Errors of programs for an API are reported only once a draw lowers them.
     (reader.errors == errors || matches!(form, Form::Api(_))).then_some(Program { form, asides })
 }
 
 named! {
-    /// What a pixel program in a file of its own is written in, by the names of the command line.
+    /// The language of a pixel program in a file of its own, by its name on the command line.
     pub enum ProgramLanguage =>
-    /// A line about it.
+    /// Returns a line about the language.
     about: &'static str {
         /// The combiner language.
         Combiners = "combiners" => "The combiner language",
@@ -95,7 +95,7 @@ named! {
     }
 }
 
-/// Reads a pixel program in a file that no scene names. `None` once the reason that it is none has been recorded.
+/// Reads a pixel program from a file that no scene names. Returns `None` after recording what is wrong.
 pub(super) fn in_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLanguage) -> Option<Program> {
     let (errors, mut asides) = (reader.errors, Vec::new());
     let text = ProgramText::at(reader, path)?;
@@ -103,7 +103,7 @@ pub(super) fn in_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLan
     (reader.errors == errors).then_some(Program { form, asides })
 }
 
-/// Reads a program that is a text.
+/// Reads a program from its text.
 fn written(reader: &mut Reader<'_>, language: ProgramLanguage, text: ProgramText, asides: &mut Asides) -> Option<Form> {
     Some(match language {
         ProgramLanguage::Combiners => {
@@ -139,7 +139,7 @@ fn written(reader: &mut Reader<'_>, language: ProgramLanguage, text: ProgramText
 }
 
 impl Program {
-    /// What it becomes in a draw, and the first place that reads each texture unit.
+    /// Lowers the program for a draw. Also returns, for each texture unit, the first place that reads it.
     pub(super) fn lower(
         &self,
         reader: &mut Reader<'_>,
@@ -153,7 +153,7 @@ impl Program {
     }
 }
 
-/// The program of a pasted text, its warnings told or kept for the draws. `None` once the reasons that it is none have been recorded.
+/// Takes the program out of a pasted text; its warnings are recorded or kept for the draws. Returns `None` after recording what is wrong.
 pub(super) fn pasted<P>(
     reader: &mut Reader<'_>,
     text: &ProgramText,
@@ -170,7 +170,7 @@ pub(super) fn pasted<P>(
     Some(program)
 }
 
-/// Holds a program against the chip. `inside`: the text that the places are of, if it is not the scene.
+/// Checks a program against the chip. `inside` is the text that the places refer to, if it is not the scene.
 fn judge(
     reader: &mut Reader<'_>,
     combiners: Combiners,
@@ -187,8 +187,8 @@ fn judge(
     ProgramData { combiners, reads }
 }
 
-/// The calls of a program of an API, if it is given by these, as a text or in a file, and not by fields at once. `what`: how it and its fields are called.
-/// `None` once the reason that they cannot be read has been recorded.
+/// Reads the text of an API's calls, if the program is given by `text` or `file` and not by fields. `what` and `name` are what messages call
+/// the program and its fields. Returns `Some(None)` if there is no text, and `None` after recording what is wrong.
 pub(super) fn calls<'a>(
     reader: &mut Reader<'a>,
     fields: Option<Span>,

@@ -1,4 +1,4 @@
-//! A pixel program in a file of its own, as the program of a draw.
+//! Lowers a pixel program in a file of its own, as the program of a draw.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use super::program::{Form, in_file};
 use super::unit::Units;
 use super::*;
 
-/// The scene of one pixel that the program of a file draws. `None` once the reason that there is none has been recorded.
+/// Makes a scene of one pixel that the program draws. Returns `None` after recording what is wrong.
 pub(crate) fn program_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLanguage) -> Option<(Scene, Plan)> {
     let program = in_file(reader, path, language)?;
     let cubes = if let Form::Api(program) = &program.form { program.cubes() } else { [false; TEXTURE_UNITS] };

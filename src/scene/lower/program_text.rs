@@ -1,4 +1,4 @@
-//! The text of a program: in the scene or in a file of its own, and where its bytes stand.
+//! Reads the text of a program, in the scene or in a file of its own, and keeps the places of its bytes.
 
 use std::path::Path;
 
@@ -9,22 +9,22 @@ use ninebit::limits::FileLimit;
 use ninebit_files::read::ReadError;
 use ninebit_program::c_source::{Expanded, Style, expand};
 
-/// A text and its places.
+/// The text of a program with its places.
 pub(super) struct ProgramText {
     pub(super) text: String,
     origin: Origin,
-    /// Where the bytes of a text that was expanded stood before.
+    /// If the text was expanded, the place of each byte before that.
     before: Option<Vec<usize>>,
 }
 
 enum Origin {
-    /// Bytes of the scene, one place for each byte of the text and one for its end.
+    /// The text is in the scene: one place for each byte of the text, and one for its end.
     Scene(Vec<usize>),
     File(Arc<diagnostic::File>),
 }
 
 impl ProgramText {
-    /// Reads `("...")` or `(file: "...")`. `None` once the reason has been recorded.
+    /// Reads `("...")` or `(file: "...")`. Returns `None` after recording what is wrong.
     pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Self> {
         let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
         let program =
@@ -32,24 +32,24 @@ impl ProgramText {
         program.within_limit(reader)
     }
 
-    /// A text that stands in the scene. `None` once the reason that it cannot be read has been recorded.
+    /// Reads a text in the scene. Returns `None` after recording what is wrong.
     pub(super) fn inline<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Self> {
         literal(reader, raw)?.within_limit(reader)
     }
 
-    /// A text in a file. `None` once the reason that it cannot be read has been recorded.
+    /// Reads a text from a file. Returns `None` after recording what is wrong.
     pub(super) fn file<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Self> {
         Self::file_up_to(reader, raw, reader.limits.program_file())
     }
 
-    /// A text in a file that no scene names. `None` once the reason that it cannot be read has been recorded.
+    /// Reads a text from a file that no scene names. Returns `None` after recording what is wrong.
     pub(super) fn at(reader: &mut Reader<'_>, path: &Path) -> Option<Self> {
         let name = ninebit::shown::lossless(path);
         let file = text_at(reader, path, (&name, path), None, reader.limits.program_file())?;
         Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
     }
 
-    /// The same of a file within a limit of its own.
+    /// Reads a text from a file with its own limit. Returns `None` after recording what is wrong.
     pub(super) fn file_up_to<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>, most: FileLimit) -> Option<Self> {
         let file = text_file(reader, raw, most)?;
         Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
@@ -63,7 +63,7 @@ impl ProgramText {
         Some(self)
     }
 
-    /// The text as the reader of a language takes it: out of C. `None` once the reason that it cannot be has been recorded.
+    /// Extracts the text that a language's reader takes from C source. Returns `None` after recording what is wrong.
     pub(super) fn expanded(self, reader: &mut Reader<'_>, style: Style) -> Option<Self> {
         match expand(&self.text, style, usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX)) {
             Ok(None) => Some(self),
@@ -72,16 +72,16 @@ impl ProgramText {
         }
     }
 
-    /// Where a part stood before the text was expanded.
+    /// Returns the place of a part before the text was expanded.
     fn before(&self, part: Span) -> Span {
         let Some(places) = &self.before else { return part };
         let place = |at: usize| places.get(at).or(places.last()).copied().unwrap_or_default();
         let start = place(part.start);
-        // Parts of what a name stands for are where the name is.
+        // The replacement of a name has the place of the name.
         start..place(part.end).max(start + usize::from(!part.is_empty()))
     }
 
-    /// The place in the scene of a part of the text; of a file, where the scene names it.
+    /// Returns the place of a part in the scene; for a text in a file, the place where the scene names the file.
     pub(super) fn span(&self, part: Span) -> Span {
         let part = self.before(part);
         match &self.origin {
@@ -98,12 +98,12 @@ impl ProgramText {
         findings.into_iter().for_each(|finding| reader.push(self.place(finding)));
     }
 
-    /// What was read of the text. `None` once the reasons that it cannot be read have been recorded.
+    /// Unwraps what was read from the text. Returns `None` after recording the findings.
     pub(super) fn parsed<T>(&self, reader: &mut Reader<'_>, read: Result<T, Vec<Diagnostic>>) -> Option<T> {
         read.map_err(|findings| self.push(reader, findings)).ok()
     }
 
-    /// A finding about the text as one about the scene or the file.
+    /// Turns a finding about the text into one about the scene or the file.
     pub(super) fn place(&self, mut finding: Diagnostic) -> Diagnostic {
         if let Origin::File(file) = &self.origin {
             finding.span = finding.span.map(|span| self.before(span));
@@ -120,7 +120,7 @@ impl ProgramText {
     }
 }
 
-/// Findings about a text, which have their places in it, or about the scene.
+/// Turns findings about a text, if there is one, into findings about the scene or a file.
 pub(super) fn placed(text: Option<&ProgramText>, findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let place = |finding| if let Some(text) = text { text.place(finding) } else { finding };
     findings.into_iter().map(place).collect()
@@ -144,7 +144,7 @@ fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
 
 fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
     let Some(literal) = Literal::from_text(raw.text) else {
-        // This says what is wrong.
+        // This records what is wrong.
         reader.read(raw)?;
         return None;
     };
@@ -164,7 +164,7 @@ fn from_file<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> 
     ProgramText::file(reader, &raw)
 }
 
-/// A text in a file of the scene's folder, within a limit. `None` once the reason that it cannot be read has been recorded.
+/// Reads a text from a file in the scene's folder, within a limit. Returns `None` after recording what is wrong.
 pub(super) fn text_file<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, String>,
@@ -181,7 +181,7 @@ pub(super) fn text_file<'a>(
     }
 }
 
-/// The text of a file, whose name is shown in short and in full. `named`: where the scene names it, if one does.
+/// Reads the text of a file. `name` is its name in messages, `shown` its full name, and `named` the place where the scene names it, if it does.
 fn text_at(
     reader: &mut Reader<'_>,
     path: &Path,

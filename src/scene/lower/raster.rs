@@ -1,9 +1,9 @@
-//! Raster operations of a draw.
+//! Lowers the raster operations of a draw.
 
 use super::*;
 use ninebit::legality;
 
-/// The most columns or rows of a rectangle.
+/// Largest number of columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;
 
 /// Reads a blend function.
@@ -15,7 +15,7 @@ pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::
     Some(Blend { equation, source: fields.source(reader), destination: fields.destination(reader) })
 }
 
-/// Reads everything behind the combiners into `draw`, whose target is set.
+/// Reads all state behind the combiners into `draw`, whose target is set.
 pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, draw: &mut Draw) {
     let Some(target) = reader.targets.list.get(draw.target).cloned() else { return };
     draw.alpha_test = fields.alpha_test.as_ref().and_then(|raw| alpha_test(reader, raw));
@@ -131,7 +131,7 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     Some(WindowClip { rectangles, exclusive: fields.exclusive(reader) })
 }
 
-/// Reads a rectangle that clips: a part of the target.
+/// Reads a clipping rectangle, which has to lie in the target.
 pub(super) fn clip<'a>(
     reader: &mut Reader<'a>,
     target: &Target,
@@ -148,7 +148,7 @@ pub(super) fn clip<'a>(
     Some(clip)
 }
 
-/// Reads a rectangle of pixels, of so many columns and rows at least.
+/// Reads a rectangle of pixels with at least `least` columns and rows.
 fn rectangle<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::Rectangle<'a>>,
@@ -163,7 +163,7 @@ fn rectangle<'a>(
     Some(Rectangle { x, y, width: width?, height: height? })
 }
 
-/// A clear among the draws, as the draw that does it: a rectangle of one colour and depth, which every test lets through.
+/// Lowers a clear among the draws to a draw: a rectangle of one colour and depth that passes every test.
 pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, draw: &mut Draw) -> Option<()> {
     let fields = reader.read(raw)?;
     let target = &reader.targets.list.get(draw.target)?.clone();
@@ -188,7 +188,7 @@ pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw
     let columns = [area.x, area.x.saturating_add(area.width)];
     let rows = [area.y, area.y.saturating_add(area.height)];
     for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-        // At most 2^17: exact.
+        // Coordinates are at most 2^17, so they are exact.
         let position = [columns[x] as f32, rows[y] as f32, z, 1.0];
         draw.vertices.push(Vertex { position, diffuse: VertexColor::Bytes(color), ..Vertex::default() });
     }

@@ -1,11 +1,12 @@
-//! `RegisterWords(...)`: the combiners as the words of a chip's registers.
+//! Lowers `RegisterWords(...)`: combiners given as the words of a chip's registers.
 
 use super::program_text::{ProgramText, placed};
 use super::*;
 use ninebit_program::Places;
 use ninebit_program::registers::{Word, Written, read};
 
-/// The program of the words, where its parts stand, and the text that these are places of if it is not the scene. `None` once the reason has been recorded.
+/// Reads a program with the places of its parts. Also returns the text that the places refer to, if it is not the scene. Returns `None`
+/// after recording what is wrong.
 pub(super) fn program<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Combiners, Places, Option<ProgramText>)> {
     let fields = reader.read(&Raw::<source::RegisterWords<'a>>::new(text))?;
     let opening = reader.opening(text);
@@ -41,7 +42,7 @@ pub(super) fn program<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Com
     Some((combiners, places, inside))
 }
 
-/// The program of words in a text of their own.
+/// Reads the program from words in a text of their own.
 pub(super) fn of_text(reader: &mut Reader<'_>, text: &ProgramText) -> Option<(Combiners, Places)> {
     let given = listed(reader, text)?;
     decoded(reader, given.written, Some(text))
@@ -52,13 +53,13 @@ fn decoded(reader: &mut Reader<'_>, words: Written, inside: Option<&ProgramText>
     words.program().map_err(found).ok()
 }
 
-/// Words in a text of their own, which are those of the scene's chip.
+/// Reads words in a text of their own, for the scene's chip.
 fn listed(reader: &mut Reader<'_>, text: &ProgramText) -> Option<Given> {
     let written = text.parsed(reader, read(&text.text, reader.profile))?;
     Some(Given { written, wrong: false })
 }
 
-/// Words, and whether one of them is none.
+/// Words, and whether one of them could not be read.
 struct Given {
     written: Written,
     wrong: bool,
@@ -88,7 +89,7 @@ impl Given {
     }
 }
 
-/// The words of a chip, `fields` being those that are written.
+/// Reads the words of a chip. `fields` are the fields that are written.
 fn words<'a>(
     reader: &mut Reader<'a>,
     chip: Profile,

@@ -1,9 +1,9 @@
-//! The texture shader of a draw: what each unit does, checked against what the chip lets follow what (TSH-10).
+//! Lowers the texture shader of a draw, and checks that the chip allows its stages in their order (TSH-10).
 
 use super::unit::Units;
 use super::*;
 
-/// Operations as they are written; the last three are refused by name.
+/// Names of the operations; the last three are recognised and refused.
 const OPERATIONS: &[&str] = &[
     "None",
     "Sample",
@@ -23,14 +23,14 @@ const OPERATIONS: &[&str] = &[
     "Brdf",
 ];
 
-/// Where a stage and the parts of it stand that may be wrong.
+/// Places of a stage, and of those of its parts that may be wrong.
 struct Places {
     stage: Span,
     previous: Option<Span>,
     mapping: Option<Span>,
 }
 
-/// Reads the texture shader of a draw into its units. Without one they stay conventional.
+/// Reads the texture shader of a draw into its units, which stay conventional if there is none.
 pub(super) fn shader<'a>(
     reader: &mut Reader<'a>,
     units: &mut Units,
@@ -71,7 +71,7 @@ pub(super) fn shader<'a>(
     }
 }
 
-/// One entry: an operation, or fields of which one is the operation. `None` once the reason has been recorded.
+/// Reads one stage: an operation, or fields with an operation among them. Returns `None` after recording what is wrong.
 fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage: &mut ShaderStage) -> Option<Places> {
     let mut places = Places { stage: reader.span(raw), previous: None, mapping: None };
     if !raw.text.starts_with('(') {
@@ -127,7 +127,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
     })
 }
 
-/// What stands in parentheses behind an operation; without them, no field.
+/// Reads the fields in parentheses behind an operation. Without parentheses, all fields are absent.
 fn fields<'a, T: source::Expected<'a> + Default>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
     if rest.is_empty() { Some(T::default()) } else { reader.read(&Raw::new(rest)) }
 }
@@ -146,7 +146,7 @@ fn bump<'a>(reader: &mut Reader<'a>, rest: &'a str, opening: &'a str) -> Option<
     Some(ShaderOperation::BumpEnvironment { matrix, luminance })
 }
 
-/// The matrix of a bump environment, and its luminance as scale and offset, which are called so.
+/// Reads the matrix of a bump environment, and its luminance as scale and offset. The texts are what messages call the two.
 pub(super) fn bump_numbers<'a>(
     reader: &mut Reader<'a>,
     fields: &source::BumpEnvironment<'a>,
@@ -158,7 +158,7 @@ pub(super) fn bump_numbers<'a>(
     Some((matrix, luminance.map(|[scale, offset, ..]| [scale, offset])))
 }
 
-/// Which earlier unit a stage reads: stage 1 always unit 0, stage 2 unit 0 or 1, stage 3 any of the three.
+/// Checks the earlier unit that a stage reads: unit 0 for stage 1, unit 0 or 1 for stage 2, any of the three for stage 3.
 fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
     let ShaderStage { operation, previous, .. } = shader[index];
     let mut refuse = |place: &Span, message: String, label: &str, help: String| {
@@ -187,7 +187,7 @@ fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], 
     }
 }
 
-/// TSH-10: which operation may follow which. Says whether this one may stand where it does.
+/// Checks by TSH-10 which operation follows which. Returns whether the operation may stand at this stage.
 fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) -> bool {
     let operation = shader[index].operation;
     let wanted = ShaderStage::misplaced(shader, index);
@@ -204,7 +204,7 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     wanted.is_none()
 }
 
-/// Whether the texture that a stage samples is there, and of a kind that fits.
+/// Checks that the texture that a stage samples exists and is of a kind that fits.
 fn texture(reader: &mut Reader<'_>, units: &Units, index: usize, places: &Places) {
     let operation = units.shader[index].operation;
     if !operation.samples() {

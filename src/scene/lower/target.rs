@@ -1,4 +1,4 @@
-//! Reads render targets: sizes, formats, clears.
+//! Lowers render targets: sizes, formats, clears.
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
 use super::*;
@@ -9,22 +9,22 @@ use ninebit::number::convert;
 use ninebit::raster::depth;
 
 impl Targets<'_> {
-    /// A finding with the target's place beside it.
+    /// Adds the place of the target to a finding.
     pub(super) fn beside(&self, index: usize, finding: Diagnostic) -> Diagnostic {
         let place = self.index.place(index);
         if place.is_empty() { finding } else { finding.related(place, "the target") }
     }
 }
 
-/// The target of that name; `None` once the reason has been recorded.
+/// Finds the target of a name. Returns `None` after recording what is wrong.
 pub(super) fn find<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
     Index::find(reader, |reader| &mut reader.targets.index, raw)
 }
 
-/// The name of the first target that has no other.
+/// Name of the first target if it is not named.
 const FRAME: &str = "frame";
 
-/// Reads the targets; one of 640 x 480 named "frame" if the scene has none.
+/// Reads the targets. If the scene has none, adds one of 640 x 480 named "frame".
 pub(super) fn targets<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::List<'a, source::Target<'a>>>>) {
     reader.targets.index = Index::new("target", "define it in `targets: [(name: \"...\")]`");
     let Some(raw) = raw else {
@@ -108,7 +108,7 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
     target
 }
 
-/// Gives targets the textures that they begin as.
+/// Fills targets with the textures that they begin as.
 pub(super) fn contents(reader: &mut Reader<'_>) {
     for (index, raw) in std::mem::take(&mut reader.targets.begins) {
         let Some(texture) = texture::find(reader, &raw) else { continue };
@@ -146,7 +146,7 @@ pub(super) fn contents(reader: &mut Reader<'_>) {
     }
 }
 
-/// The depth that a clear stores, 0 to 1, of a float buffer any that is not negative, into a target that has a depth buffer.
+/// Reads the depth that a clear stores into a target with a depth buffer: 0 to 1, or for a float buffer any depth that is not negative.
 pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
     let Some(buffer) = target.depth else {
@@ -162,7 +162,7 @@ pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Ra
     Some(value)
 }
 
-/// The stencil that a clear stores, into a target that has one.
+/// Reads the stencil that a clear stores into a target with a stencil.
 pub(super) fn clear_stencil<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u8>) -> Option<u8> {
     let stencil = reader.read(raw)?;
     if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {

@@ -1,13 +1,13 @@
-//! How the coordinate sets of a draw are made: generators and texture matrices.
+//! Lowers the coordinate sets of a draw: generators and texture matrices.
 
 use super::*;
 use ninebit::vertex::texgen::{CoordinateSet, Emboss, Generator};
 use ninebit_program::texture_stages::Generation;
 
-/// Words for whole sets, as Direct3D 7 has them.
+/// Words that generate whole sets, as in Direct3D 7.
 const WHOLE: [&str; 3] = ["CameraSpacePosition", "CameraSpaceNormal", "CameraSpaceReflectionVector"];
 
-/// Reads both lists. None: all sets are as they were given.
+/// Reads both lists. Returns `None` if there are none: all sets are then used as they are given.
 pub(super) fn sets<'a>(
     reader: &mut Reader<'a>,
     generators: &Option<Raw<'a, source::List<'a, source::CoordinateSource>>>,
@@ -31,7 +31,7 @@ pub(super) fn sets<'a>(
     (generators.is_some() || matrices.is_some()).then_some(sets)
 }
 
-/// Whether the chip has that coordinate set.
+/// Returns whether the chip has the coordinate set, after recording a finding if not.
 fn exists(reader: &mut Reader<'_>, index: usize, place: Span) -> bool {
     if index >= TEXTURE_UNITS {
         let message = format!("there is no coordinate set {index}");
@@ -74,7 +74,7 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
     Some(set)
 }
 
-/// Generators of a whole set.
+/// Returns the generators of a whole set.
 pub(super) fn whole(generation: Generation) -> [Option<Generator>; 4] {
     let axis = |k: usize| std::array::from_fn(|n| if n == k { 1.0 } else { 0.0 });
     let three = |generator| [Some(generator), Some(generator), Some(generator), None];
@@ -112,7 +112,7 @@ fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, comp
     Some(generator)
 }
 
-/// NV10 alone: set 1 as set 0 moved toward a light.
+/// Reads Emboss, which exists on NV10 alone and makes set 1 from set 0, moved toward a light.
 fn emboss<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::CoordinateSource>,

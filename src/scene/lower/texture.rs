@@ -1,4 +1,4 @@
-//! Textures: kind, format, and how faces and levels are put together.
+//! Lowers textures: their kind and format, and how they are made of faces and levels.
 
 use super::texture_levels::Wanted;
 use super::texture_source::{Given, Request, Variant, only};
@@ -14,12 +14,12 @@ impl Textures {
     }
 }
 
-/// The texture of that name; `None` once the reason has been recorded.
+/// Finds the texture of a name. Returns `None` after recording what is wrong.
 pub(super) fn find<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
     Index::find(reader, |reader| &mut reader.textures.index, raw)
 }
 
-/// Reads every palette and texture, files included.
+/// Reads every palette and texture, including their files.
 pub(super) fn textures<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>) {
     palette::palettes(reader, &file.palettes);
     reader.textures.index = Index::new("texture", "define it in `textures: { \"...\": (source: ...) }`");
@@ -30,7 +30,7 @@ pub(super) fn textures<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>) {
     {
         let (place, count, most) = (reader.span(raw), entries.len(), reader.limits.textures);
         reader.push(too_many("NB0605", place, count, "textures", "textures", most));
-        // Their names are known all the same.
+        // Their names are registered nevertheless, so that uses of them are no further errors.
         return reader.textures.index.without(entries.into_iter().map(|entry| entry.name));
     }
     for entry in entries {
@@ -45,7 +45,7 @@ pub(super) fn textures<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>) {
     }
 }
 
-/// One texture and its palette.
+/// Reads one texture and the index of its palette.
 fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) -> Option<(Texture, Option<usize>)> {
     let fields = reader.read(&entry.value)?;
     let kind = reader.perhaps(&fields.kind, |reader, raw| reader.name(&raw.as_other()))?;
@@ -106,7 +106,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
     with_palette(reader, texture, palette, &fields)
 }
 
-/// A palette goes with P8, and with nothing else. One that is wrong has been complained of.
+/// Checks that a texture with a palette has the format P8. Findings about the palette itself have been recorded.
 fn with_palette<'a>(
     reader: &mut Reader<'a>,
     texture: Texture,
@@ -142,7 +142,7 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
     reader.name(raw)
 }
 
-/// Depth formats of the state, and their names in the chip's registers and in both APIs; those that the state lacks.
+/// Names of depth formats: our name, then those of the chip's registers and of both APIs. Formats that the state lacks have no name of ours.
 const DEPTH_FORMATS: [(&str, &[&str]); 5] = [
     ("Z16", &["D16", "D16_LOCKABLE", "LIN_D16", "DEPTH_COMPONENT16", "DEPTH_Y16_FIXED"]),
     ("Z24S8", &["Z24X8", "D24S8", "D24X8", "LIN_D24S8", "DEPTH_COMPONENT24", "DEPTH_X8_Y24_FIXED"]),
@@ -151,7 +151,7 @@ const DEPTH_FORMATS: [(&str, &[&str]); 5] = [
     ("", &["D15S1", "D32"]),
 ];
 
-/// What the texture is sampled as: as written, or a cube map where there are six faces.
+/// Determines the kind of a texture: the one that is written, or the one that its source suggests; the two have to agree.
 fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {
     use TextureKind::{Cube, ThreeDimensional, TwoDimensional};
     let own = match given.volume {
@@ -178,7 +178,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
     reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule(rule))
 }
 
-/// Sides without border texels.
+/// Returns the sides of level 0 without border texels.
 fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32, u32)> {
     let beyond = texture_levels::beyond(border);
     let (width, height) = (given.width, given.height);
@@ -190,6 +190,7 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
     Some((width - beyond, height - beyond))
 }
 
+/// Makes a texture that shows a render target.
 fn of_target<'a>(
     reader: &mut Reader<'a>,
     (text, depths): (&'a str, bool),
@@ -264,7 +265,7 @@ fn of_target<'a>(
     Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Target { target: index } })
 }
 
-/// The depth buffer of a target as a texture.
+/// Makes a texture that shows the depth buffer of a target.
 fn of_depths(
     reader: &mut Reader<'_>,
     (target, index): (&Target, usize),

@@ -1,4 +1,4 @@
-//! `TextureEnvironment(...)`: the OpenGL texture environment.
+//! Lowers `TextureEnvironment(...)`: the OpenGL texture environment.
 
 use super::api_program::{ApiProgram, name_at};
 use super::program::{Asides, calls, pasted};
@@ -43,7 +43,7 @@ fn unit<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, place
     unit
 }
 
-/// At most four the first of a list in which the others keep their defaults.
+/// Reads a list of at most four values; values that are not listed keep their defaults.
 fn list<'a, T: Named>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, List<'a, Name<T>>>>,
@@ -75,7 +75,7 @@ fn scale<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, u32>>, half: &mut Hal
     };
 }
 
-/// Refuses what only combining reads in another mode: it was meant to do something.
+/// Refuses fields that the unit's mode does not read because it does not combine: they were meant to do something.
 fn combine_only<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, mode: Mode) {
     if matches!(mode, Mode::Combine | Mode::Combine4) {
         return;

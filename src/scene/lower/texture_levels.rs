@@ -1,21 +1,21 @@
-//! Levels of a texture: those of its file, listed ones, or made from level 0.
+//! Lowers the levels of a texture: those of its file, listed ones, or those made from level 0.
 
 use super::texture_source::{Given, Request, Variant};
 use super::*;
 use ninebit_files::texels;
 
-/// `levels` of a texture.
+/// The number of levels that a texture asks for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wanted {
-    /// Not written: as many as the source has.
+    /// `levels` is not written: as many as the source has.
     Own,
-    /// As many as the scene says.
+    /// The number that is written.
     Number(u32),
-    /// Down to 1 x 1.
+    /// All levels down to 1 x 1.
     All,
 }
 
-/// Texels by which a side of a source exceeds the texture's.
+/// Returns the number of texels by which the sides of sources exceed those of the texture.
 pub(super) fn beyond(border: bool) -> u32 {
     if border { 2 * BORDER_TEXELS } else { 0 }
 }
@@ -34,7 +34,7 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     reader.refuse(finding("NB0205", reader.span(raw), message, "wrong kind of value", help))
 }
 
-/// How many levels are wanted of a source that does not say so itself.
+/// Returns how many levels to take from a source that does not determine their number.
 pub(super) fn number(reader: &mut Reader<'_>, wanted: Wanted, [width, height]: [u32; 2], place: Span) -> Option<u32> {
     let most = Level::most(width, height);
     match wanted {
@@ -54,7 +54,7 @@ fn too_many(number: u32, width: u32, height: u32, place: Span) -> Diagnostic {
         .help("sides halve from level to level until both are 1; `levels: All` means all of them")
 }
 
-/// Brings the levels of a source to the number that is wanted: cuts, or makes smaller ones from level 0.
+/// Brings the levels of a source to the number asked for, by dropping some or making smaller ones from level 0.
 pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wanted, request: &Request) -> Option<()> {
     let own = given.levels();
     let beyond = beyond(request.border);
@@ -120,7 +120,7 @@ pub(super) fn listed<'a>(
     if number > Level::most(inside[0], inside[1]) {
         return reader.refuse(too_many(number, inside[0], inside[1], reader.span(raw)));
     }
-    // Listed sources are of the format of level 0, whoever has chosen it.
+    // Listed sources have the format of level 0, however that was determined.
     let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };
     let mut complete = true;
     for (n, raw) in (1..).zip(&list) {
@@ -151,7 +151,7 @@ pub(super) fn listed<'a>(
     complete.then_some(())
 }
 
-/// Leaves out the levels before `first_level`. Its number, below that of the levels there are.
+/// Drops the levels before `first_level`, which has to be a level that exists. Returns its number.
 pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a, u32>) -> Option<u32> {
     let number = reader.read(raw)?;
     let levels = given.levels();

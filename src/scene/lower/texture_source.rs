@@ -1,4 +1,4 @@
-//! Where texels come from: files, raw memory, lists of words, made pictures.
+//! Reads the sources of texels: files, raw memory, lists of words, generated pictures.
 
 use super::texture_levels::{self, Wanted};
 use super::*;
@@ -10,42 +10,42 @@ mod stored;
 
 pub(super) use stored::read_file;
 
-/// What a source gives.
+/// Texels that a source gives.
 pub(super) struct Given {
     pub(super) format: TextureFormat,
     /// Columns of level 0, border texels included.
     pub(super) width: u32,
     /// Rows of level 0, border texels included.
     pub(super) height: u32,
-    /// Of each face (one, or six), of each level: its words.
+    /// Words of each level of each face (one or six) or layer.
     pub(super) faces: Vec<Vec<Vec<u32>>>,
-    /// They are the layers of a volume.
+    /// Whether `faces` are the layers of a volume.
     pub(super) volume: bool,
-    /// Entries, where a file brings them along.
+    /// Entries of the palette, if the file has one.
     pub(super) palette: Option<Vec<u32>>,
-    /// Where messages about the texture point.
+    /// The place that messages about the texture point to.
     pub(super) place: Span,
 }
 
 impl Given {
-    /// Of each face.
+    /// Returns the number of levels of each face.
     pub(super) fn levels(&self) -> u32 {
         self.faces.first().map_or(1, |levels| levels.len() as u32)
     }
 }
 
-/// What the texture wants of a source.
+/// What a texture asks of its source.
 #[derive(Clone, Copy)]
 pub(super) struct Request {
-    /// The format, if the scene names one.
+    /// Format that the scene gives, if any.
     pub(super) format: Option<TextureFormat>,
-    /// Faces that raw memory holds.
+    /// Number of faces in a raw file.
     pub(super) faces: u32,
-    /// Raw memory holds layers of a volume.
+    /// Whether a raw file holds the layers of a volume.
     pub(super) volume: bool,
-    /// Levels that raw memory holds.
+    /// Number of levels in a raw file.
     pub(super) levels: Wanted,
-    /// Sources bring border texels.
+    /// Whether sources have border texels.
     pub(super) border: bool,
 }
 
@@ -54,30 +54,30 @@ ninebit::state::named! {
     pub(super) enum Variant {
         /// A PNG, TGA or DDS file.
         File,
-        /// A file of texels as they lie in memory.
+        /// A file of texels as they lie in memory, without a header.
         Raw,
         /// A source for each face of a cube map.
         Faces,
-        /// Sources of the layers of a volume.
+        /// A source for each layer of a volume.
         Layers,
-        /// Words in hexadecimal.
+        /// Words of texels in hexadecimal.
         Texels,
         /// One colour for all texels.
         Solid,
-        /// Squares of two colours in turn.
+        /// A checkerboard of two colours.
         Checker,
-        /// From one colour to another.
+        /// A gradient from one colour to another.
         Ramp,
         /// A render target.
         Target,
-        /// The depth buffer of one.
+        /// The depth buffer of a render target.
         Depth,
     }
 }
 
 impl Variant {
     pub(super) const ALL_NAMES: &'static [&'static str] = Variant::NAMES;
-    /// Sources of a face: no faces in it, no target.
+    /// Sources of a face or layer, which exclude whole cube maps and targets.
     const OF_FACE: [Variant; 6] =
         [Variant::File, Variant::Raw, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
     /// Sources of a level.
@@ -85,7 +85,7 @@ impl Variant {
         [Variant::File, Variant::Raw, Variant::Faces, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
 }
 
-/// Reads a source; `text` is what follows the name of its variant. `None` once the reason has been recorded.
+/// Reads a source; `text` is what follows the name of its variant. Returns `None` after recording what is wrong.
 pub(super) fn read<'a>(
     reader: &mut Reader<'a>,
     variant: Variant,
@@ -105,12 +105,12 @@ pub(super) fn read<'a>(
             let picture = made::picture(reader, variant, text, request)?;
             Some(one(format, picture.width, picture.height, texels::pack(&picture.pixels, format), picture.place))
         }
-        // Lowered with the targets at hand.
+        // These are lowered by the caller.
         Variant::Target | Variant::Depth => None,
     }
 }
 
-/// Reads a source that is one of these.
+/// Reads a source within another one, which has to be one of `variants`.
 pub(super) fn nested<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::ImageSource>,
@@ -123,7 +123,7 @@ pub(super) fn nested<'a>(
     read(reader, variants[variant], raw, rest, request)
 }
 
-/// Takes the memory of so many texels or words off what is left.
+/// Subtracts the memory of `words` words from what textures may still take.
 pub(super) fn afford<'a>(reader: &mut Reader<'a>, place: Span, words: u64) -> Option<()> {
     let bytes = words.saturating_mul(4);
     let Some(rest) = reader.textures.left.checked_sub(bytes) else {
@@ -135,7 +135,7 @@ pub(super) fn afford<'a>(reader: &mut Reader<'a>, place: Span, words: u64) -> Op
     Some(())
 }
 
-/// Six sources, a face each.
+/// Reads six sources, one for each face.
 fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
     let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
     let request = Request { faces: 1, ..*request };
@@ -166,7 +166,7 @@ fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: S
     Some(first)
 }
 
-/// Sources in a list, a layer each.
+/// Reads a list of sources, one for each layer.
 fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
     let raw = only::<source::List<'a, source::ImageSource>>(reader, text, "a list of sources")?;
     let list = reader.read(&raw)?;
@@ -189,7 +189,7 @@ fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: 
     Some(first)
 }
 
-/// Raw words in hexadecimal, a text for each row.
+/// Reads words in hexadecimal, one text for each row.
 fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
     let raw = Raw::<source::TexelRows<'a>>::new(text);
     let fields = reader.read(&raw)?;
@@ -231,8 +231,8 @@ fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Optio
     Some(one(format, width, height, words, place))
 }
 
-/// Width and height as written, and their place. They are held against the largest that any texture may have: what else must
-/// be true of them depends on the kind.
+/// Reads width and height; also returns their place. They are checked only against the largest side that any texture may have: all other
+/// conditions depend on the kind.
 pub(super) fn sides<'a>(
     reader: &mut Reader<'a>,
     (width, height): (Option<Raw<'a, u32>>, Option<Raw<'a, u32>>),
@@ -242,7 +242,7 @@ pub(super) fn sides<'a>(
     let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
     let (width, height) = (reader.read(&width)?, reader.read(&height)?);
     let checks = reader.texture_checks();
-    // Of any kind.
+    // The largest side of any kind.
     let most = checks.largest_side.min(if reader.profile == Profile::Nv10 { 2048 } else { 4096 });
     if width.max(height) > most + texture_levels::beyond(request.border) {
         return reader.refuse(checks.too_large("a texture", [width, height], most, Some(place)));
@@ -253,7 +253,7 @@ pub(super) fn sides<'a>(
     Some((width, height, place))
 }
 
-/// The only value in the parentheses of `Variant(value)`.
+/// Reads the only value in the parentheses of `Variant(value)`.
 pub(super) fn only<'a, T>(reader: &mut Reader<'a>, text: &'a str, what: &str) -> Option<Raw<'a, T>> {
     let raw = Raw::<Tuple<'a, T>>::new(text);
     let parts = reader.read(&raw)?.0;
@@ -264,18 +264,18 @@ pub(super) fn only<'a, T>(reader: &mut Reader<'a>, text: &'a str, what: &str) ->
     reader.refuse(Diagnostic::error("NB0211", place, format!("expected {what} in these parentheses")).label("here"))
 }
 
-/// A word of so many hexadecimal digits.
+/// Parses a word of exactly `digits` hexadecimal digits.
 pub(super) fn hexadecimal(word: &str, digits: usize) -> Option<u32> {
     let valid = word.len() == digits && word.bytes().all(|digit| digit.is_ascii_hexdigit());
     u32::from_str_radix(word, 16).ok().filter(|_| valid)
 }
 
-/// One face of one level.
+/// Wraps the words of a texture with one face and one level.
 fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Span) -> Given {
     Given { format, width, height, faces: vec![vec![words]], volume: false, palette: None, place }
 }
 
-/// Whether a face or layer goes with the first one; says so if not.
+/// Returns whether a face or layer agrees with the first one, after recording a finding if not.
 fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Span, what: &str) -> bool {
     let describe = |given: &Given| {
         let levels = if given.levels() == 1 { String::new() } else { format!(" in {} levels", given.levels()) };
@@ -296,7 +296,7 @@ fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Span, what
     false
 }
 
-/// The format that pixels are packed into.
+/// Returns the format that pixels are packed into, if they can be.
 fn packable(reader: &mut Reader<'_>, request: &Request, place: Span) -> Option<TextureFormat> {
     let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
     if texels::can_pack(format) {

@@ -1,4 +1,4 @@
-//! `TextureStages(...)`: Direct3D texture stage states.
+//! Lowers `TextureStages(...)`: Direct3D texture stage states.
 
 use super::api_program::{ApiProgram, name_at};
 use super::program::{Asides, calls, pasted};
@@ -70,7 +70,7 @@ fn arguments<'a>(reader: &mut Reader<'a>, fields: [&Option<Raw<'a, source::Stage
 
 const MODIFIERS: &[&str] = &["Complement", "AlphaReplicate"];
 
-/// `Texture`, or `(Texture, Complement, AlphaReplicate)`.
+/// Reads `Texture`, or `(Texture, Complement, AlphaReplicate)`.
 fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -> Option<StageArgument> {
     let (head, rest) = raw.split();
     if !head.is_empty() || !rest.starts_with('(') {
@@ -92,7 +92,7 @@ fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -
 
 const TRANSFORMS: &[&str] = &["Disable", "Count1", "Count2", "Count3", "Count4"];
 
-/// `Count3`, or `(Count3, Projected)`.
+/// Reads `Count3`, or `(Count3, Projected)`.
 fn transform_flags<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TransformFlags>) -> Option<u32> {
     let (head, rest) = raw.split();
     if !head.is_empty() || !rest.starts_with('(') {

@@ -1,4 +1,4 @@
-//! What the picture ought to show: light, eye, material and surface of the scene's `truth`.
+//! Lowers the scene's `truth`: the light, eye, material and surface of what the picture ought to show.
 #![allow(clippy::float_arithmetic, reason = "describes a float64 reference; nothing of this is stored")]
 
 use super::attribute::Light as Place;
@@ -15,7 +15,7 @@ use crate::truth::{
 };
 use crate::vector::wide;
 
-/// Reads the truth of a scene. `None`: it has none, or the reason that it cannot be read has been recorded.
+/// Reads the truth of a scene. Returns `None` if it has none, or after recording what is wrong.
 pub(super) fn truth<'a>(
     reader: &mut Reader<'a>,
     own: &Option<Raw<'a, source::Truth<'a>>>,
@@ -71,7 +71,7 @@ pub(super) fn truth<'a>(
     })
 }
 
-/// Draws cannot be taken out of a truth that is not there.
+/// Refuses draws with a `truth` field in a scene that has no truth.
 fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
     for (_, place) in draws.iter().filter_map(|drawn| drawn.truth.clone()) {
         let message = "the scene has no truth that a draw could take part in";
@@ -80,7 +80,7 @@ fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
     }
 }
 
-/// The mesh of a draw that takes part.
+/// Returns the mesh of a draw that takes part in the truth.
 fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::mesh::Mesh>> {
     let wanted = drawn.truth.as_ref().is_none_or(|(wanted, _)| *wanted);
     if !wanted || drawn.draw.target != 0 {
@@ -117,7 +117,7 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
     })
 }
 
-/// What only light has a use for.
+/// Refuses fields that only the lighting equation reads.
 fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &source::Truth<'a>, place: Span) {
     if equation == Equation::Lighting {
         return;
@@ -132,7 +132,7 @@ fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &sourc
     }
 }
 
-/// A light's place or an eye's; a direction has a length.
+/// Reads the place of a light or an eye. A direction has to have a length.
 fn place<'a>(
     reader: &mut Reader<'a>,
     text: &'a str,
@@ -152,7 +152,7 @@ fn place<'a>(
     })
 }
 
-/// Refuses a direction without length.
+/// Refuses a direction of length zero.
 fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -> Option<()> {
     if vector.iter().any(|c| *c != 0.0) {
         return Some(());
@@ -194,7 +194,7 @@ fn hemisphere_light<'a>(
     let Some(fields) = reader.read(raw) else { return (None, None) };
     let [x, y, z, _] = fields.axis(reader);
     if let Some(raw) = &fields.axis {
-        // This says what is wrong; without a direction nothing is measured.
+        // This records a finding if the axis has no direction.
         long(reader, raw, [x, y, z]);
     }
     let light = HemisphereLight {
@@ -236,7 +236,7 @@ fn normal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::NormalSource>) -> O
     }
 }
 
-/// A hemisphere: exact without noise, else the generator's normals before they become bytes.
+/// Reads a hemisphere: the exact one, or with noise the generator's normals before they become bytes.
 fn hemisphere_normals<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<NormalSource> {
     let fields = reader.read(&Raw::<source::HemisphereNormals<'a>>::new(text))?;
     let zero_outside = fields.zero_outside(reader);
@@ -248,7 +248,7 @@ fn hemisphere_normals<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Norm
     Some(NormalSource::Map(Arc::new(Field { width: size, height: size, texels, wrap: false })))
 }
 
-/// A height field, and how it is read.
+/// Reads a height field, and the options to read its heights with.
 fn heights<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::HeightFile<'a>>) -> Option<(Rgba, normal_map::Options)> {
     let fields = reader.read(raw)?;
     let file = fields.file(reader)?;
@@ -260,7 +260,7 @@ fn heights<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::HeightFile<'a>>) -
     Some((image, normal_map::Options { scale, channel, ..default }))
 }
 
-/// A picture in the scene's folder.
+/// Reads a picture from the scene's folder.
 fn picture<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Rgba> {
     let limits = ImageLimits {
         maximum_side: reader.limits.texture_side,
@@ -311,7 +311,7 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
     reader.refuse(finding("NB0393", reader.span(written), message, "not a texture or a colour", help))
 }
 
-/// A unit whose dot product reads the normals, in any draw.
+/// Checks that a unit has a dot product, which reads the normals, in some draw.
 fn normal_unit(reader: &mut Reader<'_>, place: Span, unit: usize, draws: &[Drawn]) -> Option<NormalHolder> {
     if draws.iter().any(|drawn| drawn.draw.texture_shader[unit].operation.is_dot()) {
         return Some(NormalHolder::DotProduct(unit));

@@ -1,16 +1,16 @@
-//! Texture units of a draw.
+//! Lowers the texture units of a draw.
 
 use super::*;
 
-/// The units of a draw.
+/// The texture units of a draw, with the stages of its texture shader.
 pub(super) struct Units {
     pub(super) bound: [Option<TextureUnit>; TEXTURE_UNITS],
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
-    /// Where the names of their textures stand; empty for unbound units.
+    /// Places of the names of their textures; empty for units that are not bound.
     pub(super) places: [Span; TEXTURE_UNITS],
 }
 
-/// Reads the units of a draw. The place of each texture's name comes with it.
+/// Reads the units of a draw, with the places of their textures' names.
 pub(super) fn units<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::List<'a, source::Unit>>>) -> Units {
     let mut units = Units {
         bound: [None; TEXTURE_UNITS],
@@ -77,7 +77,7 @@ fn unit<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Unit>, index: usize) 
     Some((unit, coordinate_set, place))
 }
 
-/// The filters of the two sides of lod 0, and of levels.
+/// Reads the filters for minification, magnification and between levels.
 fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     let min = fields.min_filter.as_ref().and_then(|raw| reader.name(raw));
     let mag = fields.mag_filter.as_ref().and_then(|raw| reader.name(raw));
@@ -86,7 +86,7 @@ fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &m
     unit.mip_filter = fields.mip_filter(reader);
 }
 
-/// NUM-0, TEX-9: bias and limits of the lod as the chip's fields: signed 5.8 and unsigned 4.8, cut off towards zero.
+/// Converts bias and limits of the lod into the chip's fields by NUM-0 and TEX-9: signed 5.8 and unsigned 4.8, truncated towards zero.
 fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     let lods = [fields.lod_bias(reader), fields.min_lod(reader), fields.max_lod(reader)];
     #[allow(clippy::float_arithmetic, reason = "floats of the scene become the registers' integers")]
@@ -101,7 +101,7 @@ fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut T
     }
 }
 
-/// KEY-1: the key of a unit whose filters are known.
+/// Reads the colour key of a unit whose filters have been read (KEY-1).
 fn color_key<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ColorKey<'a>>, unit: &TextureUnit) -> Option<ColorKey> {
     let fields = reader.read(raw)?;
     let color = fields.color(reader);
@@ -115,7 +115,7 @@ fn color_key<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ColorKey<'a>>, u
     Some(ColorKey { mode: reader.name(&mode?)?, color: color? })
 }
 
-/// TEX-17, CYL-1, SHD-1, VOL-1: what is known of them, and where they may stand, the plan says.
+/// Reads the state of TEX-17, CYL-1, SHD-1 and VOL-1; the plan checks where it is allowed.
 fn sampling<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     unit.anisotropy = fields.anisotropy(reader);
     unit.cylindrical_wrap = fields.cylindrical_wrap(reader);

@@ -1,9 +1,9 @@
-//! What a unit may do depends on the texture that it samples.
+//! Checks a texture unit against the texture that it samples.
 
 use super::*;
 
-/// Gives the unit its palette, and holds it against its texture. `fields` is `None` where only the texture's name is written, which
-/// stands at `place`.
+/// Sets the palette of a unit, and checks the unit against its texture. `fields` is `None` if only the texture's name is written, at
+/// `place`.
 pub(super) fn check<'a>(
     reader: &mut Reader<'a>,
     fields: Option<&source::UnitState<'a>>,

@@ -1,21 +1,21 @@
-//! Lists of vertices as written.
+//! Lowers lists of vertices.
 
 use super::*;
 
-/// Vertices and where each stands.
+/// Listed vertices with their places.
 pub(crate) struct VertexData {
     pub(super) vertices: Vertices,
-    /// What they bring for generated coordinates and fog: normal and fog coordinate.
+    /// For each vertex, what generated coordinates and fog need.
     pub(super) extras: Vec<Extra>,
     pub(super) spans: VertexSpans,
 }
 
-/// What only the vertex side looks at.
+/// Attributes of a vertex that only the vertex side reads.
 #[derive(Clone, Copy)]
 pub(super) struct Extra {
     pub(super) normal: [f32; 3],
     pub(super) fog_coordinate: f32,
-    /// Components of each coordinate set as written; 4 for one that is not.
+    /// Number of written components of each coordinate set; 4 for a set that is not written.
     pub(super) dimensions: [usize; 4],
 }
 
@@ -25,7 +25,7 @@ impl Default for Extra {
     }
 }
 
-/// Reads a list of vertices. Findings do not end it: the list keeps its length, so that indices can be checked.
+/// Reads a list of vertices. A vertex with errors stays in the list, so that indices can be checked.
 pub(super) fn list<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::VertexList>) -> Option<VertexData> {
     let list = reader.read(&raw.as_other::<source::List<'a, source::Vertex<'a>>>())?;
     if list.len() > reader.limits.vertices {
@@ -43,7 +43,7 @@ pub(super) fn list<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::VertexList
     Some(VertexData { vertices: vertices.into(), extras, spans: VertexSpans::Each(spans) })
 }
 
-/// The finding that the scene has more vertices than it may.
+/// Makes the finding that the scene has more vertices than the limit.
 pub(super) fn too_many(place: Span, count: usize, limit: usize) -> Diagnostic {
     Diagnostic::error("NB0603", place, format!("{count} vertices are more than the {limit} that a scene may have"))
         .label("too many")
@@ -75,7 +75,7 @@ fn vertex<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Opt
     Some((vertex, extra))
 }
 
-/// One to four texture coordinates s, t, r, q, and how many are written.
+/// Reads one to four texture coordinates s, t, r, q. Also returns how many are written.
 pub(super) fn coordinates<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>) -> Option<([f32; 4], usize)> {
     reader.numbers_written(raw, "a set of texture coordinates", 1..=4, [0.0, 0.0, 0.0, 1.0])
 }

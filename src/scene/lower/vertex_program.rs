@@ -1,4 +1,4 @@
-//! `Program(...)`: vertices that a vertex program makes.
+//! Lowers `Program(...)`: vertices that a vertex program computes.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 mod constants;
@@ -13,13 +13,13 @@ use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, V
 use ninebit_program::c_source::Style;
 use ninebit_program::vertex_shader::{self, Written, print};
 
-/// Runs the program over the vertices. `None` once the reason that it cannot be run has been recorded.
+/// Runs the program over the vertices. Returns `None` after recording what is wrong.
 pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
     let mut viewport = viewport(reader, &fields.viewport, target);
     if fields.clip_depth(reader) == Some(1) {
-        // Depth 0 of normalised coordinates becomes `near`: the viewport begins as far before that as it ends behind it.
+        // The viewport maps normalised depth 0 to the middle between `near` and `far`; moving `near` back makes that middle the written `near`.
         viewport.near = 2.0 * viewport.near - viewport.far;
         viewport.clip_depth = ClipDepth::ZeroToOne;
     }
@@ -29,7 +29,7 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
     let (given, (written, text)) = (given?, program?);
     let sources = inputs::sources(reader, &fields.inputs, &given, (&written, &text));
     if reader.errors > 0 {
-        // The scene is refused anyway: a program over a large mesh is not run for nothing, draw after draw.
+        // The scene is refused in any case, so the program need not run over a mesh that may be large, for every draw.
         return None;
     }
     let (vertices, fog_coordinates) = run(reader, &written.shader, &constants, &sources, &given)?;
@@ -44,7 +44,7 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
     })
 }
 
-/// What is kept of a program for those who look at the scene.
+/// Makes the summary of a program that stays in the scene's state.
 fn origin(shader: &VertexShader) -> VertexProgram {
     VertexProgram {
         text: print(shader),
@@ -80,7 +80,7 @@ fn program<'a>(
     Some((written, text))
 }
 
-/// VTX-3: the vertices that come out, and the fog coordinate of each.
+/// Runs the program over all vertices by VTX-3. Also returns the fog coordinate of each vertex.
 fn run(
     reader: &mut Reader<'_>,
     shader: &VertexShader,
@@ -109,7 +109,7 @@ fn run(
     Some((vertices.collect::<Option<Vertices>>()?, fog_coordinates))
 }
 
-/// Output registers that a program writes.
+/// The output registers that a program writes.
 struct Registers {
     colors: [bool; 2],
     coordinates: [bool; 4],
@@ -126,7 +126,7 @@ impl Registers {
         }
     }
 
-    /// An output that cannot be used. Infinite colours can: they are limited. Of oFog fog decides.
+    /// Returns the name of an output that cannot be used. Infinite colours can be: they are clamped. oFog is left to the fog.
     fn not_finite(&self, outputs: &Outputs) -> Option<String> {
         if !outputs.position.iter().all(|value| value.is_finite()) {
             return Some("oPos".to_owned());
@@ -137,7 +137,7 @@ impl Registers {
         color.map(|n| format!("oD{n}")).or(set.map(|n| format!("oT{n}")))
     }
 
-    /// The vertex as the rasteriser takes it; what the program does not write is as in a vertex that does not give it.
+    /// Makes the vertex that the rasteriser takes. Attributes that the program does not write have their defaults.
     fn vertex(&self, outputs: &Outputs) -> Vertex {
         let absent = Vertex::default();
         let limited = |value: f32| value.clamp(0.0, 1.0);

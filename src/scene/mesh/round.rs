@@ -1,12 +1,12 @@
-//! Tori and cylinders.
+//! Makes tori and cylinders.
 #![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
 use super::{Mesh, MeshError, across, at_least, cells, circle, narrow, with_room};
 
-/// A torus about the y axis: `slices` around it, `sides` around its tube, whose middle is `radius` from the axis and which is `tube`
-/// thick, from its middle.
+/// Makes a torus about the y axis: `slices` around the axis, `sides` around the tube. The middle of the tube is at distance `radius` from the
+/// axis, and the tube's own radius is `tube`.
 ///
-/// s is as on a [sphere](super::sphere); t is 0 along the top and grows downward on the outside, to `repeat[1]` back at the top.
+/// s is as on a [sphere](super::sphere); t is 0 along the top and grows downward on the outside, up to `repeat[1]` back at the top.
 ///
 /// # Errors
 /// Fewer than 3 slices or sides, or too many vertices.
@@ -31,10 +31,10 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
     Ok(mesh)
 }
 
-/// A cylinder about the y axis, centred: `slices` around, `stacks` from top to bottom, closed by two discs if `caps`.
+/// Makes a cylinder about the y axis, centred on the origin: `slices` around the axis, `stacks` from top to bottom, closed by two discs if `caps`.
 ///
-/// s is as on a [sphere](super::sphere), t is 0 at the top and `repeat[1]` at the bottom. On the discs the texture lies once, upright
-/// for who looks along the axis.
+/// s is as on a [sphere](super::sphere), t is 0 at the top and `repeat[1]` at the bottom. Each disc shows the texture once, upright
+/// to a viewer who looks along the axis.
 ///
 /// # Errors
 /// Fewer than 3 slices or 1 stack, or too many vertices.
@@ -48,7 +48,7 @@ pub fn cylinder(
 ) -> Result<Mesh, MeshError> {
     at_least("cylinder", "slices", 3, slices)?;
     at_least("cylinder", "stacks", 1, stacks)?;
-    // Two more rows at each end hold the discs.
+    // The vertices of the two discs take up to four more rows.
     let mut mesh = with_room("cylinder", slices, stacks.saturating_add(if caps { 4 } else { 0 }))?;
     for stack in 0..=stacks {
         let y = (stacks as f32 - 2.0 * stack as f32) / (2.0 * stacks as f32) * height;
@@ -67,10 +67,10 @@ pub fn cylinder(
     Ok(mesh)
 }
 
-/// A disc at height `y` that faces up (1) or down (-1): its vertices go into the mesh, its indices come back.
+/// Adds the vertices of a disc at height `y` that faces up (1) or down (-1). Returns the indices of its triangles.
 fn disc(mesh: &mut Mesh, slices: u32, radius: f32, y: f32, up: f32) -> impl Iterator<Item = u32> + use<> {
     let first = mesh.positions.len() as u32;
-    // Its middle, then its rim.
+    // The middle comes first, then the rim.
     for at in 0..=slices {
         let [x, z] = if at == 0 { [0.0; 2] } else { circle(at - 1, slices).map(|c| c as f32) };
         let basis = [[1.0, 0.0, 0.0], [0.0, 0.0, -up], [0.0, up, 0.0]];
@@ -115,7 +115,7 @@ mod tests {
         assert!(matches!(cylinder(3, u32::MAX, 1.0, 1.0, true, [1.0; 2]), Err(MeshError::TooFine { .. })));
     }
 
-    /// The bases that are known here are those that VTX-4 finds.
+    /// The bases that these shapes know are those that VTX-4 computes.
     #[test]
     fn bases_agree_with_what_the_texture_says() {
         for mesh in

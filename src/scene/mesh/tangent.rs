@@ -1,4 +1,4 @@
-//! VTX-4: tangent bases of a mesh, from its positions and texture coordinates.
+//! Computes the tangent bases of a mesh from its positions and texture coordinates (VTX-4).
 #![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
 use std::collections::HashMap;
@@ -6,16 +6,16 @@ use std::collections::HashMap;
 use super::{Mesh, narrow};
 use crate::vector::{Vector, cross, dot, minus, scaled, unit, wide};
 
-/// Vertices and triangles without tangents.
+/// Vertices and triangles without tangent bases. All lists of vertices have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// x, y, z in object space.
+    /// Positions x, y, z in object space.
     pub positions: Vec<[f32; 3]>,
-    /// Of any length. Where one is zero the triangles around give it.
+    /// Normals of any length. Zero normals are computed from the triangles around.
     pub normals: Vec<[f32; 3]>,
-    /// s and t, along which tangents run.
+    /// Texture coordinates s and t, along which the tangents run.
     pub texture_coordinates: Vec<[f32; 2]>,
-    /// Three a triangle, each below the number of vertices.
+    /// Three indices for each triangle, each below the number of vertices.
     pub indices: Vec<u32>,
 }
 
@@ -25,17 +25,17 @@ fn add(to: &mut Vector, v: Vector) {
     }
 }
 
-/// What a triangle says of its surface.
+/// A triangle's contribution to the bases of its corners.
 struct Face {
     corners: [usize; 3],
-    /// How much it counts at each corner: the sine of its angle there over the lengths of both edges. For points of a sphere their mean
-    /// normal is then the sphere's, and how a flat polygon is cut makes no difference.
+    /// Weight at each corner: the sine of the angle there, divided by the lengths of both edges. The weighted mean of normals on a
+    /// sphere is then the sphere's normal, and the way in which a flat polygon is cut makes no difference.
     weights: [f64; 3],
-    /// Of unit length.
+    /// Unit normal.
     normal: Vector,
-    /// Along s, of unit length; `None` where the texture has no direction.
+    /// Unit vector along s; `None` where the texture has no direction.
     tangent: Option<Vector>,
-    /// The texture is seen from behind.
+    /// Whether the texture is seen from behind.
     mirrored: bool,
 }
 
@@ -44,47 +44,47 @@ fn face(surface: &Surface, corners: [usize; 3]) -> Option<Face> {
     let (first, second) = (minus(b, a), minus(c, a));
     let normal = cross(first, second);
     let area = dot(normal, normal).sqrt();
-    // A sliver whose corners lie in a line to the precision of f32 has no normal.
+    // A triangle whose corners lie in a line, to the precision of f32, has no normal.
     let longest = dot(first, first).max(dot(second, second));
     if area <= longest * 1e-9 {
         return None;
     }
     let third = minus(c, b);
     let [ab, ac, bc] = [first, second, third].map(|edge| dot(edge, edge));
-    // A sliver may have two corners at one place.
+    // Two corners of a thin triangle may coincide.
     let weights = [ab * ac, ab * bc, ac * bc].map(|squares| if squares > 0.0 { area / squares } else { 0.0 });
     let [a, b, c] = corners.map(|corner| surface.texture_coordinates[corner].map(f64::from));
     let ([s1, t1], [s2, t2]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
     let turn = s1 * t2 - s2 * t1;
-    // Position as a function of s and t: its change along s, times `turn`.
+    // Position is a function of s and t; this is its derivative along s, times `turn`.
     let mut along = scaled(first, t2);
     add(&mut along, scaled(second, -t1));
     let largest = s1.abs().max(s2.abs()) * t1.abs().max(t2.abs());
     let direction = unit(scaled(along, turn.signum()), 0.0).filter(|_| turn.abs() > largest * 1e-9);
-    // t grows downward: a texture seen from its front turns clockwise in s and t.
+    // t grows downward, so a texture seen from the front turns clockwise in s and t.
     Some(Face { corners, weights, normal: scaled(normal, 1.0 / area), tangent: direction, mirrored: turn > 0.0 })
 }
 
-/// The part of a coordinate that a repeated texture depends on.
+/// Returns the bits of a coordinate's fraction, which is what a repeated texture depends on.
 fn fraction(c: f32) -> u32 {
     let part = c - c.floor();
     if part == 1.0 || part == 0.0 { 0 } else { part.to_bits() }
 }
 
-/// Bits that equal positions and directions have in common.
+/// Returns the bits of a vector, the same for 0 and -0.
 fn bits(v: [f32; 3]) -> [u32; 3] {
     v.map(|c| if c == 0.0 { 0 } else { c.to_bits() })
 }
 
-/// The mesh with its bases. Vertices that triangles with mirrored and unmirrored texture share are split: the mirrored ones are
-/// added at the end.
+/// Makes a mesh with tangent bases. A vertex that is shared by triangles with a mirrored and an unmirrored texture is split: vertices for the
+/// mirrored triangles are added at the end.
 pub fn mesh(surface: &Surface) -> Mesh {
     let corners =
         surface.indices.chunks_exact(3).map(|three| [three[0] as usize, three[1] as usize, three[2] as usize]);
     let faces: Vec<Option<Face>> = corners.map(|corners| face(surface, corners)).collect();
     let normals = normals(surface, &faces);
     let (split, indices) = split(surface, &faces);
-    // What is the same place of the same texture, a whole number of repetitions apart or not, has one tangent.
+    // Vertices at the same place of the same texture share a tangent, even if whole repetitions of the texture lie between them.
     let mut sums: HashMap<_, Vector> = HashMap::new();
     let key = |vertex: usize, mirrored: bool| {
         let place = bits(surface.positions[vertex]);
@@ -106,7 +106,7 @@ pub fn mesh(surface: &Surface) -> Mesh {
     mesh
 }
 
-/// Unit normals: as given, else the weighted mean of the triangles at the same place.
+/// Returns unit normals: the given ones, or else the weighted mean of the triangles at the same place.
 fn normals(surface: &Surface, faces: &[Option<Face>]) -> Vec<[f32; 3]> {
     let mut sums: HashMap<[u32; 3], Vector> = HashMap::new();
     for face in faces.iter().flatten() {
@@ -123,9 +123,9 @@ fn normals(surface: &Surface, faces: &[Option<Face>]) -> Vec<[f32; 3]> {
     places.map(normal).collect()
 }
 
-/// The vertices of the mesh, each with whether its texture is mirrored, and the triangles' indices into them.
+/// Returns the vertices of the mesh, as indices into the surface and whether the texture is mirrored there, and the triangles' indices into them.
 fn split(surface: &Surface, faces: &[Option<Face>]) -> (Vec<(usize, bool)>, Vec<u32>) {
-    // How the texture lies around each vertex: seen from the front, from behind.
+    // Whether triangles around each vertex have the texture seen from the front, and from behind.
     let mut seen = vec![[false; 2]; surface.positions.len()];
     for face in faces.iter().flatten().filter(|face| face.tangent.is_some()) {
         for corner in face.corners {
@@ -152,11 +152,11 @@ fn split(surface: &Surface, faces: &[Option<Face>]) -> (Vec<(usize, bool)>, Vec<
     (vertices, indices)
 }
 
-/// Tangent and binormal at right angles to the normal. Where no triangle gives a direction it is any.
+/// Returns tangent and binormal at right angles to the normal. If no triangle gives a direction, the tangent is arbitrary.
 fn basis(normal: Vector, sum: Vector, mirrored: bool) -> ([f32; 3], [f32; 3]) {
     let flat = minus(sum, scaled(normal, dot(sum, normal)));
     let length = dot(sum, sum).sqrt();
-    // More than rounding must be left beside the normal.
+    // What remains beside the normal has to be more than rounding.
     let tangent = unit(flat, length * 1e6).or_else(|| {
         let smallest = (0..3).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
         let axis = std::array::from_fn(|k| if k == smallest { 1.0 } else { 0.0 });
@@ -173,7 +173,7 @@ pub(super) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A mesh with the bases that are found for it.
+    /// Recomputes the bases of a mesh.
     pub(in crate::mesh) fn again(mesh: &Mesh) -> Mesh {
         super::mesh(&Surface {
             positions: mesh.positions.clone(),
@@ -191,7 +191,7 @@ pub(super) mod tests {
         prop::array::uniform3(-4.0_f32..4.0)
     }
 
-    /// Bases are orthonormal; right-handed unless the texture is mirrored.
+    /// Checks that bases are orthonormal. They are right-handed unless the texture is mirrored.
     fn check(mesh: &Mesh) -> Result<(), TestCaseError> {
         for vertex in 0..mesh.positions.len() {
             let [t, b, n] = [mesh.tangents[vertex], mesh.binormals[vertex], mesh.normals[vertex]].map(wide);
@@ -204,7 +204,7 @@ pub(super) mod tests {
     }
 
     proptest! {
-        /// Whatever is given: degenerate triangles, textures without area, zero normals.
+        /// Holds for any input: degenerate triangles, textures without area, zero normals.
         #[test]
         fn bases_are_orthonormal(
             positions in prop::collection::vec(prop_oneof![vector(), Just([0.0; 3]), Just([1.0, 0.0, 0.0])], 3..12),
@@ -235,7 +235,7 @@ pub(super) mod tests {
         ) {
             let n = cross(wide(u), wide(v));
             prop_assume!(dot(n, n) > 0.5);
-            // At right angles, of different lengths.
+            // v is at right angles to u, and of another length.
             let v = narrow(scaled(cross(n, wide(u)), 0.3 / dot(n, n).sqrt()));
             let place = |[s, t]: [f32; 2]| std::array::from_fn(|k| corner[k] + s * u[k] + t * v[k]);
             let [s1, s2] = [1, 2].map(|k: usize| [0, 1].map(|c: usize| f64::from(coordinates[k][c] - coordinates[0][c])));
@@ -255,7 +255,7 @@ pub(super) mod tests {
             let direction_u = unit(cross(direction_v, wide(mesh.normals[0])), 0.0).expect("a direction");
             let parallel = |a: [f32; 3], b: Vector| (dot(wide(a), b).abs() - 1.0).abs() < 1e-3;
             prop_assert!(parallel(mesh.tangents[0], direction_u) && parallel(mesh.binormals[0], direction_v));
-            // And with the signs of the texture: s grows along the tangent, t against the binormal.
+            // The signs follow the texture: s grows along the tangent, t against the binormal.
             prop_assert!(dot(wide(mesh.tangents[0]), wide(u)) > 0.0 && dot(wide(mesh.binormals[0]), wide(v)) < 0.0);
         }
     }
@@ -285,7 +285,7 @@ pub(super) mod tests {
         assert_eq!(mesh.indices[..], [0, 3, 4, 0, 4, 1, 6, 7, 5, 6, 5, 2]);
         for (vertex, tangent) in [(0, 1.0), (1, 1.0), (4, 1.0), (2, -1.0), (5, -1.0), (6, -1.0), (7, -1.0)] {
             assert!(near(mesh.tangents[vertex], [tangent, 0.0, 0.0]), "{vertex}: {:?}", mesh.tangents[vertex]);
-            // Green goes on pointing up.
+            // Green still points up.
             assert!(near(mesh.binormals[vertex], [0.0, 1.0, 0.0]), "{vertex}");
         }
         let plain = self::mesh(&square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]));
@@ -298,7 +298,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_wrapped_texture_has_no_seam() {
-        // A tent of two sides; the texture goes once around, and its first and last column are the same place.
+        // A tent of two sides. The texture goes around it once; its first and last column are the same place.
         let surface = Surface {
             positions: vec![
                 [0.0, 1.0, 1.0],
@@ -346,7 +346,7 @@ pub(super) mod tests {
         let mesh = again(&sphere);
         assert_eq!(mesh.positions.len(), sphere.positions.len());
         for vertex in 0..mesh.positions.len() {
-            // Poles have a fan of their own.
+            // Poles have triangle fans of their own.
             if sphere.positions[vertex][1].abs() < 1.99 {
                 assert!(dot(wide(mesh.tangents[vertex]), wide(sphere.tangents[vertex])) > 0.999, "{vertex}");
             }

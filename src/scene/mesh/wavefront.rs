@@ -1,7 +1,7 @@
-//! Wavefront OBJ files: the `obj` crate reads vertices and faces; corners become vertices here.
+//! Reads Wavefront OBJ files. The `obj` crate reads vertices and faces; this module turns the corners of faces into vertices.
 //!
-//! The crate gets what it needs and no more: comments are cut off and statements that say nothing about triangles are blanked, so that groups and
-//! materials neither cost memory nor split the list of faces. Line numbers stay.
+//! The crate gets only what it needs: comments are cut off, and statements that do not concern triangles are blanked, so that groups and
+//! materials neither cost memory nor split the list of faces. Line numbers stay as they are.
 
 use std::collections::HashMap;
 
@@ -11,19 +11,19 @@ use super::Surface;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit_files::catch_panic;
 
-/// Findings beyond this many are not looked for.
+/// Number of findings after which no more are looked for.
 const MAX_FINDINGS: usize = 16;
 
-/// Statements that say nothing about triangles.
+/// Statements that do not concern triangles.
 const WITHOUT_TRIANGLES: &[&str] = &["o", "g", "s", "usemtl", "mtllib", "l", "p", "vp"];
 
 type Found<T> = Result<T, Box<Diagnostic>>;
 
-/// Reads the vertices (`v`, `vt`, `vn`) and faces (`f`) of a file; a face of more than three corners is cut into a fan. The first row of
-/// a texture lies at the top here and at the bottom there: t is 1 minus what the file has.
+/// Reads the vertices (`v`, `vt`, `vn`) and faces (`f`) of a file; a face of more than three corners becomes a triangle fan. The first row of
+/// a texture is at the top in this program and at the bottom in the file, so t becomes 1 - t.
 ///
 /// # Errors
-/// The first line that is not understood; numbers that are not finite, indices of nothing, more than `vertices` vertices or
+/// The first line that is not understood; numbers that are not finite; indices without an element; more than `vertices` vertices or
 /// `indices` indices.
 pub fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<Diagnostic>> {
     let file = File { text };
@@ -33,14 +33,14 @@ pub fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<
     if findings.is_empty() { Ok(surface) } else { Err(findings) }
 }
 
-/// What a line says about triangles: empty if nothing.
+/// Returns the statement of a line, empty if it does not concern triangles.
 fn statement(line: &str) -> &str {
     let content = line.split('#').next().unwrap_or("");
     let passed_over = content.split_whitespace().next().is_some_and(|word| WITHOUT_TRIANGLES.contains(&word));
     if passed_over { &line[..0] } else { content.trim() }
 }
 
-/// Of a face.
+/// Returns the number of corners of a face.
 fn corners(statement: &str) -> usize {
     statement.split_whitespace().skip(1).count()
 }
@@ -51,17 +51,17 @@ struct File<'t> {
 }
 
 impl<'t> File<'t> {
-    /// One for each line.
+    /// Returns the statement of each line.
     fn statements(self) -> impl Iterator<Item = &'t str> {
         self.text.split('\n').map(statement)
     }
 
-    /// The statements that begin with `name`, in the order of the file.
+    /// Returns the statements that begin with `name`, in the order of the file.
     fn named(self, name: &str) -> impl Iterator<Item = &'t str> {
         self.statements().filter(move |statement| statement.split_whitespace().next() == Some(name))
     }
 
-    /// `part` is a piece of the text.
+    /// Makes a finding about `part`, which is a slice of the text.
     fn finding(self, code: &'static str, part: &str, message: impl Into<String>) -> Diagnostic {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         Diagnostic::error(code, start..start + part.len(), message)
@@ -75,7 +75,7 @@ impl<'t> File<'t> {
         self.finding(code, part, message).label("too many from here").help("`ninebit limits` prints what is allowed")
     }
 
-    /// Refuses a file with too many faces or corners before anything is built of it.
+    /// Refuses a file with too many faces or corners before anything is built from it.
     fn count(self, limit: usize) -> Found<()> {
         let mut indices = 0;
         for face in self.named("f") {
@@ -103,7 +103,7 @@ impl<'t> File<'t> {
         }
     }
 
-    /// The crate counts lines from 0, and says so in its message: the message is our own.
+    /// Turns an error of the crate into a finding with a message of our own: the crate's message counts lines from 0.
     fn explain(self, error: &ObjError) -> Diagnostic {
         let line = |number: usize| self.statements().nth(number).unwrap_or(&self.text[..0]);
         match error {
@@ -126,7 +126,7 @@ impl<'t> File<'t> {
         }
     }
 
-    /// The crate takes `inf` and `nan` for numbers.
+    /// Finds numbers that are not finite, since the crate accepts `inf` and `nan`.
     fn not_finite(self, data: &ObjData) -> Vec<Diagnostic> {
         let finite = |numbers: &[f32]| numbers.iter().all(|number| number.is_finite());
         let lists = [data.position.as_flattened(), data.texture.as_flattened(), data.normal.as_flattened()];
@@ -142,7 +142,7 @@ impl<'t> File<'t> {
             .collect()
     }
 
-    /// A vertex for each combination of indices, in the order in which faces name them.
+    /// Makes a vertex for each combination of indices, in the order in which faces use them.
     fn surface(self, data: &ObjData, vertices: usize, findings: &mut Vec<Diagnostic>) -> Surface {
         let mut surface = Surface::default();
         let mut known = HashMap::new();
@@ -186,8 +186,8 @@ impl<'t> File<'t> {
         surface
     }
 
-    /// Whether the file has what a corner names. The crate checks no index against its list, and passes over those of texture coordinates
-    /// and normals that it cannot read, and over a fourth.
+    /// Checks that the file has what a corner refers to. The crate does not check indices against its lists, and ignores a fourth index as well as
+    /// indices of texture coordinates and normals that it cannot read.
     fn check(self, data: &ObjData, word: &str, corner: &IndexTuple) -> Found<()> {
         let IndexTuple(position, coordinates, normal) = *corner;
         let read = 1 + usize::from(coordinates.is_some()) + usize::from(normal.is_some());
@@ -210,7 +210,7 @@ impl<'t> File<'t> {
     }
 }
 
-/// A vertex whose indices have been checked; zeros where it has none.
+/// Adds a vertex whose indices have been checked; absent attributes are zero.
 fn add(surface: &mut Surface, data: &ObjData, corner: &IndexTuple) {
     let IndexTuple(position, coordinates, normal) = *corner;
     surface.positions.push(data.position[position]);

@@ -1,20 +1,20 @@
-//! Values on texels, read between them without rounding.
+//! Real numbers on texels, interpolated without rounding.
 
-/// A picture of real numbers, `N` a texel.
+/// A picture of real numbers, `N` for each texel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<const N: usize> {
-    /// Texels across.
+    /// Number of columns.
     pub width: u32,
-    /// Texels down.
+    /// Number of rows.
     pub height: u32,
-    /// Row by row from the top.
+    /// `width * height` texels, row by row from the top.
     pub texels: Vec<[f64; N]>,
-    /// It repeats; otherwise its edge goes on.
+    /// Whether the picture repeats; otherwise its edges extend outward.
     pub wrap: bool,
 }
 
 impl<const N: usize> Field<N> {
-    /// The bilinear mix of four texels about s, t, which go from 0 to 1 across the picture. A texel's own value is at its centre.
+    /// Interpolates bilinearly at s, t, which go from 0 to 1 across the picture. A texel's own value is at its centre.
     pub fn at(&self, [s, t]: [f64; 2]) -> [f64; N] {
         let (x, y) = (s * f64::from(self.width) - 0.5, t * f64::from(self.height) - 0.5);
         let (left, top) = (x.floor(), y.floor());
@@ -34,7 +34,7 @@ impl<const N: usize> Field<N> {
     fn index(&self, texel: f64, count: u32) -> usize {
         let count = f64::from(count.max(1));
         let inside = if self.wrap { texel - (texel / count).floor() * count } else { texel.clamp(0.0, count - 1.0) };
-        // A quotient that rounds up can leave `inside` at `count`.
+        // `inside` may be `count` where the quotient has been rounded up.
         inside.min(count - 1.0) as usize
     }
 }

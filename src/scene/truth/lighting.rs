@@ -1,12 +1,12 @@
-//! The lighting equation, per point, in float64 with vectors of unit length.
+//! Computes the lighting equation at a point, in float64 with vectors of unit length.
 //!
-//! Only + - * / and square roots: every machine gets the same bits.
+//! It uses only + - * / and square roots, so every machine gets the same bits.
 
 use super::{Eye, Light, Material, Model, Place};
 use crate::generate::power_table::power;
 use crate::vector::{Vector, dot, minus, plus, scaled, unit_or_zero};
 
-/// A point of a surface, seen from a light or an eye.
+/// Returns the unit vector from a point of a surface toward a light or an eye.
 fn toward(place: &Place, point: Vector) -> Vector {
     unit_or_zero(match place {
         Place::Position(position) => minus(*position, point),
@@ -14,7 +14,7 @@ fn toward(place: &Place, point: Vector) -> Vector {
     })
 }
 
-/// What a light adds to R, G, B at a point with unit normal `normal`.
+/// Returns R, G and B that a light adds at a point with the given unit normal.
 pub(super) fn light(light: &Light, eye: Option<&Eye>, material: &Material, point: Vector, normal: Vector) -> [f64; 3] {
     let to_light = toward(&light.place, point);
     let facing = dot(normal, to_light);
@@ -66,13 +66,13 @@ mod tests {
     fn lamps_and_eyes_have_places() {
         let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 2, ..MATTE };
         let lamp = Light { place: Place::Position([1.0, 0.0, 1.0]), color: [1.0; 3] };
-        // Light and eye mirror each other: the half vector is the normal, and so the reflection meets the eye.
+        // Light and eye mirror each other, so the half vector is the normal, and the reflected light meets the eye.
         let eye = Eye(Place::Position([-1.0, 0.0, 1.0]));
         for model in [Model::Blinn, Model::Phong] {
             let lit = light(&lamp, Some(&eye), &Material { model, ..material }, [0.0; 3], UP);
             assert!((lit[0] - 1.0).abs() < 1e-12, "{model:?}: {lit:?}");
         }
-        // An eye straight above, light at 60 degrees: Blinn cos^2 30, Phong cos^2 60.
+        // The eye is straight above and the light at 60 degrees: Blinn gives cos^2 30, Phong cos^2 60.
         let (eye, sun) = (Eye(Place::Direction(UP)), sun([3.0_f64.sqrt(), 0.0, 1.0]));
         let lit = |model| light(&sun, Some(&eye), &Material { model, ..material }, [0.0; 3], UP)[0];
         assert!((lit(Model::Blinn) - 0.75).abs() < 1e-12 && (lit(Model::Phong) - 0.25).abs() < 1e-12);

@@ -1,8 +1,8 @@
-//! What a picture ought to show: the lighting equation in float64, with vectors of unit length at every pixel.
+//! Computes what a picture ought to show: the lighting equation in float64, with vectors of unit length at every pixel.
 //!
-//! A scene's `truth` says which light, eye, material and surface are meant. [`evaluate`] takes the very pixels that the engine covers,
-//! interpolates what the mesh gives at their centres in perspective, and computes the light there. Nothing in it is quantised unless the
-//! truth is told to start from stored bytes; so what the chip's picture is off by is the whole error of a technique: its inputs, its
+//! A scene's `truth` describes the light, eye, material and surface. [`evaluate`] takes the pixels that the engine covers,
+//! interpolates the mesh at their centres in perspective, and computes the light there. Nothing is quantised unless the
+//! truth starts from stored bytes. So the difference to the chip's picture is the whole error of a technique: its inputs, its
 //! shortcuts, and its arithmetic.
 #![allow(clippy::float_arithmetic, reason = "what pictures are measured against; no stored byte")]
 
@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use ninebit::state::{Register, named};
 
 named! {
-    /// How a highlight is modelled.
+    /// The model of highlights.
     pub enum Model {
         /// The normal's cosine with the half vector, the mean of the directions to light and eye.
         Blinn,
@@ -30,7 +30,7 @@ named! {
     }
 }
 named! {
-    /// The space of a register's normals.
+    /// The space of the normals in a register.
     pub enum Space {
         /// Along tangent, binormal and normal of the mesh.
         Tangent,
@@ -39,7 +39,7 @@ named! {
     }
 }
 named! {
-    /// A quantity of the vertices that holds a vector.
+    /// An interpolated attribute of the vertices that holds a vector.
     pub enum Interpolated {
         /// The primary colour, 0..1 standing for -1..1.
         PrimaryColor,
@@ -59,18 +59,18 @@ named! {
 /// The place of a light or an eye, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// A point in object space.
+    /// A position in object space.
     Position([f64; 3]),
-    /// Far away in that direction; any length.
+    /// Infinitely far away in this direction, which may have any length.
     Direction([f64; 3]),
 }
 
 /// A light with its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The point or direction from which it shines.
+    /// Position of the light, or direction toward it.
     pub place: Place,
-    /// R, G, B; 1 is full.
+    /// R, G and B; 1 is full.
     pub color: [f64; 3],
 }
 
@@ -78,98 +78,98 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye(pub Place);
 
-/// What a surface does with light.
+/// The material of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// R, G, B that are there without light.
+    /// R, G and B that are there without light.
     pub ambient: [f64; 3],
-    /// R, G, B of diffuse light.
+    /// R, G and B of diffuse reflection.
     pub diffuse: [f64; 3],
-    /// R, G, B of highlights.
+    /// R, G and B of highlights.
     pub specular: [f64; 3],
-    /// The power of highlights.
+    /// Exponent of highlights.
     pub exponent: u32,
-    /// How highlights are modelled.
+    /// The model of highlights.
     pub model: Model,
-    /// Where the light is behind the surface there is no highlight.
+    /// Whether the surface has no highlight where the light is behind it.
     pub self_shadowing: bool,
 }
 
 /// The largest exponent of a highlight.
 pub(crate) const LARGEST_EXPONENT: u32 = 65_536;
 
-/// Where the surface's normals come from. Those of maps stand along tangent, binormal and normal of the mesh.
+/// Source of the surface's normals. Normals of hemispheres and maps are relative to tangent, binormal and normal of the mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NormalSource {
-    /// The mesh, interpolated.
+    /// The interpolated normals of the mesh.
     Mesh,
-    /// Away from a point: a sphere about it.
+    /// Directions away from a point, as on a sphere about it.
     Radial {
-        /// The point, object space.
+        /// The point, in object space.
         center: [f64; 3],
     },
     /// A hemisphere across the texture (`generate::hemisphere`), exact at every point.
     Hemisphere {
-        /// Around it is the zero vector in place of a flat surface.
+        /// Whether the normal is the zero vector around the hemisphere, instead of that of a flat surface.
         zero_outside: bool,
     },
-    /// Normals on texels, mixed between them and brought to unit length.
+    /// Normals on texels, interpolated and normalised.
     Map(Arc<Field<3>>),
 }
 
-/// What is computed at a point.
+/// The quantity that is computed at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Equation {
-    /// Light on a material, by `lighting`.
+    /// Light on a material.
     Lighting,
-    /// (2s - 1)(2t - 1), negative products being 0.
+    /// (2s - 1)(2t - 1); negative products become 0.
     SignedProduct,
-    /// s - t, negative differences being 0.
+    /// s - t; negative differences become 0.
     Difference,
-    /// The dot product of two interpolated vectors, as long as they are; negative ones being 0.
+    /// The dot product of two interpolated vectors, which are not normalised; negative products become 0.
     DotProduct(Interpolated, Interpolated),
 }
 
-/// Where a technique's normals are read before light falls on them.
+/// The place where a technique's normals are read, before they are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalHolder {
-    /// A register when a pixel begins: a texture or a colour. Its bytes stand for -1 to 1.
+    /// A texture or colour register at the start of a pixel. Its bytes stand for -1 to 1.
     Register(Register),
-    /// A unit of the texture shader that takes a dot product: the vector that its mapping makes of an earlier unit's colour (TSH-3), which may
+    /// The unit of a texture shader's dot product. The normal is the vector that the unit's mapping makes of an earlier unit's colour (TSH-3); it may
     /// have more than eight bits a component.
     DotProduct(usize),
 }
 
-/// Where a technique's normals are, and what they mean.
+/// Where a technique keeps its normals, and in which space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadingNormal {
-    /// What holds the normals.
+    /// The place of the normals.
     pub holder: NormalHolder,
-    /// The space of the vectors.
+    /// The space of the normals.
     pub space: Space,
 }
 
 /// What a scene's picture ought to show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// What is computed.
+    /// The quantity that is computed.
     pub equation: Equation,
-    /// Where the surface's normals come from.
+    /// Source of the surface's normals.
     pub normal: NormalSource,
     /// The lights, whose contributions are added.
     pub lights: Vec<Light>,
-    /// The viewer, for highlights.
+    /// The viewer, needed for highlights.
     pub eye: Option<Eye>,
     /// The surface's material.
     pub material: Material,
-    /// Light from all around.
+    /// Light from all around, if any.
     pub hemisphere: Option<HemisphereLight>,
-    /// What of that light reaches a texel: 0 to 1.
+    /// The share of that light that reaches each texel, 0 to 1.
     pub occlusion: Option<Arc<Field<1>>>,
-    /// R, G, B that multiply everything.
+    /// R, G and B by which all light is multiplied.
     pub color_map: Option<Arc<Field<3>>>,
-    /// Where the technique keeps its normals, if it has them.
+    /// Where the technique keeps its normals, if they are to be measured.
     pub shading_normal: Option<ShadingNormal>,
-    /// The mesh of each draw; `None` for draws that the truth says nothing of.
+    /// The mesh of each draw; `None` for draws that do not take part in the truth.
     pub meshes: Vec<Option<Arc<Mesh>>>,
 }

@@ -1,4 +1,4 @@
-//! Which pixel shows which point of which mesh, and the light there.
+//! Finds the point of a mesh that each pixel shows, and computes the light there.
 
 use std::sync::Arc;
 
@@ -12,22 +12,22 @@ use ninebit::raster::ideal::Outline;
 use ninebit::state::{TriangleVertices, Vertex, VertexColor};
 use ninebit::trace::Silent;
 
-/// A given normal that is shorter stands for none: bytes of 128 are the zero vector, and half a step away from it.
+/// Length below which a given normal counts as the zero vector. Bytes of 128 stand for that vector, but decode to half a step beside it.
 const MIN_NORMAL_LENGTH: f64 = 1.0 / 64.0;
 
-/// What a pixel ought to show.
+/// The truth of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// R, G, B, 0 to 1.
+    /// R, G and B, 0 to 1.
     pub color: [f64; 3],
-    /// The unit normal that the light was computed with, object space.
+    /// Unit normal in object space that the light was computed with.
     pub normal: [f64; 3],
-    /// Unit tangent, binormal and normal of the mesh, object space.
+    /// Unit tangent, binormal and normal of the mesh, in object space.
     pub basis: [[f64; 3]; 3],
 }
 
 impl Pixel {
-    /// A vector of the pixel's tangent space or of object space, in object space.
+    /// Converts a vector from the given space of this pixel into object space.
     pub fn object(&self, vector: [f64; 3], space: Space) -> [f64; 3] {
         match space {
             Space::Object => vector,
@@ -36,36 +36,36 @@ impl Pixel {
     }
 }
 
-/// What a target ought to show.
+/// The truth of a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruthFrame {
-    /// Pixels across.
+    /// Number of columns.
     pub width: u32,
-    /// Pixels down.
+    /// Number of rows.
     pub height: u32,
-    /// Row by row; `None` where no draw with a truth is seen, or where a triangle was cut off behind the viewer.
+    /// Pixels row by row from the top. `None` where no draw with a truth is seen, or where clipping has cut a triangle.
     pub pixels: Vec<Option<Pixel>>,
 }
 
-/// The truth of a target's pixels: of each, that of the last draw with a truth that stored a fragment there.
+/// Computes the truth of a target. Each pixel shows the last draw with a truth that stored a fragment there.
 pub fn evaluate(plan: &Plan, truth: &Truth, target: usize) -> TruthFrame {
     Visible::new(plan, truth, target).evaluate(|_| None)
 }
 
-/// Which triangle each pixel of a target shows. Its truth can be evaluated several times.
+/// The triangle that each pixel of a target shows, of which the truth can be computed several times.
 #[derive(Clone, Debug)]
 pub struct Visible<'a> {
     plan: &'a Plan,
     truth: &'a Truth,
     target: usize,
-    /// Draw and triangle, row by row.
+    /// Index of the draw and of its triangle, row by row.
     shown: Vec<Option<(usize, usize)>>,
 }
 
 impl<'a> Visible<'a> {
-    /// Finds the triangle of each pixel: of the last draw with a truth that stored a fragment there.
+    /// Finds the triangle of each pixel, which belongs to the last draw with a truth that stored a fragment there.
     pub fn new(plan: &'a Plan, truth: &'a Truth, target: usize) -> Self {
-        // What other targets hold decides nothing here but what tests on alpha read.
+        // The words of other targets matter only where alpha, and so a test, depends on them.
         let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
         let others = reads.then(|| render(plan, &RenderOptions::default()));
         let texture_words =
@@ -88,7 +88,7 @@ impl<'a> Visible<'a> {
         Visible { plan, truth, target, shown }
     }
 
-    /// The truth of the pixels. `given`: by pixel, a normal of any length and the space that it stands in; `None`: the truth's own holds.
+    /// Computes the truth of the pixels. For a pixel's index, `given` may return a normal of any length with its space, in place of the truth's own.
     pub fn evaluate(&self, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
         let target = &self.plan.targets[self.target];
         let (width, height) = (target.width, target.height);
@@ -106,14 +106,14 @@ impl<'a> Visible<'a> {
 /// A point of a mesh.
 struct Point<'a> {
     position: Vector,
-    /// Unit tangent, binormal, normal.
+    /// Unit tangent, binormal and normal.
     basis: [Vector; 3],
     coordinates: [f64; 2],
     planned: TriangleVertices<'a>,
     weights: [f64; 3],
 }
 
-/// The point at a pixel's centre. `None` for a triangle whose corners are not all the mesh's own.
+/// Finds the point at the centre of a pixel. Returns `None` if clipping has made a corner of the triangle.
 fn point<'a>(planned: &'a PlannedDraw, mesh: &Mesh, triangle: usize, (column, row): (u32, u32)) -> Option<Point<'a>> {
     let triangles = &planned.assembly.triangles;
     if triangle >= triangles.len() {
@@ -146,7 +146,7 @@ fn from_tangent(basis: &[Vector; 3], v: Vector) -> Vector {
     [0, 1, 2].map(|n| basis[0][n] * v[0] + basis[1][n] * v[1] + basis[2][n] * v[2])
 }
 
-/// R, G, B, 1 being full.
+/// Returns R, G and B of a colour; 1 is full.
 pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
     let [r, g, b, _] = match color {
         VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
@@ -155,7 +155,7 @@ pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
     [r, g, b]
 }
 
-/// An interpolated vector of the vertices.
+/// Interpolates a vector of the vertices.
 fn interpolated(point: &Point<'_>, what: Interpolated) -> Vector {
     let signed = |color: &VertexColor| real_color(color).map(|c| 2.0 * c - 1.0);
     let set = |vertex: &Vertex, n: usize| {
@@ -173,7 +173,7 @@ fn interpolated(point: &Point<'_>, what: Interpolated) -> Vector {
     mixed(point.weights, values)
 }
 
-/// The normal of the surface, object space.
+/// Returns the unit normal of the surface in object space.
 fn normal(truth: &Truth, point: &Point<'_>) -> Vector {
     let mapped = |vector: Vector| from_tangent(&point.basis, vector);
     unit_or_zero(match &truth.normal {

@@ -1,20 +1,20 @@
-//! Pictures that a scene describes instead of naming a file.
+//! Generates pictures that a scene describes instead of naming a file.
 
 use super::*;
 
-/// The colour at a column and row.
+/// A function that returns the colour at a column and row.
 type PixelAt = Box<dyn Fn(u32, u32) -> [u8; 4]>;
 
-/// Pixels before they are packed.
+/// A picture whose pixels have not been packed yet.
 pub(super) struct Picture {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) pixels: Vec<[u8; 4]>,
-    /// Where its sides are written.
+    /// Place of its sides in the text.
     pub(super) place: Span,
 }
 
-/// `Solid(...)`, `Checker(...)` or `Ramp(...)`.
+/// Generates the picture of `Solid(...)`, `Checker(...)` or `Ramp(...)`.
 pub(super) fn picture<'a>(reader: &mut Reader<'a>, kind: Variant, text: &'a str, request: &Request) -> Option<Picture> {
     let ((width, height, place), pixel): ((u32, u32, Span), PixelAt) = match kind {
         Variant::Solid => {

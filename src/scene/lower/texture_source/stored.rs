@@ -1,11 +1,11 @@
-//! Texels out of files.
+//! Reads texels from files.
 
 use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
 use ninebit::limits::FileLimit;
 use std::path::Path;
 
-/// A picture, or a DDS file with its levels and faces.
+/// Reads a picture, or a DDS file with its levels and faces.
 pub(super) fn file<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, source: Span) -> Option<Given> {
     let raw = only::<String>(reader, text, "the name of one file")?;
     let limits = ImageLimits {
@@ -37,7 +37,7 @@ pub(super) fn file<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request
     Some(Given { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
 }
 
-/// Texels as they lie in memory.
+/// Reads a file of texels as they lie in memory.
 pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
     let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
     let file = fields.file(reader)?;
@@ -73,7 +73,7 @@ pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Reque
     Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
 }
 
-/// Finds the file of that name and does something with it.
+/// Reads the file of a name and decodes it.
 pub(in crate::lower) fn read_file<'a, T>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, String>,
@@ -91,14 +91,14 @@ pub(in crate::lower) fn read_file<'a, T>(
     match image::read(assets, &path, limit).and_then(|bytes| decode(&bytes, &path)) {
         Ok(contents) => Some(contents),
         Err(error) => {
-            // The name as the scene has it: where the folder lies does not matter here.
+            // The message shows the name as the scene has it; where the folder lies does not matter here.
             let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
             reader.refuse(refuse(error.code(), message, error.help()))
         }
     }
 }
 
-/// Words of all faces and levels, taken apart.
+/// Splits words into faces and levels.
 fn divide(
     mut words: Vec<u32>,
     format: TextureFormat,

@@ -1,20 +1,20 @@
-//! Constants of a vertex program: `{ c0: Matrix(...), c12: (0, 0, 1) }`.
+//! Lowers the constants of a vertex program: `{ c0: Matrix(...), c12: (0, 0, 1) }`.
 
 use super::*;
 use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
 /// A program with its text.
 type Program = (Written, ProgramText);
-/// Constants of the scene: where they stand, the first register, how many.
+/// An entry of the scene's constants: its place, its first register, and its number of registers.
 type Entry = (Span, usize, usize);
 
-/// A constant's value as the scene gives it: one register or the four rows of a matrix.
+/// Value of a constant in the scene: one register, or the four rows of a matrix.
 enum Value {
     Vector([f32; 4]),
     Rows([[f32; 4]; 4]),
 }
 
-/// Reads the constants, puts the program's own beside them, and compares with what it reads.
+/// Reads the constants, adds those that the program defines, and compares them with those that it reads.
 pub(super) fn constants<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, Entries<'a, source::ShaderConstant>>>,
@@ -68,7 +68,7 @@ pub(super) fn constants<'a>(
     constants
 }
 
-/// Constants that are read have a value, and those that have one are read.
+/// Checks that constants that are read have a value, and that those of the scene are read.
 fn compare(reader: &mut Reader<'_>, (written, text): &Program, given: &[Option<Span>], entries: &[Entry]) {
     let (read, any) = written.constants_read();
     let unread: Vec<_> =
@@ -78,7 +78,7 @@ fn compare(reader: &mut Reader<'_>, (written, text): &Program, given: &[Option<S
     }
     for (index, place) in read.iter().enumerate() {
         let Some(place) = place.clone().filter(|_| given[index].is_none()) else { continue };
-        // A matrix without any value: said of its first row.
+        // A matrix without a value is reported once, at its first row.
         let same = |other: usize| read[other].as_ref() == Some(&place) && given[other].is_none();
         if index > 0 && same(index - 1) {
             continue;
@@ -104,7 +104,7 @@ fn compare(reader: &mut Reader<'_>, (written, text): &Program, given: &[Option<S
     }
 }
 
-/// Matrices of the scene that the program reads from another row than the first, or as vectors.
+/// Finds matrices of the scene that the program reads from another row than the first, or as vectors.
 fn meanings(reader: &mut Reader<'_>, (written, text): &Program, entries: &[Entry]) {
     let matrices: Vec<_> = entries.iter().filter(|(_, _, count)| *count > 1).collect();
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
@@ -122,7 +122,7 @@ fn meanings(reader: &mut Reader<'_>, (written, text): &Program, entries: &[Entry
                     Diagnostic::error("NB0381", places.sources[n].clone(), message).label("begins between its rows")
                 }
                 None if matches!(instruction.opcode, Opcode::Dp3 | Opcode::Dp4) && !source.negate => continue,
-                // Said already: the program itself reads it both ways.
+                // The reader of programs has warned of this: the program itself reads the constant in both ways.
                 None if written.warnings.iter().any(|known| known.span.as_ref() == Some(&places.sources[n])) => {
                     continue;
                 }
@@ -137,7 +137,7 @@ fn meanings(reader: &mut Reader<'_>, (written, text): &Program, entries: &[Entry
     }
 }
 
-/// The number of `c12`, `c08` or `12`.
+/// Parses the key of a constant: `c12`, `c08` or `12`.
 fn index(key: &str) -> Option<usize> {
     let digits = key.strip_prefix(['c', 'C']).unwrap_or(key).trim_end();
     let plain = !digits.is_empty() && digits.len() <= 3 && digits.bytes().all(|byte| byte.is_ascii_digit());

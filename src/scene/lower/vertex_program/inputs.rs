@@ -1,20 +1,20 @@
-//! What the input registers of a vertex program hold.
+//! Lowers the inputs of a vertex program: what its input registers hold.
 
 use super::super::attribute::Source;
 use super::*;
 use ninebit::vertex::shader::INPUTS;
 
-/// What a register holds.
+/// Source of an input register.
 pub(super) enum Input {
-    /// Nothing reads it.
+    /// The program does not read the register.
     Unread,
-    /// Of a mesh, or the same for all.
+    /// An attribute of a mesh, or a value for all vertices.
     Attribute(Source),
     /// A field of listed vertices.
     Field(Field),
 }
 
-/// Fields of listed vertices.
+/// A field of listed vertices.
 #[derive(Clone, Copy)]
 pub(super) enum Field {
     Position,
@@ -25,7 +25,7 @@ pub(super) enum Field {
     Coordinates(usize),
 }
 
-/// Their words; the first set of coordinates has two.
+/// Names of the fields; the first set of coordinates has two.
 const FIELDS: &[(&str, Field)] = &[
     ("Position", Field::Position),
     ("Normal", Field::Normal),
@@ -39,7 +39,7 @@ const FIELDS: &[(&str, Field)] = &[
     ("TextureCoordinates3", Field::Coordinates(3)),
 ];
 
-/// What registers hold unless something is written: the numbers of Direct3D's fixed vertices.
+/// Returns the default source of a register, which follows the numbers of Direct3D's fixed vertices.
 fn usual(register: usize, mesh: bool) -> Option<Input> {
     let (source, field) = match (register, mesh) {
         (0, _) => (Some(Source::Position), Field::Position),
@@ -52,7 +52,7 @@ fn usual(register: usize, mesh: bool) -> Option<Input> {
     if mesh { source.map(Input::Attribute) } else { Some(Input::Field(field)) }
 }
 
-/// Reads what each register holds; every register that the program reads has something.
+/// Reads the source of each register, and checks that every register that the program reads has one.
 pub(super) fn sources<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::ShaderInputs<'a>>>,
@@ -119,11 +119,11 @@ fn input<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribute>, mesh: bo
     }
 }
 
-/// What a register holds at a vertex.
+/// Returns the value of a register at a vertex.
 pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
     let (field, VertexData { vertices, extras, .. }) = match (input, given) {
         (Input::Attribute(source), Given::Mesh(mesh, _)) => return attribute::evaluate(mesh, index, source),
-        // The same for all: other attributes need a mesh.
+        // Only a value for all vertices: other attributes need a mesh.
         (Input::Attribute(Source::Coordinates(values, _)), Given::Listed(_)) => return *values,
         (Input::Field(field), Given::Listed(data)) => (field, &**data),
         _ => return [0.0; 4],
