@@ -1,4 +1,4 @@
-//! What a pixel comes to, as integer operations in order: each with its range, equal ones shared, those that change nothing left out.
+//! Code of a pixel: integer operations in order, each with its range. Equal operations are shared, and those that change nothing are left out.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -7,16 +7,16 @@ use ninebit::state::CompareFunction;
 
 use crate::input::Input;
 
-/// A value: a constant, or what an earlier line yields.
+/// A value: a constant, or the result of an earlier line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operand {
-    /// A number that is the same in every pixel.
+    /// A constant, the same in every pixel.
     Constant(i64),
-    /// The line of that number.
+    /// The result of the line with this index.
     Line(u32),
 }
 
-/// What a value is: a number, or the bits of a stored word or texel.
+/// Kind of a value: a number, or the bits of a stored word or texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Two's complement, within 32 bits.
@@ -25,11 +25,11 @@ pub enum Kind {
     Word,
 }
 
-/// A comparison of two numbers, the first on its left.
+/// A comparison of two numbers; the first operand is on the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Test(pub CompareFunction, pub [Operand; 2]);
 
-/// How a value comes about.
+/// The operation of a line, which computes a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// A value that the caller gives.
@@ -44,31 +44,31 @@ pub enum Operation {
     Least(Operand, Operand),
     /// The larger of a and b.
     Greatest(Operand, Operand),
-    /// The whole part of a / b, where a is not negative.
+    /// The whole part of a / b, where a is not negative and b is a constant.
     Quotient(Operand, i64),
-    /// These bits of a, which is not negative.
+    /// The bits of a that a constant mask has, where a is not negative.
     Bits(Operand, i64),
-    /// a with this bit turned, where a is not negative and below twice the bit.
+    /// a with one bit inverted, where a is not negative and less than twice that bit.
     Flip(Operand, i64),
-    /// The first where the test holds, otherwise the second.
+    /// The first value if the test holds, otherwise the second.
     Select(Test, [Operand; 2]),
-    /// A word below 2^31 as a number.
+    /// A word below 2^31, as a number.
     Number(Operand),
-    /// A number that is not negative as a word.
+    /// A number that is not negative, as a word.
     Word(Operand),
-    /// Bits that both words have.
+    /// Bitwise and of two words.
     And(Operand, Operand),
-    /// Bits that any of two words has.
+    /// Bitwise or of two words.
     Or(Operand, Operand),
-    /// A word times another, below 2^32.
+    /// Product of two words, which is below 2^32.
     Times(Operand, Operand),
-    /// A word without its low bits, moved down.
+    /// A word shifted right by a constant.
     Down(Operand, u32),
-    /// A word moved up, below 2^32.
+    /// A word shifted left by a constant; the result is below 2^32.
     Up(Operand, u32),
 }
 
-/// The values that something names, which hands each on for another.
+/// Collects the operands that `renamed` passes to the function it is given.
 pub(crate) fn collected(renamed: impl FnOnce(&mut dyn FnMut(Operand) -> Operand)) -> Vec<Operand> {
     let mut operands = Vec::new();
     renamed(&mut |operand| {
@@ -79,7 +79,7 @@ pub(crate) fn collected(renamed: impl FnOnce(&mut dyn FnMut(Operand) -> Operand)
 }
 
 impl Operation {
-    /// What it yields.
+    /// Returns the kind of the result.
     pub fn kind(&self) -> Kind {
         match self {
             Operation::Input(input) => input.kind(),
@@ -93,7 +93,7 @@ impl Operation {
         }
     }
 
-    /// What its operands are.
+    /// Returns the kind of the operands.
     pub fn takes(&self) -> Kind {
         match self {
             Operation::Number(_) => Kind::Word,
@@ -102,12 +102,12 @@ impl Operation {
         }
     }
 
-    /// The values that it is made of.
+    /// Returns the operands.
     pub fn operands(&self) -> Vec<Operand> {
         collected(|name| _ = self.renamed(name))
     }
 
-    /// The same of other values.
+    /// Returns the operation with each operand replaced by `name` of it.
     pub(crate) fn renamed(self, mut name: impl FnMut(Operand) -> Operand) -> Operation {
         match self {
             Operation::Input(_) => self,
@@ -132,7 +132,7 @@ impl Operation {
         }
     }
 
-    /// The value, where those of its operands are known. Inputs are the caller's.
+    /// Computes the result from the values of the operands. The result of an input is 0, since the caller knows it.
     fn of(&self, value: impl Fn(Operand) -> i64) -> i64 {
         match *self {
             Operation::Input(_) => 0,
@@ -156,23 +156,23 @@ impl Operation {
     }
 }
 
-/// Least and largest.
+/// The least and the largest value of a range, both inclusive.
 pub type Range = (i64, i64);
 
-/// An operation with what is known of it.
+/// A line of code: an operation and what is known of its result.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// How it comes about.
+    /// The operation.
     pub operation: Operation,
-    /// What it can be.
+    /// Range of the result.
     pub range: Range,
-    /// The rule that asks for it.
+    /// Id of the rule that asks for the operation.
     pub rule: &'static str,
-    /// Its name, where the chip's documents have one.
+    /// Name of the result, if the chip's documents have one.
     pub name: Option<String>,
 }
 
-/// Lines, each made of earlier ones.
+/// Code under construction: lines, each of which uses earlier ones.
 #[derive(Debug, Default)]
 pub struct Code {
     lines: RefCell<Vec<Line>>,
@@ -181,7 +181,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// The lines that these values are made of, numbered anew, and what the values are among them.
+    /// Returns the lines on which `roots` depend, renumbered, and a function that maps operands to the new numbers.
     pub fn kept(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
         let lines = self.lines.into_inner();
         let mut used = vec![false; lines.len()];
@@ -210,12 +210,12 @@ impl Code {
         (lines, renamed)
     }
 
-    /// What is made from here on is asked for by this rule.
+    /// Sets the rule of the lines that are made from now on.
     pub fn by(&self, rule: &'static str) {
         self.rule.set(rule);
     }
 
-    /// Names a value that has no name.
+    /// Names a value, unless it has a name.
     pub fn name(&self, operand: Operand, name: impl FnOnce() -> String) {
         if let Operand::Line(line) = operand {
             let line = &mut self.lines.borrow_mut()[line as usize];
@@ -225,7 +225,7 @@ impl Code {
         }
     }
 
-    /// A value is known to stay within a range, whatever its operands by themselves would allow.
+    /// Narrows the range of a value that is known to stay within it, even if its operands alone would allow more.
     pub fn narrow(&self, operand: Operand, (low, high): Range) {
         if let Operand::Line(line) = operand {
             let range = &mut self.lines.borrow_mut()[line as usize].range;
@@ -233,7 +233,7 @@ impl Code {
         }
     }
 
-    /// What a value can be.
+    /// Returns the range of a value.
     pub fn range(&self, operand: Operand) -> Range {
         match operand {
             Operand::Constant(value) => (value, value),
@@ -241,7 +241,7 @@ impl Code {
         }
     }
 
-    /// How a line comes about.
+    /// Returns the operation of a line.
     pub(crate) fn operation_at(&self, line: u32) -> Operation {
         self.lines.borrow()[line as usize].operation
     }
@@ -253,7 +253,7 @@ impl Code {
         }
     }
 
-    /// A value of an operation; a simpler one that is equal, if there is one.
+    /// Returns the result of an operation: that of a simpler or an existing line if it is equal, otherwise that of a new line.
     pub fn make(&self, operation: Operation) -> Operand {
         let constant = |operand: &Operand| matches!(operand, Operand::Constant(_));
         if !matches!(operation, Operation::Input(_)) && operation.operands().iter().all(constant) {
@@ -274,7 +274,7 @@ impl Code {
         }))
     }
 
-    /// A given value, of which it may be known that it stays within less than the input's range.
+    /// Returns the value of an input, whose range may be known to be narrower than usual.
     pub fn input(&self, input: Input, range: Range) -> Operand {
         let mut lines = self.lines.borrow_mut();
         Operand::Line(*self.known.borrow_mut().entry(Operation::Input(input)).or_insert_with(|| {
@@ -283,7 +283,7 @@ impl Code {
         }))
     }
 
-    /// A value that equals the operation, or an operation to make.
+    /// Returns a value that equals the result of the operation, or else the operation that has to be made.
     fn simpler(&self, operation: Operation) -> Result<Operand, Operation> {
         use Operand::Constant;
         let range = |operand| self.range(operand);
@@ -292,7 +292,7 @@ impl Code {
             Operation::Add(a, Constant(0)) | Operation::Add(Constant(0), a) | Operation::Subtract(a, Constant(0)) => {
                 return Ok(a);
             }
-            // Constants go last, and become one.
+            // A constant goes last, and several are combined into one.
             Operation::Add(Constant(c), a) => return Ok(self.make(Operation::Add(a, Constant(c)))),
             Operation::Add(a, Constant(c)) => return self.moved(a, c),
             Operation::Subtract(a, Constant(c)) => return self.moved(a, -c),
@@ -355,14 +355,14 @@ impl Code {
                     return Ok(a);
                 }
             }
-            // Where 8 bits are repeated, nothing is left of the second.
+            // Where 8 bits are repeated, nothing remains of the second copy.
             Operation::Down(a, bits) if range(a).1 >> bits == 0 => return Ok(Constant(0)),
             _ => {}
         }
         Err(operation)
     }
 
-    /// A value and a constant that is added to it.
+    /// Splits a value into another one and a constant that is added to it.
     fn offset(&self, operand: Operand) -> (Operand, i64) {
         match self.operation(operand) {
             Some(Operation::Add(a, Operand::Constant(d))) => (a, d),
@@ -371,7 +371,7 @@ impl Code {
         }
     }
 
-    /// a + by.
+    /// Adds a constant to a value.
     fn moved(&self, a: Operand, by: i64) -> Result<Operand, Operation> {
         match self.offset(a) {
             (_, 0) if by < 0 => Err(Operation::Subtract(a, Operand::Constant(-by))),
@@ -380,7 +380,7 @@ impl Code {
         }
     }
 
-    /// Whether a test comes out the same in every pixel, and how.
+    /// Returns the result of a test if it is the same in every pixel.
     pub fn decided(&self, Test(function, [a, b]): Test) -> Option<bool> {
         let ((a0, a1), (b0, b1)) = (self.range(a), self.range(b));
         let decided = |always: bool, never: bool| if always { Some(true) } else { never.then_some(false) };
@@ -398,7 +398,7 @@ impl Code {
 
     fn range_of(&self, operation: &Operation) -> Range {
         let range = |operand: Operand| self.range(operand);
-        // Of operations that are monotone in each operand.
+        // The range of an operation that is monotone in each operand.
         let corners = |a: Range, b: Range| {
             let of = |a: i64, b: i64| {
                 let operands = operation.operands();
@@ -434,10 +434,10 @@ impl Code {
     }
 }
 
-/// The values of all lines, from those of the inputs.
+/// Runs all lines, and returns their results. `input` returns the values of inputs.
 ///
 /// # Panics
-/// In debug builds, where a value is outside its range.
+/// In debug builds, if a result is outside its range.
 pub fn run(lines: &[Line], input: impl FnMut(Input) -> i64) -> Vec<i64> {
     run_changed(lines, input, |line, value| {
         let Line { range, .. } = &lines[line];
@@ -446,7 +446,8 @@ pub fn run(lines: &[Line], input: impl FnMut(Input) -> i64) -> Vec<i64> {
     })
 }
 
-/// [`run`] with values that `change` turns into others, given the number of their line: to see what depends on them. Ranges are not checked.
+/// Runs all lines like [`run`], with each result replaced by `change` of its line's index and value, to find what depends on it. Ranges are not
+/// checked.
 pub fn run_changed(
     lines: &[Line],
     mut input: impl FnMut(Input) -> i64,
@@ -463,7 +464,7 @@ pub fn run_changed(
     values
 }
 
-/// The value of an operand among those of all lines.
+/// Returns the value of an operand, given the results of all lines.
 pub fn value_of(values: &[i64], operand: Operand) -> i64 {
     match operand {
         Operand::Constant(value) => value,

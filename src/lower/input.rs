@@ -1,50 +1,50 @@
-//! What a printed function is given.
+//! The inputs of a printed function.
 
 use crate::code::{Kind, Range};
 
-/// One of the numbers that a pixel or a draw brings. Channels are R, G, B, A.
+/// An input: a number that a pixel or a draw provides. Channels are R, G, B, A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Input {
-    /// The interpolated diffuse: a channel.
+    /// The interpolated diffuse colour: channel.
     Primary(usize),
-    /// The interpolated specular: a channel.
+    /// The interpolated specular colour: channel.
     Secondary(usize),
-    /// The fog register: a channel. Alpha is the factor.
+    /// The fog register: channel. Alpha is the fog factor.
     Fog(usize),
-    /// What a unit yields: unit and channel.
+    /// The colour that a texture unit yields: unit and channel.
     Texture(usize, usize),
-    /// A fetched texel of a unit: unit and place. 0 to 3 are the footprint of a level, row by row, 4 to 7 that of the next.
+    /// A fetched texel: unit and index. 0 to 3 are the footprint in a level, row by row, 4 to 7 that in the next level.
     Texel(usize, usize),
-    /// A weight of a unit's filter, in 256ths.
+    /// A weight of a unit's filter, in 256ths: unit and weight.
     Weight(usize, Weight),
-    /// Which texels of a unit are the border colour: bit n is texel n.
+    /// The texels that are the border colour: unit. Bit n stands for texel n.
     Outside(usize),
     /// The word that the surface holds.
     Destination,
-    /// A constant colour of a general stage: stage, which of the two, channel.
+    /// A constant colour of a general stage: stage, number of the constant, channel.
     StageConstant(usize, usize, usize),
-    /// A constant colour of the final combiner: which of the two, channel.
+    /// A constant colour of the final combiner: number of the constant, channel.
     FinalConstant(usize, usize),
-    /// A channel of the draw's fog colour.
+    /// The draw's fog colour: channel.
     FogColor(usize),
-    /// A channel of the blend constant.
+    /// The blend constant: channel.
     BlendConstant(usize),
     /// The reference of the alpha test.
     AlphaReference,
-    /// A channel of a unit's border colour: unit and channel.
+    /// A unit's border colour: unit and channel.
     BorderColor(usize, usize),
-    /// A variable of the text that the value stands in.
+    /// A local variable of the printed text.
     Local(Local),
 }
 
-/// A variable of the text that a value stands in.
+/// A local variable of the printed text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Local {
-    /// How it is written.
+    /// Name of the variable in the text.
     pub name: &'static str,
-    /// What it is.
+    /// Kind of its value.
     pub kind: Kind,
-    /// What it can be.
+    /// Range of its value.
     pub range: Range,
 }
 
@@ -64,17 +64,17 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// All of them, in their order.
+    /// All weights, in the order of the variants.
     pub const ALL: [Weight; 5] = [Weight::U, Weight::V, Weight::NextU, Weight::NextV, Weight::Level];
 
-    /// The name of a port.
+    /// Returns the name of the weight in ports.
     pub fn name(self) -> &'static str {
         ["u", "v", "next_u", "next_v", "level"][self as usize]
     }
 }
 
 impl Input {
-    /// What it can be.
+    /// Returns the range of the input.
     pub fn range(self) -> Range {
         match self {
             Input::Texture(..) => (-256, 255),
@@ -84,7 +84,7 @@ impl Input {
         }
     }
 
-    /// What it is.
+    /// Returns the kind of the input.
     pub fn kind(self) -> Kind {
         match self {
             Input::Texel(..) | Input::Destination => Kind::Word,
@@ -93,7 +93,7 @@ impl Input {
         }
     }
 
-    /// Whether it belongs to the draw and not to the pixel.
+    /// Returns whether it is a constant of the draw, not of the pixel.
     pub fn is_constant(self) -> bool {
         matches!(
             self,

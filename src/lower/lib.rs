@@ -1,8 +1,8 @@
-//! The rules as text for other languages: a pixel of a draw, or of a program alone, as one function of C99, GLSL, WGSL or Verilog.
+//! Prints the rules in other languages: a pixel of a draw, or of a program alone, as one function of C99, GLSL, WGSL or Verilog.
 //!
-//! Nothing of a rule stands here twice. The order of a pixel is that of [`Algebra`](ninebit::algebra::Algebra), read by one more reader, whose values are lines of
-//! integer operations; rules of numbers are read in a lane of their own. Each line knows its range, so that what cannot happen is left out and no width is guessed.
-//! What the four languages write differently is all that they have of their own.
+//! No rule is repeated here. The order of a pixel is read through [`Algebra`](ninebit::algebra::Algebra), by a reader whose values are lines of
+//! integer operations; the rules of numbers are read in a lane of their own. Each line knows its range, so that what cannot happen is left out and no
+//! width is guessed. The four languages differ only in their syntax.
 //!
 //! The example `shader` prints a combiner program as GLSL.
 

@@ -1,4 +1,4 @@
-//! A lane whose values are lines of [`Code`]: the rules that are written over the traits of [`ninebit::number`] print themselves in it.
+//! A lane whose values are lines of [`Code`]: rules that are written over the traits of [`ninebit::number`] print themselves in it.
 
 use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
 
@@ -7,18 +7,18 @@ use ninebit::state::{CompareFunction, RegisterFloor};
 
 use crate::code::{Code, Operand, Operation, Range, Test};
 
-/// A number: a constant, or a line of a code.
+/// A number: a constant, or the result of a line of code.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Number<'a> {
-    /// The same in every pixel.
+    /// A constant, the same in every pixel.
     Constant(i64),
-    /// The value of a line of the code.
+    /// The result of a line of the code.
     Of(&'a Code, u32),
 }
 
 use Number::Constant;
 
-/// Operators of a type, each with what it takes and what it makes of that.
+/// Implements operators of a type: the other operand's type, and how the result is made.
 macro_rules! operators {
     ($($type:ident: $operator:ident $method:ident $other:ty, |$a:ident, $b:ident| $made:expr;)+) => {
         $(impl $operator<$other> for $type<'_> {
@@ -71,7 +71,7 @@ impl<'a> Number<'a> {
         }
     }
 
-    /// This, which lies between the others: it is a mix of them.
+    /// Narrows the range of a number that lies between others, because it is a mixture of them.
     pub(crate) fn between(self, others: &[Number<'a>]) -> Number<'a> {
         if let Number::Of(code, _) = self {
             let ranges = others.iter().map(|other| other.range());
@@ -81,13 +81,13 @@ impl<'a> Number<'a> {
         self
     }
 
-    /// An operation on this and others. Without a line among them it is computed.
+    /// Makes an operation on this number and others. If none of them is a line, the result is computed.
     fn made(self, others: &[Number<'a>], operation: Operation) -> Number<'a> {
         let code = self.code().or_else(|| others.iter().find_map(|other| other.code()));
         match code {
             Some(code) => Number::new(code, code.make(operation)),
             None => {
-                // Constants alone need no code of the caller's.
+                // Constants alone do not need the caller's code.
                 match Code::default().make(operation) {
                     Operand::Constant(value) => Constant(value),
                     Operand::Line(_) => Constant(0),
@@ -112,14 +112,15 @@ impl<'a> Number<'a> {
         self.least(Constant(high)).greatest(Constant(low))
     }
 
-    /// The nearest whole number below or at a quotient. Division is of numbers that are not negative: whole multiples are added before and taken off after.
+    /// Returns the floor of a quotient. Division requires a number that is not negative, so multiples of the divisor are added before and
+    /// subtracted after.
     pub(crate) fn floor_divided(self, by: i64) -> Number<'a> {
         let above = (-self.range().0).max(0).div_euclid(by) + i64::from((-self.range().0).max(0) % by != 0);
         let positive = self + Constant(above * by);
         positive.made(&[], Operation::Quotient(positive.operand(), by)) - Constant(above)
     }
 
-    /// These low bits in two's complement, which bits above the mask do not concern.
+    /// Returns the low bits of the number in two's complement; `mask` says which.
     pub(crate) fn low_bits(self, mask: i64) -> Number<'a> {
         let period = 1 << (64 - mask.leading_zeros());
         let above = (-self.range().0).max(0);
@@ -127,23 +128,23 @@ impl<'a> Number<'a> {
         positive.made(&[], Operation::Bits(positive.operand(), mask))
     }
 
-    /// A number of 0 to 2^bits - 1 read as two's complement.
+    /// Reads a number from 0 to 2^bits - 1 as two's complement.
     pub(crate) fn signed(self, bits: u32) -> Number<'a> {
         let sign = 1 << (bits - 1);
         self.made(&[], Operation::Flip(self.operand(), sign)) - Constant(sign)
     }
 
-    /// This where the test holds, otherwise the other.
+    /// Returns this number if the test holds, otherwise the other one.
     pub(crate) fn selected(self, test: Test, code: &'a Code, other: Number<'a>) -> Number<'a> {
         Number::new(code, code.make(Operation::Select(test, [self.operand(), other.operand()])))
     }
 
-    /// A comparison with another number.
+    /// Makes a comparison with another number.
     pub(crate) fn compared(self, function: CompareFunction, other: Number<'a>) -> Test {
         Test(function, [self.operand(), other.operand()])
     }
 
-    /// As a word: it is not negative.
+    /// Converts the number, which is not negative, into a word.
     pub(crate) fn word(self) -> Word<'a> {
         Word(self.made(&[], Operation::Word(self.operand())))
     }
@@ -160,14 +161,14 @@ impl<'a> Blend for Number<'a> {
     }
 }
 
-/// A factor of a product: a number in steps of 1/255, or of half of that (CMB-4=127.5).
+/// A factor of a product: a number in steps of 1/255, or of half of that if `halves` (CMB-4=127.5).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factor<'a> {
     pub(crate) value: Number<'a>,
     pub(crate) halves: bool,
 }
 
-/// A sum of products in steps of 1/65025, halved so many times.
+/// A sum of products, in steps of 1/65025 that are halved `halvings` times.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sum<'a> {
     pub(crate) value: Number<'a>,
@@ -175,7 +176,7 @@ pub(crate) struct Sum<'a> {
 }
 
 impl<'a> Sum<'a> {
-    /// Both in the finer steps of the two.
+    /// Returns both sums in the finer steps of the two.
     pub(crate) fn alike(self, other: Sum<'a>) -> [Sum<'a>; 2] {
         let halvings = self.halvings.max(other.halvings);
         [self, other].map(|sum| {
@@ -189,13 +190,13 @@ impl<'a> Sum<'a> {
         Sum { value: of(a.value, b.value), halvings: a.halvings }
     }
 
-    /// NUM-2 of the sum divided by `more`: floor((2 n + d) / (2 d)) in steps of 1/d.
+    /// Rounds the sum divided by `more` by NUM-2: floor((2 n + d) / (2 d)) in steps of 1/d.
     pub(crate) fn rounded_to(self, more: i64) -> Number<'a> {
         let steps = (255 * more) << self.halvings;
         if let Some(whole) = over(self.value, steps) {
             return whole;
         }
-        // An even number of steps needs no doubling.
+        // With an even number of steps nothing needs to be doubled.
         if steps % 2 == 0 {
             return (self.value + Constant(steps / 2)).floor_divided(steps);
         }
@@ -203,7 +204,7 @@ impl<'a> Sum<'a> {
     }
 }
 
-/// The quotient of a number that is a multiple by its form.
+/// Returns the quotient of a number whose operation shows that it is a multiple of `steps`.
 fn over(value: Number<'_>, steps: i64) -> Option<Number<'_>> {
     match value {
         Constant(value) => (value % steps == 0).then_some(Constant(value / steps)),
@@ -260,17 +261,17 @@ impl<'a> number::Sum for Sum<'a> {
     }
 }
 
-/// A register at the width of a sum.
+/// Converts a register's value into steps of a sum.
 pub(crate) fn widened(x: Number<'_>) -> Sum<'_> {
     x.factor().product(Constant(255).factor())
 }
 
-/// The bits of a stored word or of a texel.
+/// A word: the bits of a stored word or of a texel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Word<'a>(pub(crate) Number<'a>);
 
 impl<'a> Word<'a> {
-    /// As a number: it is below 2^31.
+    /// Converts the word, which is below 2^31, into a number.
     pub(crate) fn number(self) -> Number<'a> {
         self.0.made(&[], Operation::Number(self.0.operand()))
     }

@@ -1,4 +1,5 @@
-//! The order of a pixel, read as lines: each operation of [`Algebra`] adds what the chip computes, under its rule and under the name that traces have for it.
+//! Reads the order of a pixel as lines of code: each operation of [`Algebra`] adds what the chip computes, with its rule and the name that traces
+//! use.
 
 use ninebit::algebra::{Algebra, Site};
 use ninebit::combiner::registers::channel_name;
@@ -10,7 +11,7 @@ use ninebit::trace::Rule;
 use crate::code::{Code, Test};
 use crate::number::{Factor, Number, Sum, widened};
 
-/// Which part of the order is read; the places of the text mean something else in each.
+/// The part of the order that is being read. The places in the text have another meaning in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Block {
     /// A general stage.
@@ -19,19 +20,19 @@ pub(crate) enum Block {
     Final,
     /// The raster operations.
     Raster,
-    /// A rule by itself.
+    /// A single rule.
     Piece,
 }
 
-/// Writes down what the order does.
+/// The reader that writes lines of code.
 #[derive(Debug)]
 pub(crate) struct Listing<'a> {
     code: &'a Code,
     policies: Policies,
     block: Block,
-    /// How often the text has passed each place of the final combiner.
+    /// How often each place of the final combiner has been passed.
     passed: [usize; 16],
-    /// Places of registers in the order in which the text passes them.
+    /// Places of registers, in the order in which they have been passed.
     sites: Vec<Site>,
 }
 
@@ -40,12 +41,12 @@ impl<'a> Listing<'a> {
         Listing { code, policies, block: Block::Final, passed: [0; 16], sites: Vec::new() }
     }
 
-    /// What comes now is part of this.
+    /// Sets the part that is read from now on.
     pub(crate) fn enter(&mut self, block: Block) {
         self.block = block;
     }
 
-    /// The places of registers that the text has passed; from here on they are collected anew.
+    /// Returns the places of registers that have been passed since the last call.
     pub(crate) fn take_sites(&mut self) -> Vec<Site> {
         std::mem::take(&mut self.sites)
     }
@@ -66,7 +67,7 @@ impl<'a> Listing<'a> {
                 Some(format!("stage{stage}_{portion}_{what}_{channel}{end}"))
             }
             Block::Final => {
-                // E and F stand at the place of their product, A to C at that of the lerp, D at that of the fragment.
+                // E and F stand at the place of their product, A to C at that of the lerp, and D at that of the fragment.
                 let nth = self.passed[at % 16];
                 self.passed[at % 16] += 1;
                 let names: &[&str] = match at / 4 {
@@ -88,7 +89,7 @@ impl<'a> Listing<'a> {
         self.code.by(rule.name());
     }
 
-    /// CMB-3 and CMB-4 with their alternatives.
+    /// Maps a register by CMB-3 and CMB-4, with the alternatives of the policies.
     fn mapped(&self, mapping: InputMapping, x: Number<'a>) -> Factor<'a> {
         let less = |number: i64| (x.max0() - Number::Constant(number)).factor();
         match mapping {
@@ -113,7 +114,7 @@ impl<'a> Listing<'a> {
     }
 }
 
-/// The negation, at most 1.0.
+/// Returns the negation, at most 1.0.
 fn negated(factor: Factor<'_>) -> Factor<'_> {
     let most = if factor.halves { 510 } else { 255 };
     let value = (Number::Constant(0) - factor.value).least(Number::Constant(most));

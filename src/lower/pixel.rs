@@ -1,4 +1,4 @@
-//! From the state of a draw, or from a program alone, to the code of its pixels.
+//! Makes the code of a pixel from the state of a draw, or from a program alone.
 
 use ninebit::combiner::registers::Registers;
 use ninebit::number::Register as _;
@@ -13,55 +13,55 @@ use crate::number::{Number, Word};
 use crate::order::{Block, Listing};
 use crate::texel::Sampler;
 
-/// What a printed function is given of textures.
+/// The inputs of a printed function that concern textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Textures {
-    /// What each unit yields, as the registers hold it.
+    /// The colour that each unit yields, as the registers hold it.
     #[default]
     Registers,
-    /// Fetched words and weights; the filter is part of the function. Units of a texture shader give registers all the same.
+    /// Fetched words and weights: the filter is part of the function. For units with a texture shader the registers are inputs nevertheless.
     Words,
 }
 
-/// How a function is made.
+/// Options of a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Answers to what no capture decides.
+    /// Decisions about behaviour that no capture shows.
     pub policies: Policies,
-    /// Constants of the draw are given, and not part of the text: one text serves all draws that differ in nothing else.
+    /// Whether constants of the draw are inputs instead of parts of the text. One text then serves all draws that differ only in them.
     pub uniform: bool,
-    /// What is given of textures.
+    /// The inputs that concern textures.
     pub textures: Textures,
-    /// The function ends with the fragment, before the raster operations.
+    /// Whether the function ends with the fragment, before the raster operations.
     pub fragment: bool,
 }
 
-/// What a function yields.
+/// Result of a function.
 #[derive(Clone, Copy, Debug)]
 pub enum Result {
-    /// R, G, B, A of the fragment, each 0 to 255.
+    /// R, G, B, A of the fragment, each from 0 to 255.
     Fragment([Operand; 4]),
-    /// The surface's new word, and the alpha test: where it fails, the surface keeps its word.
+    /// The new word of the surface, and the alpha test. If the test fails, the surface keeps its word.
     Stored {
         /// The surface's new word.
         word: Operand,
-        /// None: every fragment passes.
+        /// The alpha test; `None` if every fragment passes.
         test: Option<Test>,
     },
 }
 
-/// What a pixel comes to.
+/// The code of a pixel: a function of its inputs.
 #[derive(Debug)]
 pub struct Function {
-    /// The operations, in order. All of them are used.
+    /// The operations in order; the result depends on all of them.
     pub lines: Vec<Line>,
-    /// What is yielded.
+    /// The result.
     pub result: Result,
-    /// Constants of the draw are given.
+    /// Whether constants of the draw are inputs.
     pub uniform: bool,
 }
 
-/// The raster operations.
+/// State of the raster operations.
 struct Raster {
     alpha_test: Option<AlphaTest>,
     blend: Option<Blend>,
@@ -70,7 +70,7 @@ struct Raster {
     write_mask: u32,
 }
 
-/// Where the inputs of a function come from.
+/// Makes the inputs of a function.
 struct Builder<'a> {
     code: &'a Code,
     options: Options,
@@ -85,13 +85,13 @@ impl<'a> Builder<'a> {
         [0, 1, 2, 3].map(|channel| self.given(input(channel)))
     }
 
-    /// Constants of the draw.
+    /// Returns constants of the draw, as inputs or as constants of the text.
     fn constants<const N: usize>(&self, bytes: [u8; N], input: impl Fn(usize) -> Input) -> [Number<'a>; N] {
         let uniform = self.options.uniform;
         std::array::from_fn(|n| if uniform { self.given(input(n)) } else { Number::Constant(bytes[n].into()) })
     }
 
-    /// The registers with all inputs that a pixel can bring; units are `texture`'s.
+    /// Returns the registers with all inputs that a pixel may have; `texture` returns those of a unit.
     fn registers(&self, fog: [Number<'a>; 4], texture: impl FnMut(usize) -> [Number<'a>; 4]) -> Registers<Number<'a>> {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         let mut registers = Registers::from_value(Number::ZERO);
@@ -148,7 +148,7 @@ impl<'a> Builder<'a> {
         let word = surface::masked(held, word, raster.write_mask);
         code.name(word.0.operand(), || "stored".to_string());
         match test.and_then(|test| code.decided(test)) {
-            // Every fragment is dropped, whatever it is.
+            // Every fragment is dropped, whatever its alpha.
             Some(false) => {
                 let never = Test(CompareFunction::NotEqual, [Operand::Constant(0); 2]);
                 Result::Stored { word: held.0.operand(), test: Some(never) }
@@ -160,7 +160,8 @@ impl<'a> Builder<'a> {
 }
 
 impl Function {
-    /// The function of a program alone, of at most eight stages: from registers to the fragment. All four textures, both colours and all of fog are given.
+    /// Makes the function of a program alone, with at most eight stages, from registers to the fragment. All four textures, both colours and all
+    /// of fog are inputs.
     pub fn of_program(combiners: &Combiners, options: &Options) -> Function {
         let code = Code::default();
         let builder = Builder { code: &code, options: *options };
@@ -170,9 +171,9 @@ impl Function {
         Function::new(code, Result::Fragment(fragment), options)
     }
 
-    /// The function of a draw of a scene: from what is interpolated and sampled to the stored word.
+    /// Makes the function of a draw of a scene, from interpolated and sampled values to the stored word.
     ///
-    /// `plan` is the scene's, made without pruning or with: it tells what the units sample.
+    /// `planned` comes from the scene's plan, made with or without pruning, and tells what the units sample.
     pub fn of_draw(scene: &Scene, draw: &Draw, planned: &PlannedDraw, options: &Options) -> Function {
         let code = Code::default();
         let builder = Builder { code: &code, options: *options };
@@ -185,7 +186,7 @@ impl Function {
                 operation => operation.samples() && draw.textures[n].is_none(),
             };
             if idle {
-                // TEX-16.
+                // TEX-16: a unit without a texture gives opaque black.
                 return [Number::ZERO, Number::ZERO, Number::ZERO, Number::ONE];
             }
             let unit = planned.units.iter().find(|unit| unit.index == n);
@@ -195,7 +196,7 @@ impl Function {
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
                     sampler.register(border, |input| builder.given(input), &code)
                 }
-                // Only signed channels are ever negative, and what texture shaders make of them.
+                // Only signed channels, and results of texture shaders, can be negative.
                 Some(unit) if unit.state.signed == [false; 4] && planned.shader.is_none() => {
                     let byte = |channel: usize| code.input(Input::Texture(n, channel), (0, 255));
                     [0, 1, 2, 3].map(|channel| Number::new(&code, byte(channel)))
@@ -220,23 +221,23 @@ impl Function {
         Function::new(code, result, options)
     }
 
-    /// Keeps what the result is made of, and numbers it anew.
+    /// Makes a function of the lines on which the result depends, renumbered.
     fn new(code: Code, result: Result, options: &Options) -> Function {
         let (lines, renamed) = code.kept(&result.operands());
         Function { lines, result: result.renamed(renamed), uniform: options.uniform }
     }
 
-    /// What an input that it reads can be.
+    /// Returns the range of an input as the function reads it.
     pub fn range(&self, input: Input) -> Range {
         let line = self.lines.iter().find(|line| line.operation == Operation::Input(input));
         line.map_or(input.range(), |line| line.range)
     }
 
-    /// The inputs that it reads, in their order.
+    /// Returns the inputs that the function reads, sorted.
     pub fn inputs(&self) -> Vec<Input> {
         let input = |line: &Line| if let Operation::Input(input) = line.operation { Some(input) } else { None };
         let mut inputs: Vec<Input> = self.lines.iter().filter_map(input).collect();
-        // Where the test fails, the surface keeps its word.
+        // If the test fails, the surface keeps its word.
         if matches!(self.result, Result::Stored { test: Some(_), .. }) {
             inputs.push(Input::Destination);
         }
@@ -247,7 +248,7 @@ impl Function {
 }
 
 impl Result {
-    /// Every value in it.
+    /// Returns all operands of the result.
     pub fn operands(&self) -> Vec<Operand> {
         collected(|name| _ = self.renamed(name))
     }
@@ -263,7 +264,7 @@ impl Result {
     }
 }
 
-/// Whether what a unit yields is made of a texel's words by a filter alone: it compares nothing, and its texel is one of a plane.
+/// Returns whether a unit's colour is computed from words of texels by a filter alone: nothing is compared, and texels come from one plane.
 fn reads_words(unit: &PlannedUnit) -> bool {
     let state = &unit.state;
     state.color_key.is_none()

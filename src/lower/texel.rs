@@ -1,4 +1,4 @@
-//! TEX-1, TEX-6, TEX-7, TEX-9, TEX-18: from fetched words and weights to what a texture unit yields.
+//! Computes what a texture unit yields from fetched words and weights (TEX-1, TEX-6, TEX-7, TEX-9, TEX-18).
 
 use ninebit::number::Register as _;
 use ninebit::state::*;
@@ -10,11 +10,11 @@ use crate::code::Code;
 use crate::input::{Input, Weight};
 use crate::number::{Number, Word};
 
-/// What is asked of a unit that is sampled.
+/// Computes the colour of a unit that samples its texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sampler<'u> {
     pub(crate) unit: &'u PlannedUnit,
-    /// The border colour, where a texel can be it.
+    /// The border colour, if a texel can be it.
     pub(crate) border: Option<[u8; 4]>,
 }
 
@@ -25,17 +25,17 @@ impl<'u> Sampler<'u> {
         Sampler { unit, border }
     }
 
-    /// Whether four texels are mixed.
+    /// Returns whether four texels are mixed.
     fn is_linear(&self) -> bool {
         [self.unit.state.mag_filter, self.unit.state.min_filter].contains(&Filter::Linear)
     }
 
-    /// Whether two levels are mixed.
+    /// Returns whether two levels are mixed.
     fn has_next(&self) -> bool {
         self.unit.levels.len() > 1 && self.unit.state.mip_filter == MipFilter::Linear
     }
 
-    /// What the words of its texels are: palettes are looked up and blocks decoded by whoever fetches.
+    /// Returns the format of the fetched words. Whoever fetches them has looked up palettes and decoded blocks.
     pub(crate) fn words(&self) -> TextureFormat {
         match self.unit.format {
             TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
@@ -45,7 +45,7 @@ impl<'u> Sampler<'u> {
         }
     }
 
-    /// The register that the unit loads.
+    /// Returns the value of the register that the unit loads.
     pub(crate) fn register<'a>(
         &self,
         border: [Number<'a>; 4],
@@ -67,7 +67,7 @@ impl<'u> Sampler<'u> {
             code.by("TEX-6");
             [0, 1, 2, 3].map(|lane: usize| {
                 let all = texels.map(|texel| texel[lane]);
-                // A mix of equal values is that value: channels that a format does not store.
+                // A mixture of equal values is that value; this happens in channels that a format does not store.
                 let equal = all.iter().all(|texel| texel.operand() == all[0].operand());
                 if equal { all[0] } else { bilinear(all, u, v, |step| step.between(&all)) }
             })
@@ -92,7 +92,7 @@ impl<'u> Sampler<'u> {
         register
     }
 
-    /// The lanes of a texel: its channels, or its halves.
+    /// Returns the lanes of a texel: its channels, or its halves.
     fn lanes<'a>(
         &self,
         word: Word<'a>,
@@ -127,14 +127,14 @@ impl<'u> Sampler<'u> {
         })
     }
 
-    /// Signed channels are doubled.
+    /// Doubles signed channels.
     fn doubled<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
         code.by("TEX-18");
         let two = Number::Constant(2);
         [0, 1, 2, 3].map(|n: usize| if self.unit.state.signed[n] { lanes[n].multiplied(two) } else { lanes[n] })
     }
 
-    /// The bytes of halves. The high byte of a signed half enters doubled.
+    /// Returns the bytes of two halves. The high byte of a signed half is doubled.
     fn bytes<'a>(&self, [high, low, ..]: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
         code.by("TEX-1");
         let upper = |half: Number<'a>, lane: usize| {

@@ -1,4 +1,4 @@
-//! Programs as they stand in C: texts between quotes, line by line, and `#define` of names.
+//! Extracts programs from C source: joins texts between quotes, and replaces names that `#define` defines.
 #![allow(clippy::result_large_err, reason = "the first error ends the text: it is made once")]
 
 use crate::Span;
@@ -8,34 +8,34 @@ use super::finding::finding;
 use super::lexer::length;
 use ninebit::diagnostic::{Diagnostic, shorten};
 
-/// Names within names.
+/// Deepest nesting of names in the values of names.
 const MAX_NESTING: usize = 16;
 
-/// How a language stands in C.
+/// How programs of a language are written in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// Assembler of shaders: between quotes or not, with `#define`.
+    /// Assembler of shaders: between quotes or not, possibly with `#define`.
     Assembler,
     /// The combiner language: between quotes or not; `#` begins a comment.
     Combiners,
-    /// Calls of an API: C itself, with `#define`.
+    /// Calls of an API: C itself, possibly with `#define`.
     Calls,
 }
 
-/// A text with everything put in its place, and where its bytes come from.
+/// A text after the expansion, and where its bytes come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Expanded {
-    /// What the language's reader reads.
+    /// The text for the language's reader.
     pub text: String,
-    /// The place in the given text of each byte, and of the end. Bytes of a name's value stand where the name does.
+    /// The place in the given text of each byte, and of the end. Bytes of a name's value have the place of the name.
     pub places: Vec<usize>,
 }
 
-/// Joins texts between quotes and puts the values of defined names in their place. `None`: there is nothing to do. `most`: bytes of the
-/// result.
+/// Joins texts between quotes and replaces defined names by their values. The result has at most `most` bytes. Returns `None` if the text needs no
+/// expansion.
 ///
 /// # Errors
-/// A directive that is not read, a quote that is not closed, a result that is too large.
+/// A directive is not supported, a quote is not closed, or the result is too large.
 pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expanded>, Diagnostic> {
     let joined = match style {
         Style::Assembler | Style::Combiners if quoted(text) => Some(walk(text, style, true, most)?),
@@ -54,7 +54,7 @@ pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expanded>,
     Ok(Some(Expanded { text: expanded.text, places }))
 }
 
-/// Whether a text stands between quotes: one opens outside comments and directives.
+/// Returns whether a text has quotes: one opens outside comments and directives.
 fn quoted(text: &str) -> bool {
     let mut at = 0;
     while let Some(c) = text[at..].chars().next() {
@@ -69,12 +69,12 @@ fn quoted(text: &str) -> bool {
     false
 }
 
-/// Bytes up to the end of the line.
+/// Returns the number of bytes up to the end of the line.
 fn line(rest: &str) -> usize {
     rest.find('\n').unwrap_or(rest.len())
 }
 
-/// Bytes of a comment of C; 0 if none begins here.
+/// Returns the length in bytes of the C comment that begins here; 0 if there is none.
 fn comment(rest: &str) -> usize {
     if rest.starts_with("//") {
         return line(rest);
@@ -87,9 +87,9 @@ fn is_name(c: char) -> bool {
 }
 
 struct Walk<'t> {
-    /// Names and their values.
+    /// Values of the defined names.
     defined: HashMap<&'t str, &'t str>,
-    /// Only what stands between quotes counts.
+    /// Whether only the texts between quotes go into the result.
     joining: bool,
     most: usize,
     result: Expanded,
@@ -117,7 +117,7 @@ fn walk(text: &str, style: Style, joining: bool, most: usize) -> Result<Expanded
     Ok(result)
 }
 
-/// Bytes of a directive: its line, and those that a backslash at the end joins to it.
+/// Returns the length in bytes of a directive: its line, and those that are continued by a backslash.
 fn directive_length(rest: &str) -> usize {
     let mut end = line(rest);
     while rest[..end].trim_end_matches('\r').ends_with('\\') && end < rest.len() {
@@ -127,8 +127,8 @@ fn directive_length(rest: &str) -> usize {
 }
 
 impl<'t> Walk<'t> {
-    /// Takes one piece of a text: a comment, a text between quotes, a word, a sign; its length. `used`: within the value of a name that
-    /// stands there, and how deep.
+    /// Processes one piece of a text: a comment, a text between quotes, a word or a sign. Returns its length. Within the value of a name, `used`
+    /// is the place where the name is used, and the depth of nesting.
     fn piece(&mut self, text: &'t str, at: usize, used: Option<(usize, usize)>) -> Result<usize, Diagnostic> {
         let rest = &text[at..];
         let Some(c) = rest.chars().next() else { return Ok(0) };
@@ -153,7 +153,7 @@ impl<'t> Walk<'t> {
             return Ok(length);
         }
         if self.joining && c == ',' && !self.result.text.is_empty() && !self.result.text.ends_with('\n') {
-            // A list of lines.
+            // The comma separates the lines of a list.
             self.push("\n", place, true)?;
         }
         let length = c.len_utf8();
@@ -161,7 +161,7 @@ impl<'t> Walk<'t> {
         Ok(length)
     }
 
-    /// What a name stands for.
+    /// Processes the value of a name.
     fn value(&mut self, value: &'t str, word: &str, place: usize, depth: usize) -> Result<(), Diagnostic> {
         if depth >= MAX_NESTING {
             let message = format!("the value of `{}` leads to more than {MAX_NESTING} others", shorten(word));
@@ -175,7 +175,7 @@ impl<'t> Walk<'t> {
         Ok(())
     }
 
-    /// A text between quotes, without them and with its escapes resolved; its length.
+    /// Adds a text between quotes, without the quotes and with its escapes resolved. Returns its length.
     fn quoted(&mut self, rest: &str, at: usize, used: Option<(usize, usize)>) -> Result<usize, Diagnostic> {
         let mut characters = rest.char_indices().skip(1).peekable();
         while let Some((offset, c)) = characters.next() {
@@ -187,7 +187,7 @@ impl<'t> Walk<'t> {
                     let piece = match characters.next() {
                         Some((_, 'n')) => "\n",
                         Some((_, '"')) => "\"",
-                        // A line that goes on.
+                        // The line is continued.
                         Some((_, '\n')) => "",
                         Some((_, '\r')) => {
                             characters.next_if(|(_, c)| *c == '\n');
@@ -205,12 +205,12 @@ impl<'t> Walk<'t> {
         Err(finding("NB0109", place..place + 1, "this quote is not closed in its line", "opened here", help))
     }
 
-    /// What stands outside quotes: it counts unless texts between them are joined.
+    /// Adds a piece outside quotes, unless texts between quotes are being joined.
     fn push_outside(&mut self, piece: &str, place: usize, used: bool) -> Result<(), Diagnostic> {
         if self.joining { Ok(()) } else { self.push(piece, place, used) }
     }
 
-    /// Adds a piece of the text. `fixed`: all of it comes from one place.
+    /// Adds a piece to the result. If `fixed`, all of it comes from one place.
     fn push(&mut self, piece: &str, place: usize, fixed: bool) -> Result<(), Diagnostic> {
         if self.result.text.len() + piece.len() > self.most {
             let message = format!("with the values of its names this text has more than {} bytes", self.most);
@@ -222,7 +222,8 @@ impl<'t> Walk<'t> {
         Ok(())
     }
 
-    /// `#define NAME value`, `#undef NAME`; whether it was one of them. `others`: other directives are for somebody else to judge.
+    /// Processes `#define NAME value` and `#undef NAME`. Returns whether the directive was one of them. If `others`, other directives are left to the
+    /// caller.
     fn directive(&mut self, directive: &'t str, at: usize, others: bool) -> Result<bool, Diagnostic> {
         let inside = directive[1..].trim_start();
         let word = &inside[..length(inside, is_name)];
@@ -240,7 +241,7 @@ impl<'t> Walk<'t> {
                 self.defined.remove(name);
                 Ok(true)
             }
-            // A line of its own with nothing in it.
+            // The directive is empty.
             "" => Ok(true),
             _ if others => Ok(false),
             "define" if !name.is_empty() => {
@@ -276,7 +277,7 @@ mod tests {
         assert_eq!(expanded("\"!!RC1.0\\n\" \"out.rgb = col0;\\n\"", Style::Combiners), "!!RC1.0\nout.rgb = col0;\n");
         let name = "#define LIGHT \"c0\"\n\"mul r0, t0, \" LIGHT \"\\n\"";
         assert_eq!(expanded(name, Style::Assembler), "mul r0, t0, c0\n");
-        // In a comment of the assembler they mean nothing.
+        // Within a comment of the assembler, quotes mean nothing.
         assert_eq!(expand("ps.1.1 ; \"x\"\ntex t0", Style::Assembler, 99), Ok(None));
     }
 

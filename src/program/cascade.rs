@@ -1,51 +1,51 @@
-//! A cascade of equations becomes general stages: one stage for each, its colour and alpha side by side.
+//! Turns a cascade of equations into general stages: one stage for each equation of colour and the equation of alpha beside it.
 //!
-//! APIs clamp the result of every stage to 0..1. The combiners clamp a written register to -1..1 only, so the lower limit is left to
-//! whoever reads: a value that may be negative is read by a mapping that takes max(0, x), never by a signed one.
+//! APIs clamp the result of every stage to 0..1. The combiners clamp a written register only to -1..1, so the lower limit is left to
+//! whoever reads the register: a value that may be negative is read by a mapping that takes max(0, x), never by a signed one.
 
 use super::finding::finding;
 use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::*;
 
-/// Where an argument comes from.
+/// Source of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The constant 0.
     Zero,
-    /// A constant colour, R, G, B, A bytes.
+    /// A constant colour: bytes R, G, B, A.
     Constant([u8; 4]),
-    /// The interpolated diffuse colour.
+    /// The interpolated diffuse colour (primary colour).
     Primary,
-    /// The interpolated specular colour.
+    /// The interpolated specular colour (secondary colour).
     Secondary,
-    /// A texture unit's colour.
+    /// The colour of the texture unit with this number.
     Texture(usize),
-    /// What the stages so far have made of the colour.
+    /// The result of the stages before.
     Current,
-    /// A second result, 0 until a stage writes it.
+    /// A second result, which is 0 until a stage writes it.
     Temporary,
 }
 
-/// Which channels of a source an argument takes.
+/// The channels of a source that an argument reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// R, G, B for a colour, A for an alpha.
+    /// R, G, B in an equation of colour, A in one of alpha.
     Own,
-    /// Blue, for an alpha.
+    /// Blue, in an equation of alpha.
     Blue,
-    /// Alpha, for all channels.
+    /// Alpha, in any equation.
     Alpha,
 }
 
-/// One argument of an equation: x, or 1 - x.
+/// An argument of an equation: x, or 1 - x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Argument {
-    /// Where x comes from.
+    /// Source of x.
     pub source: Source,
-    /// Which channels of the source are read.
+    /// The channels of the source that are read.
     pub channel: Channel,
-    /// 1 - x.
+    /// Whether the argument is 1 - x.
     pub complement: bool,
 }
 
@@ -55,23 +55,23 @@ impl Argument {
     /// The argument 1, the complement of 0.
     pub const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
 
-    /// A source as it is.
+    /// Makes the argument that reads a source's own channels.
     pub const fn new(source: Source) -> Argument {
         Argument { source, channel: Channel::Own, complement: false }
     }
 
-    /// The source's alpha in all channels; 1 - x stays.
+    /// Returns the argument that reads the source's alpha instead; a complement stays.
     pub const fn alpha(self) -> Argument {
         Argument { channel: Channel::Alpha, ..self }
     }
 
-    /// 1 - x.
+    /// Returns the argument 1 - x.
     pub const fn inverted(self) -> Argument {
         Argument { complement: !self.complement, ..self }
     }
 }
 
-/// How an argument enters a product.
+/// The mapping of an argument in a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Use {
     /// x.
@@ -82,7 +82,7 @@ enum Use {
     HalfBiased,
 }
 
-/// A B + C D, or A B - C D, or the dot product of A and B; then biased, scaled and limited to 0..1.
+/// An equation of a stage: A B + C D, or A B - C D, or the dot product of A and B. The result is biased, scaled and clamped to 0..1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Equation {
     ab: [Argument; 2],
@@ -95,11 +95,11 @@ pub struct Equation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Sum,
-    /// A - C; B and D are 1.
+    /// A - C, where B and D are 1.
     Difference,
-    /// Sum of (2a - 1)(2b - 1) over R, G, B.
+    /// The sum of (2a - 1)(2b - 1) over R, G, B.
     Dot,
-    /// A + (C - 1/2), B and D being 1: what bias and scale 4 cannot say together.
+    /// A + (C - 1/2), where B and D are 1: bias and scale 4 cannot be combined.
     HalfBiased,
 }
 
@@ -108,42 +108,42 @@ impl Equation {
         Equation { ab, cd, form, bias: Bias::None, scale: Scale::One }
     }
 
-    /// The equation a.
+    /// Returns the equation a.
     pub const fn copy(a: Argument) -> Equation {
         Equation::product(a, Argument::ONE)
     }
 
-    /// The equation a b.
+    /// Returns the equation a b.
     pub const fn product(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Sum)
     }
 
-    /// a b + c d.
+    /// Returns the equation a b + c d.
     pub const fn products(ab: [Argument; 2], cd: [Argument; 2]) -> Equation {
         Equation::from_products(ab, Some(cd), Form::Sum)
     }
 
-    /// a + b.
+    /// Returns the equation a + b.
     pub const fn sum(a: Argument, b: Argument) -> Equation {
         Equation::products([a, Argument::ONE], [b, Argument::ONE])
     }
 
-    /// f a + (1 - f) b.
+    /// Returns the equation f a + (1 - f) b.
     pub const fn lerp(f: Argument, a: Argument, b: Argument) -> Equation {
         Equation::products([a, f], [b, f.inverted()])
     }
 
-    /// a - b.
+    /// Returns the equation a - b.
     pub const fn difference(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, Argument::ONE], Some([b, Argument::ONE]), Form::Difference)
     }
 
-    /// The sum over R, G, B of (2a - 1)(2b - 1).
+    /// Returns the equation of the dot product: the sum over R, G, B of (2a - 1)(2b - 1).
     pub const fn dot(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Dot)
     }
 
-    /// (a + b - 1/2) times 1, 2 or 4.
+    /// Returns the equation a + b - 1/2, times 1, 2 or 4.
     pub fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
         match scale {
             Scale::Four | Scale::Half => Equation {
@@ -154,54 +154,54 @@ impl Equation {
         }
     }
 
-    /// Less 1/2; goes with scales 1 and 2.
+    /// Returns the equation minus 1/2, which only scales 1 and 2 allow.
     pub const fn biased(self) -> Equation {
         Equation { bias: Bias::NegativeHalf, ..self }
     }
 
-    /// Times a scale.
+    /// Returns the equation times a scale.
     pub const fn scaled(self, scale: Scale) -> Equation {
         Equation { scale, ..self }
     }
 
-    /// Whether it can be below 0 before the limit.
+    /// Returns whether the result can be negative before it is clamped.
     fn is_signed(&self) -> bool {
         self.form != Form::Sum || self.bias != Bias::None
     }
 }
 
-/// The alpha of a stage.
+/// The alpha result of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alpha {
-    /// Its own equation.
+    /// The result of its own equation.
     Equation(Equation),
-    /// The dot product that is the colour.
+    /// The dot product of the colour's equation.
     DotProduct,
 }
 
-/// Where a stage's result goes.
+/// Destination of a stage's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Destination {
-    /// The colour that the next stage reads as [`Source::Current`]; SPARE0.
+    /// The colour that the next stage reads as [`Source::Current`], in SPARE0.
     Current,
-    /// What the next stage reads as [`Source::Temporary`]; SPARE1.
+    /// The colour that the next stage reads as [`Source::Temporary`], in SPARE1.
     Temporary,
 }
 
-/// What follows the last stage, in the final combiner.
+/// What the final combiner does after the last stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
-    /// The secondary colour is added, up to 1.0.
+    /// Whether the secondary colour is added, with the sum clamped to 1.0.
     pub specular: bool,
-    /// The result is blended with the fog colour by the fog factor.
+    /// Whether the result is blended with the fog colour by the fog factor.
     pub fog: bool,
 }
 
-/// Where a result lies.
+/// A result and the register that holds it.
 #[derive(Clone, Copy, Debug)]
 struct Value {
     register: Register,
-    /// Its alpha is its blue: a dot product on a chip without blue-to-alpha.
+    /// Whether the alpha is in the blue channel: a dot product on a chip without blue-to-alpha.
     alpha_is_blue: bool,
     signed: bool,
 }
@@ -210,29 +210,29 @@ struct Value {
 #[derive(Debug)]
 pub struct Cascade {
     profile: Profile,
-    /// Texture units whose colours can be negative.
+    /// Whether the colour of each texture unit can be negative.
     signed_textures: [bool; 4],
     stages: Vec<GeneralStage>,
     origins: Vec<StageOrigin>,
     places: Vec<Span>,
-    /// Constants so far: of the current stage, or on nv10 of the whole program.
+    /// Constants so far: those of the current stage, or on NV10 of the whole program.
     constants: Vec<[u8; 4]>,
     current: Value,
     temporary: Option<Value>,
     findings: Vec<Diagnostic>,
 }
 
-/// A finished cascade.
+/// The result of lowering a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lowered {
-    /// The program, in the chip's own terms.
+    /// The program as state of the chip.
     pub combiners: Combiners,
-    /// What each general stage came from.
+    /// What each general stage was made from.
     pub origins: Vec<StageOrigin>,
 }
 
 impl Cascade {
-    /// No stages yet: the current colour is the primary colour.
+    /// Makes a cascade without stages, in which the current colour is the primary colour.
     pub fn new(profile: Profile, signed_textures: [bool; 4]) -> Cascade {
         Cascade {
             profile,
@@ -247,7 +247,7 @@ impl Cascade {
         }
     }
 
-    /// Adds a stage. `place` is for findings about it, `origin` for reports.
+    /// Adds a stage. Findings about it have the place `span`; reports show its `origin`.
     pub fn stage(&mut self, span: Span, rgb: &Equation, alpha: Alpha, destination: Destination, origin: StageOrigin) {
         if self.profile == Profile::Nv2a {
             self.constants.clear();
@@ -305,8 +305,8 @@ impl Cascade {
         portion
     }
 
-    /// C D = -x: -x times 1 where x is at least 0; otherwise max(0, x) or 1 - max(0, x) times ZERO expanded, which is -1 in real numbers and
-    /// -256 in integers (CMB-3).
+    /// Returns inputs C and D whose product is -x. Where x cannot be negative, they are -x and 1. Otherwise they are max(0, x) or 1 - max(0, x),
+    /// and ZERO expanded, which is -1 in real numbers and -256 in integers (CMB-3).
     fn negative(&mut self, x: &Argument, alpha: bool, span: &Span) -> [CombinerInput; 2] {
         let plain = self.input(x, Use::Plain, alpha, span);
         if !x.complement && !self.may_be_negative(x.source) {
@@ -340,7 +340,7 @@ impl Cascade {
         };
         let component = match (argument.channel, alpha) {
             (Channel::Own, false) => Component::Rgb,
-            // A dot product has the same in all three channels.
+            // The three colour channels of a dot product are equal.
             (Channel::Alpha, false) if value.alpha_is_blue => Component::Rgb,
             (Channel::Own | Channel::Alpha, true) if value.alpha_is_blue => Component::Blue,
             (Channel::Blue, true) => Component::Blue,
@@ -359,7 +359,7 @@ impl Cascade {
         CombinerInput { register: value.register, component, mapping }
     }
 
-    /// The register that holds a constant.
+    /// Returns the register of a constant.
     fn constant(&mut self, color: [u8; 4], span: &Span) -> Register {
         let found = self.constants.iter().position(|constant| *constant == color);
         let index = found.unwrap_or_else(|| {
@@ -372,10 +372,10 @@ impl Cascade {
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
 
-    /// The program; or everything that keeps it from being one, behind what was found before. `what` is what users call it: "cascade".
+    /// Returns the program, or all findings: `findings`, then those about the cascade. `what` is what messages call the program, such as "cascade".
     pub fn finish(mut self, what: &str, end: End, mut findings: Vec<Diagnostic>) -> Result<Lowered, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
-            // Nothing that was computed is seen.
+            // No stage affects the result.
             let nothing = Cascade::new(self.profile, self.signed_textures);
             self = Cascade { current: self.current, findings: self.findings, ..nothing };
             let copy = Equation::copy(Argument::new(Source::Current));
@@ -403,7 +403,7 @@ impl Cascade {
     }
 }
 
-/// The finding that a program needs more general stages than the chip has; `what` is what users call the program.
+/// Makes the finding that a program needs more general stages than the chip has. `what` is what messages call the program.
 pub(super) fn too_many_stages(profile: Profile, needed: usize, span: Span, what: &str) -> Diagnostic {
     let help = match profile {
         Profile::Nv10 if needed <= Profile::Nv2a.general_stages() => {
@@ -416,7 +416,7 @@ pub(super) fn too_many_stages(profile: Profile, needed: usize, span: Span, what:
     finding("NB0350", span, message, "the first too many", help).rule("CMB-12")
 }
 
-/// The finding that there is no constant register left.
+/// Makes the finding that there is no constant register left.
 pub(super) fn too_many_constants(profile: Profile, span: Span) -> Diagnostic {
     let (message, help) = match profile {
         Profile::Nv10 => (
@@ -428,12 +428,13 @@ pub(super) fn too_many_constants(profile: Profile, span: Span) -> Diagnostic {
     finding("NB0351", span, message, "the third is read here", help).rule("CMB-12")
 }
 
+/// Returns the input that is 1.
 pub(super) fn one(alpha: bool) -> CombinerInput {
     let component = if alpha { Component::Alpha } else { Component::Rgb };
     CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(component) }
 }
 
-/// The colour, perhaps with the secondary colour added: alone in D, or blended with the fog colour by A.
+/// Makes the final combiner. It outputs the colour, to which the secondary colour may be added: in D alone, or blended with the fog colour by A.
 pub(super) fn final_combiner(end: End, alpha_is_blue: bool, constants: [[u8; 4]; 2]) -> FinalCombiner {
     let input = |register, component| FinalInput { register, component, invert: false };
     let zero = FinalInput::zero(Component::Rgb);

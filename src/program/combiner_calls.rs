@@ -1,4 +1,4 @@
-//! Register combiners as the calls of OpenGL that set them, pasted: NV_register_combiners and NV_register_combiners2.
+//! Reads register combiners as pasted OpenGL calls of NV_register_combiners and NV_register_combiners2.
 
 use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, table, whole};
 use super::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
@@ -20,19 +20,19 @@ static COMBINERS: Vocabulary = Vocabulary {
     what: "the register combiners",
 };
 
-/// What the calls say.
+/// A program read from calls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// The program, in the chip's own terms.
+    /// The program as state of the chip.
     pub combiners: Combiners,
-    /// Where their parts stand.
+    /// Places of its parts in the text.
     pub places: Places,
 }
 
-/// Reads the text over the API's initial state. What a chip allows of it is for [`legality::check`](ninebit::legality::check) to say.
+/// Reads the text, starting from the API's initial state. [`legality::check`](ninebit::legality::check) decides what a chip allows of it.
 ///
 /// # Errors
-/// Everything that is not a statement, or sets something that the API does not have.
+/// Findings about whatever is not a statement, or sets something that the API does not have.
 pub fn parse(text: &str) -> Result<Pasted<Program>, Vec<Diagnostic>> {
     let most = Profile::Nv2a.general_stages();
     let mut parser = Parser {
@@ -58,15 +58,15 @@ struct Parser<'t> {
     reader: Reader<'t>,
     stages: Vec<GeneralStage>,
     last: FinalCombiner,
-    /// The value of NUM_GENERAL_COMBINERS.
+    /// Value of NUM_GENERAL_COMBINERS.
     count: usize,
     /// The first call about each stage.
     touched: Vec<Option<Span>>,
-    /// Where PER_STAGE_CONSTANTS is enabled.
+    /// Place where PER_STAGE_CONSTANTS is enabled.
     per_stage: Option<Span>,
-    /// The first constant of a stage.
+    /// Place of the first call that sets a stage's own constant.
     own: Option<Span>,
-    /// Where parts stand; of a part that is written twice the last place counts.
+    /// Places of parts; of a part that is written twice the last one counts.
     places: Vec<(Place, Span)>,
 }
 
@@ -77,7 +77,7 @@ const MAPPINGS: &str = "UNSIGNED_IDENTITY UNSIGNED_INVERT EXPAND_NORMAL EXPAND_N
 const COMPONENTS: &[(&str, Component)] =
     &[("RGB", Component::Rgb), ("ALPHA", Component::Alpha), ("BLUE", Component::Blue)];
 const VARIABLES: &str = "VARIABLE_A VARIABLE_B VARIABLE_C VARIABLE_D VARIABLE_E VARIABLE_F VARIABLE_G";
-/// Parameters: the two constants by their number, and others.
+/// Parameters: the two constants with their numbers, and others.
 const PARAMETERS: &[(&str, usize)] = &[
     ("CONSTANT_COLOR0", 0),
     ("CONSTANT_COLOR1", 1),
@@ -94,13 +94,13 @@ const SCALES: &[(&str, Scale)] = &[
 ];
 const BIASES: &[(&str, Bias)] = &[("NONE", Bias::None), ("BIAS_BY_NEGATIVE_ONE_HALF", Bias::NegativeHalf)];
 
-/// The variables by number.
+/// Returns the variables with their numbers.
 fn variables() -> Vec<(&'static str, usize)> {
     VARIABLES.split(' ').zip(0..).collect()
 }
 
 impl<'t> Parser<'t> {
-    /// One call; `None` once the reason that it sets nothing has been recorded.
+    /// Processes one call. Returns `None` after recording what is wrong.
     fn call(&mut self, name: &Span, arguments: &[Value<'t>]) -> Option<()> {
         let function = self.reader.word(name);
         let wanted = match function {
@@ -142,14 +142,14 @@ impl<'t> Parser<'t> {
     fn enable(&mut self, name: &Span, value: &Value<'t>, enable: bool) {
         match bare(self.reader.word(&value.span), &[]) {
             "PER_STAGE_CONSTANTS" => self.per_stage = enable.then(|| value.span.clone()),
-            // The program is the combiners, whatever follows it.
+            // The program is that of the combiners in any case.
             "REGISTER_COMBINERS" => {}
             _ => capability(&mut self.reader, name, value, enable),
         }
     }
 
     fn parameter(&mut self, function: &str, parameter: &Value<'t>, value: &Value<'t>) -> Option<()> {
-        // A pointer to one value is the value.
+        // A vector call takes a pointer to one value, which stands for that value.
         let one = self.reader.list(value).and_then(|values| values.first()).filter(|_| is_vector(function)).cloned();
         match choose(parameter, "parameter of the combiners", PARAMETERS, &mut self.reader.findings)? {
             NUM_GENERAL_COMBINERS => {
@@ -185,7 +185,7 @@ impl<'t> Parser<'t> {
         Some(index)
     }
 
-    /// The stage and whether its alpha is meant.
+    /// Reads the stage, and whether its alpha portion is meant.
     fn portion(&mut self, name: &Span, stage: &Value<'t>, portion: &Value<'t>) -> Option<(usize, bool)> {
         let stage = self.stage(name, stage)?;
         let alpha = choose(portion, "portion", &[("RGB", false), ("ALPHA", true)], &mut self.reader.findings)?;
@@ -201,7 +201,7 @@ impl<'t> Parser<'t> {
         self.places.push((Place::General { stage, alpha, part }, value.span.clone()));
     }
 
-    /// A register of a general stage.
+    /// Reads a register of a general stage.
     fn register(&mut self, value: &Value<'t>) -> Option<Register> {
         let register = choose(value, "register", &table(REGISTERS), &mut self.reader.findings)?;
         if matches!(register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF) {
@@ -212,7 +212,7 @@ impl<'t> Parser<'t> {
         Some(ninebit::combiner::final_combiner::general(register))
     }
 
-    /// An input of a portion: the variable, the register, its mapping, its components.
+    /// Sets an input of a portion: variable, register, mapping and components.
     fn input(&mut self, portion: (usize, bool), values: [&Value<'t>; 4]) -> Option<()> {
         let [variable, input, mapping, usage] = values;
         let n = choose(variable, "variable of a general stage", &variables()[..4], &mut self.reader.findings);
@@ -226,7 +226,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    /// AB, CD, sum, scale, bias, AB dot, CD dot, mux.
+    /// Sets the outputs of a portion: AB, CD, sum, scale, bias, AB dot, CD dot, mux.
     fn output(&mut self, portion: (usize, bool), outputs: &[Value<'t>]) -> Option<()> {
         let [ab, cd, sum, scale, bias, ab_dot, cd_dot, mux] = outputs else { return None };
         let registers = [ab, cd, sum].map(|value| match bare(self.reader.word(&value.span), &[]) {
@@ -259,7 +259,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    /// The same of the final combiner.
+    /// Sets an input of the final combiner.
     fn final_input(&mut self, [variable, input, mapping, usage]: [&Value<'t>; 4]) -> Option<()> {
         let findings = &mut self.reader.findings;
         let n = choose(variable, "variable of the final combiner", &variables(), findings);
@@ -299,7 +299,7 @@ impl<'t> Parser<'t> {
             self.reader.pass(span, "GL_PER_STAGE_CONSTANTS_NV", message, "passed over", help);
         }
         let mut places = Places::default();
-        // The first that is found is the last that was written.
+        // `Places` returns the first place that was set, so the last one written goes first.
         for (part, span) in self.places.into_iter().rev() {
             if self.per_stage.is_some() || !matches!(part, Place::StageConstants(_)) {
                 places.set(part, span);
@@ -318,17 +318,17 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// The name of a mapping, without `GL_` and `_NV`.
+/// Returns the name of a mapping, without `GL_` and `_NV`.
 pub fn mapping_name(mapping: InputMapping) -> &'static str {
     MAPPINGS.split(' ').nth(mapping as usize).unwrap_or_default()
 }
 
-/// The name of a bias, likewise.
+/// Returns the name of a bias, without `GL_` and `_NV`.
 pub fn bias_name(bias: Bias) -> &'static str {
     BIASES.iter().find(|(_, known)| *known == bias).map_or("", |(name, _)| *name)
 }
 
-/// OpenGL's words in findings about legality.
+/// OpenGL's notation for findings about legality.
 #[derive(Clone, Copy, Debug)]
 pub struct Words;
 

@@ -3,23 +3,23 @@
 use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 
-/// A value and the bytes of the program's text that gave it.
+/// A value with its place in the text of the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// What was read.
+    /// The value.
     pub value: T,
-    /// Its place; empty if nothing was written.
+    /// Its range of bytes; empty if it was not written.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// What holds where nothing is written.
+    /// Wraps the default of a value that is not written.
     pub fn default_of(value: T) -> Spanned<T> {
         Spanned { value, span: 0..0 }
     }
 }
 
-/// An error about a part of a text: what is wrong, what is said under the part, and what to do.
+/// Makes an error about a part of a text: what is wrong, the label under the part, and what to do.
 pub fn finding(
     code: &'static str,
     span: impl Into<Option<Span>>,
@@ -30,7 +30,7 @@ pub fn finding(
     Diagnostic::error(code, span, message).label(label).help(help)
 }
 
-/// A [`finding`] that is a warning.
+/// Makes a warning about a part of a text, like [`finding`].
 pub fn warning(
     code: &'static str,
     span: Span,
@@ -41,7 +41,7 @@ pub fn warning(
     Diagnostic::warning(code, span, message).label(label).help(help)
 }
 
-/// The header that a text of OpenGL's languages begins with: `!!RC1.0`.
+/// Returns the place of the header `!!...` that texts of OpenGL's languages begin with, if there is one.
 pub(super) fn header(text: &str) -> Option<Span> {
     let rest = text.trim_start();
     let start = text.len() - rest.len();
@@ -49,8 +49,8 @@ pub(super) fn header(text: &str) -> Option<Span> {
     rest.starts_with("!!").then_some(start..start + length)
 }
 
-/// The finding that a text begins as one of another language does. `code`: of the language that was expected; `otherwise`: what to do if the
-/// other one is not known.
+/// Makes the finding that a text begins like one of another language. `code` is that of the expected language; `otherwise` is the help if the
+/// other language is unknown.
 pub(super) fn foreign(text: &str, span: Span, code: &'static str, otherwise: &str) -> Diagnostic {
     let header = text.get(span.clone()).unwrap_or("");
     let known: [(&str, &str, &str); 6] = [

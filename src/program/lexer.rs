@@ -1,15 +1,15 @@
-//! Words, numbers, texts and signs: what every language of programs is made of.
+//! Splits texts into tokens: words, numbers, texts and signs, for every language of programs.
 
 use crate::Span;
 
-/// What a token is; its text is in its place.
+/// Kind of a token; its text is found by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Letters, digits and underscores, not starting with a digit; or a version, `ps.1.1`.
     Word,
-    /// Starts with a digit, or with a point and a digit; no sign before it.
+    /// Starts with a digit, or with a point and a digit; has no sign.
     Number,
-    /// Between quotes, with them.
+    /// A text in quotes, including the quotes.
     Text,
     /// `->`
     Arrow,
@@ -17,25 +17,25 @@ pub(super) enum Kind {
     Sign(char),
 }
 
-/// A token and its bytes.
+/// A token with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Token {
     pub(super) kind: Kind,
     pub(super) span: Span,
-    /// The first of its line.
+    /// Whether it is the first token of its line.
     pub(super) first: bool,
 }
 
-/// A language, as far as its tokens go. Comments of C belong to all.
+/// The lexical rules of a language. All languages have the comments of C.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Language {
-    /// What else begins a comment that ends with its line.
+    /// Sign that begins a comment to the end of the line, besides `//`.
     comment: Option<char>,
-    /// `ps.1.1` is one word.
+    /// Whether versions such as `ps.1.1` are one word.
     versions: bool,
-    /// Numbers take the letters and points behind them along: `0x3f80`, `0.5f`, `1UL`, and what is no number at all.
+    /// Whether numbers include all letters and points that follow them: `0x3f80`, `0.5f`, `1UL`, and malformed numbers.
     greedy_numbers: bool,
-    /// There are texts between quotes, and arrows.
+    /// Whether there are texts in quotes, and arrows.
     c: bool,
 }
 
@@ -52,17 +52,17 @@ impl Language {
     pub(super) const C: Language = Language { comment: None, versions: false, greedy_numbers: true, c: true };
 }
 
-/// What a text is made of. Comments and spaces are left out.
+/// The tokens of a text, without comments and spaces.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Tokens {
     pub(super) tokens: Vec<Token>,
-    /// Where a comment is opened that does not end.
+    /// Place where a comment is opened that does not end.
     pub(super) unclosed: Option<Span>,
-    /// Comments that begin with the language's own sign, without it.
+    /// Comments that begin with the language's own sign, without that sign.
     pub(super) comments: Vec<Span>,
 }
 
-/// Takes a text apart.
+/// Splits a text into tokens.
 pub(super) fn tokens(text: &str, language: Language) -> Tokens {
     let (mut tokens, mut unclosed, mut comments) = (Vec::new(), None, Vec::new());
     let (mut at, mut first) = (0, true);
@@ -120,7 +120,7 @@ fn token(rest: &str, c: char, language: Language) -> (Kind, usize) {
     (Kind::Sign(c), c.len_utf8())
 }
 
-/// Bytes of a number: digits, a fraction, an exponent, the `f` of C.
+/// Returns the length of a number: digits, a fraction, an exponent, the `f` of C.
 fn number(rest: &str) -> usize {
     let digits = |text: &str| length(text, |c| c.is_ascii_digit());
     let mut end = digits(rest);
@@ -131,7 +131,7 @@ fn number(rest: &str) -> usize {
     end + usize::from(rest[end..].starts_with(['f', 'F']))
 }
 
-/// Bytes of an exponent; 0 if there is none.
+/// Returns the length of an exponent; 0 if there is none.
 fn exponent(rest: &str) -> usize {
     let Some(power) = rest.strip_prefix(['e', 'E']) else { return 0 };
     let sign = usize::from(power.starts_with(['+', '-']));
@@ -148,7 +148,7 @@ fn greedy(rest: &str) -> usize {
     length(rest, inside)
 }
 
-/// Bytes of a text with its quotes, which it ends with, or with its line.
+/// Returns the length of a text in quotes, including the quotes. Without a closing quote it ends with its line.
 fn quoted(rest: &str) -> usize {
     let mut escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
@@ -161,7 +161,7 @@ fn quoted(rest: &str) -> usize {
     rest.len()
 }
 
-/// Bytes of the characters at the front that are `part` of a token.
+/// Returns the length in bytes of the characters at the front of `text` for which `part` holds.
 pub(super) fn length(text: &str, part: impl Fn(char) -> bool) -> usize {
     text.find(|c| !part(c)).unwrap_or(text.len())
 }

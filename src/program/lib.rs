@@ -1,6 +1,6 @@
-//! Programs in the languages that people have them in. Pixel programs of each become the same [`Combiners`](ninebit::state::Combiners).
+//! Reads and prints programs in several languages. Pixel programs of all of them become [`Combiners`](ninebit::state::Combiners).
 //!
-//! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
+//! * [`text`]: general stages and final combiner as statements (`docs/combiner-language.md`).
 //! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/programs.md`).
 //! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
@@ -8,10 +8,10 @@
 //!   turns equations into general stages.
 //! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
 //! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/vertex-shader.md`).
-//! * [`legality`](ninebit::legality): what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
-//!   stand ([`Places`]) and what its words are ([`Notation`](ninebit::legality::Notation)).
+//! * [`legality`](ninebit::legality): what the chip allows (CMB-12), which is the same for every language. A language adds the places of a
+//!   program's parts ([`Places`]) and its own words for them ([`Notation`](ninebit::legality::Notation)).
 //!
-//! Nothing here knows scenes or files.
+//! This crate knows neither scenes nor files.
 
 pub mod c_source;
 mod calls;

@@ -1,6 +1,6 @@
-//! What was probably meant by a word that nobody knows.
+//! Finds the known word that was probably meant by an unknown one.
 
-/// The candidate most like `word`, if any is like it at all.
+/// Returns the candidate that is most similar to `word`, if any is similar enough.
 pub fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     if word.len() > 64 {
         return None;
@@ -15,7 +15,7 @@ pub fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n str>) ->
         let distance = if begun { Some(1) } else { distance(&letters, &like, allowed) };
         if let Some(distance) = distance.filter(|distance| *distance <= allowed) {
             best = Some(candidate);
-            // Of those that are equally like it the first is meant.
+            // Of equally similar candidates the first wins.
             let Some(nearer) = distance.checked_sub(1) else { break };
             allowed = nearer;
         }
@@ -23,7 +23,7 @@ pub fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n str>) ->
     best
 }
 
-/// Levenshtein distance, a swap of neighbours counting two; `None` if it is more than `most`.
+/// Returns the Levenshtein distance, in which a swap of neighbours counts two; `None` if it is more than `most`.
 fn distance(a: &[char], b: &str, most: usize) -> Option<usize> {
     let b: Vec<char> = b.chars().collect();
     if a.len().abs_diff(b.len()) > most {
@@ -31,7 +31,7 @@ fn distance(a: &[char], b: &str, most: usize) -> Option<usize> {
     }
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.iter().enumerate() {
-        // Places further from the diagonal are further than `most`.
+        // Cells further from the diagonal hold more than `most`.
         let (from, to) = (i.saturating_sub(most), b.len().min(i + most + 1));
         let mut diagonal = row[from];
         row[from] = if from == 0 { i + 1 } else { most + 1 };

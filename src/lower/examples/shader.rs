@@ -1,4 +1,4 @@
-//! A combiner program as a function of GLSL, for an emulator that compiles a shader for each program.
+//! Prints a combiner program as a GLSL function, for an emulator that compiles a shader for each program.
 //!
 //! `cargo run -p ninebit-lower --example shader`
 

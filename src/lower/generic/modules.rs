@@ -1,4 +1,4 @@
-//! The steps of a pixel as modules of Verilog, a module each: all cases are computed side by side, and the field chooses.
+//! Prints each step of a pixel as a Verilog module, which computes all cases in parallel and selects one by the field.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ use crate::language::{Body, Language, ROUNDING, port};
 pub(super) fn verilog(generic: &Generic) -> String {
     let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
     out.push_str("// A module for each step of a pixel. What chooses a case is the field of the register's word.\n");
-    // Three channels are three instances.
+    // Pieces for three channels are left out: a user instantiates the module of one channel three times.
     for piece in pieces(generic.policies).iter().filter(|piece| piece.each.is_none()) {
         out.push('\n');
         out.push_str(&module(piece));
@@ -20,7 +20,7 @@ pub(super) fn verilog(generic: &Generic) -> String {
     out
 }
 
-/// The numbers that a case is given, in the order in which it reads them.
+/// Returns the local inputs of a case, in the order in which it reads them.
 fn given(case: &Case) -> impl Iterator<Item = Local> {
     case.lines.iter().filter_map(|line| match line.operation {
         Operation::Input(crate::Input::Local(local)) => Some(local),
@@ -31,7 +31,7 @@ fn given(case: &Case) -> impl Iterator<Item = Local> {
 fn module(piece: &Piece) -> String {
     let syntax = Language::Verilog.syntax();
     let array = piece.array.map(|array| array.split('[').next().unwrap_or(array));
-    // An array is a port for each of its values.
+    // Each value of an array has a port.
     let result = |n: usize| array.map_or_else(|| "result".to_string(), |array| format!("{array}{n}"));
     let results = piece.cases.first().map_or(0, |case| case.results.len());
     let locals: BTreeSet<Local> = piece.cases.iter().flat_map(given).collect();
@@ -62,7 +62,7 @@ fn module(piece: &Piece) -> String {
     }
     for n in 0..results {
         let mut chosen = String::new();
-        // As elsewhere, the first case is that of every other code, too.
+        // As in the other languages, the first case also stands for every other code.
         for case in piece.cases.iter().skip(1) {
             if let Some(name) = piece.chooses {
                 let _ = write!(chosen, "{name} == {bits}'h{:x} ? case_{:x}.yields{n} : ", case.value, case.value);

@@ -1,4 +1,5 @@
-//! The rules of the generic text, a piece each: what the order makes of given values, once for every value of the field that chooses.
+//! The pieces of the generic text: each prints a rule by reading the order of a pixel with given values, once for every value of the field that
+//! selects.
 
 use ninebit::algebra::{Algebra, Site};
 use ninebit::combiner::registers::Registers;
@@ -16,44 +17,44 @@ use crate::order::{Block, Listing};
 /// A function of the generic text.
 #[derive(Debug)]
 pub(super) struct Piece {
-    /// What it does, for its comment.
+    /// Comment of the function: what it does.
     pub(super) about: &'static str,
     pub(super) name: &'static str,
-    /// The parameter that chooses a case; none, if there is one case.
+    /// Parameter that selects a case; `None` if there is only one case.
     pub(super) chooses: Option<&'static str>,
-    /// The other parameters as text.
+    /// The other parameters, as text.
     pub(super) parameters: &'static str,
-    /// Where the results go: one value that is returned, or an array.
+    /// Array that holds the results; `None` if a single value is returned.
     pub(super) array: Option<&'static str>,
-    /// The array holds what is given, and each of these channels becomes what the case says.
+    /// If the array holds the inputs as well, the number of channels, to each of which the case is applied.
     pub(super) each: Option<usize>,
     pub(super) kind: Kind,
     pub(super) cases: Vec<Case>,
 }
 
-/// A piece of one case that returns a number.
+/// Makes a piece with a single case that returns a number.
 fn piece(name: &'static str, about: &'static str, parameters: &'static str, cases: Vec<Case>) -> Piece {
     Piece { about, name, chooses: None, parameters, array: None, each: None, kind: Kind::Number, cases }
 }
 
 impl Piece {
-    /// With a case for each value of a parameter.
+    /// Sets the parameter that selects a case.
     fn by(self, parameter: &'static str) -> Piece {
         Piece { chooses: Some(parameter), ..self }
     }
 
-    /// With results that go to an array.
+    /// Sets the array that holds the results.
     fn filling(self, array: &'static str) -> Piece {
         Piece { array: Some(array), ..self }
     }
 
-    /// That changes so many channels of an array, each by itself.
+    /// Sets the array whose channels are changed one by one, and their number.
     fn changing(self, array: &'static str, each: usize) -> Piece {
         Piece { array: Some(array), each: Some(each), ..self }
     }
 }
 
-/// What comes out where the field has this value.
+/// A case: the code for one value of the field that selects.
 #[derive(Debug)]
 pub(super) struct Case {
     pub(super) value: u32,
@@ -63,11 +64,11 @@ pub(super) struct Case {
     pub(super) range: Range,
 }
 
-/// A register as stages write it.
+/// The range of a register that stages write.
 const REGISTER: Range = (-256, 255);
 /// The range of a byte.
 const BYTE: Range = (0, 255);
-/// An input of the final combiner: SPARE0 + SECONDARY can be as much (FIN-3).
+/// The range of an input of the final combiner: SPARE0 + SECONDARY goes up to 510 (FIN-3).
 const FINAL: Range = (0, 510);
 
 const A: [&str; 3] = ["a[0]", "a[1]", "a[2]"];
@@ -77,11 +78,11 @@ const SOURCE: [&str; 4] = ["source[0]", "source[1]", "source[2]", "source[3]"];
 const DESTINATION: [&str; 4] = ["destination[0]", "destination[1]", "destination[2]", "destination[3]"];
 const CONSTANT: [&str; 4] = ["constant[0]", "constant[1]", "constant[2]", "constant[3]"];
 
-/// Reads a rule for one value of a field.
+/// Reads a rule for one value of a field, and writes down its code.
 struct Reader<'a> {
     code: &'a Code,
     listing: Listing<'a>,
-    /// Sums are halved so often: twice where factors come in halves.
+    /// Number of times that all sums are halved: two if factors are in steps of a half, otherwise none.
     halvings: u32,
 }
 
@@ -103,19 +104,19 @@ impl<'a> Reader<'a> {
         Factor { value, halves: self.halvings > 0 }
     }
 
-    /// A register by its mapping, in halves where factors come in halves.
+    /// Maps a register's value. The result is in steps of a half if other factors are.
     fn mapped(&mut self, mapping: InputMapping, x: Number<'a>) -> Number<'a> {
         let factor = self.listing.map(mapping, x);
         let whole = self.halvings > 0 && !factor.halves;
         if whole { factor.value.multiplied(Number::Constant(2)) } else { factor.value }
     }
 
-    /// A sum in the steps that all of them have.
+    /// Returns a sum in the steps that all sums have.
     fn sum(&self, sum: Sum<'a>) -> Number<'a> {
         sum.alike(Sum { value: Number::Constant(0), halvings: self.halvings })[0].value
     }
 
-    /// 1 where the test holds.
+    /// Returns 1 if the test holds, otherwise 0.
     fn holds(&self, test: Test) -> Number<'a> {
         match self.code.decided(test) {
             Some(holds) => Number::Constant(holds.into()),
@@ -124,7 +125,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Makes pieces under policies.
+/// Makes pieces for the given policies.
 struct Maker {
     policies: Policies,
     block: Block,
@@ -144,7 +145,7 @@ impl Maker {
         Case { value, name: name.to_string(), lines, results: results.into_iter().map(renamed).collect(), range }
     }
 
-    /// A case for a flag that is not set, and one where it is.
+    /// Makes two cases: a flag that is not set, and one that is.
     fn flagged(
         &self,
         [no, yes]: [&str; 2],
@@ -153,7 +154,7 @@ impl Maker {
         vec![self.case(0, no, |reader| of(reader, false)), self.case(1, yes, |reader| of(reader, true))]
     }
 
-    /// A case for each value of a field.
+    /// Makes a case for each value of a field.
     fn cases<T: Named + 'static>(
         &self,
         value: impl Fn(T) -> u32,
@@ -163,23 +164,24 @@ impl Maker {
     }
 }
 
+/// Returns the range of the results of all cases.
 fn range(cases: &[Case]) -> Range {
     cases.iter().fold((i64::MAX, i64::MIN), |all, case| (all.0.min(case.range.0), all.1.max(case.range.1)))
 }
 
-/// All pieces, in the order in which a pixel passes them.
+/// Returns all pieces, in the order in which a pixel passes through them.
 pub(super) fn pieces(policies: Policies) -> Vec<Piece> {
     let mut pieces = combiners(&Maker { policies, block: Block::Piece });
     pieces.extend(raster(&Maker { policies, block: Block::Raster }));
     pieces
 }
 
-/// What each mapping makes of each value of a register, from -256 to 255: the rule, read with that value.
+/// Returns the result of each mapping for each value of a register, from -256 to 255, by reading the rule with that value.
 pub(super) fn mapped(policies: Policies) -> Vec<Vec<i64>> {
     let maker = Maker { policies, block: Block::Piece };
     let one = |mapping: InputMapping, x: i64| {
         let case = maker.case(0, "", |reader| vec![reader.mapped(mapping, Number::Constant(x))]);
-        // Of a constant comes a constant.
+        // The result of a constant is a constant.
         case.range.0
     };
     InputMapping::ALL.iter().map(|mapping| (REGISTER.0..=REGISTER.1).map(|x| one(*mapping, x)).collect()).collect()
@@ -349,14 +351,14 @@ fn raster(maker: &Maker) -> Vec<Piece> {
     ]
 }
 
-/// A write of a stage: the output, and the channel, or blue of it to alpha.
+/// A write of a stage: a channel of an output, or the blue of an output to alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Write {
     Channel { output: usize, channel: usize },
     BlueToAlpha { output: usize },
 }
 
-/// The writes of a stage in their order, as CMB-1 and CMB-11 have it. Channel 3 is that of the alpha portion.
+/// Returns the writes of a stage in the order of CMB-1 and CMB-11. Channel 3 is that of the alpha portion.
 pub(super) fn writes() -> Vec<Write> {
     let code = Code::default();
     let mut listing = Listing::new(&code, Policies::DEFAULT);
@@ -400,7 +402,7 @@ pub(super) fn writes() -> Vec<Write> {
         .collect()
 }
 
-/// What SPARE0 holds before the first stage (CMB-13): for each channel the channel of TEXTURE0 that it is, or none: 0.
+/// Returns what SPARE0 holds before the first stage (CMB-13): for each channel, the channel of TEXTURE0 that it copies, or `None` if it is 0.
 pub(super) fn initial_spare0() -> [Option<usize>; 4] {
     let mut program = Combiners { stages: Vec::new(), ..Combiners::default() };
     program.final_combiner.inputs[3].register = FinalRegister::Spare0;

@@ -1,4 +1,4 @@
-//! The generic text: pieces as functions, and what calls them.
+//! Prints the generic text: pieces as functions, and the functions that call them.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use super::{Generic, Sources};
 use crate::code::Kind;
 use crate::language::{Body, Language, ROUNDING, Syntax};
 
-/// What of the text differs between the two languages, C and GLSL. The text is written with the words on the left.
+/// Words in which C and GLSL differ. The text is written with the words on the left; C and GLSL replace them by those on the right.
 const WORDS: [(&str, [&str; 2]); 16] = [
     ("@flatten", ["NB_FLATTEN ", ""]),
     ("@fn ", ["static inline ", ""]),
@@ -33,14 +33,14 @@ const WORDS: [(&str, [&str; 2]); 16] = [
     ("@public ", ["", ""]),
 ];
 
-/// The words that a chip has: name, how many, first method.
+/// Returns the words that a chip has: name, number of words, method of the first.
 pub(super) fn words(chip: Profile) -> impl Iterator<Item = (&'static str, usize, u32)> {
     let words = Word::ALL.iter().map(move |word| (word.name(), word.count(chip), word.method(chip)));
     let raster = raster::Method::ALL.iter().map(|method| (method.name(), 1, method.number()));
     words.chain(raster).filter(|(_, count, _)| *count > 0)
 }
 
-/// How inputs are mapped: shaders compute, a processor is faster with a table.
+/// How inputs are mapped: shaders compute the mapping, but on a processor a table is faster.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mapped {
     Computed,
@@ -122,12 +122,12 @@ const GLSL_INPUTS: &str = "    ivec4 primary;    /* interpolated diffuse, 0 to 2
     uint destination; /* the word that the surface holds */
 ";
 
-/// The text in C (0) or in GLSL (1).
+/// Translates the text into C (0) or GLSL (1).
 fn translated(text: &str, language: usize) -> String {
     WORDS.iter().fold(unrolled(text), |text, (word, words)| text.replace(word, words[language]))
 }
 
-/// Statements for each of R, G and B, one below the other: compilers leave such loops as they are, and take a third more time.
+/// Unrolls loops over R, G and B: compilers do not unroll them, which costs a third more time.
 fn unrolled(text: &str) -> String {
     const LOOP: &str = "for (@int c = 0; c < 3; c++) ";
     let mut out = String::with_capacity(2 * text.len());
@@ -142,12 +142,12 @@ fn unrolled(text: &str) -> String {
     out
 }
 
-/// The code of a register as text.
+/// Returns the code of a register.
 fn code(register: FinalRegister) -> u32 {
     register_code(register)
 }
 
-/// A field of a word.
+/// Returns an expression for a field of a word.
 fn field(word: &str, field: Field) -> String {
     match (field.shift, field.shift + field.bits) {
         (0, _) => format!("{word} & {}u", field.most()),
@@ -156,7 +156,7 @@ fn field(word: &str, field: Field) -> String {
     }
 }
 
-/// Whether a field is not 0.
+/// Returns a condition that a field is not 0.
 fn is_set(word: &str, name: Field) -> String {
     format!("({}) != 0u", field(word, name))
 }
@@ -195,7 +195,7 @@ impl Printer<'_> {
         out + "    default: return 0;\n    }\n}\n\n"
     }
 
-    /// All functions, in an order in which each is declared before it is called.
+    /// Returns all functions, each declared before it is called.
     fn body(&self, inputs: Mapped) -> String {
         let mut out = String::new();
         for piece in pieces(self.generic.policies) {
@@ -213,7 +213,7 @@ impl Printer<'_> {
         out + "\n"
     }
 
-    /// A piece as a function.
+    /// Prints a piece as a function.
     fn piece(&self, piece: &Piece) -> String {
         let kind = if piece.kind == Kind::Word { "@uint" } else { "@int" };
         let mut parameters: Vec<String> = piece.chooses.iter().map(|name| format!("@uint {name}")).collect();
@@ -237,7 +237,7 @@ impl Printer<'_> {
             }
             let _ = writeln!(out, "    switch ({chooses}) {{");
         }
-        // Equal cases stand together.
+        // Cases with equal code are printed together.
         let mut groups: Vec<(Vec<&Case>, Vec<String>)> = Vec::new();
         for case in &piece.cases {
             let lines = self.statements(piece, case, &place);
@@ -272,7 +272,7 @@ impl Printer<'_> {
         out + "}\n\n"
     }
 
-    /// Inputs by their mapping as a table.
+    /// Prints the piece that maps inputs as a table.
     fn table(&self, piece: &Piece) -> String {
         let rows = mapped(self.generic.policies);
         let mut out = format!(
@@ -293,7 +293,7 @@ impl Printer<'_> {
         out + "};\n\n"
     }
 
-    /// What a case does.
+    /// Returns the statements of a case.
     fn statements(&self, piece: &Piece, case: &Case, place: &impl Fn(usize) -> String) -> Vec<String> {
         let body = Body::from_lines(self.syntax, &case.lines, &case.results, &[]);
         let declares = !body.declarations.is_empty() && piece.chooses.is_some();
@@ -302,7 +302,7 @@ impl Printer<'_> {
             let (value, rules) = body.result(self.syntax, *result, piece.kind);
             let comment = if rules.is_empty() { String::new() } else { format!(" /* {rules} */") };
             let equals = if piece.array.is_none() && piece.chooses.is_none() { "" } else { " =" };
-            // What stays as it is need not be said.
+            // A value that does not change needs no assignment.
             if place(n) != value {
                 inner.push(format!("{}{equals} {value};{comment}", place(n)));
             }
@@ -327,14 +327,14 @@ impl Printer<'_> {
         out
     }
 
-    /// The word with the number of stages.
+    /// Returns an expression for the word with the number of stages.
     fn config(&self) -> String {
         let chip = self.generic.chip;
         let (word, index) = layout::config(chip);
         if word.count(chip) > 1 { format!("@s.{}[{index}]", word.name()) } else { format!("@s.{}", word.name()) }
     }
 
-    /// A general stage.
+    /// Prints the function of a general stage.
     fn stage(&self) -> String {
         let by_most = field(&self.config(), layout::mux_by_msb(self.generic.chip));
         let [ab, cd, sum] = layout::OUTPUTS;
@@ -388,14 +388,14 @@ impl Printer<'_> {
             let (operation, raw) = (field(word, layout::OPERATION), ["ab", "cd", "third"][output]);
             if open != Some((output, is_alpha)) {
                 out.push_str(if open.is_some() { "    }\n" } else { "" });
-                // Where a portion of alphas is idle, as in many stages, that is asked once.
+                // The alpha portion is idle in many stages, so that is tested once for all of its outputs.
                 match (open.is_some_and(|(_, alphas)| alphas), is_alpha) {
                     (false, true) => out.push_str(&any_alpha),
                     (true, false) => out.push_str("    }\n"),
                     _ => {}
                 }
                 let _ = writeln!(out, "    if (({destination}) != 0u) {{");
-                // A dot product is the same in each channel.
+                // The channels of a dot product are equal.
                 match layout::DOT_PRODUCTS.get(output).filter(|_| !is_alpha) {
                     Some(dot) => {
                         let _ = write!(
@@ -425,7 +425,7 @@ impl Printer<'_> {
         out + closes
     }
 
-    /// The constants of a stage, or of the final combiner, where they are not the last ones.
+    /// Prints the loading of the constants of a stage, or of the final combiner, which is skipped if they have not changed.
     fn constants(&self, stage: bool, indent: &str) -> String {
         let chip = self.generic.chip;
         let mut out = String::new();
@@ -447,7 +447,7 @@ impl Printer<'_> {
         out
     }
 
-    /// From inputs to the fragment.
+    /// Prints the function from inputs to the fragment.
     fn fragment(&self) -> String {
         let given = [
             (FinalRegister::PrimaryColor, "@i.primary[c]"),
@@ -459,7 +459,7 @@ impl Printer<'_> {
             (FinalRegister::Texture3, "@i.texture[3][c]"),
         ];
         let (chip, config) = (self.generic.chip, self.config());
-        // All bits where each stage has constants of its own, none where all have those of the first.
+        // All bits are set if each stage has its own constants, and none if all stages have those of the first.
         let [own0, own1] = layout::OWN_CONSTANTS.map(|each| field(&config, each));
         let own = format!("    @in @uint own0 = 0u - ({own0}), own1 = 0u - ({own1});\n");
         let mut out = format!(
@@ -494,7 +494,7 @@ impl Printer<'_> {
         let [e, f, g, _] = layout::BYTES.map(|byte| field("final1", byte));
         let [a, b, c, d] = layout::BYTES.map(|byte| field("final0", byte));
         let inverted = |register: u32, by: Field| format!("nb_final_input({}, r[{register}][c])", field("final1", by));
-        // The bits that both codes have, and no other register has all of.
+        // The bits that both codes have; no other register has all of them.
         let both = layout::REGISTER.put(sum & product);
         let lowest = layout::BYTES.iter().fold(0, |all, byte| all | byte.put(both & both.wrapping_neg()));
         let others = (1..both.count_ones()).map(|n| format!("final0 >> {n} & ")).collect::<String>();
@@ -519,7 +519,7 @@ impl Printer<'_> {
     }
 }
 
-/// What inputs read.
+/// Prints the functions that read inputs.
 fn operands(inputs: Mapped) -> String {
     let channel = |is_alpha: bool, portion_alpha: bool, own: usize| {
         component_channel(component(layout::ALPHA.put(is_alpha.into()), portion_alpha), own)
@@ -529,7 +529,7 @@ fn operands(inputs: Mapped) -> String {
     let is_alpha = is_set("byte", layout::ALPHA);
     let (mapping, invert) = (field("byte", layout::MAPPING), field("byte", layout::INVERT));
     let one = format!("r[{register}][{is_alpha} ? {alpha} : {blue}]");
-    // An RGB portion's input: `of` is what stands for a channel.
+    // The input of an RGB portion, where `of` returns the expression for a channel.
     let all = |of: &dyn Fn(&str) -> String| {
         let each = |channel: &str| format!("for (@int c = 0; c < 3; c++) x[c] = {};", of(channel));
         let (same, own) = (each(&alpha.to_string()), each("c"));
@@ -537,7 +537,7 @@ fn operands(inputs: Mapped) -> String {
     };
     let plain = all(&|channel| format!("r[{register}][{channel}]"));
     let looked = format!("nb_mapping[{mapping}][{one} + 256]");
-    // A pointer to what a register of 0 is mapped to, another to the register: the fields are taken apart once for three channels.
+    // One pointer goes to the result of the mapping for 0, another to the register, so that the fields are extracted once for three channels.
     let looked_rgb = format!(
         "    const int16_t *mapped = nb_mapping[{mapping}] + 256;\n    @in @int *given = r[{register}];\n{}",
         all(&|channel| format!("mapped[given[{channel}]]"))
@@ -562,7 +562,7 @@ fn operands(inputs: Mapped) -> String {
     )
 }
 
-/// From the fragment to the stored word.
+/// Prints the functions from the fragment to the stored word.
 fn store() -> String {
     let name = |method: raster::Method| format!("@s.{}", method.name());
     let format = field(&name(raster::Method::SurfaceFormat), raster::SURFACE_COLOR);

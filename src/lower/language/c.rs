@@ -1,4 +1,4 @@
-//! C99: how operations are written, and the helpers that they need.
+//! Prints C99, and the structures and helpers that it needs.
 
 use super::*;
 

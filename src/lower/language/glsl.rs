@@ -1,4 +1,4 @@
-//! GLSL 3.30 and GLSL ES 3.00: how operations are written, and the helpers that they need.
+//! Prints GLSL 3.30 and GLSL ES 3.00, and the structures that they need.
 
 use super::*;
 

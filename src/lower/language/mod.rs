@@ -1,5 +1,5 @@
-//! The languages: what they have in common. A value has a line of its own where the chip's documents name it or where it is used twice; others stand where they
-//! are used.
+//! Prints functions in several languages. A value has a line of its own if the chip's documents name it or if it is used more than once; other
+//! values are printed where they are used.
 
 mod c;
 mod glsl;
@@ -30,19 +30,19 @@ named! {
     }
 }
 
-/// A function with its name.
+/// A function with a name.
 #[derive(Debug)]
 pub struct Named<'f> {
-    /// Its name: a letter, then letters, digits and underlines.
+    /// Name: a letter, then letters, digits and underscores.
     pub name: String,
-    /// What it is, in one line; anything that would end a comment has been taken out of it.
+    /// Description in one line. Printing removes whatever would end a comment.
     pub about: String,
-    /// What it computes.
+    /// The function.
     pub function: &'f Function,
 }
 
 impl Language {
-    /// A whole text: what all functions share, then the functions.
+    /// Prints a whole text: what all functions share, then the functions.
     pub fn print(self, functions: &[Named<'_>]) -> String {
         let syntax = self.syntax();
         let mut out = syntax.head(functions);
@@ -53,7 +53,7 @@ impl Language {
         out
     }
 
-    /// How a function of this language reads an input: as a member of `pixel` or `constants`, or as a port.
+    /// Returns how a function of this language reads an input: a member of `pixel` or `constants`, or a port.
     pub fn input(self, input: Input) -> String {
         self.syntax().input(input)
     }
@@ -68,17 +68,17 @@ impl Language {
     }
 }
 
-/// What a language says differently.
+/// The syntax of a language, as far as languages differ.
 pub(crate) trait Syntax {
-    /// What stands before all functions.
+    /// Prints what stands before all functions.
     fn head(&self, functions: &[Named<'_>]) -> String;
-    /// How a function begins: what it is, its name and what it is given.
+    /// Prints the beginning of a function: its comment, name and parameters.
     fn opening(&self, named: &Named<'_>) -> String;
-    /// How a function ends that yields a fragment.
+    /// Prints the end of a function that yields a fragment.
     fn fragment(&self, channels: [String; 4]) -> String;
-    /// How a function ends that yields a word, unless the fragment fails this test.
+    /// Prints the end of a function that yields a word, unless the fragment fails `test`.
     fn stored(&self, word: String, test: Option<String>) -> String;
-    /// A whole function.
+    /// Prints a whole function.
     fn function(&self, named: &Named<'_>) -> String {
         let body = Body::new(self, named.function);
         let lines: String = body.declarations.iter().map(|line| format!("    {line}\n")).collect();
@@ -92,9 +92,9 @@ pub(crate) trait Syntax {
         };
         self.opening(named) + &lines + &end
     }
-    /// How an input is read.
+    /// Returns how an input is read.
     fn input(&self, input: Input) -> String;
-    /// A constant, written as a value of that kind.
+    /// Prints a constant as a value of the given kind.
     fn constant(&self, value: i64, kind: Kind) -> String {
         match kind {
             Kind::Number => value.to_string(),
@@ -102,22 +102,23 @@ pub(crate) trait Syntax {
             Kind::Word => format!("{value}u"),
         }
     }
-    /// An operation that is no infix in every language; operands are terms.
+    /// Prints an operation that is not an infix operator in every language. The operands are terms.
     fn call(&self, call: Call, operands: &[String]) -> Text;
-    /// A value with a name.
+    /// Prints the declaration of a named value.
     fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String;
-    /// Whether operands of comparisons, and numbers that become words, have to be names: elsewhere the width of an expression is that of what surrounds it.
+    /// Returns whether operands of comparisons, and numbers that become words, have to be names. In Verilog the width of any other expression depends
+    /// on what surrounds it.
     fn compares_names(&self) -> bool {
         false
     }
 }
 
-/// What languages write differently.
+/// An operation that languages write differently.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Call {
     Least,
     Greatest,
-    /// Test, then, otherwise.
+    /// The operands are the test, the value if it holds, and the value otherwise.
     Select,
     Number,
     Word,
@@ -126,9 +127,9 @@ pub(crate) enum Call {
 /// A piece of text.
 #[derive(Clone, Debug)]
 pub(crate) enum Text {
-    /// A name, a constant, a call: nothing binds into it.
+    /// A name, a constant or a call, which needs no parentheses.
     Term(String),
-    /// Operators that nothing encloses.
+    /// An expression of operators without parentheses around it.
     Open(String),
 }
 
@@ -147,9 +148,9 @@ impl Text {
     }
 }
 
-/// The lines of a function as text.
+/// The lines of a function, printed.
 pub(crate) struct Body<'f> {
-    /// Declarations, in order.
+    /// Declarations in order.
     pub(crate) declarations: Vec<String>,
     lines: &'f [Line],
     texts: Vec<(Text, BTreeSet<&'static str>)>,
@@ -164,7 +165,7 @@ impl<'f> Body<'f> {
         Body::from_lines(syntax, &function.lines, &function.result.operands(), &test)
     }
 
-    /// Lines of which these values are the results, and of these some are compared.
+    /// Prints lines whose results are `results`; the values `test` are compared.
     pub(crate) fn from_lines(
         syntax: &(impl Syntax + ?Sized),
         lines: &'f [Line],
@@ -202,7 +203,7 @@ impl<'f> Body<'f> {
                 unnamed += 1;
                 format!("value{unnamed}")
             });
-            // The same name twice: a value that a later rule asks for again in another form.
+            // A name may occur twice: a later rule asks for the same value in another form.
             let stem = name.clone();
             let mut nth = 1;
             while !names.insert(name.clone()) {
@@ -222,7 +223,7 @@ impl<'f> Body<'f> {
         body
     }
 
-    /// An operand of this kind.
+    /// Prints an operand of the given kind.
     fn operand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> Text {
         match operand {
             Operand::Constant(value) if value < 0 => Text::Open(syntax.constant(value, kind)),
@@ -231,7 +232,7 @@ impl<'f> Body<'f> {
         }
     }
 
-    /// A result as text, and the rules that it has not told of.
+    /// Prints a result. Also returns the rules that no declaration has mentioned.
     pub(crate) fn result(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> (String, String) {
         let rules = match operand {
             Operand::Constant(_) => String::new(),
@@ -258,7 +259,7 @@ impl<'f> Body<'f> {
         format!("{a} {operator} {b}")
     }
 
-    /// An operation as text, and the rules of what stands in it.
+    /// Prints an operation. Also returns the rules of everything that is part of the text.
     fn text(&self, syntax: &(impl Syntax + ?Sized), line: &Line) -> (Text, BTreeSet<&'static str>) {
         let operation = line.operation;
         let mut rules = BTreeSet::from([line.rule]);
@@ -297,7 +298,7 @@ impl<'f> Body<'f> {
         operands.map(|operand| self.operand(syntax, operand, kind).open())
     }
 
-    /// An operand of a sum: products need no brackets there, and sums none at its beginning.
+    /// Prints an operand of a sum. Products need no parentheses there, nor do sums if they come first.
     fn summand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, first: bool) -> String {
         let text = self.operand(syntax, operand, Kind::Number);
         let binds = |line: u32| match self.lines[line as usize].operation {
@@ -312,7 +313,7 @@ impl<'f> Body<'f> {
     }
 }
 
-/// Whether a text has functions that yield fragments, that yield stored words, and that are given constants.
+/// Returns whether some functions yield fragments, whether some yield stored words, and whether some have constants as inputs.
 fn needs(functions: &[Named<'_>]) -> [bool; 3] {
     let any = |has: fn(&Function) -> bool| functions.iter().any(|named| has(named.function));
     [
@@ -322,17 +323,17 @@ fn needs(functions: &[Named<'_>]) -> [bool; 3] {
     ]
 }
 
-/// A channel's letter.
+/// Returns the letter of a channel.
 fn letter(channel: usize) -> &'static str {
     ninebit::combiner::registers::channel_name(channel)
 }
 
-/// What stands in a comment of one line.
+/// Returns text for a comment of one line.
 fn comment(text: &str) -> String {
     text.replace("*/", "* /").replace(['\n', '\r'], " ")
 }
 
-/// The rule of division, for the heads.
+/// Comment at the head of texts: how division rounds.
 pub(crate) const ROUNDING: [&str; 3] = [
     "Numbers are two's complement and stay within 32 bits: nothing overflows. Registers hold -256 to 255, 1.0 is 255. Where a",
     "number below zero is divided, whole multiples of the divisor are added before and taken off after, because a quotient is",

@@ -1,17 +1,17 @@
-//! Verilog-2001: a combinational module a function.
+//! Prints Verilog-2001, with a combinational module for each function.
 
 use super::*;
 use crate::code::Range;
 
 pub(super) struct Verilog;
 
-/// Bits of two's complement that hold a range.
+/// Returns the number of bits of two's complement that hold a range.
 fn width((low, high): Range) -> u32 {
     let bits = |value: i64| 64 - if value < 0 { !value } else { value }.leading_zeros() + 1;
     bits(low).max(bits(high))
 }
 
-/// The type of a port or wire.
+/// Returns the type of a port or wire.
 pub(crate) fn port(kind: Kind, range: Range) -> String {
     match kind {
         Kind::Number => format!("signed [{}:0]", width(range) - 1),
@@ -67,7 +67,7 @@ impl Syntax for Verilog {
             Input::BlendConstant(c) => format!("blend_constant_{}", letter(c)),
             Input::AlphaReference => "alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("border{n}_{}", letter(c)),
-            // A port is no part of an array.
+            // A port cannot be an element of an array.
             Input::Local(local) => local.name.replace(['[', ']'], ""),
         }
     }

@@ -1,4 +1,4 @@
-//! WGSL: how operations are written, and the helpers that they need.
+//! Prints WGSL, and the structures that it needs.
 
 use super::*;
 
@@ -62,7 +62,7 @@ impl Syntax for Wgsl {
     fn input(&self, input: Input) -> String {
         match input {
             Input::FinalConstant(n, c) => format!("constants.final_combiner[{n}].{}", letter(c)),
-            // What has a place in an array is written the same.
+            // All other inputs are written as in GLSL.
             input => super::glsl::Glsl.input(input),
         }
     }

@@ -1,6 +1,6 @@
-//! The lines of draws against traces: what a trace says a pixel was given goes in, and what it says was stored has to come out.
+//! Compares the lines of draws with traces: a trace tells what a pixel was given and what was stored.
 //!
-//! `NINEBIT_LOWER_SCENES` says of how many random scenes, `NINEBIT_LOWER_SEED` chooses others.
+//! `NINEBIT_LOWER_SCENES` is the number of random scenes; `NINEBIT_LOWER_SEED` selects others.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
@@ -21,7 +21,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner, setting};
 use traced::Traced;
 
-/// Holds one fragment against the trace; whether it was one to be held.
+/// Compares one fragment with its trace. Returns whether it could be compared.
 fn check(scene: &Scene, fragment: &DrawTrace, function: &Function, what: &str) -> bool {
     let draw = &scene.draws[fragment.draw];
     let traced = Traced::from_fragment(fragment);
@@ -63,7 +63,7 @@ fn stored_words_are_those_of_traces() {
     println!("{held} fragments of {count} scenes");
 }
 
-/// Holds random scenes against their traces; the number of fragments.
+/// Compares random scenes with their traces. Returns the number of fragments.
 fn hold(seed: u64, count: u64) -> u64 {
     let mut runner = runner(seed);
     let (mut random, mut held) = (Random::seeded(seed), 0);

@@ -1,6 +1,8 @@
-//! The generic text against the model: random words of both chips, a pixel of each through compiled C and through a shader. What is not installed is ignored.
+//! Compares the generic text with the model: random words of both chips, and pixels of each through compiled C and through a shader. Tests whose
+//! tools are not installed are ignored.
 //!
-//! `NINEBIT_GENERIC_PROGRAMS` says how many programs, `NINEBIT_GENERIC_LEVEL=1` takes tables of level L1, `NINEBIT_GENERIC_SEED` chooses others; `CC`, `NINEBIT_LOWER_CFLAGS` and `NINEBIT_LOWER_PYTHON` are as in `languages`.
+//! `NINEBIT_GENERIC_PROGRAMS` is the number of programs, `NINEBIT_GENERIC_LEVEL=1` uses tables of level L1, `NINEBIT_GENERIC_SEED` selects other
+//! programs; `CC`, `NINEBIT_LOWER_CFLAGS` and `NINEBIT_LOWER_PYTHON` are as in `languages`.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
@@ -26,12 +28,12 @@ use ninebit_vectors::table::{Contents, Writer};
 use ninebit_vectors::units;
 use setting::{GIVEN, any_policies, bytes, compiler, drawing, python, run, setting, works};
 
-/// Words of a pixel: state, inputs, what is expected.
+/// Number of words for a pixel: state, inputs, expected word.
 const COLUMNS: usize = 128;
-/// Primary, secondary, fog, four textures, destination.
+/// Number of words for inputs: primary, secondary, fog, four textures, destination.
 const INPUTS: usize = 29;
 
-/// Words that the chip takes. What is 0 is often so: the text leaves out what is.
+/// Returns random words that the chip accepts. Many bytes are 0, because the text skips what is 0.
 fn words(chip: Profile, random: &mut Random) -> RegisterWords {
     let mut words = RegisterWords::new(chip);
     let all: Vec<(Word, usize)> = words.all().map(|(word, index, _)| (word, index)).collect();
@@ -55,7 +57,7 @@ fn words(chip: Profile, random: &mut Random) -> RegisterWords {
     words
 }
 
-/// State, inputs and stored word of pixels of random programs, `rows` of each.
+/// Returns state, inputs and stored word for pixels of random programs, `rows` for each program.
 fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) -> Vec<u32> {
     let chip = generic.chip;
     let state: usize = generic.words().iter().map(|(_, count, _)| count).sum();
@@ -98,7 +100,7 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
                 let channel = |_: usize| match random.below(8) {
                     0 => 255,
                     1 => low,
-                    // On both sides of where muxes decide.
+                    // Both sides of the threshold of muxes.
                     2 => 127 + random.below(2) as i32,
                     _ => low + random.below((256 - low) as u128) as i32,
                 };
@@ -128,14 +130,14 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
     out
 }
 
-/// Generic texts: both chips as they are, and now and then under other policies.
+/// Returns the options of a generic text: both chips, mostly with the default policies.
 fn generic(n: usize, random: &mut Random) -> Generic {
     let chip = if n % 3 == 2 { Profile::Nv10 } else { Profile::Nv2a };
     let policies = if n % 4 == 3 { any_policies(random) } else { Policies::DEFAULT };
     Generic { chip, policies }
 }
 
-/// Reads pixels from a file and compares what they come to; given an argument, prints it.
+/// C program that reads pixels from a file and compares results; with an argument it also prints them.
 const MAIN: &str = r#"
 #include "ninebit_combiners.h"
 #include <stdio.h>
@@ -181,7 +183,7 @@ fn compile(text: &Generic, level: &str, change: impl Fn(String) -> String, folde
     Ok(run(build.args(["-o", "pixels", "main.c", "ninebit_combiners.c"]), folder)?)
 }
 
-/// The longest that the C is allowed to be.
+/// Largest number of lines that the C may have.
 const LINES: usize = 1500;
 
 fn c99() -> Result<(), Failed> {
@@ -203,7 +205,8 @@ fn c99() -> Result<(), Failed> {
     Ok(())
 }
 
-/// An operator, a constant, a name that an engineer might have got wrong: in every function some are noticed, and so is each that changes what a program of the sample reads.
+/// Plants errors that an engineer might make, an operator, a constant or a name. Some in every function have to be noticed, and so does each one
+/// that changes what a program of the sample reads.
 fn errors_are_noticed() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let mut random = Random::seeded(7);
@@ -243,7 +246,7 @@ fn errors_are_noticed() -> Result<(), Failed> {
     if missed.is_empty() { Ok(()) } else { Err(missed.join("\n").into()) }
 }
 
-/// The table of mappings, number by number, against the formulas of the handbook.
+/// Compares the table of mappings, number by number, with the formulas of the handbook.
 fn table() -> Result<(), Failed> {
     let source = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT }.c99().source;
     let (_, table) = source.split_once("nb_mapping[8][512] = {").unwrap();
@@ -270,7 +273,7 @@ fn table() -> Result<(), Failed> {
     Ok(())
 }
 
-/// One shader for all programs: each pixel has the words of its own.
+/// Uses one shader for all programs: each pixel brings the words of its own program.
 fn glsl() -> Result<(), Failed> {
     let programs = setting("NINEBIT_GENERIC_PROGRAMS").map_or(2048, |n| n as usize).min(16384).next_multiple_of(64);
     let mut random = Random::seeded(setting("NINEBIT_GENERIC_SEED").unwrap_or(23));
@@ -312,10 +315,10 @@ fn glsl() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Pixels that show a row of a table, and what has to be seen of their words.
+/// The pixels that show a row of a table, and a check of their stored words.
 type Shown = (Vec<Vec<u32>>, Box<dyn Fn(&[u32]) -> bool>);
 
-/// A pixel of a program whose other words are these, by name.
+/// Makes a pixel of a program, with the given words by name.
 fn pixel(generic: &Generic, named: &[(&str, u32)], program: &Combiners, inputs: [u32; INPUTS]) -> Vec<u32> {
     let mut out: Vec<u32> = encode(program, generic.chip).all().map(|(_, _, value)| value).collect();
     out.extend(Method::ALL.iter().map(|method| {
@@ -331,14 +334,14 @@ fn pixel(generic: &Generic, named: &[(&str, u32)], program: &Combiners, inputs: 
     out
 }
 
-/// A row of a unit, if the text can show it.
+/// Makes the pixels that show a row of a unit, if the text can show it.
 fn shown(generic: &Generic, unit: &str, case: &Case<'_>) -> Option<Shown> {
     let columns = case.inputs.iter().chain(case.results).zip(case.row.inputs.iter().chain(&case.row.results));
     let all: Vec<(String, i64)> = columns.map(|(column, value)| (column.name.clone(), *value)).collect();
     let number = |name: &str| all.iter().find(|(known, _)| known == name).map(|(_, value)| *value as u32).unwrap();
     let four = |name: &str| ["r", "g", "b", "a"].map(|channel| number(&format!("{name}.{channel}")));
     let word = |[r, g, b, a]: [u32; 4]| a << 24 | r << 16 | g << 8 | b;
-    // What is interpolated is the fragment.
+    // The fragment is the interpolated colour.
     let plain = Combiners::showing(FinalRegister::PrimaryColor);
     let given = |primary: [u32; 4], held: u32| {
         let mut inputs = [0; INPUTS];
@@ -413,7 +416,7 @@ fn shown(generic: &Generic, unit: &str, case: &Case<'_>) -> Option<Shown> {
     }
 }
 
-/// Rows of tables, whose numbers come from another place than the programs above: every row that a frame buffer can show.
+/// Checks every row of tables that a frame buffer can show. Their numbers come from another source than the programs above.
 fn rows() -> Result<(), Failed> {
     let level = if setting("NINEBIT_GENERIC_LEVEL") == Some(1) { Level::L1 } else { Level::L0 };
     let text = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT };
@@ -437,7 +440,7 @@ fn rows() -> Result<(), Failed> {
             })
             .unwrap();
         std::fs::write(folder.path().join("pixels.bin"), bytes(&pixels))?;
-        // What is wanted of single pixels is not known: the status says nothing.
+        // The program's status says nothing here, because single pixels have no expected word.
         let output = Command::new("./pixels").arg("words").current_dir(folder.path()).output()?;
         let lines = std::str::from_utf8(&output.stdout)?.lines();
         let words: Vec<u32> = lines.map(|word| u32::from_str_radix(word, 16).unwrap()).collect();

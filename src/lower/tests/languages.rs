@@ -1,7 +1,9 @@
-//! Printed text against the lines that it is printed of: random programs and draws, compiled and run by what is installed. A language whose tools are missing is ignored.
+//! Compares printed text with the lines that it is printed from: random programs and draws, compiled and run by installed tools. A language whose
+//! tools are missing is ignored.
 //!
-//! `NINEBIT_LOWER_CASES` says how many functions of each language, `NINEBIT_LOWER_ROWS` on how many pixels each, `NINEBIT_LOWER_SEED` chooses others, `CC` names the
-//! compiler of C and `NINEBIT_LOWER_CFLAGS` adds to its options, `NINEBIT_LOWER_PYTHON` names a Python with `moderngl`, `wgpu` and `numpy`.
+//! `NINEBIT_LOWER_CASES` is the number of functions in each language, `NINEBIT_LOWER_ROWS` the number of pixels for each, `NINEBIT_LOWER_SEED`
+//! selects other functions. `CC` names the C compiler and `NINEBIT_LOWER_CFLAGS` its options; `NINEBIT_LOWER_PYTHON` names a Python with
+//! `moderngl`, `wgpu` and `numpy`.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
@@ -26,19 +28,19 @@ use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, bytes, compiler, drawing, python, runner, setting, works};
 use traced::Traced;
 
-/// Columns of the pool of given numbers: bytes, registers, words.
+/// Numbers of columns in the pool of inputs: bytes, registers, and all including words.
 const BYTES: usize = 32;
 const REGISTERS: usize = 16;
 const COLUMNS: usize = 64;
 
-/// Random functions: programs and draws in turn.
+/// Returns random functions, programs and draws in turn.
 fn functions(count: usize, seed: u64) -> Vec<Function> {
     let mut runner = runner(seed);
     let (programs, scenes) = (random_program::combiners(), random_scene::scene());
     let mut random = Random::seeded(seed);
     let mut functions: Vec<Function> = Vec::new();
     while functions.len() < count {
-        // What is the same in every pixel is not worth much.
+        // A function that is the same in every pixel is hardly worth a test.
         if functions.last().is_some_and(|last| last.lines.is_empty()) && !random.once_in(4) {
             functions.pop();
         }
@@ -47,7 +49,7 @@ fn functions(count: usize, seed: u64) -> Vec<Function> {
         let options = Options { policies, uniform: random.once_in(3), textures, fragment: random.once_in(8) };
         if functions.len().is_multiple_of(2) {
             let mut program = programs.new_tree(&mut runner).unwrap().current();
-            // No chip has more, and no place is kept for their constants.
+            // No chip has more stages, and the structures have no place for their constants.
             program.stages.truncate(8);
             functions.push(Function::of_program(&program, &options));
             continue;
@@ -60,7 +62,7 @@ fn functions(count: usize, seed: u64) -> Vec<Function> {
     functions
 }
 
-/// Numbers that inputs are drawn from: `rows` of [`COLUMNS`].
+/// Returns numbers for inputs: `rows` rows of [`COLUMNS`].
 fn pool(rows: usize, seed: u64) -> Vec<u32> {
     let mut random = Random::seeded(seed ^ 0x9b);
     (0..rows * COLUMNS)
@@ -86,13 +88,13 @@ fn pool(rows: usize, seed: u64) -> Vec<u32> {
         .collect()
 }
 
-/// Which columns a function's inputs are.
+/// Returns the column of each input of a function.
 fn columns(function: &Function) -> Vec<(Input, usize)> {
     let mut taken = [0; 3];
     let inputs = function.inputs().into_iter();
     inputs
         .map(|input| {
-            // What is known to be a byte is no negative register.
+            // An input that is known to be a byte must not read a negative register.
             let (class, first, count) = match (input.kind(), function.range(input).0 < 0) {
                 (Kind::Word, _) => (2, BYTES + REGISTERS, COLUMNS - BYTES - REGISTERS),
                 (_, true) => (1, BYTES, REGISTERS),
@@ -104,12 +106,12 @@ fn columns(function: &Function) -> Vec<(Input, usize)> {
         .collect()
 }
 
-/// What the lines yield for each row: R, G, B, A, or the word and whether the fragment passed.
+/// Returns the results of the lines for each row: R, G, B, A, or the word and whether the fragment passed.
 fn expected(function: &Function, pool: &[u32]) -> Vec<u32> {
     expected_with(function, pool, None)
 }
 
-/// The same with a line whose last bit is turned.
+/// Returns the results if the last bit of one line's value is inverted.
 fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Vec<u32> {
     let columns = columns(function);
     let mut out = Vec::new();
@@ -120,7 +122,7 @@ fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Ve
             Kind::Number => (row[column(input)] as i32).into(),
         };
         let values = run_changed(&function.lines, given, |line, value| {
-            // A range ends somewhere.
+            // The value has to stay in its range.
             let least = function.lines[line].range.0;
             if turned == Some(line) {
                 least + ((value - least) ^ 1).min(function.lines[line].range.1 - least)
@@ -133,7 +135,7 @@ fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Ve
             Result::Stored { word, test } => {
                 let passed =
                     test.is_none_or(|Test(test, [a, b])| test.passes(value_of(&values, a), value_of(&values, b)));
-                // Where it fails, the destination stays.
+                // If the test fails, the destination stays.
                 let kept = if passed { 0 } else { row[column(Input::Destination)] };
                 out.extend([if passed { value_of(&values, word) as u32 } else { kept }, passed.into(), 0, 0]);
             }
@@ -142,7 +144,7 @@ fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Ve
     out
 }
 
-/// A batch of functions in a folder: the pool, what is expected, and a text for each tool.
+/// A batch of functions in a folder: the pool, the expected results, and a text for each tool.
 struct Batch<'f> {
     folder: &'f Path,
     functions: &'f [Function],
@@ -168,17 +170,17 @@ impl Batch<'_> {
         self.write("expected.hex", self.functions.iter().map(|f| hex(&expected(f, &pool))).collect::<String>());
     }
 
-    /// What a command says that has to succeed.
+    /// Runs a command, which has to succeed.
     fn run(&self, command: &mut Command) -> std::result::Result<(), Failed> {
         let Err(failed) = setting::run(command, self.folder) else { return Ok(()) };
-        // What failed stays, to be looked at.
+        // The files of a failure are kept for inspection.
         let kept = std::env::temp_dir().join("ninebit-lower-failed");
         let _ = std::fs::remove_dir_all(&kept);
         let copied = Command::new("cp").arg("-r").arg(self.folder).arg(&kept).status();
         Err(format!("{failed}\n(kept: {copied:?} {})", kept.to_string_lossy()).into())
     }
 
-    /// The functions and a program that runs them.
+    /// Returns the functions in C, with a program that runs them.
     fn c_text(&self) -> String {
         let mut text = Language::C99.print(&self.named());
         text += "\n#include <stdio.h>\n#include <string.h>\n";
@@ -219,7 +221,7 @@ impl Batch<'_> {
         text
     }
 
-    /// Compiles the C.
+    /// Compiles the C program.
     fn compile(&self) -> std::result::Result<(), Failed> {
         let more = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_else(|_| "-O1".to_string());
         let mut command = Command::new(compiler());
@@ -289,7 +291,7 @@ impl Batch<'_> {
         self.run(shell.args(["-c", "vvp -n cases.vvp > out.txt; cat out.txt; grep -q '^all equal' out.txt"]))
     }
 
-    /// Shaders for a tool that draws or computes all rows of each.
+    /// Writes shaders, and runs the tool that renders or computes all rows of each.
     fn shaders(&self, language: Language) -> std::result::Result<(), Failed> {
         for (n, function) in self.functions.iter().enumerate() {
             let named = Named { name: "shade".to_string(), about: format!("case {n}"), function };
@@ -342,7 +344,7 @@ impl Batch<'_> {
     }
 }
 
-/// An error of one line: what an engineer might write instead. `None`: the line has nothing of that kind.
+/// Returns a line with an error that an engineer might make; `None` if the line has no place for an error of that kind.
 fn planted(line: &str, kind: usize) -> Option<String> {
     let value = line.find(" = ")? + 3;
     let (name, text) = line.split_at(value);
@@ -364,14 +366,14 @@ fn planted(line: &str, kind: usize) -> Option<String> {
     (text.contains(from) && !text.contains(to)).then(|| format!("{name}{}{comment}", text.replacen(from, to, 1)))
 }
 
-/// Whether the last bit of a line of that name shows in some of the pool's rows.
+/// Returns whether the last bit of the line of that name affects some rows of the pool.
 fn matters(function: &Function, name: &str) -> bool {
     let Some(at) = function.lines.iter().position(|line| line.name.as_deref() == Some(name)) else { return false };
     let pool = pool(64, 7);
     expected(function, &pool) != expected_with(function, &pool, Some(at))
 }
 
-/// Errors that are planted in lines of printed C, one a function: all of them are noticed.
+/// Plants errors in lines of printed C, one in each function: all of them have to be noticed.
 fn errors_are_noticed() -> std::result::Result<(), Failed> {
     let errors = setting("NINEBIT_LOWER_ERRORS").map_or(12, |errors| errors as usize);
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
@@ -381,7 +383,7 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
         batch.data(7);
         let text = batch.c_text();
         let lines: Vec<&str> = text.lines().collect();
-        // Lines of which the last bit can be seen: what nothing depends on has no errors.
+        // Only lines whose last bit affects the result: errors elsewhere cannot be noticed.
         let seen = |line: &str| {
             let name = line.trim_start().strip_prefix("const ").and_then(|rest| rest.split(' ').nth(1));
             name.is_some_and(|name| matters(function, name))
@@ -392,7 +394,7 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
         let mut changed = lines.clone();
         changed[at] = &error;
         batch.write("cases.c", changed.join("\n") + "\n");
-        // An error that does not compile is noticed as well, but says little.
+        // An error that does not compile is noticed as well, but proves little.
         if batch.compile().is_err() {
             continue;
         }
@@ -412,8 +414,8 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
     }
 }
 
-/// Whole frames through shaders: each fragment's bytes, fetched texels, weights and destination word go in, as the model's trace has them, and the word that it stores has to
-/// come out; the last of each pixel are the frame that the engine draws. Of every `NINEBIT_LOWER_FRAMES`-th row.
+/// Sends whole frames through shaders. The inputs of each fragment come from the model's trace; the word that it stores has to come out. The last
+/// fragments of the pixels are the frame that the engine draws. `NINEBIT_LOWER_FRAMES` is the distance of the rows that are taken.
 fn frames() -> std::result::Result<(), Failed> {
     let step = setting("NINEBIT_LOWER_FRAMES").map_or(1, |step| step as usize);
     for scene in ["w1", "w2", "w4"] {
@@ -439,7 +441,7 @@ fn frames() -> std::result::Result<(), Failed> {
         for (draw, function) in functions.iter().enumerate() {
             let joined = |of: fn(&Given) -> &Vec<u32>, most: usize| -> Vec<u32> {
                 let mut all: Vec<u32> = parts.iter().flat_map(|part| of(&part[draw])).copied().collect();
-                // Shaders take 64 pixels at a time: the last one is given again.
+                // Shaders take 64 pixels at a time, so the last one is repeated.
                 while !all.len().is_multiple_of(64 * most) {
                     all.extend_from_within(all.len() - most..);
                 }
@@ -461,14 +463,14 @@ fn frames() -> std::result::Result<(), Failed> {
     Ok(())
 }
 
-/// Rows of a pool, and what is expected of each.
+/// Rows of a pool, with their expected results.
 #[derive(Clone, Default)]
 struct Given {
     pool: Vec<u32>,
     expected: Vec<u32>,
 }
 
-/// What the fragments of some rows of a frame are given, by draw.
+/// Returns the inputs of the fragments in some rows of a frame, by draw.
 fn rows_given(scene: &Scene, plan: &Plan, functions: &[Function], surface: &Surface, rows: &[u32]) -> Vec<Given> {
     let columns: Vec<Vec<(Input, usize)>> = functions.iter().map(columns).collect();
     for columns in &columns {
@@ -497,7 +499,7 @@ fn rows_given(scene: &Scene, plan: &Plan, functions: &[Function], surface: &Surf
     given
 }
 
-/// All functions of a language, in batches.
+/// Tests functions of a language in batches.
 fn all(language: Language, count: usize, rows: usize) -> std::result::Result<(), Failed> {
     let count = setting("NINEBIT_LOWER_CASES").map_or(count, |cases| cases as usize);
     let rows = setting("NINEBIT_LOWER_ROWS").map_or(rows, |rows| rows as usize);

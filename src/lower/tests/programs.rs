@@ -1,4 +1,4 @@
-//! Printed programs against the model: their lines, run by themselves, and their text, compiled by what is installed.
+//! Compares printed programs with the model, by running their lines.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
@@ -14,13 +14,13 @@ use ninebit_test_support::random_program;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{GIVEN, any_policies, runner};
 
-/// Random programs; the same ones every time.
+/// Returns random programs, the same ones every time.
 fn programs() -> impl Iterator<Item = Combiners> {
     let mut runner = runner(23);
     std::iter::repeat_with(move || random_program::combiners().new_tree(&mut runner).unwrap().current())
 }
 
-/// Numbers that a register can hold: colours are bytes, textures may be signed. Ends occur more often than others.
+/// Returns values that registers can hold: colours are bytes, textures may be signed. The ends of ranges are more frequent.
 fn registers(random: &mut Random) -> Registers<i32> {
     let mut registers = Registers::from_value(0);
     for register in GIVEN {

@@ -1,7 +1,7 @@
-//! Pasted C: calls of an API, definitions of arrays that they take, and lines of effect files.
+//! Reads pasted C: calls of an API, definitions of arrays that they take, and lines of effect files.
 //!
-//! Nothing is compiled. The calls and states that a language reads are found wherever they stand: behind `hr = ` and `pDevice->`, within
-//! `FAILED(...)`, under `if (...)`. Everything else is passed over, with one note for each name.
+//! Nothing is compiled. The calls and states of a language are found wherever they are: behind `hr = ` and `pDevice->`, within
+//! `FAILED(...)`, under `if (...)`. Everything else is skipped, with one note for each name.
 
 pub(super) mod opengl;
 mod value;
@@ -15,23 +15,23 @@ use super::lexer::{Kind, Language};
 use ninebit::diagnostic::{Diagnostic, shorten};
 pub(super) use value::{Part, PartKind, Value, integer, known, meant, one, out_of_range, without_prefix, wrong_kind};
 
-/// Findings beyond this many are not gathered.
+/// Number of findings after which reading stops.
 const MAX_FINDINGS: usize = 32;
 
 /// What a language reads of a text.
 #[derive(Debug)]
 pub(super) struct Vocabulary {
-    /// Ends of the names of calls that are read, with spaces between them.
+    /// Endings of the names of calls that are read, separated by spaces.
     pub(super) calls: &'static str,
-    /// Ends of the names of calls that say what the scene says itself: passed over without a word.
+    /// Endings of the names of calls whose state the scene has in other fields; they are skipped without a note.
     pub(super) silent: &'static str,
-    /// States of effect files that are read.
+    /// Names of the states of effect files that are read.
     pub(super) states: fn() -> Vec<&'static str>,
-    /// What to write instead of calls that are passed over.
+    /// What to write in place of calls that are skipped, by the ending of their names.
     pub(super) instead: &'static [(&'static str, &'static str)],
-    /// Two statements, for messages.
+    /// Examples of statements, for messages.
     pub(super) example: &'static str,
-    /// What the text is said to be, for messages.
+    /// What messages call the program.
     pub(super) what: &'static str,
 }
 
@@ -45,30 +45,30 @@ impl Vocabulary {
     }
 }
 
-/// A program from pasted text, and what was passed over.
+/// A program read from pasted text, with notes about what was skipped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pasted<P> {
-    /// What the text says.
+    /// The program.
     pub program: P,
-    /// What it says besides, each a warning.
+    /// Notes about the rest of the text; each is a warning.
     pub asides: Vec<Aside>,
 }
 
-/// Something in a text that is no part of the program.
+/// A note about a part of a text that does not belong to the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Aside {
-    /// The warning about it.
+    /// The warning.
     pub finding: Diagnostic,
-    /// The field of a draw that says the same; the warning is for draws without it. `None`: for all.
+    /// The field of a draw with the same meaning: the warning is only for draws without that field. `None` if it is for all draws.
     pub field: Option<&'static str>,
 }
 
-/// A statement that is read.
+/// A statement that the language reads.
 #[derive(Debug)]
 pub(super) enum Statement<'t> {
-    /// `name(a, b)`
+    /// A call `name(a, b)`.
     Call { name: Span, arguments: Vec<Value<'t>> },
-    /// `name = value` or `name[index] = value`
+    /// An assignment `name = value` or `name[index] = value`.
     State { name: Span, index: Option<Value<'t>>, value: Value<'t> },
 }
 
@@ -77,11 +77,11 @@ pub(super) struct Reader<'t> {
     pub(super) asides: Vec<Aside>,
     vocabulary: &'static Vocabulary,
     cursor: Cursor<'t>,
-    /// Before this token only calls that are read count.
+    /// Token up to which only calls are read.
     until: usize,
-    /// Names that are passed over.
+    /// Names for which a note has been made.
     passed: Vec<&'t str>,
-    /// Arrays that the text defines.
+    /// Arrays that the text defines, by name.
     arrays: HashMap<&'t str, Vec<Value<'t>>>,
 }
 
@@ -102,12 +102,12 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The program, unless something was wrong.
+    /// Returns the program, or the findings if there are any.
     pub(super) fn finish<P>(self, program: P) -> Result<Pasted<P>, Vec<Diagnostic>> {
         if self.findings.is_empty() { Ok(Pasted { program, asides: self.asides }) } else { Err(self.findings) }
     }
 
-    /// The next statement that is read; `None` at the end.
+    /// Reads up to the next statement; `None` at the end of the text.
     pub(super) fn next(&mut self) -> Option<Statement<'t>> {
         while !self.cursor.is_done() && self.findings.len() < MAX_FINDINGS {
             if self.cursor.at < self.until {
@@ -127,12 +127,12 @@ impl<'t> Reader<'t> {
         None
     }
 
-    /// The text of a place.
+    /// Returns the text at a place.
     pub(super) fn word(&self, span: &Span) -> &'t str {
         self.cursor.text(span)
     }
 
-    /// Whether a call has as many arguments as its function takes. `None` once it has been recorded that it has not.
+    /// Checks that a call has as many arguments as its function takes. Returns `None` after recording that it has not.
     pub(super) fn takes(&mut self, name: &Span, wanted: usize, written: usize) -> Option<()> {
         if written != wanted {
             let message = format!("{} has {wanted} arguments, not {written}", self.word(name));
@@ -141,7 +141,7 @@ impl<'t> Reader<'t> {
         (written == wanted).then_some(())
     }
 
-    /// Notes something that is no part of the program, once for each name.
+    /// Makes a note about something that does not belong to the program, once for each name.
     pub(super) fn pass(&mut self, span: Span, name: &'t str, message: &str, label: &str, help: &str) {
         if self.asides.len() >= MAX_FINDINGS || self.passed.contains(&name) {
             return;
@@ -151,7 +151,7 @@ impl<'t> Reader<'t> {
         self.asides.push(Aside { finding, field: None });
     }
 
-    /// Notes a state that a field of the draw has, once for each name.
+    /// Makes a note about a state for which the draw has a field, once for each name.
     pub(super) fn aside(&mut self, span: Span, name: &'t str, message: &str, help: &str, field: Option<&'static str>) {
         let before = self.asides.len();
         self.pass(span, name, message, "no part of the program", help);
@@ -160,7 +160,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The values of an array, by its name or written out.
+    /// Returns the values of an array, which is given by its name or written out.
     pub(super) fn list<'v>(&'v self, value: &'v Value<'t>) -> Option<&'v [Value<'t>]> {
         match &value.parts[..] {
             [Part { kind: PartKind::List(values), .. }] => Some(values),
@@ -169,7 +169,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Records that something else stands here.
+    /// Records that something else was expected here, and returns `None`.
     fn expected<T>(&mut self, what: &str) -> Option<T> {
         let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
@@ -184,7 +184,7 @@ impl<'t> Reader<'t> {
         self.expected(&format!("`{sign}`"))
     }
 
-    /// Skips to the next statement: behind a semicolon, or at the start of a line.
+    /// Skips to the next statement: after a semicolon, or to the start of a line.
     fn recover(&mut self) {
         self.cursor.advance();
         self.cursor.skip_to(|cursor| cursor.is_new_line() || cursor.kind_at(cursor.at - 1) == Some(Kind::Sign(';')));
@@ -196,7 +196,7 @@ impl<'t> Reader<'t> {
             && self.vocabulary.reads(self.cursor.text_at(at))
     }
 
-    /// One step at the beginning of a statement.
+    /// Processes the beginning of a statement.
     fn step(&mut self) -> Result<Option<Statement<'t>>, GivenUp> {
         match self.cursor.kind() {
             Some(Kind::Sign(';' | '{' | '}')) => {
@@ -245,7 +245,7 @@ impl<'t> Reader<'t> {
                 }
                 self.pass_statement(word, span);
             }
-            // What stands before a call: a pointer, a type, a name of a pass.
+            // A pointer, a type, or the name of a pass stands before the call.
             (_, Some(Kind::Arrow | Kind::Sign('.' | ':'))) => self.cursor.at += 2,
             (_, Some(Kind::Word | Kind::Sign('*' | '{'))) => self.cursor.advance(),
             _ => self.pass_statement(word, span),
@@ -288,7 +288,7 @@ impl<'t> Reader<'t> {
         self.pass(span, word, &message, &label, help);
     }
 
-    /// Passes over a statement that is not read, but for the calls in it.
+    /// Skips a statement that is not read, except for the calls in it.
     fn pass_statement(&mut self, word: &'t str, span: Span) {
         let end = self.statement_end();
         if (self.cursor.at..end).any(|at| self.is_call(at)) {
@@ -299,7 +299,7 @@ impl<'t> Reader<'t> {
         self.cursor.at = end;
     }
 
-    /// The token behind the bracket that closes the one at a place.
+    /// Returns the token after the bracket that closes the one at `open`.
     fn behind_brackets(&self, open: usize) -> usize {
         let mut depth = 0usize;
         for (at, token) in self.cursor.from(open) {
@@ -313,7 +313,7 @@ impl<'t> Reader<'t> {
         self.cursor.count()
     }
 
-    /// The token behind the statement at hand: behind its semicolon, before a block or at the start of a line.
+    /// Returns the token after the current statement: after its semicolon, before a block or at the start of a line.
     fn statement_end(&self) -> usize {
         let mut depth = 0usize;
         for (at, token) in self.cursor.from(self.cursor.at) {
@@ -334,7 +334,7 @@ impl<'t> Reader<'t> {
         self.cursor.count()
     }
 
-    /// A semicolon, or nothing where the next statement begins a line.
+    /// Takes a semicolon, which may be absent if the next statement begins a line.
     fn end(&mut self) -> Option<()> {
         if self.cursor.take(';') || self.cursor.is_new_line() || self.cursor.is('}') {
             return Some(());
@@ -342,7 +342,7 @@ impl<'t> Reader<'t> {
         self.expected("`;`")
     }
 
-    /// `name(a, b)`; `None` once the reason that it is none has been recorded.
+    /// Reads `name(a, b)`. Returns `None` after recording what is wrong.
     fn call(&mut self) -> Option<Statement<'t>> {
         let name = self.cursor.span();
         self.cursor.at += 2;
@@ -370,7 +370,7 @@ impl<'t> Reader<'t> {
         Some(Statement::State { name, index, value })
     }
 
-    /// Takes `name[4] = { 1, 0, 0, 1 };` if that is what stands here.
+    /// Reads `name[4] = { 1, 0, 0, 1 };`. Returns whether such a definition stands here.
     fn array(&mut self, name: &'t str) -> bool {
         let count = usize::from(self.cursor.kind_at(self.cursor.at + 2) == Some(Kind::Number));
         let shape = [']', '=', '{'];
@@ -383,7 +383,7 @@ impl<'t> Reader<'t> {
         if let Some(Part { kind: PartKind::List(values), .. }) = value {
             self.arrays.insert(name, values);
         } else {
-            // An array of something else, which no call that is read takes.
+            // The array holds something else, and no call that is read takes it.
             self.findings.truncate(findings);
             self.cursor.at = start;
             self.cursor.at = self.statement_end();
@@ -392,11 +392,11 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// Whether two names differ by no more than two letters in one place.
+/// Returns whether two names differ by at most two letters in one place.
 fn nearly(word: &str, known: &str) -> bool {
     let [a, b] = [word, known].map(|name| name.strip_prefix("gl").unwrap_or(name).as_bytes());
     let most = a.len().max(b.len());
-    // `GetTextureStageState` is another call.
+    // `GetTextureStageState` is a call of its own.
     if most < 4 || a.len().abs_diff(b.len()) > 2 || a.first() != b.first() {
         return false;
     }

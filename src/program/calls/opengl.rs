@@ -1,4 +1,4 @@
-//! What OpenGL's calls have in common: names, numbers, colours, capabilities.
+//! Reads what OpenGL's calls have in common: names, numbers, colours, capabilities.
 
 use super::{Part, PartKind, Reader, Value, known, out_of_range, wrong_kind};
 use crate::Span;
@@ -7,14 +7,14 @@ use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::number::convert::constant;
 use ninebit::state::Named;
 
-/// A name without what only decorates it: `GL_COMBINE_RGB_ARB` is `COMBINE_RGB`. `keep`: endings that matter.
+/// Returns a name without its prefix and suffix: `GL_COMBINE_RGB_ARB` becomes `COMBINE_RGB`. Suffixes in `keep` are part of the name.
 pub(crate) fn bare<'w>(word: &'w str, keep: &[&str]) -> &'w str {
     let word = word.strip_prefix("GL_").unwrap_or(word);
     let end = ["_NV", "_ARB", "_EXT"].into_iter().filter(|end| !keep.contains(end));
     end.into_iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word)
 }
 
-/// The entry of `table` that a value names.
+/// Returns the entry of `table` that a value names. Returns `None` after recording that it names none.
 pub(crate) fn choose<T: Copy>(
     value: &Value<'_>,
     what: &str,
@@ -25,7 +25,7 @@ pub(crate) fn choose<T: Copy>(
     match &value.parts[..] {
         [part] if matches!(part.kind, PartKind::Name) => {
             let name = bare(part.text, keep);
-            // An ending that matters for some names is decoration of the others.
+            // A suffix that is part of some names is mere decoration of the others.
             let find = |name: &str| table.iter().find(|(known, _)| *known == name);
             match find(name).or_else(|| find(bare(name, &[]))) {
                 Some((_, value)) => Some(*value),
@@ -36,12 +36,12 @@ pub(crate) fn choose<T: Copy>(
     }
 }
 
-/// All values of an enumeration, by the names that the API has for them, in their order.
+/// Returns the values of an enumeration with the names that the API has for them. `names` has the order of the values.
 pub(crate) fn table<T: Named>(names: &'static str) -> Vec<(&'static str, T)> {
     names.split(' ').zip(T::ALL.iter().copied()).collect()
 }
 
-/// n of `GL_TEXTURE0 + n`, `GL_TEXTUREn_ARB`, and likewise of other names: below `count`.
+/// Returns n of `GL_TEXTURE0 + n` or `GL_TEXTUREn_ARB`, and likewise of other names; n has to be below `count`.
 pub(crate) fn numbered(
     value: &Value<'_>,
     name: &str,
@@ -69,7 +69,7 @@ pub(crate) fn numbered(
     }
 }
 
-/// TRUE, FALSE or a number.
+/// Reads TRUE, FALSE or a number.
 pub(crate) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
     match &value.parts[..] {
         [Part { kind: PartKind::Integer(number), .. }] => Some(*number != 0),
@@ -78,7 +78,7 @@ pub(crate) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<
     }
 }
 
-/// A whole number, also written as a fraction.
+/// Reads a whole number, which may be written as a float.
 pub(crate) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let found = match &value.parts[..] {
         [Part { kind: PartKind::Integer(number), .. }] => Some(*number),
@@ -89,7 +89,7 @@ pub(crate) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
     found.or_else(|| wrong_kind(value, "a whole number", help, findings))
 }
 
-/// Whether a call takes a pointer to its values: its name ends with `v`, perhaps before that of its vendor.
+/// Returns whether a call takes a pointer to its values: its name ends with `v`, which a vendor's suffix may follow.
 pub(crate) fn is_vector(function: &str) -> bool {
     bare_call(function).ends_with('v')
 }
@@ -98,8 +98,8 @@ fn bare_call(function: &str) -> &str {
     ["NV", "ARB", "EXT"].iter().find_map(|end| function.strip_suffix(end)).unwrap_or(function)
 }
 
-/// A colour of four values, R, G, B, A, as bytes: the fractions limited to 0..1 (NUM-0), the integers of `iv` by the API's table, the
-/// greatest being 1.
+/// Reads a colour of four values R, G, B, A as bytes. Floats are clamped to 0..1 (NUM-0). Integers of calls with `iv` are converted by the API's
+/// table, in which the greatest integer is 1.
 pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) -> Option<[u8; 4]> {
     const HELP: &str =
         "define it in the text, `GLfloat color[4] = { 1, 0.5, 0, 1 };`, or write `{ 1, 0.5, 0, 1 }` here";
@@ -127,7 +127,7 @@ pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) 
 fn byte(value: &Value<'_>, integral: bool) -> Option<u8> {
     match &value.parts[..] {
         [Part { kind: PartKind::Integer(number), .. }] if integral => {
-            // floor(255 c + 1/2) of c = (2n + 1) / (2^32 - 1); what is negative is 0.
+            // floor(255 c + 1/2) of c = (2n + 1) / (2^32 - 1); negative numbers become 0.
             let n = i64::from((*number as i32).max(0));
             let most = (1i64 << 32) - 1;
             Some(if *number as i32 >= 0 { ((510 * (2 * n + 1) + most) / (2 * most)) as u8 } else { 0 })
@@ -138,7 +138,7 @@ fn byte(value: &Value<'_>, integral: bool) -> Option<u8> {
     }
 }
 
-/// Capabilities that a scene's draw has in its fields: name, field, how it is written.
+/// Capabilities for which a draw has fields: the name, the field, and how it is written.
 const CAPABILITIES: &[(&str, &str, &str)] = &[
     ("BLEND", "blend", "`blend: (source: SourceAlpha, destination: OneMinusSourceAlpha)`"),
     ("ALPHA_TEST", "alpha_test", "`alpha_test: (function: Greater, reference: 128)`"),
@@ -151,12 +151,12 @@ const CAPABILITIES: &[(&str, &str, &str)] = &[
     ("VERTEX_PROGRAM", "vertices", "`vertices: Program(text: ...)`"),
 ];
 
-/// `glEnable` and `glDisable` of something that is no part of the program.
+/// Processes `glEnable` and `glDisable` of a capability that does not belong to the program.
 pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Span, value: &Value<'t>, enable: bool) {
     let written = reader.word(&value.span);
     let capability = bare(written, &[]);
     if capability.starts_with("TEXTURE_") && capability != "TEXTURE_SHADER" {
-        // The draw's `textures` say which units have one.
+        // The draw's `textures` say which units have a texture.
         return;
     }
     match CAPABILITIES.iter().find(|(known, ..)| *known == capability) {
@@ -174,7 +174,7 @@ pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Span, value: &Value
     }
 }
 
-/// Calls that a scene's draw has in its fields, for [`Vocabulary::instead`](super::Vocabulary).
+/// Calls for which a draw has fields, for [`Vocabulary::instead`](super::Vocabulary).
 pub(crate) const INSTEAD: &[(&str, &str)] = &[
     ("BlendFunc", "write `blend: (source: ..., destination: ...)` in the draw"),
     ("AlphaFunc", "write `alpha_test: (function: ..., reference: ...)` in the draw"),

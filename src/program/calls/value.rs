@@ -1,4 +1,4 @@
-//! Values of pasted text: numbers, names of an API, macros, lists.
+//! Reads values in pasted text: numbers, names of an API, macros, lists.
 
 use crate::Span;
 use std::fmt::Display;
@@ -8,10 +8,10 @@ use crate::finding::finding;
 use crate::spelling::closest;
 use ninebit::diagnostic::{Diagnostic, shorten};
 
-/// Brackets and casts around one value.
+/// Deepest nesting of brackets and casts around a value.
 const MAX_BRACKET_DEPTH: usize = 8;
 
-/// One part of a value.
+/// One part of a value, which may be joined from several.
 #[derive(Clone, Debug)]
 pub(crate) struct Part<'t> {
     pub(crate) text: &'t str,
@@ -21,17 +21,17 @@ pub(crate) struct Part<'t> {
 
 #[derive(Clone, Debug)]
 pub(crate) enum PartKind<'t> {
-    /// A name, which may be a variable's.
+    /// A name of the API or of a variable.
     Name,
     Integer(u32),
     Float(f32),
-    /// `D3DCOLOR_ARGB(...)`.
+    /// A macro with arguments: `D3DCOLOR_ARGB(...)`.
     Call(Vec<Value<'t>>),
-    /// `{ 1, 0, 0, 1 }`.
+    /// A list: `{ 1, 0, 0, 1 }`.
     List(Vec<Value<'t>>),
 }
 
-/// Parts joined by `|` or `+`.
+/// A value: parts joined by `|` or `+`.
 #[derive(Clone, Debug)]
 pub(crate) struct Value<'t> {
     pub(crate) parts: Vec<Part<'t>>,
@@ -39,7 +39,7 @@ pub(crate) struct Value<'t> {
 }
 
 impl<'t> Reader<'t> {
-    /// Reads a value; `None` once the reason that it is none has been recorded.
+    /// Reads a value. Returns `None` after recording what is wrong.
     pub(super) fn value(&mut self) -> Option<Value<'t>> {
         self.nested_value(0)
     }
@@ -122,7 +122,7 @@ impl<'t> Reader<'t> {
         Some(())
     }
 
-    /// Values with commas between them, up to a closing bracket.
+    /// Reads values separated by commas, up to a closing bracket.
     fn values(&mut self, closing: char, depth: usize) -> Option<Vec<Value<'t>>> {
         let mut values = Vec::new();
         while !self.cursor.is(closing) {
@@ -135,7 +135,7 @@ impl<'t> Reader<'t> {
         Some(values)
     }
 
-    /// Takes `[0]`, `.v` and `->v` behind a name.
+    /// Skips `[0]`, `.v` and `->v` behind a name.
     fn members(&mut self) {
         loop {
             let inside = [1, 2].map(|n| self.cursor.kind_at(self.cursor.at + n));
@@ -149,7 +149,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The token behind `(DWORD)`, `(const GLfloat *)`, `(GLfloat[4])`, if a cast stands here.
+    /// Returns the token after a cast like `(DWORD)`, `(const GLfloat *)` or `(GLfloat[4])`, if one stands here.
     fn cast(&self) -> Option<usize> {
         if !is_type(self.cursor.text_at(self.cursor.at + 1)) {
             return None;
@@ -168,7 +168,7 @@ impl<'t> Reader<'t> {
             digits.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E' | b'+' | b'-'));
         match digits.parse::<f32>() {
             Ok(value) if plain && value.is_finite() => {
-                // The sign bit: no arithmetic here.
+                // Only the sign bit is changed: there is no arithmetic here.
                 Some(PartKind::Float(f32::from_bits(value.to_bits() ^ u32::from(negative) << 31)))
             }
             _ => {
@@ -187,7 +187,7 @@ fn is_type(word: &str) -> bool {
     C.split(' ').chain(APIS.split(' ')).any(|known| known == word)
 }
 
-/// A whole number, decimal or hexadecimal, with C's suffixes.
+/// Parses a whole number, decimal or hexadecimal, with C's suffixes.
 pub(crate) fn integer(text: &str) -> Option<u32> {
     let text = text.trim_end_matches(['u', 'U', 'l', 'L']);
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
@@ -196,7 +196,7 @@ pub(crate) fn integer(text: &str) -> Option<u32> {
     }
 }
 
-/// A word without the first of the prefixes that it has, whatever the case: the prefix and the rest.
+/// Splits a word into the first of `prefixes` that it has, in any case, and the rest. The prefix is empty if it has none.
 pub(crate) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, &'w str) {
     for prefix in prefixes {
         if let (Some(head), Some(rest)) = (word.get(..prefix.len()), word.get(prefix.len()..))
@@ -208,13 +208,13 @@ pub(crate) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, 
     ("", word)
 }
 
-/// Letters and digits only, in lower case: `MODULATEALPHA_ADDCOLOR` and `ModulateAlphaAddColor` are one.
+/// Returns a word in lower case without underscores: `MODULATEALPHA_ADDCOLOR` and `ModulateAlphaAddColor` are the same.
 fn folded(word: &str) -> String {
     word.chars().filter(|c| *c != '_').map(|c| c.to_ascii_lowercase()).collect()
 }
 
-/// The entry of `known` that a name means; says what was probably meant otherwise. `bare`: the name as the entries have it, `spelled`: an entry
-/// as the text would have it.
+/// Returns the entry of `known` that a name means. `bare` is the name in the form of the entries; `spelled` writes an entry in the form of the text.
+/// Returns `None` after recording what was probably meant.
 pub(crate) fn known<T: Copy>(
     part: &Part<'_>,
     what: &str,
@@ -235,7 +235,7 @@ pub(crate) fn known<T: Copy>(
     None
 }
 
-/// What was probably meant by a word that is none of these; else all of them.
+/// Returns the help for an unknown word: what was probably meant, or else all known words.
 pub(crate) fn meant<T>(word: &str, known: &[(&str, T)], spelled: impl Fn(&str) -> String) -> String {
     match closest(word, known.iter().map(|(name, _)| *name)) {
         Some(name) => format!("did you mean `{}`?", spelled(name)),
@@ -243,7 +243,7 @@ pub(crate) fn meant<T>(word: &str, known: &[(&str, T)], spelled: impl Fn(&str) -
     }
 }
 
-/// The only part of a value.
+/// Returns the only part of a value. Returns `None` after recording that there are several.
 pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&'v Part<'t>> {
     if let [part] = &value.parts[..] {
         return Some(part);
@@ -253,7 +253,7 @@ pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<D
     None
 }
 
-/// Records that there is no such number.
+/// Records that there is no `what` with this number, and returns `None`.
 pub(crate) fn out_of_range<T>(
     span: &Span,
     what: &str,
@@ -266,7 +266,7 @@ pub(crate) fn out_of_range<T>(
     None
 }
 
-/// Records that another kind of value stands here.
+/// Records that another kind of value was expected, and returns `None`.
 pub(crate) fn wrong_kind<T>(value: &Value<'_>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<T> {
     findings.push(finding("NB0205", value.span.clone(), format!("expected {what}"), "wrong kind of value", help));
     None

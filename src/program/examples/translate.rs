@@ -1,4 +1,4 @@
-//! A combiner program in the language of NV_parse's register combiners, as the words that a driver writes.
+//! Translates a combiner program, in the language of NV_parse's register combiners, into the words that a driver writes.
 //!
 //! `cargo run -p ninebit-program --example translate`
 

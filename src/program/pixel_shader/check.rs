@@ -1,15 +1,15 @@
-//! The rules of the language, as its validator has them.
+//! Checks the rules of the language, as Direct3D's validator does.
 
 use super::*;
 use crate::finding::finding;
 
-/// Arithmetic instructions, or pairs of them, that a shader can have.
+/// Largest number of arithmetic instructions of a shader, where a pair counts as one.
 const MAX_ARITHMETIC_SLOTS: usize = 8;
 
-/// Findings beyond this many are not gathered.
+/// Largest number of findings.
 const MAX_FINDINGS: usize = 64;
 
-/// Holds a shader against the rules.
+/// Checks a shader against the rules.
 pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
     let mut check = Check { program, findings: Vec::new(), known: Known::default() };
     check.definitions();
@@ -30,7 +30,7 @@ pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
     check.findings
 }
 
-/// What holds a value: colour and alpha of r0, r1 and t0 to t3.
+/// The registers that hold a value: colour and alpha of r0, r1 and t0 to t3.
 #[derive(Clone, Copy, Debug, Default)]
 struct Known {
     temporary: [[bool; 2]; 2],
@@ -75,7 +75,7 @@ impl Check<'_> {
         self.findings.push(Diagnostic::warning(code, span.clone(), message).label(label).help(help));
     }
 
-    /// Where the first instruction stands.
+    /// Returns the place of the first instruction.
     fn first(&self) -> Option<usize> {
         let first = |texture: &TextureInstruction| texture.span.start;
         let texture = self.program.textures.first().map(first);
@@ -143,7 +143,7 @@ impl Check<'_> {
         self.push("NB0375", &source.span, message, "no colour here yet", help);
     }
 
-    /// Why a texture register holds no colour.
+    /// Says why a texture register holds no colour.
     fn emptiness(&self, index: u8) -> String {
         match self.program.textures.iter().find(|texture| texture.unit.value == index) {
             Some(texture) if !texture.operation.gives_color() => {
@@ -154,7 +154,7 @@ impl Check<'_> {
         }
     }
 
-    /// The rows of a matrix stand together: pads, and what completes them, in registers that follow one another.
+    /// Checks that the rows of a matrix stand together: pads and the instruction that completes them, in consecutive registers.
     fn rows(&mut self, n: usize, texture: &TextureInstruction) {
         use TextureOperation as Op;
         let unit = texture.unit.value;
@@ -198,7 +198,7 @@ impl Check<'_> {
         }
     }
 
-    /// Instructions that are issued together: one writes colour, one alpha.
+    /// Checks instructions that are issued together: one has to write colour, the other alpha.
     fn pair(&mut self, slot: &[Arithmetic]) {
         let [first, rest @ ..] = slot else { return };
         if first.paired {
@@ -235,7 +235,7 @@ impl Check<'_> {
         }
     }
 
-    /// How many registers of each kind an instruction, and a pair, can read.
+    /// Checks how many registers of each kind an instruction, and a pair, reads.
     fn ports(&mut self, slot: &[Arithmetic]) {
         let version = self.program.version;
         for bank in Bank::ALL {
@@ -285,7 +285,7 @@ impl Check<'_> {
         }
         for (n, Spanned { value: source, span }) in instruction.sources.iter().enumerate() {
             if instruction.operation == Operation::Cnd && n == 0 {
-                // An alpha instruction reads alpha anyway.
+                // An instruction that writes alpha reads alpha in any case.
                 let alpha = source.selector == Selector::Alpha
                     || source.selector == Selector::All && target.mask == Mask::Alpha;
                 let plain = source.modifier == Modifier::Plain && !source.negate;
@@ -314,7 +314,7 @@ impl Check<'_> {
         }
     }
 
-    /// A register is written before it is read.
+    /// Checks that a register is written before it is read.
     fn read(&mut self, instruction: &Arithmetic, source: &Source, span: &Span) {
         let Reads { color, alpha } = instruction.reads(source);
         let [has_color, has_alpha] = self.known.of(source.register);
@@ -338,7 +338,7 @@ impl Check<'_> {
         self.push("NB0375", span, message, "nothing here yet", help);
     }
 
-    /// The result is r0.
+    /// Checks that the shader writes its result, r0.
     fn result(&mut self) {
         let span = self.program.arithmetic.last().map(|instruction| instruction.target.span.clone());
         let span = span.or(self.program.textures.last().map(|texture| texture.unit.span.clone())).unwrap_or(0..0);

@@ -1,13 +1,13 @@
-//! Constants of the language in the constant registers of a stage: bytes without signs.
+//! Places constants of the language in the constant registers of a stage, whose bytes have no sign.
 
 use super::{CONSTANTS, PixelShader};
 use ninebit::number::convert::constant;
 use ninebit::state::{Component, Register};
 
-/// Constants in 255ths, R, G, B, A, limited to -1..1.
+/// Constants R, G, B, A in 255ths, from -255 to 255.
 pub(super) type Signed = [[i16; 4]; CONSTANTS];
 
-/// The values of all constants: what the shader defines itself goes before what it is given.
+/// Returns the values of all constants, clamped to -1..1. Definitions in the shader replace the given values.
 pub(super) fn values(program: &PixelShader, given: &[[f32; 4]; CONSTANTS]) -> [[f32; 4]; CONSTANTS] {
     let mut values = *given;
     for definition in &program.definitions {
@@ -18,13 +18,13 @@ pub(super) fn values(program: &PixelShader, given: &[[f32; 4]; CONSTANTS]) -> [[
     values.map(|value| value.map(|c| c.clamp(-1.0, 1.0)))
 }
 
-/// NUM-0 on the size of a number, which keeps its sign.
+/// Converts the absolute value of a number by NUM-0, and keeps the sign.
 pub(super) fn signed(c: f32) -> i16 {
     let size = i16::from(constant(c.abs()));
     if c < 0.0 { -size } else { size }
 }
 
-/// The two constant registers of a stage, colours and alphas apart: both halves of both are put to use.
+/// The two constant registers of a stage. Their colours and alphas are allocated separately, so that all four halves can be used.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pool {
     colors: [Option<[u8; 3]>; 2],
@@ -41,17 +41,17 @@ fn place<T: PartialEq>(slots: &mut [Option<T>; 2], value: T) -> Option<Register>
 }
 
 impl Pool {
-    /// A colour for an RGB portion; `None`: there is no room.
+    /// Places a colour for an RGB portion; `None` if there is no room.
     pub(super) fn color(&mut self, color: [u8; 3]) -> Option<(Register, Component)> {
         place(&mut self.colors, color).map(|register| (register, Component::Rgb))
     }
 
-    /// One number for an alpha portion.
+    /// Places one number for an alpha portion; `None` if there is no room.
     pub(super) fn alpha(&mut self, alpha: u8) -> Option<(Register, Component)> {
         place(&mut self.alphas, alpha).map(|register| (register, Component::Alpha))
     }
 
-    /// One number for an RGB portion: where it is already, or where there is room.
+    /// Places one number for an RGB portion, where it is already or where there is room; `None` if there is none.
     pub(super) fn scalar(&mut self, value: u8) -> Option<(Register, Component)> {
         if !self.alphas.contains(&Some(value)) && self.colors.contains(&Some([value; 3])) {
             return self.color([value; 3]);
@@ -59,7 +59,7 @@ impl Pool {
         self.alpha(value).or_else(|| self.color([value; 3]))
     }
 
-    /// The values of both constant registers, R, G, B, A; 0 where nothing is needed.
+    /// Returns the values R, G, B, A of both constant registers; 0 where nothing was placed.
     pub(super) fn registers(&self) -> [[u8; 4]; 2] {
         [0, 1].map(|n| {
             let [r, g, b] = self.colors[n].unwrap_or_default();

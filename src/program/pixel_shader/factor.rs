@@ -1,4 +1,4 @@
-//! From sources to inputs of a portion: which mapping reads x, and which reads -x.
+//! Turns sources into inputs of a portion: which mapping reads x, and which reads -x.
 
 use super::constants::Pool;
 use super::lower::Lowering;
@@ -6,22 +6,22 @@ use super::scratch::hardware;
 use super::{Bank, Modifier, Selector, Source};
 use ninebit::state::{CombinerInput, Component, InputMapping, Register};
 
-/// What has to happen in a stage before, so that an instruction fits one stage.
+/// What an earlier stage has to do so that an instruction fits one stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Need {
-    /// A register is limited to 0..1: `_sat` was left to its readers, and this one reads its negative.
+    /// Clamp a register to 0..1: its `_sat` was left to its readers, and this one reads the negative.
     Limit(Register),
-    /// A constant that one input cannot read is brought to a register.
+    /// Load a constant that no single input can read into a register.
     Constant(u8),
-    /// The first source of `lrp` is computed by itself.
+    /// Compute the first source of `lrp`.
     Factor(usize),
-    /// The blue of a register is copied to its alpha (nv10: a dot product).
+    /// Copy the blue of a register to its alpha, since a dot product is there on NV10.
     Alpha(Register),
     /// No stage can prepare it.
     Refused,
 }
 
-/// Which part of a constant is meant: all of it, or what is positive or negative of it, the other channels 0.
+/// The part of a constant that is read: all of it, or only its positive or its negative channels, with 0 in the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Whole,
@@ -29,17 +29,17 @@ pub(super) enum Part {
     Negative,
 }
 
-/// One factor of a product: x, or -x if `negate`.
+/// A factor of a product: x, or -x if `negate`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Factor {
-    /// The input that reads x.
+    /// Input that reads x.
     input: CombinerInput,
-    /// The mapping that reads -x.
+    /// Mapping that reads -x, if there is one.
     negated: Option<InputMapping>,
     negate: bool,
-    /// x is at least 0.
+    /// Whether x is at least 0.
     positive: bool,
-    /// What makes -x readable.
+    /// Register that has to be clamped before -x can be read.
     limit: Option<Register>,
 }
 
@@ -49,24 +49,24 @@ impl Factor {
         Factor { input, negated: Some(negated), negate: false, positive: false, limit: None }
     }
 
-    /// One that is never negative and whose negative no mapping reads.
+    /// Makes a factor that is never negative and whose negative no mapping reads.
     pub(super) fn unsigned(register: Register, component: Component, mapping: InputMapping) -> Factor {
         Factor { negated: None, positive: true, ..Factor::new(register, component, [mapping; 2]) }
     }
 
-    /// The factor 1.
+    /// Makes the factor 1.
     pub(super) fn one(alpha: bool) -> Factor {
         let component = if alpha { Component::Alpha } else { Component::Rgb };
         let mappings = [InputMapping::UnsignedInvert, InputMapping::ExpandNormal];
         Factor { positive: true, ..Factor::new(Register::Zero, component, mappings) }
     }
 
-    /// The factor with the other sign.
+    /// Returns the factor with the other sign.
     pub(super) fn minus(self) -> Factor {
         Factor { negate: !self.negate, ..self }
     }
 
-    /// 1 - x of one that is read by an unsigned mapping.
+    /// Returns the factor 1 - x, of a factor that an unsigned mapping reads.
     pub(super) fn complement(self) -> Factor {
         let mapping = match self.input.mapping {
             InputMapping::UnsignedInvert => InputMapping::UnsignedIdentity,
@@ -76,12 +76,12 @@ impl Factor {
     }
 }
 
-/// The two inputs of a product, and whether it is at least 0.
+/// Returns the two inputs of a product, and whether the product is at least 0.
 pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool), Need> {
     if a.negate == b.negate {
         return Ok(([a.input, b.input], a.positive && b.positive));
     }
-    // The sign goes to the factor that it is written at, if its mappings can; to 1 last of all, whose negative is inexact in integers.
+    // A minus sign goes to the factor that has it, if its mappings allow that; to the factor 1 last, whose negative is inexact in integers.
     let order = |factor: &Factor| match factor.negated {
         None => None,
         Some(_) if factor.negate => Some(0),
@@ -98,7 +98,7 @@ pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool)
 }
 
 impl Lowering {
-    /// What reads a source in a portion. `unsigned`: as a weight, max(0, x).
+    /// Returns the factor that reads a source in a portion. If `unsigned`, the source is a weight: max(0, x).
     pub(super) fn factor(
         &self,
         source: &Source,
@@ -131,7 +131,7 @@ impl Lowering {
         let half = value.halves[usize::from(component == Component::Alpha)];
         let component = match (component, alpha) {
             (Component::Alpha, true) if value.alpha_is_blue => Component::Blue,
-            // A dot product has the same in all three channels.
+            // The three colour channels of a dot product are equal.
             (Component::Alpha, false) if value.alpha_is_blue => Component::Rgb,
             (component, _) => component,
         };
@@ -194,7 +194,7 @@ impl Lowering {
         Ok(if negative { factor.minus() } else { factor })
     }
 
-    /// Whether a source is a constant that no single input reads: channels of both signs.
+    /// Returns whether a source is a constant that no single input can read, because it has channels of both signs.
     pub(super) fn is_mixed(&self, source: &Source, alpha: bool) -> bool {
         let held = source.register.bank != Bank::Constant || self.held_constant(source.register).is_some();
         let plain = source.modifier == Modifier::Plain && source.selector == Selector::All;

@@ -1,4 +1,4 @@
-//! From instructions to general stages: one for each instruction or pair, and one more where a stage cannot say it.
+//! Turns instructions into general stages: one for each instruction or pair, and further ones for what a stage cannot do.
 
 use super::constants::{Pool, Signed, signed, values};
 use super::scratch::{Set, contains, hardware, live};
@@ -13,29 +13,29 @@ use ninebit::state::{
 /// The states of a texture stage that texbem and texbeml read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bump {
-    /// BUMPENVMAT00, 01, 10, 11.
+    /// BUMPENVMAT00, 01, 10, 11; `None` if they are not set.
     pub matrix: Option<[f32; 4]>,
-    /// Scale and offset: BUMPENVLSCALE, BUMPENVLOFFSET.
+    /// Scale and offset: BUMPENVLSCALE and BUMPENVLOFFSET; `None` if they are not set.
     pub luminance: Option<[f32; 2]>,
 }
 
-/// What of the draw the lowering depends on.
+/// State of the draw that the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Context {
     /// The chip that runs the program.
     pub profile: Profile,
-    /// Units whose colours can be negative.
+    /// Whether the colour of each texture unit can be negative.
     pub signed: [bool; TEXTURE_UNITS],
-    /// Fog is enabled.
+    /// Whether fog is enabled.
     pub fog: bool,
-    /// Constants, R, G, B, A; limited to -1..1. What the shader defines itself goes before them.
+    /// Constants R, G, B, A; they are clamped to -1..1. Definitions in the shader replace them.
     pub constants: [[f32; 4]; CONSTANTS],
-    /// For texbem and texbeml, of the unit that samples.
+    /// Bump states for texbem and texbeml, by the unit that samples.
     pub bumps: [Bump; TEXTURE_UNITS],
 }
 
 impl Context {
-    /// Without fog, signed textures, constants and bump states.
+    /// Makes a context without fog, signed textures, constants and bump states.
     pub fn new(profile: Profile) -> Context {
         let (constants, bumps) = ([[0.0; 4]; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
         Context { profile, signed: [false; TEXTURE_UNITS], fog: false, constants, bumps }
@@ -45,31 +45,31 @@ impl Context {
 /// What a texture unit does for a shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitUse {
-    /// What the unit is programmed to do.
+    /// Operation of the unit.
     pub operation: ShaderOperation,
-    /// The unit that it reads.
+    /// The earlier unit that it reads.
     pub previous: usize,
-    /// How a dot product takes that.
+    /// How a dot product maps the colour of that unit.
     pub mapping: DotMapping,
-    /// The instruction that wants it, in the text.
+    /// Place of the instruction in the text.
     pub span: Span,
 }
 
-/// A lowered shader.
+/// Result of lowering a shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program, in the chip's own terms.
+    /// The program as state of the chip.
     pub combiners: Combiners,
-    /// What each general stage came from.
+    /// What each general stage was made from.
     pub origins: Vec<StageOrigin>,
-    /// The texture shader: `None` for units that no instruction loads.
+    /// The texture shader; `None` for units that no instruction loads.
     pub units: [Option<UnitUse>; TEXTURE_UNITS],
 }
 
 /// Lowers a shader for a draw.
 ///
 /// # Errors
-/// What breaks the rules of the language, and everything that the chip has no form for.
+/// Findings about what breaks the rules of the language, and about what the chip cannot do.
 pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let mut findings = check::check(program);
     findings.retain(|finding| finding.severity == Severity::Error);
@@ -102,25 +102,25 @@ pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Di
 pub(super) const TEXTURES: [Register; 4] =
     [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
 
-/// What is known of the colour or the alpha of a register.
+/// What is known about the colour or the alpha of a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Half {
-    /// Its value may be negative.
+    /// Whether its value may be negative.
     pub(super) negative: bool,
-    /// It counts as max(0, x): `_sat`, left to who reads it.
+    /// Whether it stands for max(0, x), because a `_sat` was left to its readers.
     pub(super) limit: bool,
 }
 
-/// What is known of a register.
+/// What is known about a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Value {
-    /// Of colour and of alpha.
+    /// Colour, and alpha.
     pub(super) halves: [Half; 2],
-    /// Its alpha is its blue: a dot product on a chip without blue-to-alpha.
+    /// Whether its alpha is in blue: a dot product on a chip without blue-to-alpha.
     pub(super) alpha_is_blue: bool,
 }
 
-/// What stages before an instruction have prepared for it.
+/// What earlier stages have prepared for an instruction: registers that hold constants or factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Held {
     pub(super) constants: [Option<Register>; CONSTANTS],
@@ -129,7 +129,7 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Forgets what was prepared for one instruction, and constants in registers that are to be used otherwise.
+    /// Forgets what was prepared for one instruction, and the constants in registers that are needed otherwise.
     pub(super) fn keep(&mut self, keeps: impl Fn(Register) -> bool) {
         self.constants.iter_mut().for_each(|register| *register = register.filter(|register| keeps(*register)));
         self.factors = [None; 2];
@@ -143,7 +143,7 @@ pub(super) struct Lowering {
     pub(super) constants: Signed,
     values: [Value; 12],
     pub(super) held: Held,
-    /// Constants of the stage; on nv10 of the whole program.
+    /// Constants of the stage, or on NV10 of the whole program.
     pub(super) pool: Pool,
     stages: Vec<GeneralStage>,
     origins: Vec<StageOrigin>,
@@ -151,7 +151,7 @@ pub(super) struct Lowering {
     pub(super) findings: Vec<Diagnostic>,
 }
 
-/// A portion and whether what it writes is at least 0.
+/// A portion, and whether what it writes is at least 0.
 pub(super) type Written = (Portion, bool);
 
 impl Lowering {
@@ -159,18 +159,18 @@ impl Lowering {
         self.values[register as usize]
     }
 
-    /// The register that holds a constant for the instruction at hand.
+    /// Returns the register that holds a constant for the current instruction.
     pub(super) fn held_constant(&self, register: ShaderRegister) -> Option<Register> {
         let constant = (register.bank == Bank::Constant).then_some(usize::from(register.index))?;
         self.held.constants.get(constant).copied().flatten()
     }
 
-    /// One instruction or pair.
+    /// Lowers one instruction or pair.
     fn slot(&mut self, slot: &[Arithmetic], live: Set) {
         let Some(first) = slot.first() else { return };
         let span = first.span.clone();
         self.held.keep(|register| !contains(live, register));
-        // Each turn prepares one thing; there are fewer things than this.
+        // Each turn prepares one thing, and there are fewer than 16.
         for _ in 0..16 {
             let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
             match self.stage(slot, &mut pool) {
@@ -215,7 +215,7 @@ impl Lowering {
         self.places.push(span);
     }
 
-    /// What the instructions of a stage leave to their readers.
+    /// Records what the instructions of a stage leave to the readers of their results.
     fn write(&mut self, slot: &[Arithmetic]) {
         for instruction in slot {
             let Target { register, mask } = instruction.target.value;
@@ -269,7 +269,7 @@ impl Lowering {
         Ok((Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner }, self.origins))
     }
 
-    /// CMB-13: nv10 does not define the alpha of v1.
+    /// Refuses reads of the alpha of v1, which NV10 does not define (CMB-13).
     fn secondary_alpha(&mut self, program: &PixelShader) {
         if self.profile == Profile::Nv2a {
             return;

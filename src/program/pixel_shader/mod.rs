@@ -1,6 +1,6 @@
-//! Direct3D pixel shaders, version 1.1: read, held against the language's rules, lowered to register combiners and a texture shader, printed.
+//! Direct3D pixel shaders, version 1.1: reads, checks and prints them, and lowers them to combiners and a texture shader.
 //!
-//! The language is in `docs/pixel-shader.md`.
+//! `docs/pixel-shader.md` describes the language.
 
 mod check;
 mod constants;
@@ -23,19 +23,19 @@ use ninebit::state::{Named, Scale, named};
 pub use lower::{Bump, Context, Lowered, UnitUse, lower};
 pub use print::{instruction, print};
 
-/// Constant registers of the language.
+/// Number of constant registers of the language.
 pub const CONSTANTS: usize = 8;
 
 named! {
-    /// A version of the language whose instructions are those of 1.1.
+    /// A version of the language that has the instructions of 1.1.
     pub enum Version {
-        /// One texture and one vertex colour in an instruction; pairs write one register.
+        /// An instruction reads one texture and one vertex colour; pairs write one register.
         Ps10 = "ps.1.0",
-        /// The version that is documented here.
+        /// The documented version.
         Ps11 = "ps.1.1",
-        /// 1.1 with three textures in an instruction. What it adds besides is refused.
+        /// An instruction reads three textures. Other additions are refused.
         Ps12 = "ps.1.2",
-        /// 1.2 with instructions that are refused as well.
+        /// Like 1.2; its additional instructions are refused.
         Ps13 = "ps.1.3",
     }
 }
@@ -46,15 +46,15 @@ named! {
         Constant = "c",
         /// r0 and r1: results; r0 is the pixel.
         Temporary = "r",
-        /// t0 to t3: what the texture instructions give.
+        /// t0 to t3: results of the texture instructions.
         Texture = "t",
-        /// v0 and v1: the colours of the vertices.
+        /// v0 and v1: colours of the vertices.
         Color = "v",
     }
 }
 
 impl Bank {
-    /// Registers of this kind.
+    /// Returns the number of registers of this kind.
     pub fn count(self) -> u8 {
         match self {
             Bank::Constant => CONSTANTS as u8,
@@ -63,7 +63,7 @@ impl Bank {
         }
     }
 
-    /// How many different ones an instruction can read.
+    /// Returns how many different registers of this kind an instruction can read.
     pub fn ports(self, version: Version) -> usize {
         match (self, version) {
             (Bank::Constant | Bank::Temporary, _) => 2,
@@ -77,7 +77,7 @@ impl Bank {
 /// A register of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaderRegister {
-    /// The bank that it belongs to.
+    /// The kind of register.
     pub bank: Bank,
     /// Its number, below [`Bank::count`].
     pub index: u8,
@@ -90,18 +90,18 @@ impl std::fmt::Display for ShaderRegister {
 }
 
 named! {
-    /// Which channels of a source are read.
+    /// The channels of a source that are read.
     pub enum Selector {
-        /// Each its own.
+        /// Each channel its own.
         All = "",
-        /// Alpha, for all.
+        /// Alpha, for all channels.
         Alpha = ".a",
         /// Blue, for alpha.
         Blue = ".b",
     }
 }
 named! {
-    /// What is made of a source. Of a negative register, all but `Plain` see 0.
+    /// A modifier of a source. Of a negative register, all but `Plain` read 0.
     pub enum Modifier {
         /// x.
         Plain = "",
@@ -109,7 +109,7 @@ named! {
         Bias = "_bias",
         /// 2x - 1.
         SignedScale = "_bx2",
-        /// 1 - x. Not together with a minus.
+        /// 1 - x. It cannot be negated.
         Invert = "1-",
     }
 }
@@ -119,16 +119,16 @@ named! {
 pub struct Source {
     /// The register that is read.
     pub register: ShaderRegister,
-    /// Which of its channels.
+    /// Its channels.
     pub selector: Selector,
-    /// What is made of them.
+    /// The modifier of these.
     pub modifier: Modifier,
-    /// The negative of all that.
+    /// Whether the modified value is negated.
     pub negate: bool,
 }
 
 named! {
-    /// Which channels an instruction writes.
+    /// The channels that an instruction writes.
     pub enum Mask {
         /// Colour and alpha.
         All = "",
@@ -140,7 +140,7 @@ named! {
 }
 
 impl Mask {
-    /// Whether it has the colour (false) or the alpha (true).
+    /// Returns whether the mask includes the alpha (`true`) or the colour (`false`).
     pub fn has(self, alpha: bool) -> bool {
         match self {
             Mask::All => true,
@@ -150,7 +150,7 @@ impl Mask {
     }
 }
 
-/// Where an arithmetic instruction writes.
+/// Destination of an arithmetic instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Target {
     /// r0, r1 or t0 to t3.
@@ -162,7 +162,7 @@ pub struct Target {
 named! {
     /// An arithmetic instruction; a, b and c are its sources.
     pub enum Operation =>
-    /// Sources it has.
+    /// Returns the number of its sources.
     sources: usize {
         /// a.
         Mov = "mov" => 1,
@@ -174,7 +174,7 @@ named! {
         Mul = "mul" => 2,
         /// a b + c.
         Mad = "mad" => 3,
-        /// a b + (1 - a) c, a limited to 0..1.
+        /// a b + (1 - a) c, with a clamped to 0..1.
         Lrp = "lrp" => 3,
         /// The sum of a b over R, G and B, in all channels that are written.
         Dp3 = "dp3" => 2,
@@ -183,39 +183,39 @@ named! {
     }
 }
 
-/// What an instruction takes of a source's register.
+/// The channels of a source's register that an instruction reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reads {
-    /// Channels of its colour.
+    /// Whether it reads channels of the colour.
     pub color: bool,
-    /// Its alpha channel.
+    /// Whether it reads the alpha channel.
     pub alpha: bool,
 }
 
 /// One arithmetic instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arithmetic {
-    /// What it computes.
+    /// The operation.
     pub operation: Operation,
-    /// `_x2`, `_x4`, `_d2`.
+    /// The scale: `_x2`, `_x4`, `_d2`.
     pub scale: Scale,
-    /// `_sat`: limited to 0..1, after the scale.
+    /// `_sat`: whether the result is clamped to 0..1, after the scale.
     pub saturate: bool,
-    /// Where the result goes.
+    /// Destination of the result.
     pub target: Spanned<Target>,
     /// The sources, as many as the operation has.
     pub sources: Vec<Spanned<Source>>,
-    /// Issued together with the instruction before it: `+`.
+    /// `+`: whether it is issued together with the instruction before.
     pub paired: bool,
-    /// Its name in the text.
+    /// Place of its name in the text.
     pub span: Span,
 }
 
 impl Arithmetic {
-    /// What it takes of the register of a source.
+    /// Returns the channels of a source's register that the instruction reads.
     pub fn reads(&self, source: &Source) -> Reads {
         let mask = self.target.value.mask;
-        // The dot product is taken of colours, whatever it is written to.
+        // A dot product reads the colours, whatever channels it writes.
         let [color, alpha] = match self.operation {
             Operation::Dp3 => [true, false],
             _ => [mask.has(false), mask.has(true)],
@@ -231,54 +231,54 @@ impl Arithmetic {
 named! {
     /// An instruction that loads a texture register, in the order of the table in `docs/pixel-shader.md`.
     pub enum TextureOperation =>
-    /// Registers that are written behind its name, and whether its own holds a colour afterwards.
+    /// Returns the number of registers behind its name, and whether its own register holds a colour afterwards.
     form: (usize, bool) {
-        /// The texture at its coordinates.
+        /// Samples the texture at its coordinates.
         Tex = "tex" => (1, true),
-        /// The coordinates themselves, limited to 0..1.
+        /// Gives the coordinates themselves, clamped to 0..1.
         Texcoord = "texcoord" => (1, true),
         /// Drops the pixel if a coordinate is negative.
         Texkill = "texkill" => (1, false),
-        /// The texture where a matrix times the source moves the coordinates.
+        /// Samples the texture, with coordinates moved by a matrix times the source.
         Texbem = "texbem" => (2, true),
-        /// The same, and scaled by the source's luminance.
+        /// Like `texbem`, and scales the result by the source's luminance.
         Texbeml = "texbeml" => (2, true),
-        /// The texture at the source's alpha and red.
+        /// Samples the texture at the source's alpha and red.
         Texreg2ar = "texreg2ar" => (2, true),
-        /// The texture at the source's green and blue.
+        /// Samples the texture at the source's green and blue.
         Texreg2gb = "texreg2gb" => (2, true),
-        /// The first row of two.
+        /// Computes the first of two rows of a matrix.
         Texm3x2pad = "texm3x2pad" => (2, false),
-        /// The second row, and the texture at the two products.
+        /// Computes the second row, and samples the texture at the two products.
         Texm3x2tex = "texm3x2tex" => (2, true),
-        /// The first or second row of three.
+        /// Computes the first or second of three rows of a matrix.
         Texm3x3pad = "texm3x3pad" => (2, false),
-        /// The third row, and the cube map in that direction.
+        /// Computes the third row, and samples the cube map in the direction of the three products.
         Texm3x3tex = "texm3x3tex" => (2, true),
-        /// The third row, and the cube map in the direction reflected, the eye a constant.
+        /// Computes the third row, and samples the cube map in the reflected direction, with a constant eye vector.
         Texm3x3spec = "texm3x3spec" => (3, true),
-        /// The same, the eye in the three fourth coordinates.
+        /// Like `texm3x3spec`, with the eye vector in the three fourth coordinates.
         Texm3x3vspec = "texm3x3vspec" => (2, true),
     }
 }
 
 impl TextureOperation {
-    /// Registers that are written behind its name.
+    /// Returns the number of registers behind its name.
     pub fn operands(self) -> usize {
         self.form().0
     }
 
-    /// Whether it has a source register.
+    /// Returns whether it has a source register.
     pub fn has_source(self) -> bool {
         self.operands() > 1
     }
 
-    /// Whether it is a row of a matrix, whose source may be `_bx2`.
+    /// Returns whether it is a row of a matrix, whose source may have `_bx2`.
     pub fn is_row(self) -> bool {
         self.name().starts_with("texm3x")
     }
 
-    /// Whether its register holds a colour afterwards.
+    /// Returns whether its register holds a colour afterwards.
     pub fn gives_color(self) -> bool {
         self.form().1
     }
@@ -287,35 +287,35 @@ impl TextureOperation {
 /// The source of a texture instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureSource {
-    /// t0 to t2.
+    /// Number of the register: t0 to t2.
     pub unit: u8,
-    /// `_bx2`: 2 x - 1 of each component.
+    /// `_bx2`: whether each component becomes 2 x - 1.
     pub signed_scale: bool,
 }
 
 /// One texture instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextureInstruction {
-    /// What it does.
+    /// The operation.
     pub operation: TextureOperation,
-    /// Its register, t0 to t3, and texture unit.
+    /// Number of its register, t0 to t3, and of the texture unit.
     pub unit: Spanned<u8>,
     /// The earlier register that it reads.
     pub source: Option<Spanned<TextureSource>>,
-    /// The constant with the eye, of texm3x3spec.
+    /// The constant with the eye vector, of texm3x3spec.
     pub eye: Option<Spanned<u8>>,
-    /// Its name in the text.
+    /// Place of its name in the text.
     pub span: Span,
 }
 
-/// `def`: a constant with its value.
+/// `def`: a constant defined in the shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
-    /// 0 to 7.
+    /// Number of the constant, 0 to 7.
     pub index: u8,
-    /// R, G, B, A, finite.
+    /// R, G, B and A, which are finite.
     pub value: [f32; 4],
-    /// The register in the text.
+    /// Place of the register in the text.
     pub span: Span,
 }
 
@@ -324,7 +324,7 @@ pub struct Definition {
 pub struct PixelShader {
     /// The version that its first line names.
     pub version: Version,
-    /// Constants that it defines itself.
+    /// Constants that the shader defines.
     pub definitions: Vec<Definition>,
     /// Texture instructions, in order.
     pub textures: Vec<TextureInstruction>,
@@ -333,12 +333,12 @@ pub struct PixelShader {
 }
 
 impl PixelShader {
-    /// Arithmetic instructions by the slot that they take: one, or a pair.
+    /// Returns the arithmetic instructions by slots: one instruction, or a pair.
     pub fn slots(&self) -> impl DoubleEndedIterator<Item = &[Arithmetic]> {
         self.arithmetic.chunk_by(|_, next| next.paired)
     }
 
-    /// Constants that are read, each with the first place.
+    /// Returns the constants that are read, with the first place of each.
     pub fn constants_read(&self) -> Vec<Spanned<u8>> {
         let eyes = self.textures.iter().filter_map(|texture| texture.eye.clone());
         let sources = self.arithmetic.iter().flat_map(|instruction| &instruction.sources);
@@ -354,19 +354,19 @@ impl PixelShader {
     }
 }
 
-/// A program that was read and checked.
+/// A shader that has been read and checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
-    /// What it says.
+    /// The shader.
     pub program: PixelShader,
-    /// What is probably not meant.
+    /// Findings about what is probably unintended.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads a pixel shader and holds it against the rules of the language.
+/// Reads a pixel shader and checks it against the rules of the language.
 ///
 /// # Errors
-/// Everything that is wrong with it, with places in `text`; at most 32 findings of notation, or 64 of rules.
+/// All findings, with places in `text`: at most 32 about the notation, or 64 about the rules.
 pub fn parse(text: &str) -> Result<Parsed, Vec<Diagnostic>> {
     let (program, mut findings) = parser::read(text);
     if findings.iter().all(|finding| finding.severity != Severity::Error) {

@@ -1,4 +1,4 @@
-//! Operands of instructions: registers with what stands around them, and numbers.
+//! Reads operands of instructions: registers with their modifiers, and numbers.
 
 use super::parser::Parser;
 use super::*;
@@ -25,7 +25,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A register without anything around it.
+    /// Reads a register without modifiers.
     pub(super) fn plain_register(&mut self, bank: Bank, what: &str, why: &str) -> Option<Spanned<u8>> {
         let pieces = self.word(&format!("a register {}n", bank.name()))?;
         let (name, span) = pieces.first()?.clone();

@@ -1,4 +1,4 @@
-//! From text to instructions.
+//! Reads the text of a shader into instructions.
 
 use super::words::Word;
 use super::*;
@@ -8,10 +8,10 @@ use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 
-/// Findings beyond this many are not gathered.
+/// Number of findings after which reading stops.
 const MAX_FINDINGS: usize = 32;
 
-/// Reads the notation alone.
+/// Reads the notation, without checking the rules.
 pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
     let program =
         PixelShader { version: Version::Ps11, definitions: Vec::new(), textures: Vec::new(), arithmetic: Vec::new() };
@@ -63,7 +63,7 @@ impl Parser<'_> {
         self.cursor.skip_to(|cursor| cursor.is('+') || cursor.is_new_line());
     }
 
-    /// The word at hand, taken: in lower case, cut at its underscores, and where each piece stands.
+    /// Takes the current word. Returns its pieces between underscores, in lower case, with their places.
     pub(super) fn word(&mut self, what: &str) -> Option<Vec<(String, Span)>> {
         if self.cursor.kind() != Some(Kind::Word) {
             return self.expected(what);
@@ -79,7 +79,7 @@ impl Parser<'_> {
         Some(pieces.collect())
     }
 
-    /// The version, if the text starts with one; without one it is 1.1. `None`: a version that is not read.
+    /// Reads the version that the text starts with; without one it is 1.1. Returns `None` after recording that the version is not supported.
     fn version(&mut self) -> Option<()> {
         let span = self.cursor.span();
         let word = match self.cursor.kind() {
@@ -107,7 +107,7 @@ impl Parser<'_> {
         Some(())
     }
 
-    /// One instruction; `None` once the reason that it is none has been recorded.
+    /// Reads one instruction. Returns `None` after recording what is wrong.
     fn instruction(&mut self) -> Option<()> {
         let paired = self.cursor.take('+');
         let start = self.cursor.at;
@@ -165,7 +165,7 @@ impl Parser<'_> {
         None
     }
 
-    /// `_x2`, `_x4`, `_d2` and `_sat`, in any order.
+    /// Reads `_x2`, `_x4`, `_d2` and `_sat`, in any order.
     fn scale(&mut self, name: &str, modifiers: &[(String, Span)]) -> (Scale, bool) {
         let (mut scale, mut saturate) = (None, false);
         for (modifier, span) in modifiers {
@@ -272,7 +272,7 @@ impl Parser<'_> {
     }
 }
 
-/// How an instruction is written.
+/// Returns the help that shows how an instruction is written.
 fn operands(name: &str) -> String {
     match words::find(name) {
         Some(Word::Define) => "write `def c0, 1, 0.5, 0, 1`".to_owned(),

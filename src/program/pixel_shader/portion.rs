@@ -1,4 +1,4 @@
-//! The portions of one general stage: what each instruction reads, and where it writes.
+//! Makes the portions of one general stage: the inputs of each instruction, and its output.
 
 use super::constants::Pool;
 use super::factor::{Factor, Need, Part, product};
@@ -8,10 +8,10 @@ use super::{Arithmetic, Mask, Modifier, Operation, Target};
 use ninebit::state::{Component, InputMapping, Portion, Profile, Register};
 
 impl Lowering {
-    /// The portions of an instruction or pair.
+    /// Makes the portions of an instruction or pair.
     pub(super) fn stage(&self, slot: &[Arithmetic], pool: &mut Pool) -> Result<[Written; 2], Need> {
         let mut halves = [Component::Rgb, Component::Alpha].map(|component| (Portion::idle(component), true));
-        // Alpha first: what it leaves of the constants' alphas, colours can take.
+        // Alpha comes first: colours can use the alphas of constants that it leaves.
         for alpha in [true, false] {
             for (n, instruction) in slot.iter().enumerate() {
                 if instruction.target.value.mask.has(alpha) && !(alpha && instruction.operation == Operation::Dp3) {
@@ -19,7 +19,7 @@ impl Lowering {
                 }
             }
         }
-        // What nv10 keeps in blue goes to alpha before a colour takes its place.
+        // On NV10 an alpha that is kept in blue is copied to alpha before a colour overwrites it.
         for instruction in slot {
             let Target { register, mask } = instruction.target.value;
             let Some(register) = hardware(register) else { continue };
@@ -50,7 +50,7 @@ impl Lowering {
             let source = &sources.get(n).ok_or(Need::Refused)?.value;
             self.factor(source, alpha, false, part, pool)
         };
-        // A colour cnd behind `+` does not compare.
+        // A colour `cnd` behind `+` does not compare.
         let selects = *operation == Operation::Cnd && !(*paired && target.value.mask == Mask::Color);
         let (ab, cd) = match operation {
             Operation::Mov | Operation::Mul => {
@@ -58,7 +58,7 @@ impl Lowering {
                 let at = mixed.unwrap_or(0);
                 let other = if *operation == Operation::Mul { read(1 - at.min(1), Part::Whole)? } else { unit };
                 match mixed {
-                    // Its positive and its negative part, a product each.
+                    // The positive and the negative part are one product each.
                     Some(_) => {
                         let [positive, negative] = [read(at, Part::Positive)?, read(at, Part::Negative)?];
                         (product(other, positive)?, Some(product(other, negative)?))
@@ -106,10 +106,10 @@ impl Lowering {
         Ok((portion, positive))
     }
 
-    /// The first source of lrp, which both it and its complement must read.
+    /// Returns the first source of `lrp`, which has to be readable both as it is and as its complement.
     fn weight(&self, instruction: &Arithmetic, n: usize, alpha: bool, pool: &mut Pool) -> Result<Factor, Need> {
         if let Some(register) = self.held.factors.get(n).copied().flatten() {
-            // As it was computed: each channel its own.
+            // It has been computed: each channel reads its own.
             let component = if alpha { Component::Alpha } else { Component::Rgb };
             return Ok(Factor::unsigned(register, component, InputMapping::UnsignedIdentity));
         }

@@ -1,4 +1,4 @@
-//! Stages that are added: what has to happen before an instruction fits one stage.
+//! Adds the stages that have to run before an instruction so that it fits one stage.
 
 use super::constants::Pool;
 use super::factor::Need;
@@ -11,7 +11,7 @@ use crate::finding::finding;
 use ninebit::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
 
 impl Lowering {
-    /// A stage before the instruction. `None` once the reason has been recorded that nothing helps.
+    /// Adds a stage before the instruction. Returns `None` after recording that nothing helps.
     pub(super) fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, span: &Span) -> Option<()> {
         let idle = |component| (Portion::idle(component), true);
         let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
@@ -88,7 +88,7 @@ impl Lowering {
         slot.first().map_or(String::new(), |first| format!(", for {}", print::instruction(first)))
     }
 
-    /// A constant of both signs, as the difference of two.
+    /// Makes a portion that loads a constant with both signs, as the difference of two constants.
     fn loaded(&self, constant: [i16; 4], alpha: bool, register: Register, pool: &mut Pool) -> Option<Written> {
         let component = if alpha { Component::Alpha } else { Component::Rgb };
         let [r, g, b, a] = constant;
@@ -109,7 +109,7 @@ impl Lowering {
     fn scratch(&mut self, live: Set, span: &Span) -> Option<Register> {
         let mut found = free(live, &self.held.taken, self.profile);
         if found.is_none() {
-            // Constants can be brought again.
+            // Constants can be loaded again.
             self.held.keep(|_| false);
             found = free(live, &self.held.taken, self.profile);
         }
@@ -135,7 +135,7 @@ impl Lowering {
         }
     }
 
-    /// max(0, x) in the place of x, if that is still to be done.
+    /// Makes a portion that replaces x by max(0, x), if that is still to be done.
     fn limited(&self, register: Register, alpha: bool) -> Written {
         let value = self.value(register);
         if alpha && value.alpha_is_blue {
@@ -151,7 +151,7 @@ impl Lowering {
         (portion, true)
     }
 
-    /// Blue, as it is, into alpha.
+    /// Makes a portion that copies blue to alpha, unchanged.
     pub(super) fn copied_alpha(&self, register: Register) -> Written {
         let mut portion = Portion::idle(Component::Alpha);
         portion.inputs[0] = CombinerInput {

@@ -1,8 +1,8 @@
-//! From instructions to text.
+//! Prints shaders as text.
 
 use super::*;
 
-/// The text of a shader: one instruction a line. [`parse`] reads the same shader from it.
+/// Prints a shader, one instruction in a line. [`parse`] reads the same shader from the text.
 pub fn print(program: &PixelShader) -> String {
     let mut text = format!("{}\n", program.version.name());
     for Definition { index, value: [r, g, b, a], .. } in &program.definitions {
@@ -25,7 +25,7 @@ pub fn print(program: &PixelShader) -> String {
     text
 }
 
-/// The text of an arithmetic instruction.
+/// Prints an arithmetic instruction.
 pub fn instruction(arithmetic: &Arithmetic) -> String {
     let Arithmetic { operation, scale, saturate, target: Spanned { value: target, .. }, sources, paired, .. } =
         arithmetic;

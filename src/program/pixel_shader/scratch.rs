@@ -1,9 +1,9 @@
-//! Which registers still hold something that is read later, and which are free to hold something in between.
+//! Finds the registers whose values are read later, and those that are free for intermediate values.
 
 use super::{Arithmetic, Bank, PixelShader, ShaderRegister};
 use ninebit::state::{Profile, Register};
 
-/// The combiners' register of a register of the language; constants have none.
+/// Returns the register of the combiners for a register of the language; constants have none.
 pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {
     Some(match (register.bank, register.index) {
         (Bank::Constant, _) => return None,
@@ -18,14 +18,14 @@ pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {
     })
 }
 
-/// A set of registers: bit n for register n.
+/// A set of registers: bit n stands for register n.
 pub(super) type Set = u16;
 
 fn bit(register: Register) -> Set {
     1 << register as usize
 }
 
-/// What must be kept when a slot begins, for each slot.
+/// Returns, for each slot, the registers whose values have to be kept when it begins.
 pub(super) fn live(program: &PixelShader) -> Vec<Set> {
     // The final combiner reads r0.
     let mut live = bit(Register::Spare0);
@@ -42,7 +42,7 @@ pub(super) fn live(program: &PixelShader) -> Vec<Set> {
 }
 
 fn before(slot: &[Arithmetic], after: Set) -> Set {
-    // A register is written whole by one instruction, or by the two halves of a pair.
+    // A register is overwritten as a whole by one instruction, or by both halves of a pair.
     let mut written = [0; 2];
     for instruction in slot {
         let target = instruction.target.value;
@@ -57,12 +57,12 @@ fn before(slot: &[Arithmetic], after: Set) -> Set {
     after & !(written[0] & written[1]) | read
 }
 
-/// Whether a register is in a set.
+/// Returns whether a register is in a set.
 pub(super) fn contains(set: Set, register: Register) -> bool {
     set & bit(register) != 0
 }
 
-/// A register that is in none of the sets.
+/// Returns a register that is neither live nor taken, if there is one.
 pub(super) fn free(live: Set, taken: &[Register], profile: Profile) -> Option<Register> {
     let both = [Register::Spare1, Register::Texture1, Register::Texture0, Register::PrimaryColor, Register::Spare0];
     let nv2a = [Register::Texture3, Register::Texture2, Register::SecondaryColor];

@@ -1,4 +1,4 @@
-//! From texture instructions to the texture shader.
+//! Turns texture instructions into the texture shader.
 
 use super::constants::values;
 use super::lower::{Context, UnitUse};
@@ -7,7 +7,7 @@ use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{DotMapping, Named, Profile, ShaderOperation, TEXTURE_UNITS};
 
-/// What each texture unit does.
+/// Returns what each texture unit does.
 pub(super) fn units(
     program: &PixelShader,
     context: &Context,
@@ -40,7 +40,7 @@ pub(super) fn units(
     units
 }
 
-/// What nv10 does not have.
+/// Returns the finding that NV10 does not have an instruction, if so.
 fn refused(texture: &TextureInstruction, context: &Context) -> Option<Diagnostic> {
     if context.profile == Profile::Nv2a {
         return None;
@@ -103,7 +103,7 @@ fn operation(
             let luminance = texture.operation == Op::Texbeml;
             let what = match (bump.matrix, bump.luminance) {
                 (Some([m00, m01, m10, m11]), scale) if scale.is_some() || !luminance => {
-                    // In the order of the registers.
+                    // The registers have this order.
                     let matrix = [m00, m01, m11, m10];
                     return Some(ShaderOperation::BumpEnvironment { matrix, luminance: scale.filter(|_| luminance) });
                 }

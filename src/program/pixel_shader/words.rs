@@ -1,9 +1,9 @@
-//! The words of the language, and those of its later versions that are refused by name.
+//! The words of the language, and those of its later versions, which are recognised and refused.
 
 use super::{Bank, Mask, Modifier, Operation, Selector, ShaderRegister, TextureOperation, Version};
 use ninebit::state::{Named, Scale};
 
-/// What an instruction's name stands for.
+/// Meaning of an instruction's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
     Arithmetic(Operation),
@@ -12,12 +12,12 @@ pub(super) enum Word {
     Nothing,
 }
 
-/// Names of all instructions.
+/// Returns the names of all instructions.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     Operation::NAMES.iter().chain(TextureOperation::NAMES).chain(&["def", "nop"]).copied()
 }
 
-/// The instruction of that name, in lower case.
+/// Finds an instruction by its name in lower case.
 pub(super) fn find(name: &str) -> Option<Word> {
     let named = Operation::from_name(name).map(Word::Arithmetic);
     let named = named.or_else(|| TextureOperation::from_name(name).map(Word::Texture));
@@ -28,7 +28,7 @@ pub(super) fn find(name: &str) -> Option<Word> {
     })
 }
 
-/// Instructions of later versions: name, version, what to do instead.
+/// Instructions of later versions: name, version, and what to do instead.
 const LATER: &[(&str, &str, &str)] = &[
     ("cmp", "1.2", "`cnd` compares r0.a with 1/2: `add r0.a, ...` of the value and 1/2, then `cnd`"),
     ("dp4", "1.2", "use `dp3`, and `mad` for the alpha"),
@@ -44,19 +44,19 @@ const LATER: &[(&str, &str, &str)] = &[
     ("phase", "1.4", "draw in two passes with `blend`"),
 ];
 
-/// The version that an instruction came with, and what to do instead.
+/// Returns the version that introduced an instruction, and what to do instead; `None` if it is no instruction of a later version.
 pub(super) fn later(name: &str) -> Option<(&'static str, &'static str)> {
     LATER.iter().find(|(known, ..)| *known == name).map(|(_, version, help)| (*version, *help))
 }
 
-/// A version by its name in lower case, with points or underscores; `Err` if it is another version of a known kind of shader.
+/// Finds a version by its name in lower case, with points or underscores. Returns `Some(Err)` for other versions of a known kind of shader.
 pub(super) fn version(word: &str) -> Option<Result<Version, ()>> {
     let kinds = ["ps.", "vs.", "xps."];
     let word = word.replace('_', ".");
     kinds.iter().any(|kind| word.starts_with(kind)).then(|| Version::from_name(&word).ok_or(()))
 }
 
-/// A register by its name in lower case; `Err` if only its number is wrong.
+/// Finds a register by its name in lower case. Returns `Some(Err)` with its bank if only the number is wrong.
 pub(super) fn register(word: &str) -> Option<Result<ShaderRegister, Bank>> {
     let bank = Bank::ALL.iter().find(|bank| word.starts_with(bank.name()))?;
     let digits = &word[1..];
@@ -67,7 +67,7 @@ pub(super) fn register(word: &str) -> Option<Result<ShaderRegister, Bank>> {
     Some(index.map(|index| ShaderRegister { bank: *bank, index }).ok_or(*bank))
 }
 
-/// The channels that a destination names.
+/// Finds the write mask that a destination's suffix stands for.
 pub(super) fn mask(word: &str) -> Option<Mask> {
     match word {
         "rgba" | "xyzw" => Some(Mask::All),
@@ -77,7 +77,7 @@ pub(super) fn mask(word: &str) -> Option<Mask> {
     }
 }
 
-/// The channels that a source names.
+/// Finds the channels that a source's suffix stands for.
 pub(super) fn selector(word: &str) -> Option<Selector> {
     match word {
         "rgba" | "xyzw" | "rgb" | "xyz" => Some(Selector::All),
@@ -87,7 +87,7 @@ pub(super) fn selector(word: &str) -> Option<Selector> {
     }
 }
 
-/// A modifier behind a source.
+/// Finds the modifier that a source's suffix stands for.
 pub(super) fn modifier(word: &str) -> Option<Modifier> {
     match word {
         "bias" => Some(Modifier::Bias),
@@ -96,5 +96,5 @@ pub(super) fn modifier(word: &str) -> Option<Modifier> {
     }
 }
 
-/// Suffixes of instructions that change the scale.
+/// Suffixes of instructions that scale the result.
 pub(super) const SCALES: &[(&str, Scale)] = &[("x2", Scale::Two), ("x4", Scale::Four), ("d2", Scale::Half)];

@@ -1,15 +1,15 @@
-//! Fields of single words: codes of registers, mappings and operations, and what a chip takes.
+//! Encodes and decodes the fields of single words: registers, mappings and operations. Checks which values a chip accepts.
 
 use super::{Refusal, Word, layout};
 use ninebit::state::*;
 
-/// The code of a register: its number among all, but for 6 and 7, which are none.
+/// Returns the code of a register: its number in [`FinalRegister`], except that the codes 6 and 7 are skipped.
 pub fn register_code(register: impl Into<FinalRegister>) -> u32 {
     let number = register.into() as u32;
     if number < 6 { number } else { number + 2 }
 }
 
-/// The register of a code.
+/// Returns the register of a code; codes without a register stand for ZERO.
 pub(super) fn final_register(code: u32) -> FinalRegister {
     FinalRegister::ALL.iter().copied().find(|known| register_code(*known) == code & 15).unwrap_or(FinalRegister::Zero)
 }
@@ -18,7 +18,7 @@ fn general_register(code: u32) -> Register {
     ninebit::combiner::final_combiner::general(final_register(code))
 }
 
-/// A byte of an input word: mapping, component, register.
+/// Encodes an input of a general stage as a byte: mapping, component, register.
 pub(super) fn input_byte(input: &CombinerInput) -> u32 {
     let mapping = InputMapping::ALL.iter().position(|mapping| *mapping == input.mapping).unwrap_or(0) as u32;
     layout::MAPPING.put(mapping)
@@ -26,7 +26,7 @@ pub(super) fn input_byte(input: &CombinerInput) -> u32 {
         | layout::REGISTER.put(register_code(input.register))
 }
 
-/// What such a byte says in an RGB or alpha portion.
+/// Decodes such a byte of an RGB or alpha portion.
 pub(super) fn input_of(byte: u32, alpha: bool) -> CombinerInput {
     CombinerInput {
         register: general_register(layout::REGISTER.of(byte)),
@@ -35,7 +35,7 @@ pub(super) fn input_of(byte: u32, alpha: bool) -> CombinerInput {
     }
 }
 
-/// What such a byte brings of its register to an RGB or alpha portion.
+/// Returns the component of its register that an input byte reads in an RGB or alpha portion.
 pub fn component(byte: u32, alpha: bool) -> Component {
     match (layout::ALPHA.is_set(byte), alpha) {
         (true, _) => Component::Alpha,
@@ -44,14 +44,14 @@ pub fn component(byte: u32, alpha: bool) -> Component {
     }
 }
 
-/// A byte of a final word: invert, component, register.
+/// Encodes an input of the final combiner as a byte: invert, component, register.
 pub(super) fn final_byte(input: &FinalInput) -> u32 {
     layout::INVERT.put(input.invert.into())
         | layout::ALPHA.put((input.component == Component::Alpha).into())
         | layout::REGISTER.put(register_code(input.register))
 }
 
-/// What such a byte says. `alpha`: it is G.
+/// Decodes such a byte; `alpha` says that it is input G.
 pub(super) fn final_of(byte: u32, alpha: bool) -> FinalInput {
     FinalInput {
         register: final_register(layout::REGISTER.of(byte)),
@@ -60,7 +60,7 @@ pub(super) fn final_of(byte: u32, alpha: bool) -> FinalInput {
     }
 }
 
-/// Codes of scale and bias together: 5 and 7 would be a bias with x4 and x1/2.
+/// Codes of the pairs of bias and scale. The codes 5 and 7 would be a bias with x4 and with x1/2, which do not exist.
 pub const OPERATIONS: [(u32, Bias, Scale); 6] = [
     (0, Bias::None, Scale::One),
     (1, Bias::NegativeHalf, Scale::One),
@@ -70,7 +70,7 @@ pub const OPERATIONS: [(u32, Bias, Scale); 6] = [
     (6, Bias::None, Scale::Half),
 ];
 
-/// The output word of a portion, without what nv10 keeps beside it.
+/// Encodes the output word of a portion, without the configuration that NV10 has in the same word.
 pub(super) fn output_word(portion: &Portion) -> u32 {
     let operation = OPERATIONS.iter().find(|(_, bias, scale)| (*bias, *scale) == (portion.bias, portion.scale));
     let [ab, cd, sum] = layout::OUTPUTS;
@@ -86,7 +86,7 @@ pub(super) fn output_word(portion: &Portion) -> u32 {
         | cd_blue.put(portion.cd_blue_to_alpha.into())
 }
 
-/// A portion of an input and an output word that the chip takes.
+/// Decodes the input and output words of a portion, which the chip accepts.
 pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
     let operation = OPERATIONS.iter().find(|(code, _, _)| *code == layout::OPERATION.of(output));
     let (_, bias, scale) = operation.copied().unwrap_or(OPERATIONS[0]);
@@ -108,7 +108,7 @@ pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
     }
 }
 
-/// The bits of a word that the chip keeps.
+/// Returns the bits of a word that the chip stores.
 pub fn stored(word: Word, index: usize, value: u32, chip: Profile) -> u32 {
     value & taken(word, index, chip)
 }
@@ -131,7 +131,7 @@ fn taken(word: Word, index: usize, chip: Profile) -> u32 {
     }
 }
 
-/// Why the chip does not take a word; `None` if it does.
+/// Returns the reason that the chip refuses a word; `None` if it accepts the word.
 pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Refusal> {
     let name = word.label(chip, index);
     let refuse = |code, message: String, help: String| Some(Refusal { word, index, code, message, help });
@@ -176,7 +176,7 @@ fn operation(word: Word, value: u32) -> Option<u32> {
     matches!(word, Word::RcOutAlpha | Word::RcOutRgb).then_some(layout::OPERATION.of(value))
 }
 
-/// What a register field is for: which codes it takes.
+/// The use of a register field, which determines its valid codes.
 #[derive(Clone, Copy)]
 enum Field {
     Input,
@@ -211,7 +211,7 @@ impl Field {
     }
 }
 
-/// The register fields of a word: name, first bit, kind.
+/// Returns the register fields of a word: name, lowest bit, use.
 fn registers(word: Word) -> Vec<(&'static str, u32, Field)> {
     let four = |kind| vec![("A", 24, kind), ("B", 16, kind), ("C", 8, kind), ("D", 0, kind)];
     match word {

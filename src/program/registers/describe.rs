@@ -1,4 +1,4 @@
-//! Words with their meaning, in the words of the combiner language.
+//! Describes words in the terms of the combiner language.
 
 use super::code::{final_of, input_of, portion_of};
 use super::{RegisterWords, Word};
@@ -6,20 +6,20 @@ use crate::text::words::{final_operand, operand, register};
 use ninebit::shown;
 use ninebit::state::{Bias, Named, Profile, Register, Scale};
 
-/// A word and what it says.
+/// A word with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Description {
     /// Offset of its method in the chip's 3D class.
     pub method: u32,
-    /// Its name, `RC_IN_RGB[1]`.
+    /// Name of the word, such as `RC_IN_RGB[1]`.
     pub name: String,
-    /// The word itself.
+    /// Value of the word.
     pub value: u32,
-    /// What the value says.
+    /// Meaning of the value.
     pub meaning: String,
 }
 
-/// Every word of the chip, in the order of the methods.
+/// Describes every word of the chip, in the order of the methods.
 pub fn describe(words: &RegisterWords) -> Vec<Description> {
     let chip = words.chip;
     let mut list: Vec<Description> = words

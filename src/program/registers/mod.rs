@@ -1,7 +1,7 @@
-//! The combiners as words of the chips' registers: NV10 (Celsius) and NV20 (Kelvin, which the NV2A is).
+//! Combiners as words of the chips' registers: NV10 (Celsius) and NV20 (Kelvin, to which the NV2A belongs).
 //!
-//! Layouts and codes are in `docs/registers.md`. A word is checked as the chip checks it when it is written: [`refusal`]. What a
-//! program means, and whether this model takes it, is decided afterwards ([`legality`](ninebit::legality)).
+//! `docs/registers.md` has layouts and codes. A word is checked as the chip checks it when it is written: [`refusal`]. Whether a
+//! program is legal is decided afterwards ([`legality`](ninebit::legality)).
 
 mod code;
 mod describe;
@@ -18,10 +18,10 @@ pub use program::{decode, encode, word_of};
 pub use text::{Written, read};
 
 named! {
-    /// A register of the combiners, or an array of them.
+    /// A register of the combiners, or an array of registers.
     pub enum Word =>
-    /// Of NV10 and of NV20: how many of them the chip has, 0 for none, and the method of its 3D class that sets the first; the others follow at four
-    /// bytes each.
+    /// Returns, for NV10 and NV20, the number of registers on the chip (0 if it has none), and the method of the chip's 3D class that sets the
+    /// first. The methods of the others follow in steps of four bytes.
     layout: [(usize, u32); 2] {
         /// Inputs of the alpha portions.
         RcInAlpha = "rc_in_alpha" => [(2, 0x260), (8, 0x260)],
@@ -47,17 +47,17 @@ named! {
 }
 
 impl Word {
-    /// How many of them a chip has; 0: none.
+    /// Returns the number of registers on a chip; 0 if it has none.
     pub fn count(self, chip: Profile) -> usize {
         self.layout()[chip as usize].0
     }
 
-    /// Method of the chip's 3D class that sets the first of them; the others follow at four bytes each.
+    /// Returns the method of the chip's 3D class that sets the first register. The methods of the others follow in steps of four bytes.
     pub fn method(self, chip: Profile) -> u32 {
         self.layout()[chip as usize].1
     }
 
-    /// The word that a method sets, and which of them; `None` if it sets none of these.
+    /// Returns the word and the index that a method sets; `None` if it sets no register of the combiners.
     pub fn of_method(method: u32, chip: Profile) -> Option<(Word, usize)> {
         Word::ALL.iter().find_map(|word| {
             let at = method.checked_sub(word.method(chip))?;
@@ -65,55 +65,55 @@ impl Word {
         })
     }
 
-    /// How it is written: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.
+    /// Returns the word's name in text: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.
     pub fn label(self, chip: Profile, index: usize) -> String {
         let name = self.name().to_uppercase();
         if self.count(chip) > 1 { format!("{name}[{index}]") } else { name }
     }
 }
 
-/// All words of a chip's combiners. Those that are not set are 0.
+/// The values of all words of a chip's combiners. Words that have not been set are 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegisterWords {
-    /// Whose layout it is.
+    /// The chip whose layout is used.
     pub chip: Profile,
     values: [[u32; 8]; Word::ALL.len()],
 }
 
 impl RegisterWords {
-    /// All words 0.
+    /// Makes words that are all 0.
     pub fn new(chip: Profile) -> Self {
         RegisterWords { chip, values: [[0; 8]; Word::ALL.len()] }
     }
 
-    /// A word; 0 if the chip has none there.
+    /// Returns a word; 0 if the chip does not have it.
     pub fn get(&self, word: Word, index: usize) -> u32 {
         self.values[word as usize].get(index).copied().unwrap_or(0)
     }
 
-    /// Sets a word that the chip has.
+    /// Sets a word, if the chip has it.
     pub fn set(&mut self, word: Word, index: usize, value: u32) {
         if index < word.count(self.chip) {
             self.values[word as usize][index] = value;
         }
     }
 
-    /// The words that the chip has, in the order of its methods' names.
+    /// Returns the words that the chip has, with their indices and values.
     pub fn all(&self) -> impl Iterator<Item = (Word, usize, u32)> + '_ {
         Word::ALL.iter().flat_map(|word| (0..word.count(self.chip)).map(|n| (*word, n, self.get(*word, n))))
     }
 }
 
-/// Why a chip does not take a word.
+/// The reason that a chip refuses a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// The kind of word.
     pub word: Word,
-    /// Which of them.
+    /// Index of the word among those of its kind.
     pub index: usize,
-    /// The code of `docs/errors.md`.
+    /// The code, which `docs/errors.md` lists.
     pub code: &'static str,
-    /// What is wrong, in one line.
+    /// Message in one line.
     pub message: String,
     /// What to do about it.
     pub help: String,

@@ -1,14 +1,14 @@
-//! Whole programs from words, and back.
+//! Decodes programs from words, and encodes them.
 
 use super::code::{final_byte, final_of, input_byte, output_word, portion_of, refusal};
 use super::{Refusal, RegisterWords, Word, layout};
 use crate::{Part, Place};
 use ninebit::state::{Combiners, FinalCombiner, GeneralStage, MuxSelect, Profile};
 
-/// The program that the words are. Words of stages that are not used are checked and have no part in it.
+/// Decodes the program of the words. The words of stages that are not used are checked, but do not affect the program.
 ///
 /// # Errors
-/// Every word that the chip does not take.
+/// A refusal for every word that the chip does not accept.
 pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
     let chip = words.chip;
     let refusals: Vec<Refusal> =
@@ -26,7 +26,7 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
         let portion = |inputs, outputs, alpha| portion_of(words.get(inputs, n), words.get(outputs, n), alpha);
         let constants = match chip {
             Profile::Nv10 => shared,
-            // Without own constants all stages read those of the first.
+            // Without own constants, all stages read those of the first stage.
             Profile::Nv2a => [0, 1].map(|k| {
                 let word = [Word::RcConstantColor0, Word::RcConstantColor1][k];
                 color_of(words.get(word, if own[k] { n } else { 0 }))
@@ -56,7 +56,7 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
     })
 }
 
-/// The words of a program that is legal on the chip. What is not used is 0.
+/// Encodes a program that is legal on the chip. Words that it does not use are 0.
 pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
     let mut words = RegisterWords::new(chip);
     let count = combiners.stages.len().min(chip.general_stages());
@@ -102,7 +102,7 @@ pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
     words
 }
 
-/// R, G, B, A of a constant: A8R8G8B8.
+/// Decodes a constant colour A8R8G8B8 into R, G, B, A.
 fn color_of(word: u32) -> [u8; 4] {
     let [b, g, r, a] = word.to_le_bytes();
     [r, g, b, a]
@@ -112,7 +112,7 @@ fn color_word([r, g, b, a]: [u8; 4]) -> u32 {
     u32::from_le_bytes([b, g, r, a])
 }
 
-/// The word that holds a part of a program.
+/// Returns the word and the index that hold a part of a program.
 pub fn word_of(place: Place, chip: Profile) -> (Word, usize) {
     match place {
         Place::Stages | Place::Stage(_) => match chip {

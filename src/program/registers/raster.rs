@@ -1,4 +1,5 @@
-//! Methods of the raster operations and what their values mean: the same numbers in the NV10 and the NV20 class. Names are those of the Xbox's headers, in lower case.
+//! Methods of the raster operations and their values, which are the same in the NV10 and the NV20 class. Names are those of the Xbox's
+//! headers, in lower case.
 
 use super::layout::Field;
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, SurfaceFormat, named};
@@ -6,35 +7,35 @@ use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, Surface
 named! {
     /// A method of the raster operations.
     pub enum Method =>
-    /// Offset of the method in the chip's 3D class.
+    /// Returns the offset of the method in the chip's 3D class.
     number: u32 {
-        /// Format of the surface: colour in the lowest four bits.
+        /// Format of the surface; the lowest four bits are the format of its colour.
         SurfaceFormat = "surface_format" => 0x208,
-        /// Whether fragments are tested.
+        /// Whether the alpha test is enabled.
         AlphaTestEnable = "alpha_test_enable" => 0x300,
-        /// Whether fragments are blended.
+        /// Whether blending is enabled.
         BlendEnable = "blend_enable" => 0x304,
         /// Comparison of the alpha test.
         AlphaFunc = "alpha_func" => 0x33c,
-        /// Its reference, 0 to 255.
+        /// Reference of the alpha test, 0 to 255.
         AlphaRef = "alpha_ref" => 0x340,
-        /// Factor of the source.
+        /// Blend factor of the source.
         BlendFuncSfactor = "blend_func_sfactor" => 0x344,
-        /// Factor of the destination.
+        /// Blend factor of the destination.
         BlendFuncDfactor = "blend_func_dfactor" => 0x348,
-        /// Blend constant, A8R8G8B8.
+        /// Constant colour of blending, A8R8G8B8.
         BlendColor = "blend_color" => 0x34c,
-        /// How source and destination are combined.
+        /// Equation that combines source and destination.
         BlendEquation = "blend_equation" => 0x350,
         /// Channels that are written.
         ColorMask = "color_mask" => 0x358,
     }
 }
 
-/// The colour of [`Method::SurfaceFormat`].
+/// The field of [`Method::SurfaceFormat`] with the format of the colour.
 pub const SURFACE_COLOR: Field = Field { shift: 0, bits: 4 };
 
-/// R, G, B, A of [`Method::ColorMask`].
+/// The fields R, G, B, A of [`Method::ColorMask`].
 pub const COLOR_MASK: [Field; 4] = [
     Field { shift: 16, bits: 1 },
     Field { shift: 8, bits: 1 },
@@ -42,7 +43,7 @@ pub const COLOR_MASK: [Field; 4] = [
     Field { shift: 24, bits: 1 },
 ];
 
-/// The value of a comparison.
+/// Returns the value of a comparison.
 pub fn compare_function(function: CompareFunction) -> u32 {
     0x200 + function as u32
 }
@@ -51,12 +52,12 @@ pub fn compare_function(function: CompareFunction) -> u32 {
 const BLEND_FACTORS: [u32; BlendFactor::ALL.len()] =
     [0, 1, 0x300, 0x301, 0x302, 0x303, 0x304, 0x305, 0x306, 0x307, 0x308, 0x8001, 0x8002, 0x8003, 0x8004];
 
-/// The value of a blend factor.
+/// Returns the value of a blend factor.
 pub fn blend_factor(factor: BlendFactor) -> u32 {
     BLEND_FACTORS[factor as usize]
 }
 
-/// The value of a blend equation.
+/// Returns the value of a blend equation.
 pub fn blend_equation(equation: BlendEquation) -> u32 {
     match equation {
         BlendEquation::Add => 0x8006,
@@ -69,7 +70,7 @@ pub fn blend_equation(equation: BlendEquation) -> u32 {
     }
 }
 
-/// The colour of a surface format.
+/// Returns the value of a surface format, for [`SURFACE_COLOR`].
 pub fn surface_format(format: SurfaceFormat) -> u32 {
     match format {
         SurfaceFormat::X1R5G5B5Z => 1,

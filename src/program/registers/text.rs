@@ -1,4 +1,4 @@
-//! Register words as text: lines of a name or a method and its words, as drivers, logs of pushbuffers and the Xbox's shader definitions have them.
+//! Reads register words as text: lines with a name or method and its words, as in drivers, logs of pushbuffers and the Xbox's shader definitions.
 
 use crate::{Part, Place, Places, Span};
 use ninebit::diagnostic::Diagnostic;
@@ -9,38 +9,38 @@ use crate::cursor::Cursor;
 use crate::finding::finding;
 use crate::lexer::{Kind, Language};
 
-/// Words, and where each stands in a text.
+/// Words, with their places in a text.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// The words by method, for the program's decoder.
+    /// The words.
     pub words: RegisterWords,
     places: Vec<(Word, usize, Span)>,
-    /// What stands for words that are not written.
+    /// Place that stands for words that are not written.
     opening: Span,
 }
 
 impl Written {
-    /// None yet; `opening` stands for those that are not written.
+    /// Makes words that are all 0. `opening` is the place of words that are not written.
     pub fn new(chip: Profile, opening: Span) -> Written {
         Written { words: RegisterWords::new(chip), places: Vec::new(), opening }
     }
 
-    /// A word that stands there.
+    /// Sets a word that is written at `span`.
     pub fn set(&mut self, word: Word, index: usize, value: u32, span: Span) {
         self.places.push((word, index, span));
         self.words.set(word, index, value);
     }
 
-    /// Where a word stands last; the opening if it does not.
+    /// Returns the place where a word is written last, or the opening if it is not written.
     fn span(&self, word: Word, index: usize) -> Span {
         let found = self.places.iter().rev().find(|(known, n, _)| (*known, *n) == (word, index));
         found.map_or(self.opening.clone(), |(_, _, span)| span.clone())
     }
 
-    /// The program of the words, and where its parts stand.
+    /// Decodes the program of the words. Also returns the places of its parts.
     ///
     /// # Errors
-    /// Every word that the chip does not take.
+    /// A finding for every word that the chip does not accept.
     pub fn program(&self) -> Result<(Combiners, Places), Vec<Diagnostic>> {
         let refused = |Refusal { code, word, index, message, help }: Refusal| {
             finding(code, self.span(word, index), message, "this word", help).rule("CMB-12")
@@ -51,7 +51,7 @@ impl Written {
         Ok((combiners, places))
     }
 
-    /// Where the parts of the program stand: in their words.
+    /// Returns the places of the program's parts, which are those of their words.
     fn parts(&self, combiners: &Combiners) -> Places {
         let mut places = Places::default();
         let mut note = |part| {
@@ -76,9 +76,9 @@ impl Written {
     }
 }
 
-/// What names stand for besides the words of [`Word`]: a first word, and which of them. Upper case.
+/// Names of words besides those of [`Word`], in upper case: the names, the word, and its index.
 ///
-/// Methods are those of the Xbox's headers, fields those of its shader definitions.
+/// They are the methods in the Xbox's headers and the fields of its shader definitions.
 const NAMES: [(&str, Word, usize); 11] = [
     ("SET_COMBINER_ALPHA_ICW PSALPHAINPUTS", Word::RcInAlpha, 0),
     ("SET_COMBINER_COLOR_ICW PSRGBINPUTS", Word::RcInRgb, 0),
@@ -93,25 +93,25 @@ const NAMES: [(&str, Word, usize); 11] = [
     ("PSFINALCOMBINERCONSTANT1 RC_COLOR1", Word::RcColor, 1),
 ];
 
-/// Fields of the Xbox's shader definitions that say nothing of the combiners: they are passed over.
+/// Fields of the Xbox's shader definitions that do not concern the combiners; they are skipped.
 const ASIDE: &str = "PSCOMPAREMODE PSTEXTUREMODES PSDOTMAPPING PSINPUTTEXTURE PSC0MAPPING PSC1MAPPING \
                      PSFINALCOMBINERCONSTANTS";
 
-/// Whether a list has a word.
+/// Returns whether a list of words has a word.
 fn has_word(words: &str, word: &str) -> bool {
     words.split(' ').any(|known| known == word)
 }
 
-/// A piece of the text that is no separator.
+/// A piece of a statement: a name, a method or a number.
 struct Piece<'t> {
     text: &'t str,
-    /// It stands behind an opening bracket.
+    /// Whether it follows an opening bracket.
     bracketed: bool,
     span: Span,
 }
 
 impl Piece<'_> {
-    /// Its number: with `0x`, or eight digits, hexadecimal.
+    /// Parses a number, which is hexadecimal if it has `0x` or eight digits.
     fn number(&self) -> Option<u32> {
         let hexadecimal = self.text.strip_prefix("0x").or_else(|| self.text.strip_prefix("0X"));
         match hexadecimal {
@@ -122,13 +122,14 @@ impl Piece<'_> {
     }
 }
 
-/// Reads words of a chip: a statement a line, or up to `;`. A statement is a name with an index in brackets, or a method, then words for it and those that follow
-/// it. What separates them may be spaces, commas, colons, `=` and braces; `//`, `#` and `/* */` begin comments.
+/// Reads words of a chip, one statement in each line or up to `;`. A statement is a name, which may have an index in brackets, or a method; then the
+/// values of that word and of those that follow it. Spaces, commas, colons, `=` and braces separate them; `//`, `#` and `/* */` begin comments.
 ///
-/// Names are those of [`Word`], with or without `NV_`, `NV10_`, `NV20_`, `NV097_` before them, the Xbox's names of methods, and the fields of its shader definitions.
+/// Names are those of [`Word`], with or without the prefixes `NV_`, `NV10_`, `NV20_`, `NV097_`, the Xbox's names of methods, and the fields of its
+/// shader definitions.
 ///
 /// # Errors
-/// What is no statement, name, method or number.
+/// Findings about whatever is not a statement, name, method or number.
 pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
     let mut written = Written::new(chip, 0..text.find('\n').unwrap_or(text.len()));
     let mut findings = Vec::new();
@@ -162,7 +163,7 @@ pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
     if findings.is_empty() { Ok(written) } else { Err(findings) }
 }
 
-/// Reads a statement.
+/// Processes a statement.
 fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Diagnostic>) {
     let Some((name, rest)) = statement.split_first() else { return };
     let chip = written.words.chip;
@@ -178,7 +179,7 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
             let of_word = Word::ALL.iter().find(|word| word.name().to_uppercase() == bare).map(|word| (*word, 0));
             let known = of_word
                 .or_else(|| NAMES.iter().find(|(names, ..)| has_word(names, bare)).map(|(_, word, n)| (*word, *n)));
-            // `NAME[2] value`.
+            // `NAME[2] value`
             match (known, rest) {
                 (Some((word, 0)), [index, values @ ..]) if word.count(chip) > 1 && is_index(index, word, chip) => {
                     (Some((word, index.text.parse().unwrap_or(0))), values)
@@ -220,7 +221,7 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
     }
 }
 
-/// Whether a token says which word of an array is meant.
+/// Returns whether a piece is the index of a word in an array.
 fn is_index(token: &Piece<'_>, word: Word, chip: Profile) -> bool {
     token.bracketed && token.number().is_some_and(|n| (n as usize) < word.count(chip))
 }
@@ -247,7 +248,7 @@ mod tests {
         assert!(written.program().is_ok());
     }
 
-    /// What is described of every word is read back, by name and by method, for both chips.
+    /// The description of every word can be read back, by name and by method, for both chips.
     #[test]
     fn every_word_is_read_by_name_and_by_method() {
         for chip in [Profile::Nv10, Profile::Nv2a] {

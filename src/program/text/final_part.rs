@@ -1,4 +1,4 @@
-//! The statements of the final combiner.
+//! Reads the statements of the final combiner.
 
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{find, registers};
@@ -7,7 +7,7 @@ use crate::{Place, Span};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 
-/// What the statements have said so far, each with its place.
+/// What the statements so far have set, with their places.
 #[derive(Default)]
 pub(super) struct Final {
     rgb: Option<([FinalInput; 4], Span)>,
@@ -21,7 +21,7 @@ const ZERO: FinalInput = FinalInput { register: FinalRegister::Zero, component: 
 const ONE: FinalInput = FinalInput { register: FinalRegister::Zero, component: Component::Rgb, invert: true };
 
 impl Final {
-    /// Reads one of them.
+    /// Reads one statement.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
         let start = parser.cursor.span();
         match parser.cursor.word() {
@@ -52,7 +52,7 @@ impl Final {
         Ok(())
     }
 
-    /// `out.rgb = ...;` or `out.a = ...;`
+    /// Reads `out.rgb = ...;` or `out.a = ...;`.
     fn out(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
         let start = parser.cursor.span().start;
         parser.cursor.advance();
@@ -76,18 +76,18 @@ impl Final {
         Ok(())
     }
 
-    /// Whether any of them was there.
+    /// Returns whether there has been any statement.
     pub(super) fn is_written(&self) -> bool {
         self.rgb.is_some() || self.alpha.is_some() || self.aside().is_some()
     }
 
-    /// The place of the first statement that only helps others.
+    /// Returns the place of the first statement that only serves others.
     fn aside(&self) -> Option<Span> {
         let product = self.product.as_ref().map(|(_, span)| span.clone());
         product.or(self.sum.as_ref().map(|(_, span)| span.clone())).or(self.clamp.clone())
     }
 
-    /// The state of it all. Without any statement it is OpenGL's initial one; an output that is not written is 0.
+    /// Returns the state of the final combiner. Without any statement it is OpenGL's initial state; otherwise an output that is not written is 0.
     pub(super) fn finish(self, parser: &mut Parser<'_>, constants: [[u8; 4]; 2]) -> FinalCombiner {
         let initial = FinalCombiner::initial(constants);
         match (&self.rgb, &self.alpha, self.aside()) {
@@ -126,12 +126,12 @@ impl Final {
     }
 }
 
-/// Keeps what a statement says, once.
+/// Keeps what a statement sets, and refuses it if it is set twice.
 fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Span)>, value: T, span: Span) {
     parser.set(slot, value, span.clone(), span, "this");
 }
 
-/// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or with d first: A B + (1 - A) C + D.
+/// Reads `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or these with d first, as A B + (1 - A) C + D.
 fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     let mut inputs = [ZERO; 4];
     if parser.cursor.word() == "lerp" {
@@ -141,7 +141,7 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
         }
         return Ok(inputs);
     }
-    // Where an operand stands in the sum is known behind it.
+    // Which input an operand is becomes clear only behind it.
     let first = unplaced(parser, false)?;
     if parser.cursor.take('*') {
         inputs[0] = put(parser, 0, first);
@@ -169,7 +169,7 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     Ok(inputs)
 }
 
-/// `lerp(a, b, c)`
+/// Reads `lerp(a, b, c)`.
 fn lerp(parser: &mut Parser<'_>, inputs: &mut [FinalInput; 4]) -> Result<(), GivenUp> {
     parser.cursor.advance();
     parser.sign('(')?;
@@ -182,13 +182,13 @@ fn lerp(parser: &mut Parser<'_>, inputs: &mut [FinalInput; 4]) -> Result<(), Giv
     parser.sign(')')
 }
 
-/// Input n of the final combiner.
+/// Reads input n of the final combiner.
 fn operand(parser: &mut Parser<'_>, n: usize) -> Result<FinalInput, GivenUp> {
     let operand = unplaced(parser, n == 6)?;
     Ok(put(parser, n, operand))
 }
 
-/// Notes where input n stands.
+/// Notes the place of input n.
 fn put(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
     parser.places.set(Place::FinalInput(n), operand.span);
     if let Some(component) = operand.component {
@@ -197,15 +197,15 @@ fn put(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
     operand.input
 }
 
-/// An input and its place.
+/// An input with its place.
 struct Operand {
     input: FinalInput,
     span: Span,
-    /// Where the component stands, if it is written.
+    /// Place of the component, if it is written.
     component: Option<Span>,
 }
 
-/// `spare0`, `spare0.a`, `unsigned_invert(spare0)`, `unsigned(spare0)`
+/// Reads `spare0`, `spare0.a`, `unsigned_invert(spare0)` or `unsigned(spare0)`.
 fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     let start = parser.cursor.span().start;
     let function = parser.cursor.word();
@@ -241,7 +241,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     Ok(Operand { input, span: start..parser.cursor.end(), component })
 }
 
-/// A side of the colour sum: the register, as it is or inverted.
+/// Reads a side of the colour sum, which has to be the register `wanted`. Returns whether it is inverted.
 fn side(parser: &mut Parser<'_>, wanted: FinalRegister) -> Result<bool, GivenUp> {
     let Operand { input, span, .. } = unplaced(parser, false)?;
     if input.register != wanted || input.component != Component::Rgb {

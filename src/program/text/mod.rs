@@ -1,6 +1,6 @@
 //! The combiner language: general stages and final combiner as statements.
 //!
-//! The grammar is in `docs/combiner-language.md`.
+//! `docs/combiner-language.md` has the grammar.
 
 mod final_part;
 mod parser;
@@ -17,21 +17,21 @@ use words::Words;
 
 pub use print::print;
 
-/// A program that was read and checked.
+/// A program that has been read and checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// What it says.
+    /// The program as state of the chip.
     pub combiners: Combiners,
-    /// Where its parts stand.
+    /// Places of its parts in the text.
     pub places: Places,
-    /// What is probably not meant.
+    /// Findings about what is probably unintended.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads a program and holds it against a chip.
+/// Reads a program and checks it against a chip.
 ///
 /// # Errors
-/// Everything that is wrong with it, with places in `text`.
+/// All findings, with places in `text`.
 pub fn parse(text: &str, profile: Profile) -> Result<Program, Vec<Diagnostic>> {
     let mut program = read(text)?;
     program.warnings.extend(check(&program.combiners, profile, &program.places, &Words).findings);
@@ -41,10 +41,10 @@ pub fn parse(text: &str, profile: Profile) -> Result<Program, Vec<Diagnostic>> {
     Ok(program)
 }
 
-/// Reads a program without asking whether a chip allows it.
+/// Reads a program without checking it against a chip.
 ///
 /// # Errors
-/// Everything that is wrong with its notation, with places in `text`; at most 64 findings.
+/// All findings about the notation, with places in `text`; at most 64.
 pub fn read(text: &str) -> Result<Program, Vec<Diagnostic>> {
     parser::Parser::new(text).program()
 }

@@ -1,4 +1,4 @@
-//! What all statements of the language share: the place in the text, findings, registers, signs.
+//! What the statements of the language share: the cursor, findings, registers, signs.
 
 use super::words::{find, registers};
 use crate::cursor::Cursor;
@@ -10,15 +10,15 @@ use crate::{Places, Span};
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::state::{Component, FinalRegister};
 
-/// A register as an input names it.
+/// A register in an input.
 pub(super) struct Source {
     pub(super) register: FinalRegister,
-    /// The component and its place, if it is written.
+    /// The component with its place, if it is written.
     pub(super) component: Option<(Component, Span)>,
     pub(super) span: Span,
 }
 
-/// What is known while a program is read.
+/// State while a program is read.
 pub(super) struct Parser<'t> {
     pub(super) cursor: Cursor<'t>,
     pub(super) findings: Vec<Diagnostic>,
@@ -33,9 +33,9 @@ impl<'t> Parser<'t> {
         parser
     }
 
-    /// Passes over what programs of the assembler start with, and refuses the languages beside it by name.
+    /// Skips the header of programs of the assembler, and refuses the headers of other languages.
     fn header(&mut self) {
-        // Comments may stand before it.
+        // Comments may precede it.
         let start = self.cursor.span().start;
         let Some(span) = header(self.cursor.text.get(start..).unwrap_or("")) else { return };
         let span = start + span.start..start + span.end;
@@ -48,7 +48,7 @@ impl<'t> Parser<'t> {
         self.cursor.skip_to(|_| false);
     }
 
-    /// A register, perhaps with a component: `tex0`, `tex0.a`.
+    /// Reads a register, perhaps with a component: `tex0`, `tex0.a`.
     pub(super) fn register(&mut self) -> Read<Source> {
         let span = self.cursor.span();
         if self.cursor.kind() != Some(Kind::Word) {
@@ -63,7 +63,7 @@ impl<'t> Parser<'t> {
         Ok(Source { register, component, span: span.start..self.cursor.end() })
     }
 
-    /// `.rgb`, `.a` or `.b` without a space before the point: anything else is an operator.
+    /// Takes `.rgb`, `.a` or `.b`, if there is no space around the point: with spaces the point is an operator.
     pub(super) fn component(&mut self) -> Option<(Component, Span)> {
         if !self.cursor.is('.') || self.cursor.span().start != self.cursor.end() {
             return None;
@@ -83,14 +83,12 @@ impl<'t> Parser<'t> {
         Some((component, span))
     }
 
-    // What all statements share.
-
-    /// Takes the sign, or says that it is missing.
+    /// Takes a sign, or records that it is missing.
     pub(super) fn sign(&mut self, sign: char) -> Read<()> {
         if self.cursor.take(sign) { Ok(()) } else { Err(self.expected(&format!("`{sign}`"))) }
     }
 
-    /// `name();`
+    /// Takes `name();`.
     pub(super) fn call(&mut self) -> Read<()> {
         self.cursor.advance();
         self.sign('(')?;
@@ -98,7 +96,7 @@ impl<'t> Parser<'t> {
         self.sign(';')
     }
 
-    /// Keeps the place of a statement that may be there once.
+    /// Keeps the place of a statement, and refuses it if it is given twice.
     pub(super) fn once(&mut self, slot: &mut Option<Span>, span: Span) {
         match slot {
             Some(first) => self.twice(span, first.clone(), "this"),
@@ -106,7 +104,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Keeps what a statement says that may be there once: its place, and where it is found again.
+    /// Keeps what a statement sets, with its place, and refuses it if it is set twice. `again` is the place of the repetition.
     pub(super) fn set<T>(&mut self, slot: &mut Option<(T, Span)>, value: T, span: Span, again: Span, what: &str) {
         match slot {
             Some((_, first)) => self.twice(again, first.clone(), what),
@@ -114,7 +112,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Records what is probably not meant.
+    /// Records a warning.
     pub(super) fn warn(&mut self, finding: Diagnostic) {
         self.findings.push(finding);
     }
@@ -126,7 +124,7 @@ impl<'t> Parser<'t> {
 
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
         let found = self.cursor.found("the end of the program");
-        // What is missing at the end of a line is missing there, not where the next one starts.
+        // What is missing at the end of a line is reported there, not where the next line starts.
         let between = self.cursor.text.get(self.cursor.end()..self.cursor.span().start).unwrap_or("");
         let (span, label) = if self.cursor.kind().is_none() || between.contains('\n') {
             (self.before(self.cursor.end()), "behind this")
@@ -136,7 +134,7 @@ impl<'t> Parser<'t> {
         self.give_up(Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label(label))
     }
 
-    /// The finding that a word is none of the known ones.
+    /// Records that a word is none of the known ones.
     pub(super) fn unknown(&mut self, what: &str, known: &[&str]) -> GivenUp {
         let word = self.cursor.word();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
@@ -148,7 +146,7 @@ impl<'t> Parser<'t> {
         self.give_up(finding("NB0204", self.cursor.span(), message, "not known", help))
     }
 
-    /// A word that is not known, or something that is no word.
+    /// Records that a word is unknown, or that it is not a word.
     pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
         if self.cursor.kind() == Some(Kind::Word) {
             self.unknown(what, known)
@@ -161,7 +159,7 @@ impl<'t> Parser<'t> {
         if self.cursor.kind() == Some(Kind::Word) { self.unknown("statement", known) } else { self.expected(expected) }
     }
 
-    /// Records that a statement, which has been read to its end, was there before.
+    /// Records that a statement, which has been read to its end, was given before.
     pub(super) fn twice(&mut self, span: Span, first: Span, what: &str) {
         self.findings.push(
             Diagnostic::error("NB0364", span, format!("{what} is given twice"))
@@ -171,7 +169,7 @@ impl<'t> Parser<'t> {
         );
     }
 
-    /// The character that ends at a place.
+    /// Returns the place of the character that ends at `end`.
     pub(super) fn before(&self, end: usize) -> Span {
         let start =
             self.cursor.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
@@ -182,7 +180,7 @@ impl<'t> Parser<'t> {
         self.give_up(finding("NB0104", opening, "this bracket is not closed", "opened here", "close it with `}`"))
     }
 
-    /// Passes over what is left of a statement, with the blocks in it: to behind its semicolon, or to a closing brace.
+    /// Skips the rest of a statement, with the blocks in it: past its semicolon, or up to a closing brace.
     pub(super) fn recover(&mut self) {
         let mut depth = 0usize;
         loop {

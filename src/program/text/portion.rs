@@ -1,4 +1,4 @@
-//! The statements of a portion of a general stage.
+//! Reads the statements of a portion of a general stage.
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, find, registers};
@@ -8,7 +8,7 @@ use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::only_final;
 use ninebit::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};
 
-/// A portion while its statements are read.
+/// State while the statements of a portion are read.
 pub(super) struct PortionReader {
     stage: usize,
     alpha: bool,
@@ -46,7 +46,7 @@ impl PortionReader {
         Place::General { stage: self.stage, alpha: self.alpha, part }
     }
 
-    /// Reads one of them.
+    /// Reads one statement.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
         let span = parser.cursor.span();
         let word = parser.cursor.word();
@@ -74,7 +74,7 @@ impl PortionReader {
         Ok(())
     }
 
-    /// `spare0 = ...;`
+    /// Reads `spare0 = ...;`.
     fn assignment(&mut self, parser: &mut Parser<'_>) -> Read<()> {
         let start = parser.cursor.span().start;
         let (output, written) = self.destination(parser)?;
@@ -105,7 +105,7 @@ impl PortionReader {
         let second = if dot || parser.cursor.take('*') {
             self.operand(parser, 2 * n + 1)?
         } else {
-            // A register on its own is taken times one.
+            // A single register is multiplied by one.
             let component = if self.alpha { Component::Alpha } else { Component::Rgb };
             CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
         };
@@ -140,7 +140,7 @@ impl PortionReader {
         Ok(())
     }
 
-    /// A register to write, or `discard`.
+    /// Reads a destination register, or `discard`.
     fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Span)> {
         let span = parser.cursor.span();
         if parser.cursor.word() == "discard" {
@@ -170,7 +170,7 @@ impl PortionReader {
         Ok((register, span.start..parser.cursor.end()))
     }
 
-    /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
+    /// Reads `tex0`, `-tex0`, `expand(tex0.a)` or `-expand(tex0)`.
     fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
         let start = parser.cursor.span().start;
         let negative = parser.cursor.take('-');
@@ -215,7 +215,7 @@ impl PortionReader {
     }
 }
 
-/// The register of general stages; `None` if only the final combiner has it.
+/// Returns the register of general stages; `None` if only the final combiner has it.
 fn general(register: FinalRegister) -> Option<Register> {
     match register {
         FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => None,

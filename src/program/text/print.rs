@@ -1,11 +1,11 @@
-//! Programs as text, in the one form that every program has.
+//! Prints programs as text. Every program has exactly one printed form.
 
 use std::fmt::Write;
 
 use super::words::{final_operand, operand, register, scale};
 use ninebit::state::*;
 
-/// The program as text. What it gives reads back as the same state, legal or not, if there is a general stage.
+/// Prints a program, legal or not. Reading the text gives the same state, provided that there is a general stage.
 pub fn print(combiners: &Combiners) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -25,7 +25,7 @@ fn program(out: &mut String, combiners: &Combiners) -> std::fmt::Result {
     final_combiner(out, &combiners.final_combiner)
 }
 
-/// The constants that are not what they would be without a statement.
+/// Prints the constants that differ from those that hold without a statement.
 fn constants(out: &mut String, indent: &str, without: [[u8; 4]; 2], constants: [[u8; 4]; 2]) -> std::fmt::Result {
     for n in 0..2 {
         if constants[n] != without[n] {
@@ -60,7 +60,7 @@ fn portion(out: &mut String, name: &str, portion: &Portion, alpha: bool) -> std:
         products[n] != (Register::Zero, false, false) || inputs.iter().any(|input| *input != idle)
     });
     for (n, (output, dot, blue)) in products.into_iter().enumerate() {
-        // The first product is AB: it stands there whenever CD does.
+        // The first product is AB, so it is printed whenever CD is.
         if written[n] || written[1] {
             let [a, b] = [0, 1].map(|k| operand(&portion.inputs[2 * n + k], alpha));
             let blue = if blue { ", blue_to_alpha" } else { "" };
@@ -108,7 +108,7 @@ fn final_combiner(out: &mut String, state: &FinalCombiner) -> std::fmt::Result {
     writeln!(out, "out.a = {};", final_operand(&state.g, true))
 }
 
-/// A B + (1 - A) C + D, without what is zero.
+/// Returns A B + (1 - A) C + D, without the terms that are zero.
 fn final_rgb(inputs: [&FinalInput; 4]) -> String {
     let zero = FinalInput::zero(Component::Rgb);
     let [a, b, c, d] = inputs.map(|input| final_operand(input, false));

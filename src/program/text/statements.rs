@@ -1,4 +1,4 @@
-//! Statements of the language, one after the other. What cannot be read is recorded and passed over, so that one run shows all.
+//! Reads the statements of the language one after the other. Those that cannot be read are reported and skipped, so that one run shows all errors.
 
 use super::Program;
 use super::final_part::Final;
@@ -11,13 +11,13 @@ use ninebit::diagnostic::{Diagnostic, Severity, shorten};
 use ninebit::number::convert::constant;
 use ninebit::state::{Combiners, Component, GeneralStage, MuxSelect, Portion};
 
-/// Findings beyond this many are not looked for.
+/// Number of findings after which reading stops.
 const MAX_FINDINGS: usize = 64;
 
-/// A constant that is written, and where.
+/// A constant with its place, if it is written.
 type Written = Option<([u8; 4], Span)>;
 
-/// What may stand beside stages.
+/// Statements outside stages.
 const STATEMENTS: &[&str] =
     &["const0", "const1", "mux_by_least_significant_bit", "final_product", "color_sum", "clamp_color_sum", "out"];
 
@@ -45,7 +45,7 @@ impl Parser<'_> {
             };
             if outcome.is_err() {
                 self.recover();
-                // Nothing outside a stage can be closed.
+                // No bracket is open outside stages.
                 while self.cursor.take('}') {}
             }
         }
@@ -53,7 +53,7 @@ impl Parser<'_> {
         self.places.set(Place::Stages, self.before(end));
         let shared = shared.map(|written| written.map_or([0; 4], |(bytes, _)| bytes));
         if stages.is_empty() && last.is_written() {
-            // The final combiner alone: the chip has at least one stage, which changes nothing then.
+            // The final combiner stands alone: the chip needs at least one stage, so one is added that changes nothing.
             stages.push((GeneralStage::idle([[0; 4]; 2]), [None, None]));
         }
         let final_combiner = last.finish(&mut self, shared);
@@ -75,7 +75,7 @@ impl Parser<'_> {
         Ok(Program { combiners, places: self.places, warnings: self.findings })
     }
 
-    /// `{ const0 = ...; rgb { ... } alpha { ... } }`
+    /// Reads `{ const0 = ...; rgb { ... } alpha { ... } }`.
     fn stage(&mut self, stages: &mut Vec<(GeneralStage, [Written; 2])>) -> Read<()> {
         let opening = self.cursor.span();
         self.cursor.advance();
@@ -117,7 +117,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `rgb { ... }` or `alpha { ... }`
+    /// Reads `rgb { ... }` or `alpha { ... }`.
     fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Span)>) -> Read<()> {
         let name = self.cursor.span();
         self.cursor.advance();
@@ -137,7 +137,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`
+    /// Reads `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`.
     fn constant(&mut self, slot: &mut Written) -> Read<()> {
         let name = self.cursor.span();
         self.cursor.advance();
@@ -174,18 +174,18 @@ impl Parser<'_> {
             self.findings.push(finding("NB0211", span, message, "not four", help));
             return Ok(());
         };
-        // What is out of range has been recorded.
+        // Values out of range have been reported.
         let bytes = values.map(Option::unwrap_or_default);
         self.set(slot, bytes, name.start..span.end, name, "this constant");
         Ok(())
     }
 
-    /// A number as a byte of a colour. What is beyond 0.0 to 1.0 is limited to it, as the extension has it.
+    /// Converts a number into a byte of a colour. Numbers outside 0.0 to 1.0 are clamped, as the extension specifies.
     fn number(&mut self, span: Span, negative: bool, byte: bool) -> Option<u8> {
         let written = self.cursor.text(&span);
         let digits = written.trim_start_matches(['+', '-']).trim_start();
         let limited = if negative { "0" } else { "1" };
-        // NUM-0. Digits and a point are a number, at most infinite.
+        // NUM-0. Digits and a point are always a number, though it may be infinite.
         let value = match digits.parse::<f32>() {
             _ if byte => digits.parse::<u8>().ok().filter(|byte| !negative || *byte == 0),
             Ok(value) if value == 0.0 || !negative && value <= 1.0 => Some(constant(value)),

@@ -3,10 +3,10 @@
 use ninebit::legality::{Help, Notation};
 use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named as _, Scale};
 
-/// Names of the registers, in the order of [`FinalRegister`]. The last two exist in the final combiner only.
+/// Names of the registers, in the order of [`FinalRegister`]. The last two exist only in the final combiner.
 const REGISTERS: &str = "zero const0 const1 fog col0 col1 tex0 tex1 tex2 tex3 spare0 spare1 color_sum final_product";
 
-/// Functions of general inputs that stand without a minus, and what they are with one.
+/// Functions of general inputs, with their mapping and the mapping that they have after a minus, if any.
 pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
     ("unsigned", InputMapping::UnsignedIdentity, None),
     ("unsigned_invert", InputMapping::UnsignedInvert, None),
@@ -14,22 +14,22 @@ pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
     ("half_bias", InputMapping::HalfBiasNormal, Some(InputMapping::HalfBiasNegate)),
 ];
 
-/// The names of the registers, in the order of [`FinalRegister`].
+/// Returns the names of the registers, in the order of [`FinalRegister`].
 pub(super) fn registers() -> impl Iterator<Item = &'static str> {
     REGISTERS.split(' ')
 }
 
-/// The register of that name.
+/// Finds a register by its name.
 pub(super) fn find(name: &str) -> Option<FinalRegister> {
     registers().position(|known| known == name).map(|number| FinalRegister::ALL[number])
 }
 
-/// The name of a register.
+/// Returns the name of a register.
 pub fn register(register: impl Into<FinalRegister>) -> &'static str {
     registers().nth(register.into() as usize).unwrap_or_default()
 }
 
-/// A register and its component. `alpha`: in an alpha portion, where the component is always written, but for zero.
+/// Prints a register with its component. In an alpha portion (`alpha`) the component is always printed, except for zero.
 pub(crate) fn source(of: impl Into<FinalRegister>, component: Component, alpha: bool) -> String {
     let of = of.into();
     let plain = if alpha { Component::Alpha } else { Component::Rgb };
@@ -42,12 +42,12 @@ pub(crate) fn source(of: impl Into<FinalRegister>, component: Component, alpha: 
     }
 }
 
-/// An input of a general stage.
+/// Prints an input of a general stage.
 pub(crate) fn operand(input: &CombinerInput, alpha: bool) -> String {
     mapped(input.mapping, source(input.register, input.component, alpha))
 }
 
-/// What is made of a source by a mapping.
+/// Prints a source with the function of a mapping.
 pub fn mapped(mapping: InputMapping, source: String) -> String {
     match mapping {
         InputMapping::UnsignedIdentity => format!("unsigned({source})"),
@@ -61,13 +61,13 @@ pub fn mapped(mapping: InputMapping, source: String) -> String {
     }
 }
 
-/// An input of the final combiner. `alpha`: it is G.
+/// Prints an input of the final combiner; `alpha` says that it is G.
 pub(crate) fn final_operand(input: &FinalInput, alpha: bool) -> String {
     let source = source(input.register, input.component, alpha);
     if input.invert { format!("unsigned_invert({source})") } else { source }
 }
 
-/// The statement that sets a scale; `None` for one.
+/// Returns the name of the statement that sets a scale; `None` for scale one.
 pub(super) fn scale(scale: Scale) -> Option<&'static str> {
     match scale {
         Scale::One => None,
@@ -77,7 +77,7 @@ pub(super) fn scale(scale: Scale) -> Option<&'static str> {
     }
 }
 
-/// The language's words in findings about legality.
+/// The language's notation for findings about legality.
 #[derive(Clone, Copy, Debug)]
 pub struct Words;
 

@@ -1,4 +1,4 @@
-//! Units in the modes Combine and Combine4.
+//! Lowers units in the modes Combine and Combine4.
 
 use super::lower::Own;
 use super::*;
@@ -6,7 +6,7 @@ use crate::cascade::{Alpha, Argument, Cascade, Destination, Equation, Source};
 use ninebit::state::{Named, StageOrigin};
 
 impl Function {
-    /// Whether it is a dot product.
+    /// Returns whether it is a dot product.
     pub fn is_dot(self) -> bool {
         matches!(self, Function::Dot3RgbArb | Function::Dot3RgbaArb | Function::Dot3RgbExt | Function::Dot3RgbaExt)
     }
@@ -19,7 +19,7 @@ impl Function {
         matches!(self, Function::Dot3RgbaArb | Function::Dot3RgbaExt)
     }
 
-    /// Which of arguments 0 to 3 it reads in a mode.
+    /// Returns which of the arguments 0 to 3 it reads in a mode.
     pub fn reads(self, mode: Mode) -> [bool; 4] {
         match self {
             _ if mode == Mode::Combine4 => [true; 4],
@@ -30,7 +30,7 @@ impl Function {
     }
 }
 
-/// Adds the stages of a unit.
+/// Adds the stages of a unit to the cascade.
 pub(super) fn unit(
     cascade: &mut Cascade,
     index: usize,
@@ -48,7 +48,7 @@ pub(super) fn unit(
     }
     let crossbar = halves.iter().flat_map(|(half, _)| read(unit.mode, half)).filter_map(other);
     if unit.mode == Mode::Combine && crossbar.into_iter().any(|other| textures[other].is_none()) {
-        // ARB_texture_env_crossbar: a unit that reads a disabled texture is disabled itself.
+        // ARB_texture_env_crossbar: a unit that reads a disabled texture is itself disabled.
         return;
     }
     let walk = Arguments { index, unit, textures };
@@ -64,7 +64,7 @@ pub(super) fn unit(
     };
     let separate = function.writes_alpha() && rgb_scale != alpha_scale;
     if separate {
-        // The dot product goes to all channels as it is; each half is scaled by a second stage.
+        // The dot product goes to all channels unscaled; a second stage scales each half.
         rgb.first = rgb.first.scaled(Scale::One);
         (rgb.then, alpha.then) = (Some(rgb_scale), Some(alpha_scale));
     }
@@ -80,7 +80,7 @@ pub(super) fn unit(
     }
 }
 
-/// What the combiners have for a function: an equation, and perhaps a scale that needs a stage of its own.
+/// A function in terms of the combiners: an equation, and perhaps a scale that needs a stage of its own.
 struct Combined {
     first: Equation,
     then: Option<Scale>,
@@ -92,7 +92,7 @@ impl Combined {
         if mode == Mode::Combine4 {
             let sum = Equation::products([a0, a1], [a2, a3]);
             return match (function, scale) {
-                // Bias does not go with scale 4: twice two.
+                // A bias cannot be combined with scale 4, so scale 2 is applied twice.
                 (Function::AddSigned, Scale::Four) => {
                     Combined { first: sum.biased().scaled(Scale::Two), then: Some(Scale::Two) }
                 }
@@ -112,7 +112,7 @@ impl Combined {
     }
 }
 
-/// Functions that a half cannot be.
+/// Checks that a half has a function and arguments that its mode allows.
 fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
     let (mode, function) = (unit.mode, half.function.value);
     let fits = mode != Mode::Combine4 || matches!(function, Function::Add | Function::AddSigned);
@@ -151,13 +151,13 @@ fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) 
     }
 }
 
-/// The sources that a half reads.
+/// Returns the sources that a half reads.
 fn read(mode: Mode, half: &Half) -> Vec<EnvironmentSource> {
     let reads = half.function.value.reads(mode);
     half.sources.iter().zip(reads).filter(|(_, reads)| *reads).map(|(source, _)| source.value).collect()
 }
 
-/// The unit whose texture a source is by number.
+/// Returns the unit that a source names by number, if it does.
 fn other(source: EnvironmentSource) -> Option<usize> {
     match source {
         EnvironmentSource::Texture0 => Some(0),
@@ -168,7 +168,7 @@ fn other(source: EnvironmentSource) -> Option<usize> {
     }
 }
 
-/// Arguments of a unit.
+/// Makes the arguments of a unit's equations.
 struct Arguments<'u> {
     index: usize,
     unit: &'u Unit,
@@ -211,7 +211,7 @@ impl Arguments<'_> {
     }
 }
 
-/// What reports call the unit's half.
+/// Describes a half of a unit for reports.
 fn origin(index: usize, unit: &Unit, alpha: bool) -> String {
     let dot = alpha && unit.rgb.function.value.writes_alpha();
     let half = if alpha && !dot { &unit.alpha } else { &unit.rgb };

@@ -1,26 +1,26 @@
-//! From the texture environment to general stages: units, base formats and the modes that are older than combining.
+//! Lowers the texture environment to general stages: units, base formats and the modes that are older than combining.
 
 use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
 use ninebit::state::{Named, Profile, StageOrigin};
 
-/// What of the draw the lowering depends on.
+/// State of the draw that the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
     /// The chip that runs the program.
     pub profile: Profile,
-    /// Units that have a texture, and what it counts as: enabled units.
+    /// Base format of each unit's texture; `None` for units without one, which are disabled.
     pub textures: [Option<BaseFormat>; TEXTURE_UNITS],
-    /// Units whose colours can be negative.
+    /// Whether the colour of each texture unit can be negative.
     pub signed: [bool; TEXTURE_UNITS],
-    /// Fog is enabled.
+    /// Whether fog is enabled.
     pub fog: bool,
 }
 
 /// Lowers the environment for a draw.
 ///
 /// # Errors
-/// Everything that the chip has no form for.
+/// Findings about everything that the chip cannot do.
 pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut cascade = Cascade::new(context.profile, context.signed);
@@ -39,7 +39,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
         findings.push(error.rule("CMB-12"));
     }
     for (index, texture) in textures.iter().enumerate() {
-        // A unit without a texture is not enabled: the colour passes it.
+        // A unit without a texture is disabled: the colour passes through.
         let Some(format) = *texture else { continue };
         let unit = program.units.get(index).unwrap_or(&initial);
         match unit.mode {
@@ -56,7 +56,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
     cascade.finish("environment", End { specular: program.color_sum, fog: context.fog }, findings)
 }
 
-/// A unit's texture and what it counts as.
+/// A unit's own texture, with its base format.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Own {
     pub(super) index: usize,
@@ -64,7 +64,7 @@ pub(super) struct Own {
 }
 
 impl Own {
-    /// Its colour: of an alpha texture, black.
+    /// Returns its colour, which is black for an alpha texture.
     pub(super) fn color(self) -> Argument {
         match self.format {
             BaseFormat::Alpha => Argument::ZERO,
@@ -72,7 +72,7 @@ impl Own {
         }
     }
 
-    /// Its alpha, in a colour or in an alpha: 1 if it has none. An intensity's is what its colour channels hold.
+    /// Returns its alpha, for an equation of colour or of alpha; 1 if it has none. The alpha of an intensity is in its colour channels.
     pub(super) fn alpha(self, in_alpha: bool) -> Argument {
         let texture = Argument::new(Source::Texture(self.index));
         match self.format {
@@ -84,8 +84,8 @@ impl Own {
     }
 }
 
-/// Colour and alpha of the modes Replace, Modulate, Decal, Blend and Add. Decal of what is neither Rgb nor Rgba, which the API leaves
-/// undefined, changes nothing.
+/// Returns the equations of colour and alpha for the modes Replace, Modulate, Decal, Blend and Add. Decal changes nothing if the format is neither
+/// Rgb nor Rgba, a case that the API leaves undefined.
 fn classic(mode: Mode, own: Own, constant: Argument) -> (Equation, Equation) {
     let previous = Argument::new(Source::Current);
     let pass = Equation::copy(previous);

@@ -1,6 +1,6 @@
-//! The OpenGL texture environment (OpenGL 1.3, and extensions of its time) and how it becomes general stages.
+//! The OpenGL texture environment (OpenGL 1.3 and extensions of its time), and how it is lowered to general stages.
 //!
-//! A unit becomes one general stage. See `docs/programs.md` for the form that each function takes.
+//! Each unit becomes one general stage. `docs/programs.md` has the form of each function.
 
 mod combine;
 mod lower;
@@ -15,26 +15,26 @@ pub use lower::{Context, lower};
 pub use text::parse;
 
 named! {
-    /// TEXTURE_ENV_MODE.
+    /// TEXTURE_ENV_MODE: what a unit does.
     pub enum Mode {
         /// The texture's colour.
         Replace,
-        /// The colour times the texture's.
+        /// The incoming colour times the texture's.
         Modulate,
-        /// Blended by the texture's alpha.
+        /// The incoming and the texture's colour, blended by the texture's alpha.
         Decal,
-        /// Blended with the environment colour by the texture's colour.
+        /// The incoming and the environment colour, blended by the texture's colour.
         Blend,
-        /// The colour plus the texture's.
+        /// The incoming colour plus the texture's.
         Add,
-        /// The combine functions compute the result.
+        /// The result of the combine functions.
         Combine,
         /// COMBINE4_NV (NV_texture_env_combine4): sums of two products.
         Combine4,
     }
 }
 named! {
-    /// COMBINE_RGB, COMBINE_ALPHA. a0 to a3 are the arguments; results are scaled, then limited to 0..1.
+    /// COMBINE_RGB, COMBINE_ALPHA: a combine function. a0 to a3 are the arguments; results are scaled, then clamped to 0..1.
     pub enum Function {
         /// a0.
         Replace,
@@ -50,16 +50,16 @@ named! {
         Subtract,
         /// The sum over R, G, B of (2 a0 - 1)(2 a1 - 1), scaled (ARB_texture_env_dot3). RGB only.
         Dot3RgbArb,
-        /// The same in all four channels.
+        /// The same dot product in all four channels.
         Dot3RgbaArb,
         /// The dot product without scale (EXT_texture_env_dot3). RGB only.
         Dot3RgbExt,
-        /// The same in all four channels.
+        /// The same dot product in all four channels, without scale.
         Dot3RgbaExt,
     }
 }
 named! {
-    /// SOURCE0_RGB and the like.
+    /// SOURCE0_RGB and the like: the source of an argument.
     pub enum EnvironmentSource {
         /// The unit's own texture.
         Texture,
@@ -82,20 +82,20 @@ named! {
     }
 }
 named! {
-    /// OPERAND0_RGB and the like.
+    /// OPERAND0_RGB and the like: what an argument takes of its source.
     pub enum Operand {
-        /// c.
+        /// The colour.
         SourceColor,
-        /// 1 - c.
+        /// 1 minus the colour.
         OneMinusSourceColor,
-        /// a.
+        /// The alpha.
         SourceAlpha,
-        /// 1 - a.
+        /// 1 minus the alpha.
         OneMinusSourceAlpha,
     }
 }
 named! {
-    /// The base internal format of a texture: which of its channels count.
+    /// The base internal format of a texture, which says what its R, G, B and A are.
     pub enum BaseFormat {
         /// 0, 0, 0, A.
         Alpha,
@@ -113,7 +113,7 @@ named! {
 }
 
 impl BaseFormat {
-    /// What a texel format is to OpenGL.
+    /// Returns OpenGL's base format of a texel format.
     pub fn from_format(format: TextureFormat) -> BaseFormat {
         match format {
             TextureFormat::A8 => BaseFormat::Alpha,
@@ -148,20 +148,20 @@ pub struct Half {
 pub struct Unit {
     /// TEXTURE_ENV_MODE.
     pub mode: Mode,
-    /// COMBINE_RGB and what belongs to it.
+    /// COMBINE_RGB and its arguments and scale.
     pub rgb: Half,
-    /// COMBINE_ALPHA and what belongs to it.
+    /// COMBINE_ALPHA and its arguments and scale.
     pub alpha: Half,
-    /// TEXTURE_ENV_COLOR, R, G, B, A bytes.
+    /// TEXTURE_ENV_COLOR: bytes R, G, B, A.
     pub color: [u8; 4],
-    /// What the texture counts as; `None`: as its texel format says.
+    /// The base format of the texture; `None` if it follows from the texel format.
     pub base_format: Option<BaseFormat>,
-    /// Where it is written; empty if it is not.
+    /// Place where the unit is written; empty if it is not.
     pub span: Span,
 }
 
 impl Unit {
-    /// The API's initial state in a mode: those of Combine and Combine4 differ in nothing that both read.
+    /// Returns the API's initial state. It is the same for Combine and Combine4, as far as both read it.
     pub fn initial() -> Unit {
         let half = |operands: [Operand; 4]| Half {
             function: Spanned::default_of(Function::Modulate),
@@ -190,8 +190,8 @@ impl Unit {
 /// The texture environment of all units.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextureEnvironment {
-    /// Units from 0; those not given are in their initial state.
+    /// Units, starting with unit 0; units that are not listed are in their initial state.
     pub units: Vec<Unit>,
-    /// COLOR_SUM, or a separate specular colour.
+    /// COLOR_SUM, or a separate specular colour: whether the secondary colour is added at the end.
     pub color_sum: bool,
 }

@@ -1,4 +1,4 @@
-//! The texture environment as pasted text: calls of glTexEnv, with the extensions ARB_texture_env_combine and NV_texture_env_combine4.
+//! Reads the texture environment from pasted text: calls of glTexEnv, with ARB_texture_env_combine and NV_texture_env_combine4.
 
 use super::*;
 use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, table, whole};
@@ -15,10 +15,10 @@ static ENVIRONMENT: Vocabulary = Vocabulary {
     what: "the texture environment",
 };
 
-/// Reads the text over the API's initial state.
+/// Reads the text, starting from the API's initial state.
 ///
 /// # Errors
-/// Everything that is not a statement, or sets something that the API does not have.
+/// Findings about whatever is not a statement, or sets something that the API does not have.
 pub fn parse(text: &str) -> Result<Pasted<TextureEnvironment>, Vec<Diagnostic>> {
     let reader = Reader::new(text, &ENVIRONMENT);
     let mut parser = Parser { reader, program: TextureEnvironment::default(), unit: 0 };
@@ -38,12 +38,11 @@ struct Parser<'t> {
     unit: usize,
 }
 
-/// What a parameter of the environment sets.
+/// A parameter of the environment. The `bool` says that it belongs to alpha, the number is that of the argument.
 #[derive(Clone, Copy)]
 enum Parameter {
     Mode,
     Color,
-    /// Of the alpha.
     Function(bool),
     Scale(bool),
     Source(bool, usize),
@@ -56,7 +55,7 @@ const FUNCTIONS: &str =
 const SOURCES: &str = "TEXTURE TEXTURE0 TEXTURE1 TEXTURE2 TEXTURE3 CONSTANT PRIMARY_COLOR PREVIOUS ZERO";
 const OPERANDS: &str = "SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINUS_SRC_ALPHA";
 
-/// Names of parameters. OpenGL 1.5 writes SRC for SOURCE.
+/// Returns the names of the parameters. OpenGL 1.5 writes SRC for SOURCE.
 fn parameters() -> Vec<(String, Parameter)> {
     let mut table =
         vec![("TEXTURE_ENV_MODE".to_owned(), Parameter::Mode), ("TEXTURE_ENV_COLOR".to_owned(), Parameter::Color)];
@@ -88,7 +87,7 @@ impl<'t> Parser<'t> {
                 self.program.color_sum = choose(value, "colour control", &table, &mut self.reader.findings)?;
             }
             [_, _] => {}
-            // Which set of coordinates of the vertices is meant.
+            // This selects the coordinate set that calls about vertices set.
             [_] if function.contains("ClientActive") => {}
             [unit] if function.contains("ActiveTexture") => {
                 self.unit = numbered(unit, "TEXTURE", TEXTURE_UNITS, "texture unit", &mut self.reader.findings)?;
@@ -102,7 +101,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    /// `glTexEnvi(target, parameter, value)`
+    /// Processes `glTexEnvi(target, parameter, value)`.
     fn environment(
         &mut self,
         function: &str,
@@ -148,7 +147,7 @@ impl<'t> Parser<'t> {
             self.unit(index, parameter).color = color(&mut self.reader, value, function)?;
             return Some(());
         }
-        // A pointer to one value is the value.
+        // A vector call takes a pointer to one value, which stands for that value.
         let one = self.reader.list(value).and_then(|values| values.first()).filter(|_| vector).cloned();
         let value = one.as_ref().unwrap_or(value);
         let findings = &mut self.reader.findings;
@@ -187,7 +186,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    /// A unit, brought into being with all before it.
+    /// Returns a unit, after adding it and those before it if needed.
     fn unit(&mut self, index: usize, by: &Value<'t>) -> &mut Unit {
         let units = &mut self.program.units;
         while units.len() <= index {

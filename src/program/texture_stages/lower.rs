@@ -1,4 +1,4 @@
-//! From texture stages to general stages.
+//! Lowers texture stages to general stages.
 
 use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
@@ -7,47 +7,47 @@ use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
 use ninebit::vertex::texgen::StageTransform;
 
-/// What of the draw the lowering depends on.
+/// State of the draw that the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Context {
     /// The chip that runs the program.
     pub profile: Profile,
-    /// Units that give a colour.
+    /// Whether each unit has a texture.
     pub bound: [bool; TEXTURE_UNITS],
-    /// Units whose colours can be negative.
+    /// Whether the colour of each texture unit can be negative.
     pub signed: [bool; TEXTURE_UNITS],
-    /// Fog is enabled.
+    /// Whether fog is enabled.
     pub fog: bool,
 }
 
-/// What a program changes about a texture unit.
+/// What a program changes in a texture unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnitChange {
-    /// Its coordinate set.
+    /// The coordinate set that the unit reads; `None` if it is not changed.
     pub coordinate_set: Option<usize>,
-    /// Its coordinates are made on the vertex side.
+    /// Generation of the unit's coordinates on the vertex side.
     pub generation: Option<Spanned<Generation>>,
-    /// How the draw's texture matrix of the stage's number applies to them, if the stage says so.
+    /// How the draw's texture matrix of the stage's number applies to the coordinates, if the stage says so.
     pub transform: Option<Spanned<StageTransform>>,
-    /// Its texture shader operation, with the place of the stage operation that asks for it. It reads the unit before.
+    /// The unit's texture shader operation, which reads the unit before, with the place of the stage operation that asks for it.
     pub operation: Option<Spanned<ShaderOperation>>,
 }
 
-/// Lowered texture stages.
+/// Result of lowering texture stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lowered {
-    /// The program, in the chip's own terms.
+    /// The program as state of the chip.
     pub combiners: Combiners,
-    /// What each general stage came from.
+    /// What each general stage was made from.
     pub origins: Vec<StageOrigin>,
-    /// What becomes of the texture units.
+    /// Changes of the texture units.
     pub units: [UnitChange; TEXTURE_UNITS],
 }
 
 /// Lowers the stages for a draw.
 ///
 /// # Errors
-/// Everything that the chip, or this version, has no form for.
+/// Findings about everything that the chip cannot do, or that this version does not support.
 pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
     let transforms = program.stages.iter().any(|stage| !stage.transform_flags.span.is_empty());
@@ -77,25 +77,25 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
     Ok(Lowered { combiners, origins, units: walk.units })
 }
 
-/// The first place that is written.
+/// Returns the first of some places that is written; empty if none is.
 fn written<const N: usize>(places: [&Span; N]) -> Span {
     places.into_iter().find(|span| !span.is_empty()).cloned().unwrap_or(0..0)
 }
 
-/// What is known while the stages are gone through.
+/// State while the stages are lowered.
 struct Walk<'p> {
     program: &'p TextureStages,
     context: &'p Context,
-    /// Stages before the first disabled one.
+    /// Number of stages before the first disabled one.
     active: usize,
-    /// Some stage says how texture matrices apply: to the others, too, as the API has it.
+    /// Whether some stage says how texture matrices apply. As in the API, the others then have a setting as well: the default.
     transforms: bool,
     findings: Vec<Diagnostic>,
     units: [UnitChange; TEXTURE_UNITS],
 }
 
 impl Walk<'_> {
-    /// The equation of the colour or the alpha of a stage.
+    /// Returns the equation of the colour or the alpha of a stage.
     fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::cascade::Equation {
         let operation = half.operation.value;
         let stage = &self.program.stages[index];
@@ -140,7 +140,7 @@ impl Walk<'_> {
         if complement { argument.inverted() } else { argument }
     }
 
-    /// The colour of a unit's texture: opaque white if it has none.
+    /// Returns the colour of a unit's texture, which is opaque white if it has none.
     fn texture(&mut self, unit: usize, span: Span) -> Argument {
         let units = self.context.profile.texture_units();
         if unit >= units {
@@ -157,7 +157,7 @@ impl Walk<'_> {
         if self.context.bound[unit] { Argument::new(Source::Texture(unit)) } else { Argument::ONE }
     }
 
-    /// TEXCOORDINDEX and TEXTURETRANSFORMFLAGS.
+    /// Processes TEXCOORDINDEX and TEXTURETRANSFORMFLAGS.
     fn coordinates(&mut self, index: usize, stage: &TextureStage) {
         if let Some(at) = &stage.coordinate_index {
             let made = at.value.generation.checked_sub(1).map(|index| Generation::ALL.get(index as usize));
@@ -192,7 +192,7 @@ impl Walk<'_> {
         }
     }
 
-    /// BUMPENVMAP: the next unit looks up where this one's texture moves it to.
+    /// Processes BUMPENVMAP: the next unit samples with coordinates that this unit's texture moves.
     fn bump(&mut self, index: usize, stage: &TextureStage) {
         let operation = &stage.color.operation;
         if self.context.profile == Profile::Nv10 {
@@ -208,7 +208,7 @@ impl Walk<'_> {
         if !both || next >= self.active {
             return;
         }
-        // u' = u + M00 du + M10 dv, v' = v + M01 du + M11 dv: the registers' order is M00, M01, M11, M10.
+        // u' = u + M00 du + M10 dv, v' = v + M01 du + M11 dv; the registers have the order M00, M01, M11, M10.
         let [m00, m01, m10, m11] = stage.bump_matrix;
         let luminance = (operation.value == Operation::BumpEnvMapLuminance).then_some(stage.bump_luminance);
         let span = stage.color.operation.span.clone();
@@ -217,7 +217,7 @@ impl Walk<'_> {
     }
 }
 
-/// What reports call the stage.
+/// Describes a stage for reports.
 fn origin(index: usize, stage: &TextureStage) -> StageOrigin {
     let to = match stage.result {
         ResultArgument::Current => "",

@@ -1,7 +1,7 @@
-//! Direct3D texture stage states (Direct3D 6 to 9) and how they become general stages.
+//! Direct3D texture stage states (Direct3D 6 to 9), and how they are lowered to general stages.
 //!
-//! A stage becomes one general stage; BUMPENVMAP becomes the texture shader of the next unit instead. Stages end at the first whose
-//! colour operation is Disable. See `docs/programs.md` for the form that each operation takes.
+//! Each stage becomes one general stage, except that BUMPENVMAP becomes the texture shader of the next unit. Stages end before the first one whose
+//! colour operation is Disable. `docs/programs.md` has the form of each operation.
 
 mod lower;
 mod operation;
@@ -14,14 +14,14 @@ pub use lower::{Context, Lowered, UnitChange, lower};
 pub use operation::Operation;
 pub use text::parse;
 
-/// D3DTTFF_PROJECTED.
+/// D3DTTFF_PROJECTED: the flag that coordinates are divided by the last one.
 pub const PROJECTED: u32 = 256;
 
-/// Stages that the API has.
+/// Number of stages that the API has.
 pub const STAGES: usize = 8;
 
 named! {
-    /// D3DTA, the selector.
+    /// D3DTA: the source of an argument.
     pub enum ArgumentSource {
         /// 0: the interpolated diffuse colour.
         Diffuse,
@@ -40,7 +40,7 @@ named! {
     }
 }
 named! {
-    /// D3DTSS_RESULTARG.
+    /// D3DTSS_RESULTARG: the destination of a stage's result.
     pub enum ResultArgument {
         /// 1: what the next stage reads as Current.
         Current,
@@ -49,24 +49,24 @@ named! {
     }
 }
 
-/// D3DTA with its modifiers.
+/// D3DTA with its modifiers: an argument of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageArgument {
-    /// The register or constant that is read.
+    /// Register or constant that is read.
     pub source: ArgumentSource,
-    /// D3DTA_COMPLEMENT (16): 1 - x.
+    /// D3DTA_COMPLEMENT (16): whether the argument is 1 - x.
     pub complement: bool,
-    /// D3DTA_ALPHAREPLICATE (32): alpha in all channels.
+    /// D3DTA_ALPHAREPLICATE (32): whether alpha is read in all channels.
     pub alpha_replicate: bool,
 }
 
 impl StageArgument {
-    /// A selector without modifiers.
+    /// Makes an argument without modifiers.
     pub const fn new(source: ArgumentSource) -> StageArgument {
         StageArgument { source, complement: false, alpha_replicate: false }
     }
 
-    /// The argument of a D3DTA value; `None` if there is no such value.
+    /// Returns the argument of a D3DTA value; `None` if there is no such value.
     pub fn from_value(value: u32) -> Option<StageArgument> {
         use ninebit::state::Named;
         let source = ArgumentSource::ALL.get(value as usize & 15)?;
@@ -79,7 +79,7 @@ impl StageArgument {
 }
 
 named! {
-    /// D3DTSS_TCI: coordinates that the vertex side makes, in the order of its values 1 to 4.
+    /// D3DTSS_TCI: coordinates that the vertex side generates, in the order of the values 1 to 4.
     pub enum Generation {
         /// The normal in eye space.
         CameraSpaceNormal,
@@ -87,21 +87,21 @@ named! {
         CameraSpacePosition,
         /// The reflected line of sight in eye space.
         CameraSpaceReflectionVector,
-        /// Where a mirroring sphere shows the reflection.
+        /// The place in a sphere map where the reflection is seen.
         SphereMap,
     }
 }
 
-/// D3DTSS_TEXCOORDINDEX: the coordinate set, and whether the vertices' coordinates are replaced by generated ones.
+/// D3DTSS_TEXCOORDINDEX: the coordinate set of a stage, and how its coordinates are generated, if they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoordinateIndex {
-    /// The low half.
+    /// The low half: number of the coordinate set.
     pub set: u32,
     /// The high half: 0 pass through, 1 camera-space normal, 2 position, 3 reflection vector, 4 sphere map.
     pub generation: u32,
 }
 
-/// Operation and arguments 0, 1, 2 of the colour or the alpha of a stage.
+/// The operation and the arguments of the colour or the alpha of a stage.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Half {
     /// COLOROP or ALPHAOP.
@@ -117,25 +117,25 @@ pub struct TextureStage {
     pub color: Half,
     /// ALPHAOP and its arguments.
     pub alpha: Half,
-    /// RESULTARG.
+    /// RESULTARG: destination of the result.
     pub result: ResultArgument,
-    /// CONSTANT, R, G, B, A bytes.
+    /// CONSTANT: bytes R, G, B, A.
     pub constant: [u8; 4],
-    /// TEXCOORDINDEX; `None`: as the texture unit says.
+    /// TEXCOORDINDEX; `None` if the texture unit determines it.
     pub coordinate_index: Option<Spanned<CoordinateIndex>>,
-    /// TEXTURETRANSFORMFLAGS: a count 0 to 4, and [`PROJECTED`]. Where no stage writes them the draw's texture matrices apply as they
+    /// TEXTURETRANSFORMFLAGS: a count from 0 to 4, and [`PROJECTED`]. If no stage sets them, the draw's texture matrices apply as they
     /// do to other programs.
     pub transform_flags: Spanned<u32>,
     /// BUMPENVMAT00, 01, 10, 11.
     pub bump_matrix: [f32; 4],
     /// BUMPENVLSCALE, BUMPENVLOFFSET.
     pub bump_luminance: [f32; 2],
-    /// Where the stage is written, for findings about what is not; empty if it is not.
+    /// Place where the stage is written, for findings about states that are not; empty if it is not written.
     pub span: Span,
 }
 
 impl TextureStage {
-    /// The API's initial state of stage `index`.
+    /// Returns the API's initial state of stage `index`.
     pub fn initial(index: usize) -> TextureStage {
         let half = |operation| Half {
             operation: Spanned::default_of(operation),
@@ -163,11 +163,11 @@ impl TextureStage {
 /// The state of all stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureStages {
-    /// Stages from 0; those not given are in their initial state.
+    /// Stages, starting with stage 0; stages that are not listed are in their initial state.
     pub stages: Vec<TextureStage>,
-    /// D3DRS_TEXTUREFACTOR, R, G, B, A bytes.
+    /// D3DRS_TEXTUREFACTOR: bytes R, G, B, A.
     pub texture_factor: [u8; 4],
-    /// D3DRS_SPECULARENABLE.
+    /// D3DRS_SPECULARENABLE: whether the specular colour is added at the end.
     pub specular_enable: bool,
 }
 
@@ -179,7 +179,7 @@ impl Default for TextureStages {
 }
 
 impl TextureStages {
-    /// Stage `index`, below [`STAGES`], brought into being with all before it.
+    /// Returns stage `index`, after adding it and those before it if needed. Returns `None` if the API has no such stage.
     pub fn stage_mut(&mut self, index: usize) -> Option<&mut TextureStage> {
         while self.stages.len() <= index && index < STAGES {
             self.stages.push(TextureStage::initial(self.stages.len()));

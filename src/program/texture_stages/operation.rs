@@ -1,10 +1,10 @@
-//! D3DTEXTUREOP.
+//! The operations of texture stages, D3DTEXTUREOP, and their equations.
 
 use crate::cascade::{Argument, Equation, Source};
 use ninebit::state::{Named, Scale, named};
 
 named! {
-    /// D3DTEXTUREOP, in the order of its values 1 to 26. a0, a1, a2 are the arguments; results are limited to 0..1.
+    /// D3DTEXTUREOP, in the order of the values 1 to 26. a0, a1, a2 are the arguments; results are clamped to 0..1.
     pub enum Operation {
         /// 1: this stage and all after it do nothing.
         Disable,
@@ -28,15 +28,15 @@ named! {
         Subtract,
         /// 11: a1 + a2 - a1 a2.
         AddSmooth,
-        /// 12: f a1 + (1 - f) a2, f the alpha of the diffuse colour.
+        /// 12: f a1 + (1 - f) a2, where f is the alpha of the diffuse colour.
         BlendDiffuseAlpha,
-        /// 13: the same, f the alpha of the stage's texture.
+        /// 13: f a1 + (1 - f) a2, where f is the alpha of the stage's texture.
         BlendTextureAlpha,
-        /// 14: the same, f the alpha of the texture factor.
+        /// 14: f a1 + (1 - f) a2, where f is the alpha of the texture factor.
         BlendFactorAlpha,
-        /// 15: a1 + (1 - f) a2, f the alpha of the stage's texture.
+        /// 15: a1 + (1 - f) a2, where f is the alpha of the stage's texture.
         BlendTextureAlphaPM,
-        /// 16: f a1 + (1 - f) a2, f the alpha of the current colour.
+        /// 16: f a1 + (1 - f) a2, where f is the alpha of the current colour.
         BlendCurrentAlpha,
         /// 17: a1 times the texture of the next stage.
         PreModulate,
@@ -48,9 +48,9 @@ named! {
         ModulateInvAlphaAddColor,
         /// 21: (1 - a1) a2 + a1.a. Colour only.
         ModulateInvColorAddAlpha,
-        /// 22: the stage's texture moves the coordinates of the next stage's. Colour only.
+        /// 22: the stage's texture moves the coordinates of the next stage's texture. Colour only.
         BumpEnvMap,
-        /// 23: the same, and scales what is found there. Colour only.
+        /// 23: like 22, and the next stage's texture is scaled by luminance. Colour only.
         BumpEnvMapLuminance,
         /// 24: the sum over R, G, B of (2 a1 - 1)(2 a2 - 1), in all four channels. Colour only.
         DotProduct3,
@@ -62,22 +62,22 @@ named! {
 }
 
 impl Operation {
-    /// The operation of a D3DTEXTUREOP value.
+    /// Returns the operation of a D3DTEXTUREOP value; `None` if there is none.
     pub fn from_value(value: u32) -> Option<Operation> {
         Operation::ALL.get((value as usize).checked_sub(1)?).copied()
     }
 
-    /// Whether it perturbs the next texture and leaves the current colour alone.
+    /// Returns whether it moves the coordinates of the next texture and leaves the current colour alone.
     pub fn is_bump(self) -> bool {
         matches!(self, Operation::BumpEnvMap | Operation::BumpEnvMapLuminance)
     }
 
-    /// Whether only COLOROP can be it: the values 18 to 24.
+    /// Returns whether it is an operation of colour only: values 18 to 24.
     pub fn is_color_only(self) -> bool {
         (Operation::ModulateAlphaAddColor as u8..=Operation::DotProduct3 as u8).contains(&(self as u8))
     }
 
-    /// Which of arguments 0, 1, 2 it reads.
+    /// Returns which of the arguments 0, 1, 2 it reads.
     pub fn reads(self) -> [bool; 3] {
         match self {
             Operation::Disable | Operation::BumpEnvMap | Operation::BumpEnvMapLuminance => [false; 3],
@@ -88,7 +88,8 @@ impl Operation {
         }
     }
 
-    /// Its equation; that of the current colour where nothing is computed. `texture` is that of the stage, or of the next where that is multiplied in.
+    /// Returns its equation, which passes the current colour on if nothing is computed. `texture` is the stage's texture, or for PreModulate that of
+    /// the next stage; `factor` is the texture factor.
     pub(super) fn equation(self, [a0, a1, a2]: [Argument; 3], texture: Argument, factor: Argument) -> Equation {
         const ONE: Argument = Argument::ONE;
         const CURRENT: Argument = Argument::new(Source::Current);

@@ -1,4 +1,4 @@
-//! Texture stages as pasted text: calls of SetTextureStageState and SetRenderState, and lines of effect files.
+//! Reads texture stages from pasted text: calls of SetTextureStageState and SetRenderState, and lines of effect files.
 
 mod draw_state;
 mod value;
@@ -9,7 +9,7 @@ use crate::finding::finding;
 use draw_state::{DrawStates, OTHER_STATES};
 use ninebit::diagnostic::Diagnostic;
 
-/// States of stages, samplers and the program.
+/// Names of the states of stages, samplers and the program.
 const OWN_STATES: &str = "ColorOp ColorArg0 ColorArg1 ColorArg2 AlphaOp AlphaArg0 AlphaArg1 AlphaArg2 \
     BumpEnvMat00 BumpEnvMat01 BumpEnvMat10 BumpEnvMat11 BumpEnvLScale BumpEnvLOffset \
     TexCoordIndex TextureTransformFlags ResultArg Constant Texture Sampler \
@@ -40,10 +40,10 @@ static DIRECT3D: Vocabulary = Vocabulary {
     what: "a pixel program",
 };
 
-/// Reads the text over the API's initial state.
+/// Reads the text, starting from the API's initial state.
 ///
 /// # Errors
-/// Everything that is not a statement, or sets something that the API does not have.
+/// Findings about whatever is not a statement, or sets something that the API does not have.
 pub fn parse(text: &str) -> Result<Pasted<TextureStages>, Vec<Diagnostic>> {
     let reader = Reader::new(text, &DIRECT3D);
     let mut parser = Parser { reader, program: TextureStages::default(), draw: DrawStates::default() };
@@ -60,7 +60,7 @@ pub fn parse(text: &str) -> Result<Pasted<TextureStages>, Vec<Diagnostic>> {
     reader.finish(program)
 }
 
-/// The states of a stage that are read here, by their names without prefix, with their D3DTSS values.
+/// The states of a stage that belong to the program: names without prefix, and D3DTSS values.
 const STATES: &[(&str, u32)] = &[
     ("ColorOp", 1),
     ("ColorArg1", 2),
@@ -81,7 +81,7 @@ const STATES: &[(&str, u32)] = &[
     ("ResultArg", 28),
     ("Constant", 32),
 ];
-/// States of the same calls that belong to the sampler: name, value, and what the draw calls it.
+/// States of the same calls that belong to the sampler: name, value, and the field of a unit in a scene.
 const SAMPLER_STATES: &[(&str, u32, &str)] = &[
     ("Address", 12, "address"),
     ("AddressU", 13, "address_s"),
@@ -95,7 +95,7 @@ const SAMPLER_STATES: &[(&str, u32, &str)] = &[
     ("MaxAnisotropy", 21, "anisotropy"),
     ("AddressW", 25, "address"),
 ];
-/// Render states that belong to the program.
+/// Render states that belong to the program: names without prefix, and D3DRS values.
 const RENDER_STATES: &[(&str, u32)] = &[("SpecularEnable", 29), ("TextureFactor", 60)];
 
 struct Parser<'t> {
@@ -113,7 +113,7 @@ impl<'t> Parser<'t> {
         let function = self.word(name);
         let render = function.ends_with("SetRenderState");
         let count = if render { 2 } else { 3 };
-        // The C form has the device first.
+        // In C the device is the first argument.
         let arguments = match arguments.len().checked_sub(count) {
             Some(extra @ (0 | 1)) => &arguments[extra..],
             _ => {
@@ -132,7 +132,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Direct3D 9 took these states out of the stages.
+    /// Processes SetSamplerState: Direct3D 9 moved these states from stages to samplers.
     fn sampler_state(&mut self, name: &Span, state: &Value<'t>) -> Option<()> {
         let function = self.word(name);
         let message = "`SetSamplerState` is Direct3D 9's: the interfaces of these chips set samplers by stage";
@@ -151,7 +151,7 @@ impl<'t> Parser<'t> {
         self.reader.pass(span, name, &message, "no part of a pixel program", &help);
     }
 
-    /// The state's name without its prefix, in its own spelling: by name, or by its value.
+    /// Finds a state by name or value. Returns its name without the prefix, or `None` after recording that there is no such state.
     fn state(
         &mut self,
         span: &Span,
@@ -188,7 +188,7 @@ impl<'t> Parser<'t> {
             return None;
         }
         if !call && ["Texture", "Sampler"].iter().any(|name| name.eq_ignore_ascii_case(bare)) {
-            // The draw's `textures` say what is bound, as for SetTexture.
+            // As with SetTexture, the draw's `textures` say what is bound.
             return None;
         }
         let name = self.state(state, prefixes, STATES, call)?;

@@ -1,4 +1,4 @@
-//! What the language allows, as far as the text alone can tell.
+//! Checks what the language allows, as far as the text alone tells.
 
 use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
@@ -7,7 +7,7 @@ use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::*;
 
-/// What is wrong with instructions by themselves.
+/// Checks each instruction by itself.
 pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {
     let mut findings = Vec::new();
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
@@ -19,7 +19,7 @@ pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {
     findings
 }
 
-/// Errors and warnings about a program that could be read, in the order of the text.
+/// Checks a program that could be read. Returns errors and warnings in the order of the text.
 pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
     let mut findings = instructions(written);
     let (mut slots, mut addressed) = (0, false);
@@ -44,7 +44,7 @@ pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
     findings
 }
 
-/// a0.x: written by `mov` only, and before it is read.
+/// Checks that a0.x is written by `mov` only, and before it is read.
 fn addresses(
     instruction: &Instruction,
     places: &InstructionPlaces,
@@ -69,7 +69,7 @@ fn addresses(
     }
 }
 
-/// Write masks that an instruction does not take.
+/// Checks that an instruction allows its write mask.
 fn masks(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
     let (opcode, mask) = (instruction.opcode, instruction.destination.mask);
     let takes = match opcode {
@@ -87,12 +87,12 @@ fn masks(instruction: &Instruction, places: &InstructionPlaces, findings: &mut V
     }
 }
 
-/// The mask of a matrix macro of so many rows.
+/// Returns the write mask of a matrix macro with this number of rows.
 pub(super) fn natural(rows: usize) -> u8 {
     (1 << rows) - 1
 }
 
-/// Rows of a matrix macro: all there, and none overwritten before it is read.
+/// Checks the rows of a matrix macro: that all exist, and that none is overwritten before it is read.
 fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
     let Some((rows, _)) = instruction.opcode.matrix() else { return };
     let (Some(vector), Some(matrix)) = (instruction.sources.first(), instruction.sources.get(1)) else { return };
@@ -124,7 +124,7 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
     }
 }
 
-/// One register c and one register v for each instruction.
+/// Checks that an instruction reads at most one register c and one register v.
 fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
     let mut first: [Option<(SourceRegister, Span)>; 2] = [None, None];
     for (source, span) in instruction.sources.iter().zip(&places.sources) {
@@ -147,7 +147,7 @@ fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut V
     }
 }
 
-/// A source of which one component counts, without saying which.
+/// Warns of a scalar source without a component, since only one component counts.
 fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
     let Some(source) = instruction.sources.first().filter(|_| instruction.opcode.is_scalar()) else { return };
     if source.swizzle.iter().all(|k| *k == source.swizzle[0]) {
@@ -161,10 +161,10 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
     findings.push(warning("NB0912", places.sources[0].clone(), message, label, help).rule("VTX-1"));
 }
 
-/// A constant that is a row of a matrix here and something else there.
+/// Warns of a constant that is a row of a matrix in one place and something else in another.
 fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
     let shader = &written.shader;
-    // For each constant the base of the matrix that it is a row of, and where that is read.
+    // For each constant, the first row of the matrix that it belongs to, and the place where that matrix is read.
     let mut row_of: Vec<Option<(usize, Span)>> = vec![None; CONSTANTS];
     let constant = |instruction: &Instruction, n: usize| match instruction.sources.get(n).map(|source| source.register)
     {

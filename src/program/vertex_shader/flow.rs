@@ -1,4 +1,4 @@
-//! What is read before anything has written it, and what is read at all.
+//! Finds registers that are read before they are written, and those that are read at all.
 
 use super::Written;
 use super::print::letters;
@@ -7,7 +7,7 @@ use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::{CONSTANTS, DestinationRegister, INPUTS, Instruction, SourceRegister, TEMPORARIES};
 
-/// Components of each result that something later depends on, in the order of the instructions.
+/// Returns, for each instruction, the components of its result on which something later depends.
 fn needed(instructions: &[Instruction]) -> Vec<u8> {
     let mut live = [0_u8; TEMPORARIES];
     let mut needed = vec![0; instructions.len()];
@@ -25,7 +25,7 @@ fn needed(instructions: &[Instruction]) -> Vec<u8> {
     needed
 }
 
-/// Temporaries that the components `needed` of the result are made of: number, components, number of the source.
+/// Returns the temporaries from which the components `needed` of the result are computed: register, components, number of the source.
 fn temporaries(instruction: &Instruction, needed: u8) -> Vec<(usize, u8, usize)> {
     let mut read = Vec::new();
     for (n, source) in instruction.sources.iter().enumerate() {
@@ -42,7 +42,7 @@ fn temporaries(instruction: &Instruction, needed: u8) -> Vec<(usize, u8, usize)>
     read
 }
 
-/// Temporaries whose value nothing has written where a result that matters is made of it.
+/// Finds temporaries that are read before they are written, where the result matters.
 pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
     let mut known = [0_u8; TEMPORARIES];
     let needed = needed(&written.shader.instructions);
@@ -52,7 +52,7 @@ pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
             if missing == 0 {
                 continue;
             }
-            // Said once.
+            // Each component is reported once.
             known[register] |= missing;
             let letters = letters((0..4).filter(|k| missing >> k & 1 != 0));
             let message = format!("r{register}.{letters} is read before anything writes it");
@@ -67,7 +67,7 @@ pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
 }
 
 impl Written {
-    /// Constants that are read, with the first place that does; and whether an address chooses some.
+    /// Returns the first place where each constant is read, if it is, and whether some are read by an address.
     pub fn constants_read(&self) -> ([Option<Span>; CONSTANTS], bool) {
         let mut read: [Option<Span>; CONSTANTS] = std::array::from_fn(|_| None);
         let mut any = false;
@@ -84,7 +84,7 @@ impl Written {
         (read, any)
     }
 
-    /// Inputs that are read, with the first place that does.
+    /// Returns the first place where each input is read, if it is.
     pub fn inputs_read(&self) -> [Option<Span>; INPUTS] {
         let mut read: [Option<Span>; INPUTS] = std::array::from_fn(|_| None);
         for (instruction, places) in self.shader.instructions.iter().zip(&self.places) {

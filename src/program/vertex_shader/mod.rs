@@ -1,6 +1,6 @@
-//! Vertex programs in the assembler language vs.1.1 of Direct3D 8, read and printed (`docs/vertex-shader.md`).
+//! Vertex programs in the assembler language vs.1.1 of Direct3D 8 (`docs/vertex-shader.md`).
 //!
-//! A program becomes [`VertexShader`]; what that computes stands in [`ninebit::vertex::shader`].
+//! A program is read as a [`VertexShader`]; [`ninebit::vertex::shader`] runs it.
 
 mod check;
 mod flow;
@@ -14,34 +14,34 @@ use ninebit::vertex::shader::VertexShader;
 pub use parser::parse;
 pub use print::print;
 
-/// A program and where its parts stand in the text.
+/// A program with the places of its parts in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The program that was read.
+    /// The program.
     pub shader: VertexShader,
-    /// Where each instruction stands.
+    /// Places of each instruction.
     pub places: Vec<InstructionPlaces>,
-    /// Where the number of each definition stands.
+    /// Place of the register of each definition.
     pub definitions: Vec<Span>,
-    /// What is allowed but probably not meant.
+    /// Findings about what is legal but probably unintended.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Where an instruction stands: bytes of the text.
+/// Places of an instruction in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InstructionPlaces {
-    /// The word of the instruction.
+    /// Place of the instruction's name.
     pub opcode: Span,
-    /// What it writes.
+    /// Place of the destination.
     pub destination: Span,
-    /// Each source, in order.
+    /// Places of the sources, in order.
     pub sources: Vec<Span>,
 }
 
-/// Reads a program and checks everything that the text alone can tell.
+/// Reads a program and checks everything that the text alone tells.
 ///
 /// # Errors
-/// Everything that is wrong with it, warnings left out.
+/// All errors, without warnings.
 pub fn read(text: &str) -> Result<Written, Vec<Diagnostic>> {
     let (mut written, mut errors) = parser::lines(text);
     let findings = if errors.is_empty() { check::check(&written) } else { check::instructions(&written) };

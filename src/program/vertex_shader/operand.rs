@@ -1,4 +1,4 @@
-//! Operands: registers with their swizzles and write masks.
+//! Reads operands: registers with their swizzles and write masks.
 
 use super::parser::Parser;
 use crate::Span;
@@ -7,7 +7,7 @@ use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 use ninebit::vertex::shader::*;
 
-/// Registers by their letters in lower case: how the documents write them, how many there are, what they are.
+/// Kinds of registers: the name in lower case, the name in documents, the number of registers, and what they are.
 const FAMILIES: &[(&str, &str, usize, &str)] = &[
     ("v", "v", INPUTS, "inputs"),
     ("r", "r", TEMPORARIES, "temporaries"),
@@ -22,16 +22,16 @@ const FAMILIES: &[(&str, &str, usize, &str)] = &[
 
 const ALL: &str = "v0 to v15, r0 to r11, c0 to c95, a0, oPos, oD0, oD1, oT0 to oT3, oFog, oPts";
 
-/// Any register of the language.
+/// A register of the language.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Register {
     Source(SourceRegister),
     Destination(DestinationRegister),
-    /// `c[...]`: its brackets follow.
+    /// `c[...]`; its brackets follow.
     Constants,
 }
 
-/// Reads what an instruction writes.
+/// Reads the destination of an instruction.
 pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Span)> {
     let start = parser.cursor.span().start;
     if let Some(minus) = parser.sign('-') {
@@ -59,7 +59,7 @@ pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Span)> 
     Ok((Destination { register, mask }, start..parser.cursor.end()))
 }
 
-/// Reads a source.
+/// Reads a source of an instruction.
 pub(super) fn source(parser: &mut Parser<'_>) -> Read<(Source, Span)> {
     let start = parser.cursor.span().start;
     let negate = parser.sign('-').is_some();
@@ -84,7 +84,7 @@ pub(super) fn source(parser: &mut Parser<'_>) -> Read<(Source, Span)> {
     Ok((Source { register, swizzle, negate }, start..parser.cursor.end()))
 }
 
-/// Reads the name of a register; `c[` up to the bracket.
+/// Reads the name of a register, or `c` before a bracket.
 fn register(parser: &mut Parser<'_>) -> Read<(Register, Span)> {
     let span = parser.word();
     let word = parser.cursor.text(&span).to_owned();
@@ -171,7 +171,7 @@ fn relative(parser: &mut Parser<'_>) -> Read<SourceRegister> {
     Ok(SourceRegister::Constant { index: index.unwrap_or(0), relative })
 }
 
-/// The letters behind a point, if there is one.
+/// Takes the letters behind a point, if there is one.
 fn modifier(parser: &mut Parser<'_>) -> Read<Option<Span>> {
     if parser.sign('.').is_none() {
         return Ok(None);
@@ -180,7 +180,7 @@ fn modifier(parser: &mut Parser<'_>) -> Read<Option<Span>> {
     if span.is_empty() { Err(parser.expected("components, such as `.xyz`")) } else { Ok(Some(span)) }
 }
 
-/// The number of a component.
+/// Returns the number of a component.
 fn component(letter: char) -> Option<usize> {
     "xyzw".find(letter.to_ascii_lowercase())
 }
@@ -188,7 +188,7 @@ fn component(letter: char) -> Option<usize> {
 fn swizzle(parser: &mut Parser<'_>, word: &str, span: Span) -> Read<[usize; 4]> {
     let components: Option<Vec<usize>> = word.chars().map(component).collect();
     match components.as_deref() {
-        // Fewer than four: the last goes on.
+        // With fewer than four letters the last one is repeated.
         Some(list @ [.., last]) if list.len() <= 4 => Ok(std::array::from_fn(|k| *list.get(k).unwrap_or(last))),
         _ => Err(letters(parser, word, span, "a swizzle", "one to four of x, y, z, w, such as `.yzxw` or `.x`")),
     }

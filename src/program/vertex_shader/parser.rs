@@ -1,4 +1,4 @@
-//! Lines of the language, one after the other. What cannot be read is recorded and passed over, so that one run shows all.
+//! Reads lines of the language one after the other. Lines that cannot be read are reported and skipped, so that one run shows all errors.
 
 use super::check::natural;
 use super::{InstructionPlaces, Written, operand};
@@ -10,32 +10,32 @@ use crate::spelling::closest;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
 
-/// Findings beyond this many are not looked for.
+/// Number of findings after which reading stops.
 const MAX_FINDINGS: usize = 64;
 
-/// Instructions beyond this many are not read; no program so long is legal.
+/// Number of instructions after which reading stops; no legal program is as long.
 const MAX_INSTRUCTIONS: usize = 1024;
 
-/// What is known while a program is read.
+/// State while a program is read.
 pub(super) struct Parser<'t> {
     pub(super) cursor: Cursor<'t>,
     findings: Vec<Diagnostic>,
     written: Written,
-    /// The first token of the line.
+    /// Index of the first token of the line.
     start: usize,
     version: Option<Span>,
 }
 
-/// Reads a program without a word about what it does: unwritten registers, too many slots and so on pass.
+/// Reads a program without checking what it does: unwritten registers, too many slots and the like are accepted.
 ///
 /// # Errors
-/// Everything that is no instruction, definition or version.
+/// Findings about whatever is not an instruction, a definition or a version.
 pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
     let (written, findings) = lines(text);
     if findings.is_empty() { Ok(written) } else { Err(findings) }
 }
 
-/// Every line that can be read, and what is wrong with the others.
+/// Reads every line that can be read. Also returns what is wrong with the others.
 pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
     let written =
         Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
@@ -68,13 +68,13 @@ fn opcode(word: &str) -> Option<Opcode> {
 }
 
 impl Parser<'_> {
-    /// Records an error and gives the line up.
+    /// Records an error and gives up the line.
     pub(super) fn refuse(&mut self, code: &'static str, span: Span, message: &str, label: &str, help: &str) -> GivenUp {
         self.findings.push(finding(code, span, message, label, help));
         GivenUp
     }
 
-    /// Records that something else stands here.
+    /// Records that something else was expected here.
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
         let (span, found) = match self.is_done() {
             true => (self.line_end()..self.line_end(), "the end of the line".to_owned()),
@@ -85,18 +85,18 @@ impl Parser<'_> {
         self.refuse("NB0108", span, &message, "not an instruction from here", help)
     }
 
-    /// Whether all of the line has been taken.
+    /// Returns whether the whole line has been read.
     pub(super) fn is_done(&self) -> bool {
         self.cursor.is_new_line() && self.cursor.at > self.start
     }
 
-    /// Where the line ends that the token before the one at hand stands in.
+    /// Returns the end of the line with the token before the current one.
     fn line_end(&self) -> usize {
         let (text, end) = (self.cursor.text, self.cursor.end());
         text[end..].find('\n').map_or(text.len(), |line| end + line + 1)
     }
 
-    /// Passes over what is left of the line; its end.
+    /// Skips the rest of the line. Returns its end.
     fn skip_line(&mut self) -> usize {
         while !self.is_done() {
             self.cursor.advance();
@@ -104,7 +104,7 @@ impl Parser<'_> {
         self.cursor.end()
     }
 
-    /// Takes a word or a number, if one is at hand: its place, or an empty one.
+    /// Takes a word or a number, if there is one in this line. Returns its place, or an empty one.
     pub(super) fn word(&mut self) -> Span {
         let span = self.cursor.span();
         if self.is_done() || !matches!(self.cursor.kind(), Some(Kind::Word | Kind::Number)) {
@@ -114,13 +114,13 @@ impl Parser<'_> {
         span
     }
 
-    /// Takes a sign of this line.
+    /// Takes a sign, if it is the next token of this line.
     pub(super) fn sign(&mut self, sign: char) -> Option<Span> {
         let span = self.cursor.span();
         (!self.is_done() && self.cursor.take(sign)).then_some(span)
     }
 
-    /// Warns of an instruction that a semicolon behind another one makes a comment.
+    /// Warns of an instruction that has become a comment, because it follows another one behind a semicolon.
     fn hidden(&mut self, comment: &Span) {
         let inside = self.cursor.text(comment);
         let hidden = Cursor::new(inside, Language::ASSEMBLER);
@@ -184,7 +184,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `def c4, 0.5, 1, 2, 0`.
+    /// Reads `def c4, 0.5, 1, 2, 0`.
     fn definition(&mut self, word: Span) -> Read<()> {
         let (source, span) = operand::source(self)?;
         let SourceRegister::Constant { index, relative: false } = source.register else {

@@ -1,4 +1,4 @@
-//! A program as text; reading that gives the same program.
+//! Prints programs as text; reading the text gives the same program.
 
 use std::fmt::Write;
 
@@ -22,7 +22,7 @@ pub fn print(shader: &VertexShader) -> String {
     out
 }
 
-/// Components by their letters.
+/// Returns the letters of components.
 pub(super) fn letters(components: impl IntoIterator<Item = usize>) -> String {
     components.into_iter().filter_map(|k| "xyzw".chars().nth(k)).collect()
 }
@@ -43,7 +43,7 @@ fn destination(destination: &Destination) -> String {
     format!("{name}.{}", letters((0..4).filter(|k| destination.mask >> k & 1 != 0)))
 }
 
-/// A register that is read.
+/// Returns the name of a source register.
 pub(super) fn name(register: SourceRegister) -> String {
     match register {
         SourceRegister::Input(index) => format!("v{index}"),
@@ -60,7 +60,7 @@ fn source(source: &Source) -> String {
     if source.swizzle == [0, 1, 2, 3] {
         return format!("{sign}{name}");
     }
-    // The last letter goes on: those equal to it at the end are left out.
+    // The last letter is repeated when it is read, so letters equal to it at the end are left out.
     let last = source.swizzle[3];
     let kept = source.swizzle.iter().rposition(|k| *k != last).map_or(1, |at| at + 2);
     format!("{sign}{name}.{}", letters(source.swizzle.into_iter().take(kept)))

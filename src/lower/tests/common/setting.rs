@@ -1,4 +1,4 @@
-//! What tests of printed text are told, and the random things that they begin with.
+//! Settings of the tests of printed text, and what their random cases start with.
 
 use std::path::Path;
 use std::process::Command;
@@ -7,12 +7,12 @@ use ninebit::random::Random;
 use ninebit::state::{POLICIES, Policies, Register};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// The number that a variable of the environment holds.
+/// Returns the number in an environment variable, if it is set.
 pub fn setting(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is no number: {text}")))
 }
 
-/// The registers that a pixel brings.
+/// The registers that a pixel loads.
 pub const GIVEN: [Register; 7] = [
     Register::PrimaryColor,
     Register::SecondaryColor,
@@ -23,7 +23,7 @@ pub const GIVEN: [Register; 7] = [
     Register::Texture3,
 ];
 
-/// Any policies: each of its alternatives as often as the others.
+/// Returns random policies, with each alternative equally likely.
 pub fn any_policies(random: &mut Random) -> Policies {
     let mut policies = Policies::DEFAULT;
     for policy in POLICIES {
@@ -33,20 +33,20 @@ pub fn any_policies(random: &mut Random) -> Policies {
     policies
 }
 
-/// What random programs and scenes are drawn with; the same ones for the same seed.
+/// Returns a runner that draws random programs and scenes, the same ones for the same seed.
 pub fn runner(seed: u64) -> TestRunner {
     TestRunner::new_with_rng(Config::default(), TestRng::from_seed(RngAlgorithm::ChaCha, &[seed as u8; 32]))
 }
 
-/// Whether a command succeeds.
+/// Returns whether a command succeeds.
 pub fn works(program: &str, arguments: &[&str]) -> bool {
     Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
 }
 
-/// Runs a command that has to succeed, in a folder.
+/// Runs a command, which has to succeed, in a folder.
 ///
 /// # Errors
-/// What it says.
+/// The command and its output.
 pub fn run(command: &mut Command, folder: &Path) -> Result<(), String> {
     let output = command.current_dir(folder).output().map_err(|error| format!("{command:?}: {error}"))?;
     if output.status.success() {
@@ -56,12 +56,12 @@ pub fn run(command: &mut Command, folder: &Path) -> Result<(), String> {
     Err(format!("{command:?}:\n{}", text.chars().take(4000).collect::<String>()))
 }
 
-/// The words as a file has them.
+/// Returns the bytes of words in a file.
 pub fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// A command of Python that runs a script of the tests, which draws in software.
+/// Makes a Python command that runs a script of the tests, which renders in software.
 pub fn drawing(script: &str) -> Command {
     let mut command = Command::new(python());
     command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe").env("WGPU_BACKEND_TYPE", "Vulkan");
@@ -69,12 +69,12 @@ pub fn drawing(script: &str) -> Command {
     command
 }
 
-/// The Python that has `moderngl`, `wgpu` and `numpy`.
+/// Returns the name of the Python that has `moderngl`, `wgpu` and `numpy`.
 pub fn python() -> String {
     std::env::var("NINEBIT_LOWER_PYTHON").unwrap_or_else(|_| "python3".to_string())
 }
 
-/// The compiler of C.
+/// Returns the name of the C compiler.
 pub fn compiler() -> String {
     std::env::var("CC").unwrap_or_else(|_| "cc".to_string())
 }

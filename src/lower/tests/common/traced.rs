@@ -1,4 +1,4 @@
-//! A fragment's trace as what a printed function is given, and has to yield.
+//! Takes a printed function's inputs, and the expected results, from the trace of a fragment.
 
 use std::collections::HashMap;
 
@@ -7,11 +7,11 @@ use ninebit::engine::DrawTrace;
 use ninebit::state::Draw;
 use ninebit_lower::{Input, Weight};
 
-/// The values of a trace by their names, each with its operation.
+/// The values of a trace by name, each with its operation.
 pub struct Traced<'t> {
-    /// In the end.
+    /// The last value of each name.
     last: HashMap<&'t str, (i64, &'t str)>,
-    /// What the registers hold before stages write to them.
+    /// The value of each name before stages write to it.
     first: HashMap<&'t str, (i64, &'t str)>,
 }
 
@@ -33,12 +33,12 @@ impl<'t> Traced<'t> {
         self.last.get(name).map(|(value, _)| *value)
     }
 
-    /// Whether the alpha test dropped it.
+    /// Returns whether the alpha test dropped the fragment.
     pub fn dropped(&self) -> bool {
         self.said("alpha_test.passed") == Some(0)
     }
 
-    /// What it says of an input; 0 where it says nothing: then nothing depends on it.
+    /// Returns the value of an input; 0 if the trace does not have it, since nothing depends on it then.
     pub fn given(&self, draw: &Draw, input: Input) -> i64 {
         let said = |name: String| self.first.get(name.as_str()).map_or(0, |(value, _)| *value);
         let texel = |n: usize, at: usize| {

@@ -1,4 +1,4 @@
-"""Draws every shader of a folder by OpenGL without a window and compares its pixels with what is expected of them."""
+"""Renders every shader in a folder by OpenGL without a window, and compares the pixels with the expected ones."""
 import sys
 
 import moderngl
@@ -10,7 +10,7 @@ pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
 rows = len(pool)
 expected = numpy.fromfile("expected.bin", "<u4").reshape(count, rows, 4)
 context = moderngl.create_context(standalone=True, require=330, backend="egl", libgl="libGL.so.1", libegl="libEGL.so.1")
-# Textures are not as high as frames have pixels: what does not fit stands to the right.
+# Textures cannot have as many rows as frames have pixels, so further rows are placed to the right.
 HIGH = 16384
 blocks = numpy.zeros((-(-rows // HIGH) * HIGH, COLUMNS), "<i4")
 blocks[:rows] = pool

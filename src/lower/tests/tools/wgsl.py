@@ -1,4 +1,4 @@
-"""Runs every shader of a folder by WebGPU and compares its pixels with what is expected of them."""
+"""Runs every shader in a folder by WebGPU, and compares the pixels with the expected ones."""
 import sys
 
 import numpy

@@ -1,15 +1,15 @@
-//! Render states that the scene's draw has in fields of its own: what to write there.
+//! Render states for which a scene's draw has fields: what to write there.
 
 use crate::calls::{Part, PartKind, Value, without_prefix};
 use crate::finding::warning;
 use crate::{Aside, Span};
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
-/// A field of the draw, and the states that it holds: name and D3DRS value.
+/// A field of the draw with the states that it stands for, by name and D3DRS value.
 struct Group {
     field: &'static str,
     states: &'static [(&'static str, u32)],
-    /// The field as it is written, of the values by state; `None` if the draw's default says the same.
+    /// Returns the field as a scene writes it, for the values of the states; `None` if the draw's default means the same.
     written: fn(&Values) -> Option<String>,
 }
 
@@ -58,12 +58,12 @@ const GROUPS: [Group; 8] = [
     Group { field: "color_mask", states: &[("ColorWriteEnable", 168)], written: color_mask },
 ];
 
-/// The names of all states of a draw.
+/// Returns the names of all these states.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().flat_map(|group| group.states.iter().map(|(name, _)| *name))
 }
 
-/// Render states of the API that are passed over.
+/// Names of the API's render states that are skipped.
 pub(super) const OTHER_STATES: &str = "Lighting Ambient LocalViewer ColorVertex NormalizeNormals \
     DiffuseMaterialSource SpecularMaterialSource AmbientMaterialSource EmissiveMaterialSource \
     DitherEnable FillMode LastPixel LinePattern Clipping ClipPlaneEnable \
@@ -76,7 +76,7 @@ pub(super) const OTHER_STATES: &str = "Lighting Ambient LocalViewer ColorVertex 
     BlendFactor SeparateAlphaBlendEnable SrcBlendAlpha DestBlendAlpha BlendOpAlpha TwoSidedStencilMode \
     Wrap0 Wrap1 Wrap2 Wrap3 Wrap4 Wrap5 Wrap6 Wrap7 VertexShader PixelShader";
 
-/// What to write instead of one of [`OTHER_STATES`].
+/// Returns what to write instead of one of [`OTHER_STATES`].
 pub(super) fn instead(state: &str) -> &'static str {
     match state {
         "Lighting" | "Ambient" | "ColorVertex" | "NormalizeNormals" => {
@@ -93,7 +93,7 @@ pub(super) fn instead(state: &str) -> &'static str {
     }
 }
 
-/// A value as far as it is told here: a word without its prefix, or a number.
+/// The value of a state: a word without its prefix, a number, or something else.
 #[derive(Clone, Debug)]
 enum Told {
     Word(String),
@@ -101,18 +101,18 @@ enum Told {
     Other,
 }
 
-/// States in the order of their last statements.
+/// Values of states by name, in the order of their last statements.
 type Values = Vec<(&'static str, Told)>;
 
-/// What the text says of the draw.
+/// What the text says about the draw.
 #[derive(Debug, Default)]
 pub(super) struct DrawStates {
-    /// Of each group the first place, and the values.
+    /// For each group, the place of its first state, and the values.
     groups: [Option<(Span, Values)>; GROUPS.len()],
 }
 
 impl DrawStates {
-    /// Takes a state if it is one of these.
+    /// Takes a state if it belongs to a group. Returns whether it does.
     pub(super) fn take(&mut self, name: &str, number: Option<u32>, span: &Span, value: &Value<'_>) -> bool {
         for (group, slot) in GROUPS.iter().zip(&mut self.groups) {
             let found = group.states.iter().find(|(known, n)| known.eq_ignore_ascii_case(name) || number == Some(*n));
@@ -126,7 +126,7 @@ impl DrawStates {
         false
     }
 
-    /// A warning for each field that the draw lacks then.
+    /// Returns a warning for each field, for draws that do not have it.
     pub(super) fn asides(self) -> Vec<Aside> {
         let groups = GROUPS.iter().zip(self.groups);
         let asides = groups.filter_map(|(group, taken)| {
@@ -159,7 +159,7 @@ fn find<'v>(values: &'v Values, name: &str) -> Option<&'v Told> {
     values.iter().find(|(known, _)| *known == name).map(|(_, told)| told)
 }
 
-/// Whether a state is switched off.
+/// Returns whether a state is switched off.
 fn off(values: &Values, name: &str) -> bool {
     match find(values, name) {
         Some(Told::Number(0)) => true,
@@ -168,7 +168,7 @@ fn off(values: &Values, name: &str) -> bool {
     }
 }
 
-/// Values of a state: as the API has them, in the order of its numbers from 1, and as the scene has them.
+/// Values of a state: the API's names, in the order of its numbers from 1, and the scene's names.
 type Named = (&'static str, &'static [&'static str]);
 
 const FACTORS: Named = (
@@ -179,7 +179,7 @@ const EQUATIONS: Named = ("ADD SUBTRACT REVSUBTRACT MIN MAX", BlendEquation::NAM
 const FUNCTIONS: Named = ("NEVER LESS EQUAL LESSEQUAL GREATER NOTEQUAL GREATEREQUAL ALWAYS", CompareFunction::NAMES);
 const OPERATIONS: Named = ("KEEP ZERO REPLACE INCRSAT DECRSAT INVERT INCR DECR", StencilOperation::NAMES);
 
-/// The scene's word for a value.
+/// Returns the scene's name of a state's value.
 fn named(values: &Values, state: &str, (api, scene): Named, default: &'static str) -> String {
     let found = match find(values, state) {
         Some(Told::Number(number)) => (0..api.split(' ').count()).nth((*number as usize).wrapping_sub(1)),
@@ -285,7 +285,7 @@ fn cull(values: &Values) -> Option<String> {
     let names: Named = ("NONE CW CCW", &["None", "Clockwise", "CounterClockwise"]);
     match named(values, "CullMode", names, "None").as_str() {
         "None" => None,
-        // What is culled is the back: the front faces the other way round.
+        // The API says which faces are culled; in a scene those are the back faces, so the front is the other winding.
         "Clockwise" => Some("cull: Back".to_owned()),
         "CounterClockwise" => Some("cull: Back, front_face: Clockwise".to_owned()),
         other => Some(format!("cull: {other}")),

@@ -1,4 +1,4 @@
-//! Values of texture stage states and render states.
+//! Reads values of texture stage states and render states.
 
 use crate::calls::{self, Part, PartKind, Value, one, out_of_range, without_prefix, wrong_kind};
 use crate::texture_stages::{Operation, ResultArgument, StageArgument};
@@ -6,7 +6,7 @@ use ninebit::diagnostic::Diagnostic;
 use ninebit::number::convert::constant;
 use ninebit::state::Named;
 
-/// The entry of `known` that a name means, spelled as calls do, or as effect files.
+/// Finds the entry of `known` that a name means. Findings spell the entries as calls do, or as effect files.
 fn known<T: Copy>(
     part: &Part<'_>,
     what: &str,
@@ -16,14 +16,14 @@ fn known<T: Copy>(
     findings: &mut Vec<Diagnostic>,
 ) -> Option<T> {
     let spelled = |name: &str| {
-        // The API's names have an underscore between the two halves of these.
+        // The API's names of these have an underscore between their two halves.
         let name = if name.starts_with("Modulate") { name.replace("Add", "_Add") } else { name.to_owned() };
         if call { format!("{prefix}{}", name.to_uppercase()) } else { name }
     };
     calls::known(part, what, without_prefix(part.text, &[prefix]).1, known, spelled, findings)
 }
 
-/// A plain number.
+/// Reads a plain number.
 pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     match one(value, "number", findings)?.kind {
         PartKind::Integer(number) => Some(number),
@@ -31,7 +31,7 @@ pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Optio
     }
 }
 
-/// D3DTOP.
+/// Reads D3DTOP.
 pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<Operation> {
     let part = one(value, "operation", findings)?;
     if let PartKind::Integer(number) = part.kind {
@@ -43,7 +43,7 @@ pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagno
     known(part, "texture operation", "D3DTOP_", call, &names, findings)
 }
 
-/// D3DTA, with modifiers.
+/// Reads D3DTA with modifiers.
 pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<StageArgument> {
     const WORDS: &[(&str, u32)] = &[
         ("Diffuse", 0),
@@ -76,7 +76,7 @@ pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnos
     StageArgument::from_value(bits)
 }
 
-/// D3DTSS_RESULTARG.
+/// Reads D3DTSS_RESULTARG.
 pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<ResultArgument> {
     let part = one(value, "result", findings)?;
     if let PartKind::Integer(number) = part.kind {
@@ -93,7 +93,7 @@ pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnosti
     known(part, "result argument", "D3DTA_", call, &names, findings)
 }
 
-/// D3DTSS_TEXCOORDINDEX: the words D3DTSS_TCI and a number.
+/// Reads D3DTSS_TEXCOORDINDEX: words D3DTSS_TCI and a number.
 pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let words = [
         ("PassThru", 0),
@@ -105,7 +105,7 @@ pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Diagnostic>
     flags(value, "source of coordinates", "D3DTSS_TCI_", &words, findings)
 }
 
-/// D3DTSS_TEXTURETRANSFORMFLAGS.
+/// Reads D3DTSS_TEXTURETRANSFORMFLAGS.
 pub(super) fn transform_flags(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let words = [("Disable", 0), ("Count1", 1), ("Count2", 2), ("Count3", 3), ("Count4", 4), ("Projected", 256)];
     flags(value, "transform flag", "D3DTTFF_", &words, findings)
@@ -128,7 +128,7 @@ fn flags(
     Some(bits)
 }
 
-/// TRUE, FALSE or a number.
+/// Reads TRUE, FALSE or a number.
 pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
     let part = one(value, "truth value", findings)?;
     match part.kind {
@@ -137,7 +137,7 @@ pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<
     }
 }
 
-/// A D3DCOLOR, 0xAARRGGBB, as R, G, B, A bytes; or one of its macros.
+/// Reads a D3DCOLOR, 0xAARRGGBB, or one of its macros. Returns bytes R, G, B, A.
 pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<[u8; 4]> {
     const HELP: &str =
         "write 0xAARRGGBB, D3DCOLOR_ARGB(a, r, g, b) with bytes, or D3DCOLOR_COLORVALUE(r, g, b, a) with 0.0 to 1.0";
@@ -149,7 +149,7 @@ pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
         }
         PartKind::Call(arguments) => {
             let read: fn(&Value<'_>) -> Option<u8> = match part.text {
-                // The macros cut what is behind the point; the class rounds.
+                // The macros truncate; the class D3DXCOLOR rounds.
                 "D3DCOLOR_COLORVALUE" | "D3DRGBA" | "D3DRGB" => cut,
                 "D3DXCOLOR" => |value| real(value).map(constant),
                 _ => byte,
@@ -191,7 +191,7 @@ fn byte(value: &Value<'_>) -> Option<u8> {
     }
 }
 
-/// A number from 0.0 to 1.0.
+/// Reads a number from 0.0 to 1.0.
 fn real(value: &Value<'_>) -> Option<f32> {
     let number = match &value.parts[..] {
         [Part { kind: PartKind::Float(number), .. }] => *number,
@@ -201,13 +201,13 @@ fn real(value: &Value<'_>) -> Option<f32> {
     (0.0..=1.0).contains(&number).then_some(number)
 }
 
-/// (DWORD)(c * 255.f), as the macros of the API have it.
+/// Reads a number and converts it by (DWORD)(c * 255.f), as the macros of the API do.
 fn cut(value: &Value<'_>) -> Option<u8> {
     #[allow(clippy::float_arithmetic, reason = "the API's own macro, in the precision of its text")]
     real(value).map(|number| (number * 255.0) as u8)
 }
 
-/// A float: written as one, in a wrapper such as `F2DW(0.5f)`, or as the bits of one, as the API takes it.
+/// Reads a float: written as one, in a wrapper such as `F2DW(0.5f)`, or as its bits, which is what the API takes.
 pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<f32> {
     let part = one(value, "number", findings)?;
     let found = match &part.kind {
@@ -216,7 +216,7 @@ pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
         PartKind::Call(arguments) => match &arguments[..] {
             [Value { parts, .. }] => match &parts[..] {
                 [Part { kind: PartKind::Float(number), .. }] => Some(*number),
-                // Such a wrapper takes a float: whole numbers become one.
+                // The wrapper takes a float, so whole numbers become floats.
                 [Part { kind: PartKind::Integer(number), .. }] => Some(*number as i32 as f32),
                 _ => None,
             },
