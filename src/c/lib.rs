@@ -1,8 +1,9 @@
 //! The library for C: scenes, frames, traces, register words.
 //!
-//! `include/ninebit.h` is made of this file by `cbindgen`; `docs/c.md` shows how it is used. Every function is one of a status and of what it writes through
-//! its pointers: it takes pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the boundary. What one
-//! function allocates another one frees. A scene is never changed after it was made, so that any number of threads may use it at once.
+//! `cbindgen` makes `include/ninebit.h` from this file; `docs/c.md` shows how it is used. Every function returns a status and writes its results
+//! through pointers. It checks pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the
+//! boundary. What one function allocates, another one frees. A scene never changes after it has been made, so any number of threads may use it at
+//! the same time.
 
 use std::ffi::{CStr, CString, c_char};
 use std::path::Path;
@@ -18,25 +19,25 @@ use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
 use ninebit_scene::{ErrorKind, Loaded, SceneError};
 
-/// How a call ended. The numbers are the exit statuses of the program.
+/// Status of a call. The numbers are the exit statuses of the program.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NinebitStatus {
-    /// The call did what was asked.
+    /// The call succeeded.
     Ok = 0,
-    /// A null pointer, a number that is too large, a buffer that is too small.
+    /// An argument is wrong: a null pointer, a number that is too large, or a buffer of the wrong size.
     Argument = 2,
-    /// A scene, one of its files, or register words are invalid.
+    /// A scene, one of its files, or the register words are invalid.
     Invalid = 3,
     /// A file is missing.
     Missing = 4,
-    /// A limit was exceeded.
+    /// A limit has been exceeded.
     Limit = 5,
-    /// A fault of this library.
+    /// A fault of this library has occurred.
     Internal = 6,
 }
 
-/// The chip whose rules hold.
+/// The chip whose rules apply.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NinebitChip {
@@ -46,13 +47,13 @@ pub enum NinebitChip {
     Nv2a = 1,
 }
 
-/// A scene that was read and checked. Threads may share it.
+/// A scene that has been read and checked. Threads may share it.
 #[derive(Debug)]
 pub struct NinebitScene {
     loaded: Loaded,
 }
 
-/// What a pixel brings to the combiners: R, G, B, A of each register, textures -256 to 255, colours and fog 0 to 255. Fog's alpha is the factor.
+/// Inputs of the combiners for a pixel: R, G, B, A of each register. Textures are -256 to 255, colours and fog 0 to 255.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NinebitInputs {
@@ -60,23 +61,23 @@ pub struct NinebitInputs {
     pub primary: [i32; 4],
     /// Interpolated specular colour.
     pub secondary: [i32; 4],
-    /// Fog colour and factor.
+    /// Fog colour; alpha is the fog factor.
     pub fog: [i32; 4],
-    /// What each texture unit yields.
+    /// Colour of each texture unit.
     pub texture: [[i32; 4]; 4],
 }
 
-/// A method of the chip's 3D class and the word written to it.
+/// A method of the chip's 3D class with the word written to it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct NinebitMethod {
-    /// Its number, 0x0ac0 for example.
+    /// Number of the method, for example 0x0ac0.
     pub method: u32,
-    /// The word that is written to it.
+    /// Word that is written to the method.
     pub word: u32,
 }
 
-/// Why a call failed.
+/// The status and the message of a call that failed.
 struct Failure {
     status: NinebitStatus,
     text: String,
@@ -99,7 +100,7 @@ impl From<SceneError> for Failure {
     }
 }
 
-/// Runs a call: whatever fails becomes its status, and its text goes to `message` where that is not null.
+/// Runs a call. If it fails, returns its status and writes its message to `message`, unless that is null.
 fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -> NinebitStatus {
     // SAFETY: the caller of every function promises that `message` is null or may be written.
     unsafe { put(message, ptr::null_mut()) };
@@ -111,7 +112,7 @@ fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -
             text: format!("error[{}]: {panic}\n  help: {}\n", Panic::CODE, Panic::HELP),
         },
     };
-    // A text that nobody takes would never be freed.
+    // A text that nobody receives would never be freed.
     if !message.is_null() {
         // SAFETY: as above.
         unsafe { put(message, text(failure.text)) };
@@ -119,10 +120,10 @@ fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -
     failure.status
 }
 
-/// Writes through a pointer that may be null.
+/// Writes through a pointer, unless it is null.
 ///
 /// # Safety
-/// It is null or may be written.
+/// `place` is null or may be written.
 unsafe fn put<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: the caller promises that it may be written, and it is not null.
@@ -130,12 +131,12 @@ unsafe fn put<T>(place: *mut T, value: T) {
     }
 }
 
-/// A text for C; a zero in it would be its end.
+/// Allocates a text for C, which `ninebit_text_free` frees. A zero would end it, so zeros are replaced.
 fn text(text: String) -> *mut c_char {
     CString::new(text.replace('\0', "\u{fffd}")).map_or(ptr::null_mut(), CString::into_raw)
 }
 
-/// A text of C.
+/// Borrows a text of C; null and text that is not UTF-8 are errors.
 ///
 /// # Safety
 /// `text` is null or points to bytes that end with a zero and live as long as the result is used.
@@ -148,10 +149,10 @@ unsafe fn text_of<'a>(text: *const c_char, what: &str) -> Result<&'a str, Failur
     text.to_str().map_err(|_| Failure::argument(format!("{what} is not UTF-8")))
 }
 
-/// An array of C.
+/// Borrows an array of C.
 ///
 /// # Safety
-/// `first` is null or points to `count` values that live, and are changed by nobody else, as long as the result is used.
+/// `first` is null, or points to `count` values that live and are not changed for as long as the result is used.
 unsafe fn array<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Failure> {
     checked(first, count, what)?;
     if count == 0 {
@@ -161,10 +162,10 @@ unsafe fn array<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a 
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
 
-/// An array of C that is written.
+/// Borrows an array of C for writing.
 ///
 /// # Safety
-/// `first` is null or points to `count` values that may be written, and are used by nobody else, as long as the result is used.
+/// `first` is null, or points to `count` values that may be written and are not used by anybody else for as long as the result is used.
 unsafe fn array_mut<'a, T>(first: *mut T, count: usize, what: &str) -> Result<&'a mut [T], Failure> {
     checked(first, count, what)?;
     if count == 0 {
@@ -174,7 +175,7 @@ unsafe fn array_mut<'a, T>(first: *mut T, count: usize, what: &str) -> Result<&'
     Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
 }
 
-/// What can be known of an array without looking into it.
+/// Checks what can be known about an array without reading it.
 fn checked<T>(first: *const T, count: usize, what: &str) -> Result<(), Failure> {
     if count == 0 {
         return Ok(());
@@ -188,16 +189,16 @@ fn checked<T>(first: *const T, count: usize, what: &str) -> Result<(), Failure> 
     }
 }
 
-/// A scene of C.
+/// Borrows a scene of C; null is an error.
 ///
 /// # Safety
-/// `scene` is null or came from this library and was not freed.
+/// `scene` is null, or came from this library and has not been freed.
 unsafe fn scene_of<'a>(scene: *const NinebitScene) -> Result<&'a NinebitScene, Failure> {
     // SAFETY: the caller promises that it is one of ours where it is not null; nobody ever changes one.
     unsafe { scene.as_ref() }.ok_or_else(|| Failure::argument("the scene is null"))
 }
 
-/// The version of the library, `0.1.0` for example. Do not free it.
+/// Returns the version of the library, for example `0.1.0`. Do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn ninebit_version() -> *const c_char {
     const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
@@ -207,9 +208,9 @@ pub extern "C" fn ninebit_version() -> *const c_char {
     VERSION.as_ptr()
 }
 
-/// Reads and checks the scene file at `path`; files that it names are looked for in its folder. Free the scene with `ninebit_scene_free`.
+/// Reads and checks the scene file at `path`. The files that it names are looked for in its folder. Free the scene with `ninebit_scene_free`.
 ///
-/// Where it fails, `*scene` is null and `*message` says why, with places and stable codes. `message` may be null.
+/// If the call fails, `*scene` is null and `*message` says why, with places and stable codes. `message` may be null.
 ///
 /// # Safety
 /// `path` ends with a zero; `scene` and `message` are null or may be written.
@@ -232,8 +233,8 @@ pub unsafe extern "C" fn ninebit_scene_load(
     })
 }
 
-/// Reads and checks a scene from its text, `length` bytes of UTF-8. `origin` is its path: messages name it, and the files that the scene names are looked for
-/// in its folder. Otherwise as `ninebit_scene_load`.
+/// Reads and checks a scene from its text, which is `length` bytes of UTF-8. `origin` is its path: messages show it, and the files that the scene
+/// names are looked for in its folder. Apart from that it is like `ninebit_scene_load`.
 ///
 /// # Safety
 /// `text` points to `length` bytes, `origin` ends with a zero; `scene` and `message` are null or may be written.
@@ -257,6 +258,8 @@ pub unsafe extern "C" fn ninebit_scene_parse(
     })
 }
 
+/// Sets the caller's pointer to null; a null `scene` is an error.
+///
 /// # Safety
 /// `scene` is null or may be written.
 unsafe fn begin(scene: *mut *mut NinebitScene) -> Result<(), Failure> {
@@ -265,6 +268,8 @@ unsafe fn begin(scene: *mut *mut NinebitScene) -> Result<(), Failure> {
     if scene.is_null() { Err(Failure::argument("there is no place for the scene")) } else { Ok(()) }
 }
 
+/// Hands a scene over to the caller.
+///
 /// # Safety
 /// `scene` may be written.
 unsafe fn finish(scene: *mut *mut NinebitScene, loaded: Loaded) {
@@ -272,10 +277,10 @@ unsafe fn finish(scene: *mut *mut NinebitScene, loaded: Loaded) {
     unsafe { put(scene, Box::into_raw(Box::new(NinebitScene { loaded }))) };
 }
 
-/// Frees a scene; null is none.
+/// Frees a scene. Null is ignored.
 ///
 /// # Safety
-/// `scene` is null or came from this library, was not freed before and is used by no other thread.
+/// `scene` is null, or came from this library, has not been freed and is not used by another thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_scene_free(scene: *mut NinebitScene) {
     if !scene.is_null() {
@@ -284,10 +289,10 @@ pub unsafe extern "C" fn ninebit_scene_free(scene: *mut NinebitScene) {
     }
 }
 
-/// Frees a text that this library has made; null is none.
+/// Frees a text that came from this library. Null is ignored.
 ///
 /// # Safety
-/// `text` is null or came from this library and was not freed before.
+/// `text` is null, or came from this library and has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_text_free(text: *mut c_char) {
     if !text.is_null() {
@@ -296,10 +301,10 @@ pub unsafe extern "C" fn ninebit_text_free(text: *mut c_char) {
     }
 }
 
-/// Columns and rows of target number `target`.
+/// Writes the number of columns and rows of the target with number `target`.
 ///
 /// # Safety
-/// `scene` is one of this library's; `width`, `height` and `message` are null or may be written.
+/// `scene` came from this library; `width`, `height` and `message` are null or may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_target_size(
     scene: *const NinebitScene,
@@ -327,12 +332,12 @@ fn target_of(loaded: &Loaded, target: usize) -> Result<&ninebit::state::Target, 
     loaded.scene.targets.get(target).ok_or_else(none)
 }
 
-/// Renders the scene and hands over target number `target`, row by row from above: its stored words, and R, G, B, A bytes as a picture shows them. Either may
-/// be null. `threads`: 0 takes one a core; no byte depends on it.
+/// Renders the scene and writes the target with number `target`, row by row from the top: its stored words, and bytes R, G, B, A as a picture shows
+/// them. Either may be null. `threads` is the number of threads, or 0 for one on each core; the result does not depend on it.
 ///
 /// # Safety
-/// `scene` is one of this library's; `words` is null or has room for `pixels` words, `rgba` is null or for `pixels` times 4 bytes; `message` is null or may be
-/// written.
+/// `scene` came from this library; `words` is null or has room for `pixels` words, `rgba` is null or has room for 4 times as many bytes; `message` is
+/// null or may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_render(
     scene: *const NinebitScene,
@@ -351,8 +356,8 @@ pub unsafe extern "C" fn ninebit_render(
         if pixels != wanted {
             return Err(Failure::argument(format!("the target has {wanted} pixels, and there is room for {pixels}")));
         }
-        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("so many bytes there are not"))?;
-        // Before anything is drawn: wrong buffers are told of at once.
+        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("there cannot be as many bytes"))?;
+        // The buffers are checked before anything is drawn, so that errors are reported at once.
         // SAFETY: the caller promises that each is null or has that room.
         let (words, rgba) = unsafe {
             let words = if words.is_null() { None } else { Some(array_mut(words, pixels, "the place of the words")?) };
@@ -370,11 +375,11 @@ pub unsafe extern "C" fn ninebit_render(
     })
 }
 
-/// How pixel (x, y) of target number `target` came to be, every integer with its rule: the document of `ninebit trace --format json`. Free it with
-/// `ninebit_text_free`.
+/// Writes the document of `ninebit trace --format json` for pixel (x, y) of the target with number `target`: every integer of its computation, with
+/// its rule. Free it with `ninebit_text_free`.
 ///
 /// # Safety
-/// `scene` is one of this library's; `json` and `message` are null or may be written.
+/// `scene` came from this library; `json` and `message` are null or may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_trace(
     scene: *const NinebitScene,
@@ -401,11 +406,12 @@ pub unsafe extern "C" fn ninebit_trace(
     })
 }
 
-/// Runs the program that register words are on pixels: R, G, B, A of each fragment, four bytes a pixel, as they reach the raster operations. Methods that are not
-/// the combiners' are passed over; words that are not written are 0.
+/// Runs the program in register words on pixels, and writes the fragments as they reach the raster operations: R, G, B, A, four bytes a pixel.
+/// Methods that do not belong to the combiners are ignored; words that are not written are 0.
 ///
 /// # Safety
-/// `methods` points to `method_count` pairs, `inputs` to `pixels` inputs, `fragments` to room for `pixels` times 4 bytes; `message` is null or may be written.
+/// `methods` points to `method_count` pairs, `inputs` to `pixels` inputs, and `fragments` to room for 4 times as many bytes; `message` is null or may
+/// be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ninebit_evaluate(
     chip: i32,
@@ -422,7 +428,7 @@ pub unsafe extern "C" fn ninebit_evaluate(
             1 => Profile::Nv2a,
             _ => return Err(Failure::argument("the chip is 0 (nv10) or 1 (nv2a)")),
         };
-        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("so many bytes there are not"))?;
+        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("there cannot be as many bytes"))?;
         // SAFETY: the caller promises what each asks for.
         let (methods, inputs, fragments) = unsafe {
             let methods = array(methods, method_count, "the list of methods")?;
@@ -466,7 +472,7 @@ fn registers(given: &NinebitInputs) -> Result<Registers<i32>, Failure> {
     Ok(registers)
 }
 
-/// Threads may share scenes.
+/// Checks that threads may share scenes.
 const _: () = {
     const fn shared<T: Send + Sync>() {}
     shared::<NinebitScene>();
@@ -476,7 +482,7 @@ const _: () = {
 mod tests {
     use super::*;
 
-    /// A panic is a status and a text, and the next call is as good as any.
+    /// A panic becomes a status and a text, and the next call works as usual.
     #[test]
     fn panics_do_not_cross() {
         let mut message = ptr::null_mut();

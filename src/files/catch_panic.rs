@@ -1,11 +1,11 @@
 //! Catches panics.
 //!
-//! A panic is a fault of this program, and one scene's fault is no reason to say nothing of the others: [`catch_panic`] turns it into a
-//! [`Panic`] that reports show. Decoders of other people's files panic now and then on bytes nobody thought of; a scene with such a file is an
-//! ordinary error, not a crash, so decoders run under `quietly`.
+//! A panic is a fault of this program, but a fault with one scene should not hide the results of the others: [`catch_panic`] turns it into a
+//! [`Panic`] that reports show. Decoders occasionally panic on malformed files. A scene with such a file is an
+//! ordinary error, not a crash, so decoders run under [`quietly`].
 //!
-//! Shipped binaries must therefore unwind: `panic = "abort"` would undo it. Not everything can be caught: where memory cannot be had or the
-//! stack is full, the process ends.
+//! Binaries that are shipped therefore have to unwind: `panic = "abort"` would disable this. Not everything can be caught: without memory, or
+//! with a full stack, the process ends.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -16,34 +16,34 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
 
 thread_local! {
-    /// Panics of this thread are expected and must not print.
+    /// Whether panics of this thread are expected and must not be printed.
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// How many [`catch_panic`] are at work: panics of any thread are theirs.
+/// Number of running [`catch_panic`] calls. While there are any, panics of all threads are recorded for them.
 static CATCHERS: AtomicUsize = AtomicUsize::new(0);
 
-/// The latest panics, for those who catch them: what is thrown does not say where it was thrown, and threads that do the work of others panic
-/// elsewhere than they are caught.
+/// The latest panics, for the calls that catch them. A payload does not tell where it was thrown, and a panic of a worker thread is caught in
+/// another thread than it occurred in.
 static LATEST: Mutex<VecDeque<Panic>> = Mutex::new(VecDeque::new());
 
-/// How many of the latest panics are kept.
+/// Number of latest panics that are kept.
 const KEPT: usize = 64;
 
 /// A fault of this program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Panic {
-    /// What it says of itself.
+    /// Message of the panic.
     pub message: String,
-    /// File, line and column of the source, where known.
+    /// File, line and column of the source, if known.
     pub place: Option<String>,
 }
 
 impl Panic {
-    /// The code of `docs/errors.md`.
+    /// The code of this fault, which `docs/errors.md` lists.
     pub const CODE: &'static str = "NB0801";
 
-    /// What to do about it.
+    /// The help for this fault: what to do about it.
     pub const HELP: &'static str = concat!(
         "this is a fault of ninebit ",
         env!("CARGO_PKG_VERSION"),
@@ -61,14 +61,14 @@ impl fmt::Display for Panic {
     }
 }
 
-/// Runs `work`; a panic in it, or in threads whose panics reach it, becomes a value. Nothing is printed.
+/// Runs `work`, and returns a panic in it, or in threads whose panics reach it, as an error. Nothing is printed.
 ///
 /// # Errors
 /// The panic.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     install();
     CATCHERS.fetch_add(1, Ordering::Relaxed);
-    // Nothing that `work` touches survives a panic: the callers hand in their data by reference and drop what was made of it.
+    // Nothing that `work` changes is used after a panic: callers pass their data by reference and drop the results.
     let result = catch_unwind(AssertUnwindSafe(work));
     CATCHERS.fetch_sub(1, Ordering::Relaxed);
     result.map_err(|payload| {
@@ -79,17 +79,17 @@ pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     })
 }
 
-/// Runs `work`, which reads untrusted bytes; a panic becomes its message.
+/// Runs `work`, which reads untrusted bytes, and returns the message of a panic as an error.
 ///
-/// The panic hook stays silent for this thread while `work` runs, and only for this thread: the hook that was installed
-/// before keeps reporting everything else.
+/// The panic hook stays silent for this thread while `work` runs, and only for this thread: the previous hook
+/// keeps reporting everything else.
 ///
 /// # Errors
 /// The message of the panic.
 pub fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     install();
     let outer = QUIET.replace(true);
-    // As in `catch_panic`.
+    // Unwind safety is as in `catch_panic`.
     let result = catch_unwind(AssertUnwindSafe(work));
     QUIET.set(outer);
     result.map_err(|payload| message(payload.as_ref()))
@@ -116,7 +116,7 @@ fn install() {
     });
 }
 
-/// The text of a panic's payload.
+/// Returns the text of a panic's payload.
 fn message(payload: &(dyn Any + Send)) -> String {
     if let Some(text) = payload.downcast_ref::<&str>() {
         (*text).to_owned()

@@ -1,8 +1,8 @@
-//! Which files this run has read and written, so that no output takes the place of one of them.
+//! Remembers the files that this run has read and written, so that no output replaces one of them.
 //!
-//! The program [`watch`]es; a library's caller, who may well write what it read, need not. Readers [`note`] what they open. Outputs that somebody
-//! named are compared with all of it, links followed, before they are written: [`check`] early, where much is to be computed first, [`claim`]
-//! at last. Files that a command is there to bring up to date, such as an expectation, are not claimed.
+//! Only the program calls [`watch`]; a user of the library may want to overwrite what was read. Readers [`note`] what they open. Outputs that the
+//! user has named are compared with all these files, following links, before they are written: [`check`] does it early, if a long computation comes
+//! first, and [`claim`] at the end. Files that a command has to update, such as an expectation, are not claimed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::output::OutputError;
 
-/// Files by the place where they really are; what they were called.
+/// The files of this run: canonical paths, and the names under which they were used.
 #[derive(Debug, Default)]
 struct Seen {
     read: BTreeMap<PathBuf, PathBuf>,
@@ -25,12 +25,12 @@ fn seen() -> MutexGuard<'static, Seen> {
     SEEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on files are remembered and outputs compared with them.
+/// Starts remembering files and comparing outputs with them.
 pub fn watch() {
     WATCHING.store(true, Ordering::Relaxed);
 }
 
-/// Remembers a file that is read, or is about to be. What is no regular file, such as a terminal, can be read and written.
+/// Remembers a file that has been or will be read. Other things than regular files, such as terminals, are ignored: they may be read and written.
 pub fn note(path: &Path) {
     if WATCHING.load(Ordering::Relaxed)
         && let Some(place) = place(path)
@@ -39,7 +39,7 @@ pub fn note(path: &Path) {
     }
 }
 
-/// Where a file really is, or will be; nothing for what is no regular file.
+/// Returns the canonical path of a file, which need not exist; `None` for other things than regular files.
 fn place(path: &Path) -> Option<PathBuf> {
     match path.canonicalize() {
         Ok(place) => place.is_file().then_some(place),
@@ -63,7 +63,7 @@ impl Seen {
     }
 }
 
-/// Refuses outputs that would take the place of a file that was read or written, or of one another.
+/// Refuses outputs that would replace a file that was read or written, or one another.
 ///
 /// # Errors
 /// [`OutputError::Input`], [`OutputError::Twice`].
@@ -84,10 +84,10 @@ pub fn check<'a>(outputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Outp
     Ok(())
 }
 
-/// [`check`]s an output that is about to be written, and remembers it.
+/// Checks an output that is about to be written, like [`check`], and remembers it.
 ///
 /// # Errors
-/// As [`check`].
+/// Those of [`check`].
 pub fn claim(path: &Path) -> Result<(), OutputError> {
     if !WATCHING.load(Ordering::Relaxed) {
         return Ok(());

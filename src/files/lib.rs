@@ -1,4 +1,5 @@
-//! Files: read within [limits](ninebit::limits), written whole or not at all, frames as pictures, texels as words, and panics that do not end the program.
+//! Files are read within [limits](ninebit::limits) and written as a whole or not at all. Besides: pictures, texels, and panics that do not end
+//! the program.
 
 pub mod catch_panic;
 pub mod files;

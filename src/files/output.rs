@@ -1,8 +1,8 @@
-//! Files written so that a reader never sees half of one.
+//! Writes files so that a reader never sees a part of one.
 //!
-//! A file is written under a temporary name in its own folder, flushed to the disk and renamed. Whatever goes wrong before the
-//! rename, the old file is untouched and the temporary one is removed; [`abandon`] removes those of a process that is told to end. What a
-//! process leaves that is killed outright is a [leftover](is_leftover), which readers of folders pass over.
+//! A file is written under a temporary name in its own folder, flushed to the disk and renamed. If anything goes wrong before the
+//! rename, the old file is unchanged and the temporary one is removed. [`abandon`] removes the temporary files of a process that is told to end. A
+//! process that is killed leaves its temporary files behind as [leftovers](is_leftover), which readers of folders ignore.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -17,63 +17,63 @@ use thiserror::Error;
 use crate::files;
 use ninebit::shown;
 
-/// Why an output was not written. Nothing of it exists then.
+/// The error that an output was not written, not even in part.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The place does not take files.
+    /// The path is a folder.
     #[error("`{}` is a folder", shown::path(path))]
     Folder {
-        /// Where the output would have gone.
+        /// Path of the output.
         path: PathBuf,
     },
-    /// The file system refused.
+    /// The file system refused to write it.
     #[error("`{}` cannot be written: {source}", shown::path(path))]
     Write {
-        /// Where the output would have gone.
+        /// Path of the output.
         path: PathBuf,
-        /// What the file system said.
+        /// Error of the file system.
         source: io::Error,
     },
-    /// It would take the place of a file that was read.
+    /// The output would replace a file that was read.
     #[error("`{}` is the input{}: nothing was written", shown::path(path), called(path, input))]
     Input {
-        /// Where the output would have gone.
+        /// Path of the output.
         path: PathBuf,
-        /// What the file was called when it was read.
+        /// Path under which the file was read.
         input: PathBuf,
     },
-    /// It would take the place of another output of the same run.
+    /// The output would replace another output of the same run.
     #[error("`{}` would be written twice", shown::path(path))]
     Twice {
-        /// Where both would have gone.
+        /// Path of both outputs.
         path: PathBuf,
     },
-    /// It would take the place of a file under version control.
+    /// The output would replace a file under version control.
     #[error("`{}` is there, in a folder under version control", shown::path(path))]
     Versioned {
-        /// Where the output would have gone.
+        /// Path of the output.
         path: PathBuf,
     },
-    /// Standard output refused.
+    /// Standard output could not be written.
     #[error("standard output cannot be written: {source}")]
     Stdout {
-        /// What the file system said.
+        /// Error of the file system.
         source: io::Error,
     },
-    /// The encoder refused the picture.
+    /// The picture could not be encoded.
     #[error("a picture of {width} x {height} cannot be encoded: {reason}")]
     Encode {
-        /// Columns of the picture.
+        /// Number of columns.
         width: u32,
-        /// Rows of the picture.
+        /// Number of rows.
         height: u32,
-        /// What the encoder said.
+        /// Message of the encoder.
         reason: String,
     },
 }
 
 impl OutputError {
-    /// The code of `docs/errors.md`.
+    /// Returns the code, which `docs/errors.md` lists.
     pub fn code(&self) -> &'static str {
         match self {
             OutputError::Folder { .. } => "NB0701",
@@ -86,7 +86,7 @@ impl OutputError {
         }
     }
 
-    /// What to do about it.
+    /// Returns what to do about it.
     pub fn help(&self) -> &'static str {
         match self {
             OutputError::Folder { .. } => "name a file in it",
@@ -104,28 +104,28 @@ impl OutputError {
         }
     }
 
-    /// It was not tried, because it would take the place of something else: the command line is wrong.
+    /// Returns whether writing was not tried because the output would replace something else, so that the command line is wrong.
     pub fn is_refused(&self) -> bool {
         matches!(self, OutputError::Input { .. } | OutputError::Twice { .. } | OutputError::Versioned { .. })
     }
 
-    /// The reader of standard output went away, as `head` does: no reason for a message.
+    /// Returns whether the reader of standard output has gone away, as `head` does. That needs no message.
     pub fn is_broken_pipe(&self) -> bool {
         matches!(self, OutputError::Stdout { source } if source.kind() == io::ErrorKind::BrokenPipe)
     }
 }
 
-/// The name of an input, where the output is called otherwise.
+/// Returns the name of an input for the message, if the output has another name.
 fn called(path: &Path, input: &Path) -> String {
     if path == input { String::new() } else { format!(" `{}`", shown::path(input)) }
 }
 
-/// Where output goes: a file, or standard output for `-`.
+/// A destination of output: a file, or standard output for `-`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
-    /// A file, replaced as a whole.
+    /// A file, which is replaced as a whole.
     File(PathBuf),
-    /// Standard output, written as `-`.
+    /// Standard output, which the command line calls `-`.
     Stdout,
 }
 
@@ -136,10 +136,10 @@ impl From<&OsStr> for Destination {
 }
 
 impl Destination {
-    /// Writes `bytes` there.
+    /// Writes `bytes` to the destination.
     ///
     /// # Errors
-    /// See [`files::claim`] and [`write_file`]; standard output refuses.
+    /// Those of [`files::claim`] and [`write_file`], or standard output cannot be written.
     pub fn write(&self, bytes: &[u8]) -> Result<(), OutputError> {
         match self {
             Destination::File(path) => {
@@ -150,7 +150,7 @@ impl Destination {
         }
     }
 
-    /// Refuses the output if it would take the place of a file that was read. Ask before much is computed.
+    /// Refuses the destination if the output would replace a file that was read. Call this before a long computation.
     ///
     /// # Errors
     /// See [`files::check`].
@@ -158,7 +158,7 @@ impl Destination {
         files::check(self.path())
     }
 
-    /// The file that it names; `None` of standard output.
+    /// Returns the path of the file; `None` for standard output.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Destination::File(path) => Some(path),
@@ -169,37 +169,37 @@ impl Destination {
 
 /// Replaces the file at `path` by `bytes`, as a whole or not at all.
 ///
-/// A link is followed, so that what it points to is replaced and not the link. An existing file's permissions are kept. A place
-/// that is not a regular file, such as `/dev/null`, is written to directly.
+/// A link is followed: the file that it points to is replaced, not the link. An existing file's permissions are kept. Other
+/// things than regular files, such as `/dev/null`, are written to directly.
 ///
 /// # Errors
-/// The place is a folder, a read-only file, its folder is missing or not writable, the disk is full.
+/// The path is a folder or a read-only file, its folder is missing or not writable, or the disk is full.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_file_with(path, |out| out.write_all(bytes))
 }
 
-/// Makes a folder, and those that it lies in.
+/// Makes a folder, including the folders around it.
 ///
 /// # Errors
-/// It cannot be made.
+/// The folder cannot be made.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     std::fs::create_dir_all(path).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
 }
 
-/// Writes an output, in a folder that is made if it is not there.
+/// Writes an output, and makes its folder if it does not exist.
 ///
 /// # Errors
-/// As [`files::claim`], [`write_file`] and [`make_folder`].
+/// Those of [`files::claim`], [`write_file`] and [`make_folder`].
 pub fn write_below(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     path.parent().map_or(Ok(()), make_folder)?;
     files::claim(path)?;
     write_file(path, bytes)
 }
 
-/// [`write_file`] of what `fill` writes; returns what it returns.
+/// Replaces a file like [`write_file`], by what `fill` writes. Returns the result of `fill`.
 ///
 /// # Errors
-/// As [`write_file`].
+/// Those of [`write_file`], or an error of `fill`.
 pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, OutputError> {
     let mut file = PendingFile::create(path)?;
     let result = fill(&mut file).map_err(|error| file.refused(error))?;
@@ -207,18 +207,18 @@ pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::
     Ok(result)
 }
 
-/// How the names of temporary files begin and end.
+/// Prefix and suffix of the names of temporary files.
 const TEMPORARY: (&str, &str) = (".ninebit-", ".part");
 
-/// Whether a file of that name was left by a run that was killed: nobody reads it.
+/// Returns whether a file of this name is temporary. If no run is at work, a killed one has left it, and nobody reads it.
 pub fn is_leftover(name: &OsStr) -> bool {
     name.to_str().is_some_and(|name| name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1))
 }
 
-/// Removes what runs that were killed left in a folder. None may be at work in it.
+/// Removes the temporary files that killed runs have left in a folder, in which no run may be at work.
 ///
 /// # Errors
-/// The folder cannot be read, a file in it not removed.
+/// The folder cannot be read, or a file in it cannot be removed.
 pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
     let refused = |source| OutputError::Write { path: folder.to_path_buf(), source };
     for entry in std::fs::read_dir(folder).map_err(refused)? {
@@ -234,29 +234,29 @@ fn remove(path: &Path) -> io::Result<()> {
     if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
 }
 
-/// Temporary files and folders that are there right now.
+/// Temporary files and folders that currently exist.
 static PENDING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn pending() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every temporary file and folder, for a process that ends at once: threads that begin or finish a file from now on wait for ever.
+/// Removes all temporary files and folders of a process that is about to end. Threads that begin or finish a file afterwards wait for ever.
 pub fn abandon() {
     let pending = pending();
     for path in pending.iter() {
-        // There is nobody left to tell.
+        // Nobody is left to be told of an error.
         let _ = remove(path);
     }
     std::mem::forget(pending);
 }
 
-/// An entry of [`PENDING`].
+/// An entry of [`PENDING`], which is removed when this is dropped.
 #[derive(Debug)]
 struct Pending(PathBuf);
 
 impl Pending {
-    /// Makes something temporary and enters it, between which no signal falls.
+    /// Makes something temporary and enters it, while [`abandon`] has to wait.
     fn enter<T>(make: impl FnOnce() -> io::Result<T>, path: impl FnOnce(&T) -> &Path) -> io::Result<(T, Pending)> {
         let mut pending = pending();
         let made = make()?;
@@ -272,7 +272,7 @@ impl Drop for Pending {
     }
 }
 
-/// A folder under construction: as a [`PendingFile`], it is at its place as a whole or not at all.
+/// A folder under construction. Like a [`PendingFile`], it appears at its path as a whole or not at all.
 #[derive(Debug)]
 pub struct PendingFolder {
     place: PathBuf,
@@ -281,10 +281,10 @@ pub struct PendingFolder {
 }
 
 impl PendingFolder {
-    /// Begins the folder `place`, which must not be there, in a folder that is made if it is not there.
+    /// Begins a folder at `place`, which must not exist. The folder around it is made if it does not exist.
     ///
     /// # Errors
-    /// The folder around it cannot be made, or is not writable.
+    /// The folder around it cannot be made or written.
     pub fn create(place: &Path) -> Result<PendingFolder, OutputError> {
         let around = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         make_folder(around)?;
@@ -296,40 +296,40 @@ impl PendingFolder {
         Ok(PendingFolder { place: place.to_path_buf(), temporary, _pending: pending })
     }
 
-    /// Where its files are written.
+    /// Returns the temporary path of the folder, where its files are to be written.
     pub fn path(&self) -> &Path {
         self.temporary.path()
     }
 
-    /// Puts the folder in its place.
+    /// Moves the folder to its path.
     ///
     /// # Errors
-    /// Something is there, or the place refuses.
+    /// Something exists at that path, or the file system refuses.
     pub fn commit(self) -> Result<(), OutputError> {
         {
             let _pending = pending();
             std::fs::rename(self.temporary.path(), &self.place)
                 .map_err(|source| OutputError::Write { path: self.place.clone(), source })?;
         }
-        // Under its old name there is nothing left to remove.
+        // The folder has no longer this name, so nothing is left to remove.
         let _ = self.temporary.keep();
         Ok(())
     }
 }
 
-/// A file under construction: nothing is at its place until it is [committed](Self::commit), and nothing is left of it if it is not.
+/// A file under construction. It appears at its path when it is [committed](Self::commit); otherwise nothing remains of it.
 #[derive(Debug)]
 pub struct PendingFile {
     path: PathBuf,
     target: Target,
 }
 
-/// Where the bytes go.
+/// Where the bytes are written.
 #[derive(Debug)]
 enum Target {
-    /// A temporary file, what it will replace, and its entry, which goes after the file.
+    /// A temporary file, the path that it will get, and its entry, which has to be dropped after the file.
     Temporary(BufWriter<tempfile::NamedTempFile>, PathBuf, Pending),
-    /// A place that is no regular file.
+    /// Something else than a regular file, which is written directly.
     Device(std::fs::File),
 }
 
@@ -337,7 +337,7 @@ impl PendingFile {
     /// Begins a file; see [`write_file`].
     ///
     /// # Errors
-    /// The place is a folder, a read-only file, its folder is missing or not writable.
+    /// The path is a folder or a read-only file, or its folder is missing or not writable.
     pub fn create(path: &Path) -> Result<PendingFile, OutputError> {
         let refused = |error: io::Error| OutputError::Write { path: path.to_path_buf(), source: error };
         let existing = path.metadata().ok();
@@ -349,7 +349,7 @@ impl PendingFile {
             return Ok(PendingFile { path: path.to_path_buf(), target: Target::Device(device) });
         }
         if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
-            // A rename would replace it all the same; whoever protected it meant the name.
+            // A rename would replace the file nevertheless, but whoever protected it did not want that.
             return Err(refused(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")));
         }
         let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
@@ -364,7 +364,7 @@ impl PendingFile {
             None => ordinary_permissions(),
         };
         if let Some(permissions) = permissions {
-            // On systems where the mode of a new file is subject to the user's mask, so is this one.
+            // On systems where the mode of new files is subject to the user's mask, this one is as well.
             builder.permissions(permissions);
         }
         let made = Pending::enter(|| builder.tempfile_in(folder), |file| file.path());
@@ -375,15 +375,15 @@ impl PendingFile {
         })
     }
 
-    /// An error of writing to it, for people.
+    /// Turns an error of writing this file into an [`OutputError`].
     pub fn refused(&self, error: io::Error) -> OutputError {
         OutputError::Write { path: self.path.clone(), source: without_path(error) }
     }
 
-    /// Puts the file in its place.
+    /// Moves the file to its path.
     ///
     /// # Errors
-    /// The disk is full, or the place refuses.
+    /// The disk is full, or the file system refuses.
     pub fn commit(self) -> Result<(), OutputError> {
         let path = self.path;
         let refused = |error: io::Error| OutputError::Write { path: path.clone(), source: without_path(error) };
@@ -415,12 +415,12 @@ impl Write for PendingFile {
     }
 }
 
-/// The temporary file's errors name a file that the user has never heard of: what is said is their kind.
+/// Removes the path from an error. It is that of the temporary file, which the user does not know.
 fn without_path(error: io::Error) -> io::Error {
     if error.get_ref().is_some() { error.kind().into() } else { error }
 }
 
-/// What a file made in the ordinary way may be used for: temporary files are closed to others, outputs are not.
+/// Returns the permissions of an ordinary new file. Temporary files cannot be read by others, but outputs can.
 #[cfg(unix)]
 fn ordinary_permissions() -> Option<std::fs::Permissions> {
     use std::os::unix::fs::PermissionsExt;
@@ -435,49 +435,49 @@ fn ordinary_permissions() -> Option<std::fs::Permissions> {
 /// Writes `bytes` to standard output and flushes it.
 ///
 /// # Errors
-/// Standard output refuses; see [`OutputError::is_broken_pipe`].
+/// Standard output cannot be written; see [`OutputError::is_broken_pipe`].
 pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
     write_stdout_with(|out| out.write_all(bytes))
 }
 
-/// [`write_stdout`] of what `fill` writes.
+/// Writes what `fill` writes to standard output, like [`write_stdout`].
 ///
 /// # Errors
-/// As [`write_stdout`].
+/// Those of [`write_stdout`].
 pub fn write_stdout_with(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let mut stdout = BufWriter::new(io::stdout().lock());
     fill(&mut stdout).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
 }
 
-/// Writes a text for people to standard output, as [`shown::lines`] has it.
+/// Writes a text for people to standard output, in the form of [`shown::lines`].
 ///
 /// # Errors
-/// As [`write_stdout`].
+/// Those of [`write_stdout`].
 pub fn write_text(text: &str) -> Result<(), OutputError> {
     write_stdout(shown::lines(text).as_bytes())
 }
 
-/// Writes a JSON document to standard output, as [`shown::json`] has it, and ends its last line.
+/// Writes a JSON document to standard output, in the form of [`shown::json`], and ends its last line.
 ///
 /// # Errors
-/// As [`write_stdout`].
+/// Those of [`write_stdout`].
 pub fn write_json(document: &str) -> Result<(), OutputError> {
     write_stdout(format!("{}\n", shown::json(document.trim_end())).as_bytes())
 }
 
-/// What a PNG is made for. The pixels are the same.
+/// Compression of a PNG; its pixels do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compression {
-    /// Frames: written quickly, about half as large again.
+    /// For frames: fast, with files about half as large again.
     Fast,
-    /// Pictures that are kept, such as textures.
+    /// For pictures that are kept, such as textures: small files.
     Small,
 }
 
-/// A PNG of 8 bits a channel, R, G, B, A, row by row from the top.
+/// Encodes a PNG with channels R, G, B, A of 8 bits. The pixels are row by row from the top.
 ///
 /// # Errors
-/// No pixels, or not `width * height` of them.
+/// There are no pixels, or not `width * height` of them.
 pub fn encode_png(
     width: u32,
     height: u32,
@@ -487,10 +487,10 @@ pub fn encode_png(
     encode((width, height), pixels.len(), pixels.as_flattened(), ExtendedColorType::Rgba8, compression)
 }
 
-/// A PNG of 16 bits of grey, row by row from the top.
+/// Encodes a PNG of 16-bit grey. The pixels are row by row from the top.
 ///
 /// # Errors
-/// As [`encode_png`].
+/// Those of [`encode_png`].
 pub fn encode_grey_png(width: u32, height: u32, pixels: &[u16]) -> Result<Vec<u8>, OutputError> {
     let bytes: Vec<u8> = pixels.iter().flat_map(|grey| grey.to_ne_bytes()).collect();
     encode((width, height), pixels.len(), &bytes, ExtendedColorType::L16, Compression::Fast)

@@ -1,7 +1,7 @@
-//! The one place through which files are read: never more of them than a limit, and noted in [`files`].
+//! Reads files. This is the only place that does: it never reads more than a limit, and notes each file in [`files`].
 //!
-//! A caller states what a file may be. What a scene or a folder names must be a regular file, and is looked at before it is opened: opening a pipe would wait
-//! for its other end. What a person names on the command line may be a pipe.
+//! The caller says what a file may be. A file that a scene or a folder names has to be regular, which is checked before it is opened: opening a pipe
+//! would wait for its other end. A file that the user names on the command line may be a pipe.
 
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
@@ -12,28 +12,28 @@ use thiserror::Error;
 use crate::files;
 use ninebit::limits::{FileLimit, PAGE};
 
-/// What a file may be.
+/// What a file is allowed to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A regular file.
+    /// A regular file only.
     Regular,
-    /// Anything that can be read: a pipe or a device as well.
+    /// Anything that can be read, including pipes and devices.
     Stream,
 }
 
-/// Why a file was not read.
+/// The error that a file was not read.
 #[derive(Debug, Error)]
 pub enum ReadError {
     /// There is no such file.
     #[error("there is no such file")]
     Missing,
-    /// A folder; a device or a pipe where a regular file is asked for.
+    /// The path is a folder, or a device or pipe where a regular file is required.
     #[error("it is not a regular file")]
     NotRegular,
-    /// More bytes than allowed.
+    /// The file has more bytes than the limit.
     #[error("it is larger than {0}")]
     TooLarge(FileLimit),
-    /// The file system refused.
+    /// The file system refused to read it.
     #[error("{0}")]
     Refused(io::Error),
 }
@@ -47,10 +47,10 @@ impl From<io::Error> for ReadError {
     }
 }
 
-/// The bytes of a file.
+/// Returns the bytes of a file.
 ///
 /// # Errors
-/// It does not exist, is not of that kind, is larger than the limit, or cannot be read.
+/// The file does not exist, is not of the given kind, is larger than the limit, or cannot be read.
 pub fn bytes(path: &Path, kind: Kind, limit: FileLimit) -> Result<Vec<u8>, ReadError> {
     let (file, metadata) = open(path, kind, limit)?;
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit.bytes)).unwrap_or(0));
@@ -58,23 +58,23 @@ pub fn bytes(path: &Path, kind: Kind, limit: FileLimit) -> Result<Vec<u8>, ReadE
     Ok(bytes)
 }
 
-/// Hands the bytes of a file to `take`, part by part, and returns how many they are: for files that need not be in memory as a whole.
+/// Passes the bytes of a file to `take` part by part, for files that need not be in memory as a whole. Returns the number of bytes.
 ///
 /// # Errors
-/// As [`bytes`]; parts may have been handed over before.
+/// Those of [`bytes`]; parts may have been passed before.
 pub fn parts(path: &Path, kind: Kind, limit: FileLimit, take: impl FnMut(&[u8])) -> Result<u64, ReadError> {
     within(open(path, kind, limit)?.0, limit, take)
 }
 
-/// The text of a page that a program can do without; `None` if it cannot be read.
+/// Returns the text of a page that the program can do without; `None` if it cannot be read.
 pub fn page(path: &Path) -> Option<String> {
     String::from_utf8(bytes(path, Kind::Regular, PAGE).ok()?).ok()
 }
 
-/// The bytes that a reader yields, standard input for example.
+/// Returns the bytes of a reader, such as standard input.
 ///
 /// # Errors
-/// They are more than the limit, or cannot be read.
+/// There are more bytes than the limit, or they cannot be read.
 pub fn all(reader: impl Read, limit: FileLimit) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     within(reader, limit, |part| bytes.extend_from_slice(part))?;
@@ -93,7 +93,7 @@ fn open(path: &Path, kind: Kind, limit: FileLimit) -> Result<(File, Metadata), R
     Ok((File::open(path)?, metadata))
 }
 
-/// What a file's size says may be outdated, and of a device it says nothing: what counts is what arrives.
+/// Reads up to the limit. The bytes are counted as they arrive, since the size of a file may be outdated and a device has none.
 fn within(mut reader: impl Read, limit: FileLimit, mut take: impl FnMut(&[u8])) -> Result<u64, ReadError> {
     let mut part = vec![0; 64 << 10];
     let mut taken = 0_u64;

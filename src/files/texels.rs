@@ -1,9 +1,9 @@
-//! Texels on their way into the state: pixels packed into a format, bytes of memory as words, the next smaller level.
+//! Converts texels for the state: packs pixels into a format, turns bytes of memory into words, and makes smaller levels.
 
 use ninebit::state::TextureFormat;
 use ninebit::texture::format::expand;
 
-/// Bits of a word that mean something. The others are zero in the state.
+/// Returns the bits of a word that the format uses. The others are zero in the state.
 pub fn used_bits(format: TextureFormat) -> u32 {
     match format {
         TextureFormat::X8R8G8B8 => 0x00ff_ffff,
@@ -12,7 +12,7 @@ pub fn used_bits(format: TextureFormat) -> u32 {
     }
 }
 
-/// Texels or blocks as they lie in memory, little-endian, as words of the state. Bytes that make no whole texel are left out.
+/// Converts texels or blocks in memory, little-endian, into words of the state. Bytes of an incomplete texel are ignored.
 pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
     let used = used_bits(format);
     let stored = |word: u32| stored(word & used, format);
@@ -23,7 +23,7 @@ pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
     }
 }
 
-/// A word of memory as the state has it: of 24 bits of depth with the stencil below them, with the stencil above.
+/// Converts a word of memory into one of the state. Depths of 24 bits have the stencil below them in memory, and above them in the state.
 pub fn stored(word: u32, format: TextureFormat) -> u32 {
     match format {
         TextureFormat::Z24S8 | TextureFormat::Z24S8F => word.rotate_right(8),
@@ -31,17 +31,17 @@ pub fn stored(word: u32, format: TextureFormat) -> u32 {
     }
 }
 
-/// Whether pixels can be [packed](pack) into the format: not into indices, blocks or depths.
+/// Returns whether pixels can be [packed](pack) into the format, which must not hold indices, blocks or depths.
 pub fn can_pack(format: TextureFormat) -> bool {
     format != TextureFormat::P8 && !format.is_compressed() && format.depth().is_none()
 }
 
-/// Eight bits a channel into words: low bits that do not fit are cut off, channels that the format lacks are dropped.
+/// Packs pixels with 8 bits a channel into words. Low bits that do not fit are cut off, and channels that the format lacks are dropped.
 pub fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
     pixels.iter().map(|pixel| word(*pixel, format)).collect()
 }
 
-/// One pixel of R, G, B, A as a word of the format.
+/// Packs a pixel R, G, B, A into a word of the format.
 pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
     let [r, g, b, a] = pixel.map(u32::from);
     match format {
@@ -60,22 +60,22 @@ pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
         TextureFormat::A8L8 => a << 8 | r,
         TextureFormat::G8B8 | TextureFormat::Y16 => g << 8 | b,
         TextureFormat::R8B8 => r << 8 | b,
-        // Refused by whoever has asked `can_pack`.
+        // Callers have asked `can_pack`.
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => 0,
         TextureFormat::Z16 | TextureFormat::Z24S8 | TextureFormat::Z16F | TextureFormat::Z24S8F => 0,
     }
 }
 
-/// The next smaller level of one whose sides are powers of two, by a box filter: of each channel as it is read (TEX-1) the mean of
-/// 2 x 2 texels, or of two where one side is 1 already, halves rounded up; then [packed](pack). Formats of 16 bits a channel keep
-/// 16 bits. This prepares contents: no chip makes levels.
+/// Makes the next smaller level of one whose sides are powers of two, by a box filter. Each channel as it is read (TEX-1) becomes the mean of
+/// 2 x 2 texels, or of two if one side is 1 already, with halves rounded up, and is [packed](pack) again. Formats of 16 bits a channel keep
+/// 16 bits. This prepares textures: no chip makes levels.
 pub fn halve(words: &[u32], width: u32, height: u32, format: TextureFormat) -> Vec<u32> {
     let (right, down) = (usize::from(width > 1), if height > 1 { width as usize } else { 0 });
     let mut smaller = Vec::with_capacity(words.len().div_ceil(4));
     for y in 0..(height / 2).max(1) {
         for x in 0..(width / 2).max(1) {
             let at = 2 * (y as usize * width as usize + x as usize);
-            // Where a side is 1, texels count twice: the mean is the same.
+            // If a side is 1, texels count twice, which does not change the mean.
             smaller.push(mean([at, at + right, at + down, at + right + down].map(|at| words[at]), format));
         }
     }
@@ -99,13 +99,13 @@ mod tests {
     use super::*;
     use ninebit::state::Named;
 
-    /// What is read of a packed pixel packs into the same word.
+    /// A packed pixel that is read packs into the same word again.
     #[test]
     fn packing_undoes_expanding() {
         for format in TextureFormat::ALL.iter().copied().filter(|format| can_pack(*format)) {
             for n in 0..=0xffff_u32 {
                 let word = n.wrapping_mul(0x9e37_0001) & used_bits(format);
-                // Y16 shows two bytes of its value in two channels, all formats the rest in one each.
+                // Y16 shows the two bytes of its value in two channels; all other formats show each value in one channel.
                 assert_eq!(super::word(expand(format, word), format), word, "{format:?}");
             }
         }
@@ -126,13 +126,13 @@ mod tests {
     fn halving() {
         let l8 = |words: &[u32], width, height| halve(words, width, height, TextureFormat::L8);
         assert_eq!(l8(&[0, 1, 10, 20, 0, 0, 30, 41], 4, 2), [0, 25]);
-        // A mean of 1/2 and one of 2/4.
+        // The means are 1/2 and 2/4.
         assert_eq!(l8(&[0, 1], 2, 1), [1]);
         assert_eq!(l8(&[0, 1, 4, 4], 1, 4), [1, 4]);
         assert_eq!(l8(&[1, 1, 0, 0], 2, 2), [1]);
         assert_eq!(halve(&[0x00ff_0000, 0x0100_ffff], 2, 1, TextureFormat::R16B16), [0x0100_8000]);
         assert_eq!(halve(&[0x00ff, 0x0100], 2, 1, TextureFormat::Y16), [0x0100]);
-        // Red 31 and 30 are read as 255 and 247: 251, cut to 31.
+        // Red 31 and 30 are read as 255 and 247; their mean 251 becomes 31.
         assert_eq!(halve(&[31 << 11, 30 << 11], 2, 1, TextureFormat::R5G6B5), [31 << 11]);
     }
 }

@@ -1,4 +1,4 @@
-"""Register words on an array of pixels, by ctypes: `combine.py LIBRARY`. Prints what SPARE0 = expand(TEXTURE0) . expand(PRIMARY) comes to."""
+"""Runs register words on an array of pixels, by ctypes: `combine.py LIBRARY`. Prints the results of SPARE0 = expand(TEXTURE0) . expand(PRIMARY)."""
 import ctypes
 import sys
 

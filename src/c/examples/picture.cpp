@@ -29,7 +29,7 @@ try {
     check(ninebit_render(scene.get(), 0, 0, nullptr, rgba.data(), rgba.size() / 4, &message), message);
     std::printf("P6 %u %u 255\n", width, height);
     for (std::size_t n = 0; n < rgba.size(); n += 4) std::fwrite(&rgba[n], 1, 3, stdout);
-    // A reader that ends before the picture does ends the program by SIGPIPE, as everywhere on Unix; a full disk is said.
+    // If the reader ends early, SIGPIPE ends the program, as usual on Unix; a full disk is reported.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::runtime_error("the picture cannot be written");
 } catch (const std::exception &error) {
     std::fprintf(stderr, "%s\n", error.what());

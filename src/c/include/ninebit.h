@@ -1,4 +1,4 @@
-/* The library ninebit for C. Made of src/c/lib.rs by cbindgen; docs/c.md shows how it is used. */
+/* The library ninebit for C. Made from src/c/lib.rs by cbindgen; docs/c.md shows how it is used. */
 
 #ifndef NINEBIT_H
 #define NINEBIT_H
@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /*
- How a call ended. The numbers are the exit statuses of the program.
+ Status of a call. The numbers are the exit statuses of the program.
  */
 enum ninebit_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -15,15 +15,15 @@ enum ninebit_status
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   /*
-   The call did what was asked.
+   The call succeeded.
    */
   NINEBIT_STATUS_OK = 0,
   /*
-   A null pointer, a number that is too large, a buffer that is too small.
+   An argument is wrong: a null pointer, a number that is too large, or a buffer of the wrong size.
    */
   NINEBIT_STATUS_ARGUMENT = 2,
   /*
-   A scene, one of its files, or register words are invalid.
+   A scene, one of its files, or the register words are invalid.
    */
   NINEBIT_STATUS_INVALID = 3,
   /*
@@ -31,11 +31,11 @@ enum ninebit_status
    */
   NINEBIT_STATUS_MISSING = 4,
   /*
-   A limit was exceeded.
+   A limit has been exceeded.
    */
   NINEBIT_STATUS_LIMIT = 5,
   /*
-   A fault of this library.
+   A fault of this library has occurred.
    */
   NINEBIT_STATUS_INTERNAL = 6,
 };
@@ -48,7 +48,7 @@ typedef int32_t ninebit_status;
 #endif // __cplusplus
 
 /*
- The chip whose rules hold.
+ The chip whose rules apply.
  */
 enum ninebit_chip
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -73,26 +73,26 @@ typedef int32_t ninebit_chip;
 #endif // __cplusplus
 
 /*
- A scene that was read and checked. Threads may share it.
+ A scene that has been read and checked. Threads may share it.
  */
 typedef struct ninebit_scene ninebit_scene;
 
 /*
- A method of the chip's 3D class and the word written to it.
+ A method of the chip's 3D class with the word written to it.
  */
 typedef struct ninebit_method {
   /*
-   Its number, 0x0ac0 for example.
+   Number of the method, for example 0x0ac0.
    */
   uint32_t method;
   /*
-   The word that is written to it.
+   Word that is written to the method.
    */
   uint32_t word;
 } ninebit_method;
 
 /*
- What a pixel brings to the combiners: R, G, B, A of each register, textures -256 to 255, colours and fog 0 to 255. Fog's alpha is the factor.
+ Inputs of the combiners for a pixel: R, G, B, A of each register. Textures are -256 to 255, colours and fog 0 to 255.
  */
 typedef struct ninebit_inputs {
   /*
@@ -104,11 +104,11 @@ typedef struct ninebit_inputs {
    */
   int32_t secondary[4];
   /*
-   Fog colour and factor.
+   Fog colour; alpha is the fog factor.
    */
   int32_t fog[4];
   /*
-   What each texture unit yields.
+   Colour of each texture unit.
    */
   int32_t texture[4][4];
 } ninebit_inputs;
@@ -118,14 +118,14 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- The version of the library, `0.1.0` for example. Do not free it.
+ Returns the version of the library, for example `0.1.0`. Do not free it.
  */
 const char *ninebit_version(void);
 
 /*
- Reads and checks the scene file at `path`; files that it names are looked for in its folder. Free the scene with `ninebit_scene_free`.
+ Reads and checks the scene file at `path`. The files that it names are looked for in its folder. Free the scene with `ninebit_scene_free`.
 
- Where it fails, `*scene` is null and `*message` says why, with places and stable codes. `message` may be null.
+ If the call fails, `*scene` is null and `*message` says why, with places and stable codes. `message` may be null.
 
  # Safety
  `path` ends with a zero; `scene` and `message` are null or may be written.
@@ -135,8 +135,8 @@ ninebit_status ninebit_scene_load(const char *path,
                                   char **message);
 
 /*
- Reads and checks a scene from its text, `length` bytes of UTF-8. `origin` is its path: messages name it, and the files that the scene names are looked for
- in its folder. Otherwise as `ninebit_scene_load`.
+ Reads and checks a scene from its text, which is `length` bytes of UTF-8. `origin` is its path: messages show it, and the files that the scene
+ names are looked for in its folder. Apart from that it is like `ninebit_scene_load`.
 
  # Safety
  `text` points to `length` bytes, `origin` ends with a zero; `scene` and `message` are null or may be written.
@@ -148,26 +148,26 @@ ninebit_status ninebit_scene_parse(const char *text,
                                    char **message);
 
 /*
- Frees a scene; null is none.
+ Frees a scene. Null is ignored.
 
  # Safety
- `scene` is null or came from this library, was not freed before and is used by no other thread.
+ `scene` is null, or came from this library, has not been freed and is not used by another thread.
  */
 void ninebit_scene_free(struct ninebit_scene *scene);
 
 /*
- Frees a text that this library has made; null is none.
+ Frees a text that came from this library. Null is ignored.
 
  # Safety
- `text` is null or came from this library and was not freed before.
+ `text` is null, or came from this library and has not been freed.
  */
 void ninebit_text_free(char *text);
 
 /*
- Columns and rows of target number `target`.
+ Writes the number of columns and rows of the target with number `target`.
 
  # Safety
- `scene` is one of this library's; `width`, `height` and `message` are null or may be written.
+ `scene` came from this library; `width`, `height` and `message` are null or may be written.
  */
 ninebit_status ninebit_target_size(const struct ninebit_scene *scene,
                                    size_t target,
@@ -176,12 +176,12 @@ ninebit_status ninebit_target_size(const struct ninebit_scene *scene,
                                    char **message);
 
 /*
- Renders the scene and hands over target number `target`, row by row from above: its stored words, and R, G, B, A bytes as a picture shows them. Either may
- be null. `threads`: 0 takes one a core; no byte depends on it.
+ Renders the scene and writes the target with number `target`, row by row from the top: its stored words, and bytes R, G, B, A as a picture shows
+ them. Either may be null. `threads` is the number of threads, or 0 for one on each core; the result does not depend on it.
 
  # Safety
- `scene` is one of this library's; `words` is null or has room for `pixels` words, `rgba` is null or for `pixels` times 4 bytes; `message` is null or may be
- written.
+ `scene` came from this library; `words` is null or has room for `pixels` words, `rgba` is null or has room for 4 times as many bytes; `message` is
+ null or may be written.
  */
 ninebit_status ninebit_render(const struct ninebit_scene *scene,
                               size_t target,
@@ -192,11 +192,11 @@ ninebit_status ninebit_render(const struct ninebit_scene *scene,
                               char **message);
 
 /*
- How pixel (x, y) of target number `target` came to be, every integer with its rule: the document of `ninebit trace --format json`. Free it with
- `ninebit_text_free`.
+ Writes the document of `ninebit trace --format json` for pixel (x, y) of the target with number `target`: every integer of its computation, with
+ its rule. Free it with `ninebit_text_free`.
 
  # Safety
- `scene` is one of this library's; `json` and `message` are null or may be written.
+ `scene` came from this library; `json` and `message` are null or may be written.
  */
 ninebit_status ninebit_trace(const struct ninebit_scene *scene,
                              size_t target,
@@ -206,11 +206,12 @@ ninebit_status ninebit_trace(const struct ninebit_scene *scene,
                              char **message);
 
 /*
- Runs the program that register words are on pixels: R, G, B, A of each fragment, four bytes a pixel, as they reach the raster operations. Methods that are not
- the combiners' are passed over; words that are not written are 0.
+ Runs the program in register words on pixels, and writes the fragments as they reach the raster operations: R, G, B, A, four bytes a pixel.
+ Methods that do not belong to the combiners are ignored; words that are not written are 0.
 
  # Safety
- `methods` points to `method_count` pairs, `inputs` to `pixels` inputs, `fragments` to room for `pixels` times 4 bytes; `message` is null or may be written.
+ `methods` points to `method_count` pairs, `inputs` to `pixels` inputs, and `fragments` to room for 4 times as many bytes; `message` is null or may
+ be written.
  */
 ninebit_status ninebit_evaluate(int32_t chip,
                                 const struct ninebit_method *methods,

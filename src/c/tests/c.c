@@ -1,4 +1,4 @@
-/* Tests of the library from C: what it yields, what it says of wrong calls, and from two threads at once. Arguments: a scene file and a picture's columns and rows. */
+/* Tests the library from C: results, messages of wrong calls, and use by two threads at once. The argument is a scene file. */
 #include "ninebit.h"
 #include <pthread.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@ static int failed;
         if (!(condition)) failed = 1, printf("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
     } while (0)
 
-/* A call that has to end so, and says something of it. */
+/* Checks a call that has to fail: its status, and a part of its message. */
 static void refused(ninebit_status status, ninebit_status wanted, char **message, const char *part)
 {
     CHECK(status == wanted);
@@ -62,7 +62,7 @@ int main(int count, char **arguments)
     CHECK(ninebit_trace(scene, 0, 1, 0, &json, NULL) == NINEBIT_STATUS_OK && strstr(json, "primary.r") != NULL);
     ninebit_text_free(json);
 
-    /* Whatever is wrong is said. */
+    /* Wrong calls are refused with a message. */
     refused(ninebit_target_size(scene, 1, &width, &height, &message), NINEBIT_STATUS_ARGUMENT, &message, "no target 1");
     refused(ninebit_render(scene, 0, 1, words, rgba, 7, &message), NINEBIT_STATUS_ARGUMENT, &message, "8 pixels");
     refused(ninebit_render(scene, 0, 1, (uint32_t *)(rgba + 1), NULL, 8, &message), NINEBIT_STATUS_ARGUMENT, &message, "aligned");

@@ -1,6 +1,6 @@
-//! The library as programs in other languages use it. What is not installed is ignored.
+//! Uses the library from programs in other languages. Tests whose tools are not installed are ignored.
 //!
-//! `CC` names the compiler of C, `NINEBIT_C_PYTHON` a Python with numpy, `CBINDGEN` the program that makes the header.
+//! `CC` names the C compiler, `NINEBIT_C_PYTHON` a Python with numpy, `CBINDGEN` the program that makes the header.
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ fn named(variable: &str, otherwise: &str) -> String {
     std::env::var(variable).unwrap_or_else(|_| otherwise.to_string())
 }
 
-/// What a command prints that has to succeed.
+/// Runs a command, which has to succeed. Returns what it prints.
 fn run(command: &mut Command) -> Result<Vec<u8>, Failed> {
     let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
     if output.status.success() {
@@ -28,9 +28,9 @@ fn works(program: &str, arguments: &[&str]) -> bool {
     Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
 }
 
-/// The folder with the libraries that this build has made.
+/// Returns the folder with the libraries of this build.
 fn built() -> PathBuf {
-    // Beside the test: those in the folder above may be of an earlier build.
+    // They are beside the test; those in the folder above may be from an earlier build.
     std::env::current_exe().unwrap().parent().unwrap().to_path_buf()
 }
 
@@ -38,7 +38,7 @@ fn scene() -> PathBuf {
     Path::new(HERE).join("../../vectors/scenes/programs/lit-words-file.ron")
 }
 
-/// The tests in C, under the sanitizers of addresses and of undefined behaviour; leaks are errors.
+/// Runs the tests in C under the sanitizers of addresses and undefined behaviour; leaks are errors.
 fn c(library: &str) -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let program = folder.path().join("tests");
@@ -53,7 +53,7 @@ fn c(library: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The header is what cbindgen makes of the library.
+/// The header is what cbindgen makes from the library.
 fn header() -> Result<(), Failed> {
     let config = Path::new(HERE).join("cbindgen.toml");
     let mut make = Command::new(named("CBINDGEN", "cbindgen"));
@@ -67,7 +67,7 @@ fn header() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The example in C++: its picture is what the library draws.
+/// The example in C++ writes the picture that the library renders.
 fn cpp() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let program = folder.path().join("picture");
@@ -84,7 +84,7 @@ fn cpp() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The example in Python.
+/// The example in Python prints what is expected.
 fn python() -> Result<(), Failed> {
     let mut command = Command::new(named("NINEBIT_C_PYTHON", "python3"));
     let output = run(command.arg(Path::new(HERE).join("examples/combine.py")).arg(built().join("libninebit_c.so")))?;
@@ -93,7 +93,7 @@ fn python() -> Result<(), Failed> {
     Ok(())
 }
 
-/// With TEXTURE0 n, n, n and a light along B: 2 (n - 128) times 254 of 255, and what is below 0 is shown as 0; n in steps of 51.
+/// Output with TEXTURE0 n, n, n and a light along B: 2 (n - 128) times 254 / 255, with negative results shown as 0, and n in steps of 51.
 const EXPECTED: &str =
     "[[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [50, 50, 50, 0], [151, 151, 151, 0], [253, 253, 253, 0]]\n";
 

@@ -1,4 +1,4 @@
-//! A file that is written whole or not at all, and read within a limit.
+//! Writes a file as a whole or not at all, and reads it within a limit.
 //!
 //! `cargo run -p ninebit-files --example whole`
 
