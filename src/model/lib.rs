@@ -1,9 +1,9 @@
 //! Ninebit: a deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners.
 //!
-//! A scene (vertices, state, textures) goes in; stored bytes come out, and for any pixel a trace of every integer on the way. The
-//! model counts values, not cycles.
+//! The input is a scene: vertices, state and textures. The output is the bytes that the chip stores and, for any pixel,
+//! a trace of every integer that leads to them. The crate models values, not timing.
 //!
-//! # The way of a scene
+//! # From a scene to a frame
 //!
 //! ```text
 //! text -> ninebit-scene -> state -> plan -> engine -> frames, traces -> ninebit-report
@@ -11,21 +11,25 @@
 //!                      number . raster . texture . combiner . rop
 //! ```
 //!
-//! * [`state`] is what there is to draw: plain data in the chip's own terms, built as below or read by the crate `ninebit-scene`.
-//! * [`plan`] keeps what can reach a frame. Whatever can fail has failed when a [`plan::Plan`] exists; [`limits`] says how much it accepts.
-//! * [`engine`] draws: by default blocks of 256 pixels at a time, or pixel by pixel as the definition reads. Both run the rules of
-//!   [`raster`], [`texture`], [`combiner`] and [`rop`] and store the same bytes.
-//! * [`number`] holds the lanes: the integers of the definition, the real numbers of the ideal, and both side by side. Each rule is one
-//!   text, generic over the lane.
-//! * [`trace`] is how the blocks report what they do; the crate `ninebit-report` prints it.
+//! * [`state`] describes what to draw: plain data in the chip's own terms, built in code as below or read by the crate
+//!   `ninebit-scene`.
+//! * [`plan`] reduces a scene to what can reach a frame. Once a [`plan::Plan`] exists, nothing can fail any more;
+//!   [`limits`] says how much it accepts.
+//! * [`engine`] draws: by default in blocks of 256 pixels, or pixel by pixel in the order in which the definition is
+//!   written. Both run the rules of [`raster`], [`texture`], [`combiner`] and [`rop`] and store the same bytes.
+//! * [`number`] holds the lanes, which are the types that rules compute with: the integers of the definition, the real
+//!   numbers of the ideal, and both side by side. Each rule is written once, generic over the lane.
+//! * [`trace`] defines how the blocks report what they do; the crate `ninebit-report` prints the reports.
 //!
-//! This crate opens no file, asks for no time and, without its feature `threads`, starts no thread.
+//! This crate opens no file and reads no clock. Without its feature `threads` it starts no thread.
 //!
-//! Every rule has an id (`CMB-3`), a grade that says how well it is known, a source and a test: `docs/numerics.md`.
+//! Every rule has an id (such as `CMB-3`), a grade that says how well it is known, a source and a test; see
+//! `docs/numerics.md`.
 //!
 //! # Example
 //!
-//! One pixel: a white triangle, its colour halved by the final combiner (128 of 255, times 255, rounded to the nearest 255th).
+//! One pixel of a white triangle, whose colour the final combiner halves: 128/255 times 255, rounded to the nearest
+//! 255th.
 //!
 //! ```
 #![doc = include_str!("examples/pixel.rs")]

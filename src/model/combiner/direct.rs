@@ -1,4 +1,4 @@
-//! The order of a pixel on numbers: the rules of a lane, told to an observer.
+//! [`Direct`], the algebra that computes the order of a pixel on the numbers of a lane and reports to an observer.
 
 use super::{mapping, output};
 use crate::algebra::{Algebra, Site};
@@ -7,7 +7,7 @@ use crate::state::{Bias, InputMapping, MuxSelect, Policies, Scale};
 use crate::trace::{Observer, Part, Rule, Work};
 use std::marker::PhantomData;
 
-/// Computes every value of the text that is among its sites; the others are 0.
+/// Computes the values at the given sites; all others are 0.
 #[derive(Debug)]
 pub struct Direct<'o, L, O> {
     policies: &'o Policies,
@@ -17,22 +17,22 @@ pub struct Direct<'o, L, O> {
 }
 
 impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
-    /// Nothing is computed along, and sums have their rules.
+    /// Whether exactly the needed channels are computed, and sums keep their rules.
     const EXACT: bool = O::MEASURES || O::COUNTS;
 
-    /// Under these policies, for whoever observes.
+    /// Creates an algebra that computes under `policies` and reports to `observer`.
     #[inline(always)]
     pub fn new(policies: &'o Policies, observer: &'o mut O) -> Self {
         Direct { policies, sites: u64::MAX, observer, lane: PhantomData }
     }
 
-    /// For an order that no policy concerns.
+    /// Creates an algebra for an order that no policy affects.
     #[inline(always)]
     pub fn plain(observer: &'o mut O) -> Self {
         Direct::new(&Policies::DEFAULT, observer)
     }
 
-    /// Leaves out what is at other places than these ([`Site`]).
+    /// Restricts the computation to the given set of [`Site`]s.
     #[inline(always)]
     #[must_use]
     pub fn only(mut self, sites: u64) -> Self {
@@ -40,7 +40,7 @@ impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
         self
     }
 
-    /// The work of general stages and the final combiner is counted by operation, that of the blend by channel.
+    /// Counts work. General stages and the final combiner are counted by operation, blending by channel elsewhere.
     #[inline(always)]
     fn count(&mut self, work: Work, rule: Rule) {
         if rule.part() != Part::Store {
@@ -49,16 +49,16 @@ impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
     }
 }
 
-/// A sum, and the rule that its rounding counts as.
+/// A sum, and the rule that its rounding is attributed to.
 #[derive(Clone, Copy, Debug)]
 pub struct Ruled<S> {
-    /// The sum, not yet rounded.
+    /// The sum, before rounding.
     pub sum: S,
     rule: Rule,
 }
 
 impl<S> Ruled<S> {
-    /// The rule is kept for those who measure or count.
+    /// Creates a sum, which keeps the rule only for observers that measure or count.
     #[inline(always)]
     fn new<O: Observer>(sum: S, rule: Rule) -> Ruled<S> {
         Ruled { sum, rule: if O::MEASURES || O::COUNTS { rule } else { Rule::Cmb6 } }
@@ -88,8 +88,8 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
         if self.sites & site.0 == 0 { L::ZERO } else { value(self) }
     }
 
-    // Whoever measures or counts is told of needed channels only. Otherwise the others are computed along: that costs less than asking for each. Loops,
-    // because what goes through `from_fn` is not always inlined.
+    // Observers that measure or count see needed channels only. Otherwise the other channels are computed too, which
+    // costs less than checking each. These are loops because closures passed to `from_fn` are not always inlined.
     #[inline(always)]
     fn factors<const N: usize>(&mut self, first: Site, mapping: InputMapping, x: [L; N]) -> [L::Mapped; N] {
         if !Self::EXACT {

@@ -8,25 +8,25 @@ use crate::number::Lane;
 use crate::state::{FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
 use crate::trace::{Observer, Operand, Rule, Silent, Step, report};
 
-/// The final combiner with what the plan found out.
+/// The final combiner, with what the plan knows about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedFinal {
-    /// The registers as the scene has them.
+    /// The state of the final combiner in the scene.
     pub state: FinalCombiner,
-    /// Channels R, G, B (bits 1, 2, 4) and alpha (8) that the raster operations need.
+    /// Channels that the raster operations need: R, G, B (bits 1, 2, 4) and alpha (8).
     pub live: u8,
-    /// Channels of E times F that live inputs read.
+    /// Channels of E times F that live inputs read, as bits.
     pub product: u8,
-    /// Channels of SPARE0 + SECONDARY that live inputs read.
+    /// Channels of SPARE0 + SECONDARY that live inputs read, as bits.
     pub sum: u8,
-    /// A live input reads a constant.
+    /// Whether a live input reads a constant colour.
     pub reads_constants: bool,
-    /// A or C is not always 0, so that the lerp contributes.
+    /// Whether A or C is not always 0, so that the linear interpolation contributes.
     pub lerps: bool,
 }
 
 impl PlannedFinal {
-    /// The values that are needed; for a `report` also those that make no difference.
+    /// Returns the sites of the values that are needed. With `report`, values that make no difference are included.
     #[inline(always)]
     fn sites(&self, report: bool) -> u64 {
         let [sum, product, live] = [self.sum, self.product, self.live].map(u64::from);
@@ -35,12 +35,12 @@ impl PlannedFinal {
     }
 }
 
-/// SPARE0 + SECONDARY above 1.0 enters the lerp and D: the sum can pass 2.0 (FIN-5).
+/// 2.0, the limit that the sum of SPARE0 + SECONDARY above 1.0 and D can exceed (FIN-5).
 const MAX_SUM: i32 = 510;
 
 const BLOCK: &str = "final combiner";
 
-/// FIN-1: max(0, x), or max(0, 255 - max(0, x)).
+/// FIN-1: returns max(0, x), or max(0, 255 - max(0, x)) if `invert` is set.
 #[inline(always)]
 pub fn input<A: Algebra>(x: A::Register, invert: bool, a: &mut A) -> A::Register {
     let x = a.max0(x);
@@ -51,7 +51,7 @@ pub fn input<A: Algebra>(x: A::Register, invert: bool, a: &mut A) -> A::Register
     a.max0(inverted)
 }
 
-/// FIN-2: A B + (1 - A) C, where A is at most 1.0.
+/// FIN-2: returns A B + (1 - A) C, where A is limited to 1.0.
 #[inline(always)]
 pub fn lerp<A: Algebra>([x, b, c]: [A::Register; 3], a: &mut A) -> A::Register {
     let one = a.byte(255);
@@ -71,7 +71,7 @@ pub fn lerp<A: Algebra>([x, b, c]: [A::Register; 3], a: &mut A) -> A::Register {
     }
 }
 
-/// FIN-3: the colour sum.
+/// FIN-3: returns SPARE0 + SECONDARY.
 #[inline(always)]
 pub fn color_sum<A: Algebra>(
     spare0: A::Register,
@@ -88,7 +88,7 @@ pub fn color_sum<A: Algebra>(
     a.least(sum, one)
 }
 
-/// FIN-4: E F.
+/// FIN-4: returns E F.
 #[inline(always)]
 pub fn product<A: Algebra>(e: A::Register, f: A::Register, a: &mut A) -> A::Register {
     let (e, f) = (a.plain(e), a.plain(f));
@@ -96,20 +96,20 @@ pub fn product<A: Algebra>(e: A::Register, f: A::Register, a: &mut A) -> A::Regi
     a.rounded(product)
 }
 
-/// Everything that the final combiner computes.
+/// All values that the final combiner computes.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalValues<R> {
-    /// SPARE0 + SECONDARY and E times F, whose alpha is 0 (FIN-1).
+    /// The registers SPARE0 + SECONDARY and E times F, whose alpha is 0 (FIN-1).
     pub specials: Specials<R>,
-    /// A to F, in R, G and B.
+    /// R, G and B of inputs A to F.
     pub inputs: [[R; 3]; 6],
-    /// A B + (1 - A) C + D.
+    /// A B + (1 - A) C + D before clamping.
     pub raw: [R; 3],
-    /// R, G, B, A bytes.
+    /// The fragment: R, G, B, A bytes.
     pub fragment: [R; 4],
 }
 
-/// The two registers that exist only here.
+/// The two registers that exist only in the final combiner.
 #[derive(Clone, Copy, Debug)]
 pub struct Specials<R> {
     /// SPARE0 + SECONDARY.
@@ -118,7 +118,7 @@ pub struct Specials<R> {
     pub product: [R; 4],
 }
 
-/// FIN-1 to FIN-4 on values of any kind; the constants are loaded.
+/// FIN-1 to FIN-4 in an algebra. The constant colours must be loaded.
 #[inline(always)]
 pub fn evaluate<A: Algebra>(
     state: &FinalCombiner,
@@ -151,7 +151,7 @@ pub fn evaluate<A: Algebra>(
     FinalValues { specials, inputs, raw, fragment }
 }
 
-/// What an input reads, before FIN-1.
+/// Returns the value that an input reads, before FIN-1.
 #[inline(always)]
 fn source<R: Copy>(from: &FinalInput, channel: usize, registers: &Registers<R>, specials: &Specials<R>) -> R {
     let source = component_channel(from.component, channel);
@@ -173,7 +173,7 @@ fn read<A: Algebra>(
     input(source(from, channel, registers, specials), from.invert, a)
 }
 
-/// Runs the final combiner: R, G, B, A bytes, those that nothing needs left at zero.
+/// Runs the final combiner. Returns R, G, B, A bytes, in which channels that nothing needs are zero.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
     planned: &PlannedFinal,
@@ -193,7 +193,7 @@ pub fn run<L: Lane, O: Observer>(
     values.fragment
 }
 
-/// In the order of a trace.
+/// Reports all values, in the order of a trace.
 fn report_all<L: Lane, O: Observer>(
     planned: &PlannedFinal,
     values: &FinalValues<L>,
@@ -248,7 +248,8 @@ fn report_all<L: Lane, O: Observer>(
     }
 }
 
-/// The general register behind a final one; ZERO for the two special ones.
+/// Returns the general register that a final register stands for, or ZERO for the two registers that exist only in the
+/// final combiner.
 pub fn general(register: FinalRegister) -> Register {
     match register {
         FinalRegister::Zero | FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => Register::Zero,

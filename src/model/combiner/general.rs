@@ -1,6 +1,7 @@
-//! CMB-1, CMB-6 to CMB-11: one general combiner stage.
+//! CMB-1, CMB-6 to CMB-11: the general combiner stages.
 //!
-//! [`evaluate`] and [`write()`] are the rules, in the operations of an [`Algebra`]; [`run`] is them on numbers, with reports.
+//! [`evaluate`] and [`write()`] are the rules, written in the operations of an [`Algebra`]. [`run`] applies them to
+//! numbers, with reports.
 
 use super::direct::Direct;
 use super::output::takes_cd;
@@ -11,13 +12,13 @@ use crate::number::{Factor, Lane};
 use crate::state::*;
 use crate::trace::{Decision, Observer, Rule};
 
-/// CMB-8: the sum of three full-width products, not yet rounded.
+/// CMB-8: returns the sum of three full-width products, without rounding.
 #[inline(always)]
 pub fn dot_product<F: Factor>(a: [F; 3], b: [F; 3]) -> F::Sum {
     a[0].product(b[0]) + a[1].product(b[1]) + a[2].product(b[2])
 }
 
-/// CMB-8: the dot product of two vectors of factors at full width.
+/// CMB-8: returns the dot product of two vectors of factors at full width.
 #[inline(always)]
 pub fn dot<A: Algebra>([a0, a1, a2]: [A::Factor; 3], [b0, b1, b2]: [A::Factor; 3], a: &mut A) -> A::Sum {
     const RULE: Rule = Rule::Cmb8;
@@ -36,7 +37,7 @@ pub fn dot<A: Algebra>([a0, a1, a2]: [A::Factor; 3], [b0, b1, b2]: [A::Factor; 3
     }
 }
 
-/// CMB-7: AB + CD at full width.
+/// CMB-7: returns AB + CD at full width.
 #[inline(always)]
 pub fn sum<A: Algebra>(ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
     match a.policies().sum_rounding {
@@ -49,13 +50,13 @@ pub fn sum<A: Algebra>(ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
     }
 }
 
-/// The third output at full width: the mux (CMB-10) or the sum (CMB-7).
+/// Returns the third output at full width: the mux (CMB-10) or the sum (CMB-7).
 #[inline(always)]
 pub fn third<A: Algebra>(mux: bool, takes_cd: A::Choice, ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
     if mux { a.select(takes_cd, cd, ab) } else { sum(ab, cd, a) }
 }
 
-/// CMB-9: rounded, biased, scaled, saturated.
+/// CMB-9: rounds, biases, scales and saturates an output.
 #[inline(always)]
 pub fn output<A: Algebra>(portion: &Portion, raw: A::Sum, a: &mut A) -> A::Register {
     let value = match a.policies().output_rounding {
@@ -68,8 +69,8 @@ pub fn output<A: Algebra>(portion: &Portion, raw: A::Sum, a: &mut A) -> A::Regis
     a.saturated(value)
 }
 
-/// Everything that a portion computes, for its `N` channels: three in an RGB portion, one in an alpha portion. `F`, `S` and `R` are the factors,
-/// sums and registers of an [`Algebra`].
+/// All values that a portion computes, for its `N` channels: three in an RGB portion, one in an alpha portion. `F`, `S`
+/// and `R` are the factors, sums and registers of an [`Algebra`].
 #[derive(Clone, Copy, Debug)]
 pub struct Values<F, S, R, const N: usize> {
     /// A, B, C, D after their mappings.
@@ -82,10 +83,10 @@ pub struct Values<F, S, R, const N: usize> {
     pub outputs: [[R; N]; 3],
 }
 
-/// Everything that a stage computes.
+/// All values that a stage computes.
 #[derive(Clone, Copy, Debug)]
 pub struct StageValues<F, S, R, C> {
-    /// What muxes take.
+    /// Whether muxes take CD.
     pub takes_cd: C,
     /// The RGB portion.
     pub rgb: Values<F, S, R, 3>,
@@ -93,14 +94,14 @@ pub struct StageValues<F, S, R, C> {
     pub alpha: Values<F, S, R, 1>,
 }
 
-/// What a portion is in an algebra.
+/// The values of a portion in an algebra.
 type PortionOf<A, const N: usize> = Values<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, N>;
 
-/// What a stage is in an algebra.
+/// The values of a stage in an algebra.
 pub type StageOf<A> =
     StageValues<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, <A as Algebra>::Choice>;
 
-/// What a stage computes from the registers before it.
+/// Computes the values of a stage from the registers before it.
 #[inline(always)]
 pub fn evaluate<A: Algebra>(
     stage: &PlannedStage,
@@ -131,7 +132,7 @@ fn evaluate_portion<A: Algebra, const N: usize>(
         a.factors(Site::factor(2, first), input_c.mapping, read(input_c, first, registers)),
         a.factors(Site::factor(3, first), input_d.mapping, read(input_d, first, registers)),
     ];
-    // A dot product is one value in all channels, and so is what is made of dot products alone.
+    // A dot product is one value for all channels, as is everything that only depends on dot products.
     let [ab_dot, cd_dot] = [portion.ab_dot_product, portion.cd_dot_product];
     let ab = product(Site::product(0, first), ab_dot, &factors[0], &factors[1], a);
     let cd = product(Site::product(1, first), cd_dot, &factors[2], &factors[3], a);
@@ -150,7 +151,7 @@ fn evaluate_portion<A: Algebra, const N: usize>(
     Values { factors, products, third, outputs }
 }
 
-/// CMB-6, CMB-8: AB or CD at full width, of which the first channel is at this place.
+/// CMB-6, CMB-8: returns AB or CD at full width. `site` is the place of its first channel.
 #[inline(always)]
 pub fn product<A: Algebra, const N: usize>(
     site: Site,
@@ -166,7 +167,7 @@ pub fn product<A: Algebra, const N: usize>(
     }
 }
 
-/// An output in all channels; `is_one` says that it is the same in them.
+/// Computes an output in all channels. If `is_one` is set, they are equal and computed once.
 #[inline(always)]
 fn finish<A: Algebra, const N: usize>(
     site: Site,
@@ -182,7 +183,7 @@ fn finish<A: Algebra, const N: usize>(
     }
 }
 
-/// The channels of its register that an input brings to a portion.
+/// Returns the channels of its register that an input reads for a portion.
 #[inline(always)]
 fn read<R: Copy, const N: usize>(input: &CombinerInput, first: usize, registers: &Registers<R>) -> [R; N] {
     let value = &registers.values[input.register as usize];
@@ -193,7 +194,7 @@ fn read<R: Copy, const N: usize>(input: &CombinerInput, first: usize, registers:
     }
 }
 
-/// Writes what a stage has computed: AB, CD, then the sum or mux; blue to alpha (CMB-11) last of each.
+/// Writes the outputs of a stage: AB, CD, then the sum or mux. Blue to alpha (CMB-11) follows each.
 #[inline(always)]
 pub fn write<A: Algebra>(stage: &PlannedStage, values: &StageOf<A>, registers: &mut Registers<A::Register>, a: &mut A) {
     write_portion(&stage.rgb.portion, &values.rgb, registers, a);
@@ -228,7 +229,7 @@ fn write_portion<A: Algebra, const N: usize>(
     }
 }
 
-/// A stage on values of any kind: its constants, [`evaluate`], [`write()`].
+/// Runs a stage in an algebra: loads its constants, then [`evaluate`] and [`write()`].
 pub fn stage<A: Algebra>(
     stage: &PlannedStage,
     mux_select: MuxSelect,
@@ -240,31 +241,32 @@ pub fn stage<A: Algebra>(
     write(stage, &values, registers, a);
 }
 
-/// The constants of a stage, or of the final combiner.
+/// Loads the constant colours of a stage or of the final combiner.
 #[inline(always)]
 pub fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Registers<A::Register>, a: &mut A) {
     registers.load(Register::ConstantColor0, constants[0].map(|byte| a.byte(byte)));
     registers.load(Register::ConstantColor1, constants[1].map(|byte| a.byte(byte)));
 }
 
-/// A portion with what the plan found out: which channels of which output anybody reads.
+/// A portion with its liveness: which channels of which output are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedPortion {
-    /// The registers as the scene has them.
+    /// The state of the portion in the scene.
     pub portion: Portion,
-    /// Channels of AB, CD and the sum or mux that are needed: bits R, G, B in an RGB portion, bit A (8) in an alpha portion.
+    /// Channels of AB, CD and the sum or mux that are needed: bits 1, 2, 4 for R, G, B in an RGB portion, bit 8 for A
+    /// in an alpha portion.
     pub live: [u8; 3],
-    /// AB's and CD's blue are needed in the alpha of their destination.
+    /// Whether the blue of AB and CD is needed in the alpha of their destinations.
     pub blue_to_alpha: [bool; 2],
-    /// Every value that is needed ([`Site`]).
+    /// Set of the [`Site`]s of all values that are needed.
     pub sites: u64,
 }
 
 impl PlannedPortion {
-    /// A portion of which everything that it writes is needed, in these channels.
+    /// Returns a portion whose outputs are all needed in the given channels.
     pub fn whole(portion: Portion, channels: u8) -> PlannedPortion {
         let outputs = [portion.ab_output, portion.cd_output, portion.sum_output];
-        // More than is needed: everything that comes before the outputs.
+        // This includes more than is needed: everything that precedes an output.
         let mut sites = 0;
         for n in (0..3).filter(|n| outputs[*n] != Register::Zero) {
             sites |= ((1 << 28) - 1) | (15 << (28 + 4 * n)) | (15 << (40 + 4 * n));
@@ -281,41 +283,41 @@ impl PlannedPortion {
         }
     }
 
-    /// Whether nothing of it is needed.
+    /// Returns whether nothing of the portion is needed.
     pub fn is_idle(&self) -> bool {
         self.live == [0; 3] && self.blue_to_alpha == [false; 2]
     }
 
-    /// Whether a mux of it is needed.
+    /// Returns whether the portion has a mux that is needed.
     pub fn muxes(&self) -> bool {
         self.portion.mux && self.live[2] != 0
     }
 
-    /// Channels of the product AB (0) or CD (1) that some output needs.
+    /// Returns the channels of the product AB (0) or CD (1) that some output needs.
     pub fn product_channels(&self, product: usize) -> u8 {
         self.live[product] | self.live[2] | if self.blue_to_alpha[product] { BLUE } else { 0 }
     }
 }
 
-/// The bit of blue in a set of channels.
+/// Bit of blue in a set of channels.
 pub const BLUE: u8 = 4;
 
 /// A general stage with its liveness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedStage {
-    /// The stage's number in the scene's state.
+    /// Number of the stage in the program.
     pub index: usize,
-    /// What computes red, green and blue.
+    /// The portion that computes red, green and blue.
     pub rgb: PlannedPortion,
-    /// What computes alpha.
+    /// The portion that computes alpha.
     pub alpha: PlannedPortion,
-    /// Constants of the stage, R, G, B, A bytes.
+    /// Constant colours 0 and 1 of the stage, as R, G, B, A bytes.
     pub constants: [[u8; 4]; 2],
-    /// A needed input reads one of them.
+    /// Whether a needed input reads a constant colour.
     pub reads_constants: bool,
 }
 
-/// Runs a stage: reads everything, then writes everything (CMB-1).
+/// CMB-1: runs a stage, which reads all inputs before it writes any output.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
     stage: &PlannedStage,
@@ -330,7 +332,7 @@ pub fn run<L: Lane, O: Observer>(
         let decide = |alpha: i32| i64::from(takes_cd(alpha, mux_select, policies.mux_negative));
         observer.decided(Decision::Mux, decide(spare0.decision()), || decide(spare0.ideal_decision()));
     }
-    // Different ones: their channels are.
+    // The two sets are disjoint, because the portions' channels are.
     let sites = stage.rgb.sites | stage.alpha.sites;
     let mut direct = Direct::new(policies, observer).only(sites);
     if stage.reads_constants {
@@ -343,18 +345,18 @@ pub fn run<L: Lane, O: Observer>(
     write(stage, &values, registers, &mut Direct::new(policies, observer).only(sites));
 }
 
-/// The register channel of a portion's first one: R of an RGB portion, A of an alpha portion.
+/// Returns the register channel of a portion's first channel: R in an RGB portion, A in an alpha portion.
 const fn first_channel<const N: usize>() -> usize {
     if N == 1 { 3 } else { 0 }
 }
 
-/// The channel of its register that an input reads.
+/// Returns the channel of its register that an input reads for `channel`.
 #[inline(always)]
 pub fn source_channel(input: &CombinerInput, channel: usize) -> usize {
     component_channel(input.component, channel)
 }
 
-/// The channel of a register that a component is, for what is computed in `channel`.
+/// Returns the channel that a component of a register means for `channel`.
 #[inline(always)]
 pub fn component_channel(component: Component, channel: usize) -> usize {
     match component {

@@ -4,31 +4,31 @@ use crate::number::{Lane, Register};
 use crate::state::{ExpandCentre, HalfBiasConstant, InputMapping, Policies};
 use crate::trace::Rule;
 
-/// CMB-2: max(0, x).
+/// CMB-2: returns max(0, x).
 #[inline(always)]
 pub fn unsigned_identity<R: Register>(x: R) -> R {
     x.max0()
 }
 
-/// CMB-2: 255 - max(0, x).
+/// CMB-2: returns 255 - max(0, x).
 #[inline(always)]
 pub fn unsigned_invert<R: Register>(x: R) -> R {
     R::ONE - x.max0()
 }
 
-/// CMB-3: 2 (max(0, x) - 128).
+/// CMB-3: returns 2 (max(0, x) - 128).
 #[inline(always)]
 pub fn expand_normal<R: Register>(x: R) -> R::Expanded {
     (x.max0() - R::HALF).twice()
 }
 
-/// Any mapping, under any policy, of some channels.
+/// Applies any mapping under any policy to several channels.
 #[inline(always)]
 pub fn map<L: Lane, const N: usize>(x: [L; N], mapping: InputMapping, policies: &Policies) -> [L::Mapped; N] {
     std::array::from_fn(|n| map_one(x[n], mapping, policies))
 }
 
-/// Any mapping, under any policy, of a channel.
+/// Applies any mapping under any policy to one channel.
 #[inline(always)]
 pub fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
     match mapping {
@@ -43,7 +43,7 @@ pub fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::
     }
 }
 
-/// CMB-3 with its alternative: 2x - 255 is (x - 128) + (x - 127).
+/// CMB-3 with its alternative, in which 2x - 255 is (x - 128) + (x - 127).
 #[inline(always)]
 fn expand<L: Lane>(x: L, policies: &Policies) -> L::Mapped {
     match policies.expand_centre {
@@ -65,7 +65,7 @@ fn half_bias<L: Lane>(x: L, half: L, policies: &Policies) -> L::Mapped {
     }
 }
 
-/// The rule that a mapping belongs to.
+/// Returns the rule that defines a mapping.
 pub fn rule(mapping: InputMapping) -> Rule {
     match mapping {
         InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert => Rule::Cmb2,
@@ -75,7 +75,7 @@ pub fn rule(mapping: InputMapping) -> Rule {
     }
 }
 
-/// The mapping's operation in traces.
+/// Returns the operation that traces show for a mapping.
 pub fn operation(mapping: InputMapping) -> &'static str {
     match mapping {
         InputMapping::UnsignedIdentity => "unsigned_identity",
@@ -95,7 +95,7 @@ mod tests {
     use crate::number::Halves;
     use crate::state::Named;
 
-    /// Every mapping of every register value, under every policy, against integer statements; the result in halves.
+    /// Compares every mapping of every register value under every policy with integer statements, in halves.
     #[test]
     fn all_mappings_of_all_values() {
         for expand_centre in ExpandCentre::ALL {
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    /// CMB-2: ZERO inverted is exactly 255; CMB-5: minus one is the negation of one.
+    /// CMB-2: ZERO inverted is exactly 255. CMB-5: minus one is the negation of one.
     #[test]
     fn ones() {
         assert_eq!(map([0], InputMapping::UnsignedInvert, &Policies::DEFAULT), [Halves(510)]);

@@ -16,11 +16,12 @@ use general::{PlannedPortion, PlannedStage};
 use registers::Registers;
 
 impl Combiners {
-    /// Runs the program on the registers of one pixel: R, G, B, A as they reach the raster operations.
+    /// Runs the program on the registers of one pixel. Returns R, G, B, A as they reach the raster operations.
     ///
-    /// A register holds -256 to 255, a byte of the pixel 0 to 255. Load what the pixel brings: textures, primary and secondary colour, fog. The constants are
-    /// the program's, and the alpha of SPARE0 begins as that of TEXTURE0 (CMB-13). Legality is not asked for: [`legality::check`](crate::legality::check)
-    /// does that.
+    /// A register holds -256 to 255, and a byte of the pixel 0 to 255. The caller loads what the pixel provides:
+    /// textures, primary and secondary colour, and fog. The constant colours come from the program, and the alpha of
+    /// SPARE0 starts as that of TEXTURE0 (CMB-13). The program is not checked;
+    /// [`legality::check`](crate::legality::check) does that.
     ///
     /// The example `stage` runs a program on every pair of bytes.
     pub fn run(&self, registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
@@ -30,10 +31,11 @@ impl Combiners {
         fragment.map(|channel| channel.clamp(0, 255) as u8)
     }
 
-    /// The program on values of any kind: R, G, B, A of the fragment.
+    /// Evaluates the program in an algebra. Returns R, G, B, A of the fragment.
     ///
-    /// `registers` hold what a pixel brings; the alpha of SPARE0 begins as that of TEXTURE0 (CMB-13). `constants` says before each stage, by its number, and before
-    /// the final combiner (`None`) what the two constant colours are, given the program's own bytes.
+    /// `registers` holds what a pixel provides; the alpha of SPARE0 starts as that of TEXTURE0 (CMB-13). `constants` is
+    /// called before each stage, with its number, and before the final combiner, with `None`. It is given the program's
+    /// own bytes and returns the two constant colours.
     pub fn evaluate<A: Algebra>(
         &self,
         mut registers: Registers<A::Register>,

@@ -1,9 +1,9 @@
-//! CMB-9, CMB-10: bias, scale and saturation of an output, and what a mux takes.
+//! CMB-9, CMB-10: bias, scale and saturation of outputs, and the selection of the mux.
 
 use crate::number::{Lane, Register, Sum};
 use crate::state::{Bias, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale};
 
-/// CMB-9: the bias.
+/// CMB-9: applies the bias.
 #[inline(always)]
 pub fn biased<R: Register>(v: R, bias: Bias) -> R {
     match bias {
@@ -12,7 +12,7 @@ pub fn biased<R: Register>(v: R, bias: Bias) -> R {
     }
 }
 
-/// CMB-9: the scale.
+/// CMB-9: applies the scale.
 #[inline(always)]
 pub fn scaled<R: Register>(v: R, scale: Scale) -> R {
     match scale {
@@ -23,13 +23,13 @@ pub fn scaled<R: Register>(v: R, scale: Scale) -> R {
     }
 }
 
-/// CMB-9 and NUM-3 of what has been rounded.
+/// CMB-9, NUM-3: applies bias and scale to a rounded value, then saturates it.
 #[inline(always)]
 pub fn finished<R: Register>(v: R, bias: Bias, scale: Scale, floor: RegisterFloor) -> R {
     scaled(biased(v, bias), scale).saturated(floor)
 }
 
-/// CMB-9=after: biased and scaled at full width, then rounded; not yet saturated.
+/// CMB-9=after: applies bias and scale at full width, then rounds. The result is not saturated.
 #[inline(always)]
 pub fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
     let raw = match bias {
@@ -44,13 +44,13 @@ pub fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
     }
 }
 
-/// CMB-10: whether the mux takes CD.
+/// CMB-10: returns whether the mux takes CD.
 #[inline]
 pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Policies) -> bool {
     takes_cd(spare0_alpha.decision(), select, policies.mux_negative)
 }
 
-/// CMB-10 of SPARE0's alpha as an integer.
+/// CMB-10: returns whether the mux takes CD, for SPARE0's alpha as an integer.
 #[inline(always)]
 pub fn takes_cd(v: i32, select: MuxSelect, negative: MuxNegative) -> bool {
     match (select, negative) {

@@ -3,28 +3,28 @@
 use crate::number::Lane;
 use crate::state::Register;
 
-/// Number of registers, ZERO included.
+/// Number of registers, including ZERO.
 pub const REGISTERS: usize = 12;
 
-/// The registers of one pixel; index by [`Register`], then by channel R, G, B, A.
+/// The registers of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registers<L> {
-    /// The values, by [register](Register) and channel.
+    /// The values, indexed by [`Register`] and then by channel R, G, B, A.
     pub values: [[L; 4]; REGISTERS],
 }
 
-/// The bit of a channel in a set of channels of registers.
+/// Returns the bit of a register's channel in a set of channels of registers.
 pub fn bit(register: Register, channel: usize) -> u64 {
     1 << (4 * register as usize + channel)
 }
 
-/// All four channels of a register.
+/// Returns the bits of all four channels of a register.
 pub fn bits(register: Register) -> u64 {
     15 << (4 * register as usize)
 }
 
 impl<L: Lane> Registers<L> {
-    /// CMB-13: zeros; the caller loads what the pixel brings, SPARE0's alpha included.
+    /// CMB-13: returns registers that are all zero. The caller loads what the pixel provides, including SPARE0's alpha.
     #[inline]
     pub fn new() -> Self {
         Registers::from_value(L::ZERO)
@@ -32,25 +32,25 @@ impl<L: Lane> Registers<L> {
 }
 
 impl<V: Copy> Registers<V> {
-    /// A set that holds the value in every channel of every register.
+    /// Returns registers with `value` in every channel.
     #[inline]
     pub fn from_value(value: V) -> Self {
         Registers { values: [[value; 4]; REGISTERS] }
     }
 
-    /// Loads a register before the first stage.
+    /// Loads all channels of a register.
     #[inline]
     pub fn load(&mut self, register: Register, value: [V; 4]) {
         self.values[register as usize] = value;
     }
 
-    /// Sets one channel.
+    /// Writes one channel of a register.
     #[inline(always)]
     pub fn write(&mut self, register: Register, channel: usize, value: V) {
         self.values[register as usize][channel] = value;
     }
 
-    /// Reads one channel.
+    /// Reads one channel of a register.
     #[inline(always)]
     pub fn read(&self, register: Register, channel: usize) -> V {
         self.values[register as usize][channel]
@@ -63,12 +63,13 @@ impl<L: Lane> Default for Registers<L> {
     }
 }
 
-/// What no document defines before a stage writes it: SPARE0's colour and SPARE1 (CMB-13), taken as 0.
+/// Returns the channels that no document defines before a stage writes them: SPARE0's colour and SPARE1 (CMB-13). They
+/// are taken as 0.
 pub fn initially_undefined() -> u64 {
     (bits(Register::Spare0) & !bit(Register::Spare0, 3)) | bits(Register::Spare1)
 }
 
-/// The register's name in traces, after the vendor extension.
+/// Returns the register's name in traces, which follows the vendor's extension.
 pub fn name(register: Register) -> &'static str {
     match register {
         Register::Zero => "zero",
@@ -86,7 +87,7 @@ pub fn name(register: Register) -> &'static str {
     }
 }
 
-/// The channel's letter.
+/// Returns the letter of a channel.
 pub fn channel_name(channel: usize) -> &'static str {
     ["r", "g", "b", "a"][channel]
 }

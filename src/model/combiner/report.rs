@@ -1,4 +1,4 @@
-//! What a general stage tells an observer. Nothing here computes a value that is used.
+//! The reports of a general stage to an observer. Nothing here computes a value that is used.
 
 use super::direct::Ruled;
 use super::general::{PlannedPortion, PlannedStage, StageValues, source_channel};
@@ -12,10 +12,10 @@ use crate::trace::{Observer, Step, plain, report};
 const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
 const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
 
-/// Everything that a portion computes, on numbers.
+/// All values that a portion computes, on numbers.
 type Values<L, const N: usize> = super::general::Values<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, N>;
 
-/// A stage, in the order of a trace: what it reads, what it computes, what it writes.
+/// Reports a stage in the order of a trace: what it reads, computes and writes.
 pub(super) fn stage<L: Lane, O: Observer>(
     stage: &PlannedStage,
     mux_select: MuxSelect,
@@ -40,7 +40,7 @@ pub(super) fn stage<L: Lane, O: Observer>(
     alpha.writes(&stage.alpha, 3, &values.alpha, observer);
 }
 
-/// Names of one portion of one stage.
+/// The reports of one portion of a stage, with names for its steps.
 struct StageReport {
     block: String,
     prefix: String,
@@ -78,7 +78,7 @@ impl StageReport {
         );
     }
 
-    /// The inputs of AB (0) or CD (1), as far as they are read.
+    /// Reports the inputs of AB (0) or CD (1) that are read.
     fn inputs<L: Lane, O: Observer>(
         &self,
         planned: &PlannedPortion,
@@ -104,7 +104,7 @@ impl StageReport {
         }
     }
 
-    /// Products, third output, and the way of each output to its register.
+    /// Reports products, the third output, and how each output becomes a register.
     fn values<L: Lane, O: Observer, const N: usize>(
         &self,
         planned: &PlannedPortion,
@@ -139,7 +139,7 @@ impl StageReport {
         }
     }
 
-    /// Channels of the inputs of a product that are read.
+    /// Returns the channels of the inputs of a product that are read.
     fn read_channels(&self, planned: &PlannedPortion, product: usize) -> u8 {
         let dot = [planned.portion.ab_dot_product, planned.portion.cd_dot_product][product];
         match planned.product_channels(product) {
@@ -149,7 +149,7 @@ impl StageReport {
         }
     }
 
-    /// `rounding` is given for a dot product.
+    /// Reports the needed channels of a product. `rounding` is present for a dot product.
     fn products<L: Lane, O: Observer, const N: usize>(
         &self,
         product: usize,
@@ -176,7 +176,7 @@ impl StageReport {
         }
     }
 
-    /// `selected` is given for a mux: whether CD was taken.
+    /// Reports the third output. `selected` is present for a mux, and says whether CD was taken.
     fn third<L: Lane, O: Observer>(
         &self,
         channel: usize,
@@ -202,7 +202,7 @@ impl StageReport {
         observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
     }
 
-    /// Rounding, bias, scale and saturation of output `n` (AB, CD, sum) in `channel`.
+    /// Reports rounding, bias, scale and saturation of output `n` (AB, CD, sum) in `channel`.
     fn output<L: Lane, O: Observer>(
         &self,
         portion: &Portion,
@@ -248,7 +248,7 @@ impl StageReport {
         step("output", "NUM-3", saturate, value, false);
     }
 
-    /// What the outputs write.
+    /// Reports what the outputs write.
     fn writes<L: Lane, O: Observer, const N: usize>(
         &self,
         planned: &PlannedPortion,

@@ -1,11 +1,11 @@
-//! Lanes for loops over blocks of pixels, 16 bits of storage each. Every formula that is particular to a lane stands here with
-//! its exhaustive test; the rules' text does not change.
+//! Lanes with 16 bits of storage, for loops over blocks of pixels. Every formula that is particular to a lane is in
+//! this file, with its exhaustive test; the text of the rules does not change.
 
 use super::{Blend, Factor, Register, Sum};
 use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
-/// Range: every sum that a weight rule forms is at most 255 * 256 + 128.
+/// Every sum that a weight rule forms is at most 255 * 256 + 128, so it fits.
 impl Blend for u16 {
     type Weight = u16;
     const WHOLE: u16 = 256;
@@ -19,7 +19,8 @@ impl Blend for u16 {
     }
 }
 
-/// Two 8-bit channels in one word, 16 bits apart: one multiplication serves both. The range of `u16` holds for each, so no carry crosses.
+/// Two 8-bit channels in one word, 16 bits apart, so that one multiplication serves both. Sums stay within the range of
+/// `u16` in each half, so no carry crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swar2(pub u32);
 
@@ -44,13 +45,13 @@ impl Blend for Swar2 {
     }
 }
 
-/// NUM-2 without a division: floor((2n + 255) / 510) for |n| <= 400 000; two dot products need 393 216.
+/// NUM-2 without a division: returns floor((2n + 255) / 510) for |n| <= 400 000. Two dot products need 393 216.
 #[inline(always)]
 fn rnd255(n: i32) -> i32 {
     (n * 257 + (n >> 8) + 32646) >> 16
 }
 
-/// NUM-2 of a product of two bytes, within 16 bits.
+/// NUM-2 of a product of two bytes, computed in 16 bits.
 #[inline(always)]
 pub fn byte_product(a: i16, b: i16) -> i16 {
     let t = a as u16 * b as u16 + 128;
@@ -110,9 +111,10 @@ impl Sum for i32 {
     }
 }
 
-/// An `i16` register whose expanded factors stay halved, so that their products stay in 16 bits.
+/// An `i16` register whose expanded factors stay halved, so that their products fit into 16 bits.
 ///
-/// Valid where the result is read through an unsigned mapping only: a negative sum comes out as some value that is not positive.
+/// Valid only where an unsigned mapping reads the result, because a negative sum becomes some value that is not
+/// positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Narrow(pub i16);
 
@@ -120,13 +122,14 @@ pub struct Narrow(pub i16);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Halved(i16);
 
-/// A quarter of a sum of products, saturated; 16256 and more is a full register, so the saturation cannot be seen.
+/// A quarter of a sum of products, saturated. Sums of 16256 and more are a full register, so the saturation is
+/// invisible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quarter(i16);
 
 impl Sum for Quarter {
     type Register = Narrow;
-    /// floor((8m + 255) / 510) on 0..=16256; negative sums come out as 0, larger ones as 255.
+    /// Returns floor((8m + 255) / 510) for m in 0..=16256. Negative sums become 0, larger ones 255.
     #[inline(always)]
     fn rounded(self) -> Narrow {
         let m = self.0.clamp(0, 16256) as u16 + 32;
@@ -143,7 +146,7 @@ impl Factor for Halved {
     }
 }
 
-/// A product of [`Narrow`] registers that are not expanded.
+/// A sum of products of [`Narrow`] registers that are not expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NarrowSum(i32);
 
@@ -219,7 +222,7 @@ mod tests {
         }
     }
 
-    /// Every pair of bytes and every weight in one half, their complements in the other.
+    /// Tests every pair of bytes and every weight in one half, with the complements of the bytes in the other.
     #[test]
     fn two_channels_do_not_meet() {
         let step = |a: Swar2, b: Swar2, w: u32| (a.times(Swar2::WHOLE - w) + b.times(w)).round8();

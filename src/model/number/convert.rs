@@ -1,6 +1,6 @@
-//! Entry of floats: a single-precision number is taken apart into integers once, and no float arithmetic follows.
+//! Conversion of floats: a single-precision number is split into integers once, and no float arithmetic follows.
 
-/// f = mantissa * 2^exponent, exactly. `f` is finite.
+/// Returns (mantissa, exponent) with `f` = mantissa * 2^exponent exactly. `f` must be finite.
 #[inline(always)]
 pub fn split(f: f32) -> (i64, i32) {
     let bits = f.to_bits();
@@ -10,13 +10,13 @@ pub fn split(f: f32) -> (i64, i32) {
     (if bits >> 31 == 1 { -mantissa } else { mantissa }, exponent)
 }
 
-/// floor(n * 2^exponent). The result must fit; shifts to the right may be of any size.
+/// Returns floor(n * 2^exponent). The result must fit; a shift to the right may have any size.
 #[inline]
 pub fn shift(n: i128, exponent: i32) -> i128 {
     if exponent >= 0 { n << exponent.min(126) } else { n >> (-exponent).min(127) }
 }
 
-/// floor(n by 2^exponent), where the result fits: without 128 bits as long as possible.
+/// Returns floor(n * by * 2^exponent), which must fit. Avoids 128-bit arithmetic where it can.
 #[inline(always)]
 pub fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
     match n.checked_mul(by) {
@@ -25,14 +25,15 @@ pub fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
     }
 }
 
-/// Rare: out of the way of the rest.
+/// The rare case of [`scaled`], kept out of line.
 #[cold]
 fn scaled_in_128_bits(n: i64, by: i64, exponent: i32) -> i64 {
     shift(i128::from(n) * i128::from(by), exponent) as i64
 }
 
-/// Block floating point: the largest magnitude keeps exactly `keep` bits, at most 62, the others share its exponent, which is returned;
-/// floors.
+/// Converts numbers, each a mantissa and an exponent, to block floating point. The number of the largest magnitude
+/// keeps exactly `keep` bits (at most 62), and the others are floored to the same exponent. Returns the mantissas and
+/// that exponent.
 #[inline(always)]
 pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
     let mut top = i32::MIN;
@@ -44,15 +45,16 @@ pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i
     let mut aligned = [0; N];
     for (out, (n, exponent)) in aligned.iter_mut().zip(values) {
         let up = exponent + keep - top;
-        // Nothing that is not 0 goes up by more than leaves it within `keep` bits.
+        // A number other than 0 that is shifted up stays within `keep` bits.
         *out = if up >= 0 { n << up.min(63) } else { n >> (-up).min(63) };
     }
     (aligned, top - keep)
 }
 
-/// NUM-4: a float vertex colour as a byte: clamped to 0..1, truncated to 14 significant bits, floor(255 c + 1/2).
+/// NUM-4: converts a channel of a float vertex colour to a byte: clamped to 0..1, truncated to 14 significant bits,
+/// floor(255 c + 1/2).
 ///
-/// NaN counts as 0 (a checked scene has none).
+/// NaN counts as 0; a valid scene has none.
 pub fn vertex_color(c: f32) -> u8 {
     if c.is_nan() || c <= 0.0 {
         return 0;
@@ -61,27 +63,28 @@ pub fn vertex_color(c: f32) -> u8 {
         return 255;
     }
     let (mantissa, exponent) = split(c);
-    // 24 significant bits, or fewer for subnormals, which are far below half a step anyway.
+    // 24 significant bits. Subnormals have fewer, but they are far below half a step anyway.
     let truncated = mantissa & !0x3ff;
     // floor(255 t + 1/2) = floor((510 t + 1) / 2), with t = truncated * 2^exponent.
     let doubled = shift(i128::from(510 * truncated), exponent);
     ((doubled + 1) >> 1) as u8
 }
 
-/// NUM-6: a factor as floor(4096 f), 0..=4096, to a byte.
+/// NUM-6: converts a factor, given as floor(4096 f) in 0..=4096, to a byte.
 #[inline]
 pub fn factor_byte(v: i64) -> u8 {
     debug_assert!((0..=4096).contains(&v));
     factor(v as i32) as u8
 }
 
-/// The same in 32 bits.
+/// Like [`factor_byte`], in 32 bits.
 #[inline(always)]
 pub fn factor(v: i32) -> i32 {
     ((v - (v >> 8)) >> 4) & 255
 }
 
-/// NUM-0: a constant given as a float: floor(255 c + 1/2) after clamping to 0..1, computed exactly. NaN counts as 0.
+/// NUM-0: converts a float constant to a byte: floor(255 c + 1/2) after clamping to 0..1, computed exactly. NaN counts
+/// as 0.
 pub fn constant(c: f32) -> u8 {
     if c.is_nan() || c <= 0.0 {
         return 0;
@@ -93,7 +96,7 @@ pub fn constant(c: f32) -> u8 {
     ((shift(i128::from(510 * mantissa), exponent) + 1) >> 1) as u8
 }
 
-/// A depth in 0..1 in units of the buffer's last bit: floor(z (2^bits - 1)), clamped (DEP-1). NaN counts as 0.
+/// DEP-1: converts a depth in 0..1 to steps of the buffer's last bit: floor(z (2^bits - 1)), clamped. NaN counts as 0.
 pub fn depth(z: f32, bits: u32) -> i64 {
     let full = (1_i64 << bits) - 1;
     if z.is_nan() || z <= 0.0 {
@@ -106,14 +109,14 @@ pub fn depth(z: f32, bits: u32) -> i64 {
     scaled(mantissa, full, exponent)
 }
 
-/// RAS-1: 1/16 pixel, truncated toward zero.
+/// RAS-1: converts pixels to 1/16 pixel, truncated toward zero.
 pub fn snap(x: f32) -> i64 {
     let (mantissa, exponent) = split(x);
     let n = scaled(mantissa.abs(), 16, exponent);
     if mantissa < 0 { -n } else { n }
 }
 
-/// INT-6 on nv10: w cut to 16 significant bits.
+/// INT-6: cuts w to 16 significant bits, as nv10 does.
 pub fn w_16_bits(w: f32) -> f32 {
     f32::from_bits(w.to_bits() & !0xff)
 }
@@ -122,7 +125,7 @@ pub fn w_16_bits(w: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Without 128 bits the same as with them.
+    /// The narrow path agrees with the computation in 128 bits.
     #[test]
     fn scaled_is_a_shift_of_the_product() {
         let mut random = crate::random::Random::seeded(1);
@@ -144,7 +147,7 @@ mod tests {
 
     #[test]
     fn vertex_colors_as_captured() {
-        // Float attributes and the bytes that the frames show.
+        // Float attributes and the bytes that captured frames show.
         let seen = [
             (0.5, 128),
             (0.1, 25),
@@ -174,7 +177,7 @@ mod tests {
     #[test]
     fn factor_bytes_end_at_255() {
         assert_eq!((factor_byte(0), factor_byte(4096), factor_byte(2048)), (0, 255, 127));
-        // Captured fog factors: 0.25, 0.5, 0.65, 0.9, 0.1.
+        // Captured fog factors of 0.25, 0.5, 0.65, 0.9 and 0.1.
         for (f, byte) in [(0.25_f32, 63), (0.5, 127), (0.65, 165), (0.9, 229), (0.1, 25)] {
             let (m, e) = split(f);
             assert_eq!(factor_byte(shift(i128::from(m), e + 12) as i64), byte, "{f}");

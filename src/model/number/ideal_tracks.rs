@@ -1,21 +1,23 @@
-//! Several ideals at once, which tell the errors of the rules apart.
+//! Several ideals side by side, which attribute errors to the rules that cause them.
 #![allow(clippy::float_arithmetic, reason = "real-number references; they never feed a stored byte")]
 
 use super::{Blend, Factor, Ideal, Lane, Part, Register, Sum};
 use crate::state::{Named, RegisterFloor};
 use std::ops::{Add, Sub};
 
-/// Number of [`IdealTracks`] that tell everything apart: the ideal, and one for each part up to which errors are let in.
+/// Number of [`IdealTracks`] that attribute all errors: one for the ideal, and one for each part.
 pub const IDEAL_TRACKS: usize = 1 + Part::ALL.len();
 
 /// Real-number evaluations side by side, each in steps of 1/255.
 ///
 /// * Track 0 is the ideal.
-/// * Track 1 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
-///   The differences of neighbours add up to the whole error.
-/// * The last track therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
+/// Track 1 + k receives the errors that the definition makes in the rules of the first k + 1 [`Part`]s and is ideal
+/// otherwise.
+///   The differences between neighbouring tracks add up to the whole error.
+/// The last track therefore starts from the definition's integers at each rule, so that its error is the error of that
+/// rule alone.
 ///
-/// `IdealTracks<1>` is the last one alone.
+/// `IdealTracks<1>` consists of the last track alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IdealTracks<const N: usize>(pub [f64; N]);
 
@@ -38,7 +40,7 @@ impl<const N: usize> IdealTracks<N> {
 }
 
 impl IdealTracks<IDEAL_TRACKS> {
-    /// What each part adds to the error of a value, in the order of `Part::ALL`.
+    /// Returns the error that each part adds to the value, in the order of `Part::ALL`.
     pub fn parts(self) -> [f64; Part::ALL.len()] {
         std::array::from_fn(|n| self.0[n + 1] - self.0[n])
     }
@@ -65,7 +67,7 @@ impl<const N: usize> Ideal for IdealTracks<N> {
     #[inline(always)]
     fn remembered(self, fixed: i32, signed: bool) -> Self {
         let remembered = self.map(|memory| memory.remembered(fixed, signed));
-        // What the store lost of a signed channel shows here, before its unit changes.
+        // The error of storing a signed channel appears here, before its unit changes.
         if signed { remembered.absorb(f64::from(fixed) * 255.0 / 128.0, Part::Store).0 } else { remembered }
     }
 }

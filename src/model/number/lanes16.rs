@@ -1,24 +1,26 @@
-//! Sixteen of the definition side by side: every operation is that of the scalar lane, on each of them, but that a sum is rounded without a division.
+//! Sixteen numbers of the definition side by side. Every operation is that of the scalar lane on each of them, except
+//! that sums are rounded without a division.
 
 use super::{Blend, Factor, Halves, Lane, Quarters, Register, Sum};
 use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
-/// Numbers side by side in [`Lanes16`].
+/// Number of values in a [`Lanes16`].
 pub const LANES: usize = 16;
 
-/// A value of each of sixteen evaluations that take the same decisions: [`decision`](Lane::decision) and what observers see is that of the first.
+/// The values of sixteen evaluations that take the same decisions. [`decision`](Lane::decision) and observers use the
+/// first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lanes16<T>(pub [T; LANES]);
 
 impl<T: Copy> Lanes16<T> {
-    /// Sixteen lanes that hold the same value.
+    /// Returns sixteen lanes that hold `value`.
     #[inline(always)]
     pub fn all(value: T) -> Lanes16<T> {
         Lanes16([value; LANES])
     }
 
-    // Plain loops: they become vector instructions.
+    // These plain loops compile to vector instructions.
     #[inline(always)]
     fn map<U: Copy>(self, f: impl Fn(T) -> U) -> Lanes16<U> {
         let mut out = [f(self.0[0]); LANES];
@@ -90,7 +92,7 @@ impl Factor for Lanes16<Halves> {
     }
 }
 
-/// NUM-2 without a division, for |n| <= 400 000 times four: floor(m / 255) of m = floor((q + 510) / 4).
+/// NUM-2 without a division, for quarters of |n| <= 400 000: floor(m / 255) of m = floor((q + 510) / 4).
 #[inline(always)]
 fn rounded(q: Quarters) -> i32 {
     let m = ((q.0 + 510) >> 2) - 127;
@@ -184,7 +186,7 @@ impl Lane for Lanes16<i32> {
 mod tests {
     use super::*;
 
-    /// Whole products and those with half a step, as far as two dot products reach.
+    /// Tests whole products and those with half a step, up to the largest that two dot products reach.
     #[test]
     fn rounding_without_a_division_is_exact() {
         for q in -1_600_000..=1_600_000_i32 {
@@ -192,7 +194,8 @@ mod tests {
         }
     }
 
-    /// A few numbers through every operation that a rule of combiners or blending uses: as the definition has them, one by one.
+    /// Applies every operation that a rule of combiners or blending uses to some numbers, and compares with the scalar
+    /// lane.
     #[test]
     fn each_is_the_definition() {
         let numbers: Lanes16<i32> = Lanes16(std::array::from_fn(|n| n as i32 * 37 - 256));

@@ -1,6 +1,8 @@
-//! Words of the light unit: single-precision numbers of 14 significant bits, with products and sums that truncate (FOG-1, FOG-3).
+//! Words of the light unit: single-precision numbers with 14 significant bits, whose products and sums truncate (FOG-1,
+//! FOG-3).
 //!
-//! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. Denormals do not occur, and a NaN is [`NAN`].
+//! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. There are no denormals, and the only NaN
+//! is [`NAN`].
 
 /// The word of a NaN.
 pub const NAN: u32 = 0x7fff_fc00;
@@ -11,27 +13,29 @@ pub const INFINITY: u32 = 0x7f80_0000;
 /// The word of the largest finite number.
 pub const LARGEST_FINITE: u32 = 0x7f7f_fc00;
 
-/// Bits of a word that stay 0.
+/// The bits of a pattern that are 0 in a word.
 const LOW: u32 = 0x3ff;
 
-/// Significant bits after the first one.
+/// Number of significant bits after the leading one.
 const FRACTION_BITS: u32 = 13;
 
-/// Bits below the last of the largest term that a sum keeps of its terms.
+/// Number of bits that a sum keeps of its terms below the last bit of the largest.
 const GUARD_BITS: u32 = 5;
 
-/// FOG-1: a binary32 pattern as a word, to nearest unless eight ones follow each other in bits 10 to 17. Denormals are 0.
+/// FOG-1: converts a binary32 pattern to a word. Rounds to nearest, except that it truncates if bits 10 to 17 are all
+/// ones. Denormals become 0.
 pub fn word(pattern: u32) -> u32 {
     match pattern >> 23 & 255 {
         0 => 0,
         255 if pattern & 0x7f_ffff != 0 => NAN,
-        // The carry ends in the eight bits.
+        // The carry stops within bits 10 to 17, which are not all ones.
         _ if pattern >> 10 & 255 != 255 => (pattern + 0x200) & !LOW,
         _ => pattern & !LOW,
     }
 }
 
-/// FOG-3: the product of two words, truncated. What is too small is 0, what is too large the largest number.
+/// FOG-3: returns the product of two words, truncated. Too small products become 0, too large ones the largest finite
+/// number.
 pub fn product(a: u32, b: u32) -> u32 {
     if is_nan(a) || is_nan(b) {
         return NAN;
@@ -46,7 +50,8 @@ pub fn product(a: u32, b: u32) -> u32 {
     finite(sign, mantissa(a) * mantissa(b), exponent(a) + exponent(b) - 127 - FRACTION_BITS as i32)
 }
 
-/// FOG-3: the sum of three words. Each is cut five bits below the last of the largest, the sum is exact and then truncated.
+/// FOG-3: returns the sum of three words. Each is cut five bits below the last bit of the largest; the sum is exact and
+/// then truncated.
 pub fn sum(terms: [u32; 3]) -> u32 {
     if terms.iter().any(|term| is_nan(*term)) {
         return NAN;
@@ -66,7 +71,8 @@ pub fn sum(terms: [u32; 3]) -> u32 {
     finite(sign, sum.unsigned_abs(), largest - GUARD_BITS as i32)
 }
 
-/// A magnitude, whose last bit is worth what that of a word with this exponent field is, truncated to a word.
+/// Truncates a magnitude to a word. `exponent` is the exponent field of a word whose last bit has the same weight as
+/// the last bit of `magnitude`.
 fn finite(sign: u32, magnitude: u32, exponent: i32) -> u32 {
     if magnitude == 0 {
         return 0;
@@ -84,7 +90,7 @@ fn exponent(word: u32) -> i32 {
     (word >> 23 & 255) as i32
 }
 
-/// The 14 bits of a mantissa, the leading one included.
+/// Returns the 14 bits of the mantissa, including the leading one.
 fn mantissa(word: u32) -> u32 {
     word >> 10 & ((1 << FRACTION_BITS) - 1) | 1 << FRACTION_BITS
 }
@@ -115,7 +121,7 @@ mod tests {
         assert_eq!(word(0x7f7f_ffff), LARGEST_FINITE);
     }
 
-    /// No word is further than one unit of its last place from its number, and words are their own.
+    /// No word differs from its number by more than one unit of its last place, and words convert to themselves.
     #[test]
     fn words_are_near() {
         for low in 0..1 << 18 {

@@ -1,15 +1,15 @@
-//! The definition and the ideal side by side: every operation is done in both, every decision is the definition's.
+//! The definition and the ideal side by side. Every operation is done in both; every decision is the definition's.
 
 use super::{Blend, Factor, Halves, Ideal, Lane, Part, Quarters, Register, Sum};
 use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
-/// A value as an integer of the definition and as the real number that it stands for.
+/// An integer of the definition, and the real number that it approximates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paired<I = f64, F = i32> {
-    /// The definition's number.
+    /// The integer of the definition.
     pub fixed: F,
-    /// The ideal, in steps of 1/255.
+    /// The real number of the ideal, in steps of 1/255.
     pub ideal: I,
 }
 
@@ -37,7 +37,7 @@ impl<I: Sub<Output = I>, F: Sub<Output = F>> Sub for Paired<I, F> {
     }
 }
 
-/// Methods that act on each half alone.
+/// Defines methods that act on each half alone.
 macro_rules! on_both {
     ($($method:ident($($other:ident: $type:ty)?) -> $result:ty;)+) => { $(
         fn $method(self $(, $other: $type)?) -> $result {

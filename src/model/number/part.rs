@@ -1,19 +1,19 @@
-//! The parts that errors are told apart by.
+//! The parts of the pipeline that errors are attributed to.
 
 use crate::state::named;
 
 named! {
-    /// Where on its way a value picks up an error.
+    /// The part of the pipeline where a value picks up an error.
     pub enum Part {
         /// Vertex colours, weights, coordinates, fog.
         Interpolation = "interpolation",
-        /// Texels and their filter.
+        /// Texels and their filters.
         Filtering = "filtering",
         /// Input mappings (CMB-2 to CMB-5).
         Expansion = "expansion",
         /// Products, sums, bias, scale, saturation, the final combiner.
         Product = "product and sum",
-        /// Blend and store.
+        /// Blending and stores.
         Store = "store",
     }
 }

@@ -1,14 +1,14 @@
-//! The ideal: `f64` in steps of 1/255, nothing rounded. 2x - 1, one half is 127.5, 5-bit channels are v/31. `f32` is the same text in single
-//! precision, from weights and coordinates in double.
+//! The ideal: `f64` in steps of 1/255, without rounding. Expansion is 2x - 1, one half is 127.5, and 5-bit channels are
+//! v/31. `f32` follows the same text in single precision, from weights and coordinates in double precision.
 #![allow(clippy::float_arithmetic, reason = "this lane is the real-number reference; it never feeds a stored byte")]
 
 use super::{Blend, Factor, Ideal, Lane, Part, Register, Sum};
 use crate::state::RegisterFloor;
 
-/// The ideal's depths are kept in parts of the buffer's last bit.
+/// Scale of the ideal's depths, which are kept in fractions of the buffer's last bit.
 pub(super) const DEPTH_SCALE: f64 = 65536.0;
 
-/// The lane of a type of real numbers.
+/// Implements the lane of a floating-point type.
 macro_rules! real_lane {
     ($real:ident) => {
         impl Blend for $real {

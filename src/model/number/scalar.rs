@@ -1,14 +1,14 @@
-//! The definition: plain `i32`.
+//! The definition: plain `i32` arithmetic.
 
 use super::{Blend, Factor, Lane, Register, Sum};
 use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
-/// A mapped input in halves of a register step. Even, except under CMB-4=127.5, which keeps the half bit.
+/// A mapped input in halves of a register step. It is even, except under CMB-4=127.5, which keeps the half bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Halves(pub i32);
 
-/// A sum of products of [`Halves`]: quarters of 1/65025. |sum of two dot products| stays below 2^23.
+/// A sum of products of [`Halves`], in quarters of 1/65025. The sum of two dot products stays below 2^23 in magnitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quarters(pub i32);
 
@@ -73,7 +73,7 @@ wrapped! {
 
 impl Sum for Quarters {
     type Register = i32;
-    /// floor(n/1020 + 1/2), which is floor((2m + 255)/510) for whole products m = n/4.
+    /// Returns floor(n/1020 + 1/2), which is floor((2m + 255)/510) for whole products m = n/4.
     #[inline(always)]
     fn rounded(self) -> i32 {
         (self.0 + 510).div_euclid(1020)
@@ -162,7 +162,7 @@ impl Lane for i32 {
 mod tests {
     use super::*;
 
-    /// NUM-2 against its statement, over every sum that two dot products can form.
+    /// Compares NUM-2 with its statement for every sum that two dot products can form.
     #[test]
     fn rounding_is_floor_of_2n_plus_255_over_510() {
         for n in -400_000..=400_000_i32 {
@@ -177,7 +177,7 @@ mod tests {
         }
     }
 
-    /// CMB-9: 25, 63, 255 become 13, 32, 128, as captured.
+    /// CMB-9: 25, 63 and 255 become 13, 32 and 128, as captured.
     #[test]
     fn halving_rounds_up() {
         assert_eq!([25, 63, 255, -1, -256].map(Register::halved), [13, 32, 128, 0, -128]);

@@ -1,96 +1,98 @@
-//! The vertices of a draw to window coordinates: what is cut off (RAS-6), and the limits of RAS-0.
+//! Assembly: converts the vertices of a draw to window coordinates, clips its triangles (RAS-6) and checks the limits
+//! of RAS-0.
 
 pub use super::triangles::{Assembled, Triangles};
 use super::{LARGEST_W, SMALLEST_W, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
 
-/// What setting up a triangle takes of a vertex: each number as the chip enters it.
+/// What triangle set-up reads of a vertex, converted as the chip does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Corner {
-    /// x and y, 1/16 pixel (RAS-1); 0 of vertices that no triangle uses.
+    /// x and y in 1/16 pixel (RAS-1). 0 for vertices that no triangle uses.
     pub position: [i32; 2],
-    /// w of the clip coordinates, not 0.
+    /// w of the clip coordinates, not 0. It is unchanged by the projection.
     pub w: f32,
-    /// Primary colour R, G, B, A (NUM-4).
+    /// Primary colour as R, G, B, A bytes (NUM-4).
     pub primary: [u8; 4],
-    /// Secondary colour R, G, B, A (NUM-4).
+    /// Secondary colour as R, G, B, A bytes (NUM-4).
     pub secondary: [u8; 4],
 }
 
-/// A draw's vertices in window coordinates, and its triangles in order.
+/// The vertices of a draw in window coordinates, and its triangles in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
-    /// Window positions; those of vertices that no triangle uses are left as they were. What they have in common with the
-    /// draw's vertices they share.
+    /// The vertices with window positions. Positions of vertices that no triangle uses may be left unchanged. Columns
+    /// that equal those of the draw's vertices are shared with them.
     pub vertices: Vertices,
-    /// The same vertices as triangles enter them.
+    /// One corner for each vertex.
     pub corners: Vec<Corner>,
-    /// Triangles in order.
+    /// The triangles in the order in which they are drawn.
     pub triangles: Triangles,
-    /// What of them has been cut off.
+    /// The result of clipping.
     pub clipping: Clipping,
 }
 
-/// What clipping has done to the triangles of a draw (RAS-6).
+/// What clipping did to the triangles of a draw (RAS-6).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Clipping {
-    /// Planes that something was cut off at: [bits](project::ClipPlane::bit).
+    /// Set of the planes that cut something off, as [bits](project::ClipPlane::bit).
     pub planes: u8,
-    /// Triangles of which nothing is left.
+    /// Number of triangles of which nothing is left.
     pub removed: usize,
-    /// Triangles that were cut.
+    /// Number of triangles that were cut and of which something is left.
     pub cut: usize,
-    /// What they became, in the order of their numbers.
+    /// The pieces of cut triangles, sorted by their numbers.
     pub pieces: Vec<Piece>,
 }
 
 impl Clipping {
-    /// What triangle `number` is a piece of, if it is one.
+    /// Returns the piece that is triangle `number`, or `None` if that triangle was not cut.
     pub fn piece(&self, number: usize) -> Option<&Piece> {
         let at = self.pieces.binary_search_by_key(&number, |piece| piece.number).ok()?;
         self.pieces.get(at)
     }
 }
 
-/// A triangle that was cut off another.
+/// A triangle that is a part of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
     /// Its number among the triangles that are drawn.
     pub number: usize,
-    /// The number of the other, before anything was clipped.
+    /// The number of the original triangle before clipping.
     pub of: usize,
-    /// The planes that cut the other: [bits](project::ClipPlane::bit).
+    /// Set of the planes that cut the original triangle, as [bits](project::ClipPlane::bit).
     pub planes: u8,
 }
 
 impl Assembly {
-    /// The vertices of triangle `number`.
+    /// Returns the vertices of triangle `number`.
     ///
     /// # Panics
-    /// There is no such triangle.
+    /// Panics if there is no such triangle.
     #[inline(always)]
     pub fn triangle(&self, number: usize) -> TriangleVertices<'_> {
         self.vertices.triangle(self.triangles.vertices(number))
     }
 }
 
-/// A vertex outside RAS-0.
+/// A vertex that lies outside the limits of RAS-0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionError {
-    /// Index of the draw's vertex.
+    /// Index of the vertex in the draw.
     pub vertex: usize,
-    /// Where it ended up: window x, y, depth and w.
+    /// Its window x, y, depth and w.
     pub window: [f32; 4],
 }
 
-/// At most this many errors are reported for a draw.
+/// Most errors that are reported for a draw.
 const MAX_ERRORS: usize = 8;
 
-/// Forms the triangles of a draw.
+/// Assembles the triangles of a draw.
 ///
 /// # Errors
-/// The vertices (eight at most) that a triangle uses and whose window position or w lies outside RAS-0, whatever was cut off.
+/// Returns up to eight vertices that a triangle uses and whose window position or w is outside RAS-0 even after
+/// clipping.
 pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     let mut vertices = draw.vertices.clone();
     let triangles = Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex);
@@ -100,7 +102,7 @@ pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     if (0..vertices.len()).all(|v| project::beyond(vertices.position(v), viewport) == 0) {
         let mut window = vertices.clone();
         window.map_positions(|position| project::window(position, viewport));
-        // What leaves the guard band is cut.
+        // Otherwise something leaves the guard band, and has to be cut below.
         if let Ok(assembly) = finish(window, triangles.clone(), Clipping::default(), &[]) {
             return Ok(assembly);
         }
@@ -111,8 +113,8 @@ pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     finish(vertices, triangles, clipping, &blamed)
 }
 
-/// Vertices in window coordinates and their triangles, held against RAS-0. The last vertices were made by clipping: `blamed` are those of the
-/// draw that had them made.
+/// Checks vertices in window coordinates against RAS-0 and completes the assembly. The last vertices were made by
+/// clipping; `blamed` holds, for each of these, the vertex of the draw that is reported in its place.
 fn finish(
     vertices: Vertices,
     triangles: Triangles,
@@ -154,7 +156,7 @@ fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {
     }
 }
 
-/// NUM-4, or the bytes as they are.
+/// Returns the colour as bytes, converting floats by NUM-4.
 fn color_bytes(color: VertexColor) -> [u8; 4] {
     match color {
         VertexColor::Bytes(bytes) => bytes,
@@ -162,16 +164,16 @@ fn color_bytes(color: VertexColor) -> [u8; 4] {
     }
 }
 
-/// RAS-0 for a window position.
+/// Returns whether a window position is within RAS-0.
 fn in_range(p: [f32; 4]) -> bool {
     p.iter().all(|n| n.is_finite()) && project::in_band(p) && (SMALLEST_W..=LARGEST_W).contains(&p[3])
 }
 
-/// So many new vertices are taken apart at a time.
+/// Number of new vertices that are converted to columns at a time.
 const CHUNK: usize = 4096;
 
-/// Cuts triangles at the planes of RAS-6. Their pieces take their place; new vertices are appended, and of each is told which vertex of
-/// its triangle lies outside.
+/// Clips triangles at the planes of RAS-6. Pieces replace the triangles that are cut, and new vertices are appended.
+/// The last part of the result holds, for each new vertex, the vertex of its triangle that lies outside.
 fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> (Triangles, Clipping, Vec<usize>) {
     let lies_inside = |v: usize| {
         let position = vertices.position(v);
@@ -189,7 +191,7 @@ fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> 
         let (polygon, planes) = project::clip(&vertices.triangle(triangle.vertices).all(), viewport);
         clipping.planes |= planes;
         if planes == 0 {
-            // Not a number: it is refused.
+            // A position is not a number, which is refused later.
             kept.push(triangle);
         } else if polygon.is_empty() {
             clipping.removed += 1;

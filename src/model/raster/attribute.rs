@@ -1,31 +1,32 @@
-//! A number of the vertices interpolated as such: texture coordinates where they are numbers and not places in an image, and the fog
-//! coordinate.
+//! Numbers of the vertices that are interpolated as numbers rather than as texel positions: some texture coordinates,
+//! and the fog coordinate.
 //!
-//! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An [`Attribute`] keeps
-//! P x of the three vertices, a [`Quotient`] the ratio at a sample; rounding it to a float or to steps sees the exact remainder.
+//! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An
+//! [`Attribute`] holds P x of the three vertices, a [`Quotient`] the ratio at a sample. Rounding the ratio to a float
+//! or to steps uses the exact remainder.
 
 use super::depth::Binary;
 use super::interpolate::{Floored, Sample};
 use super::setup::Triangle;
 use crate::number::convert::{align, shift, split};
 
-/// Bits of the largest g. The edge functions stay below 2^38 at every pixel of RAS-0's window, so sums stay below 2^102.
+/// Bits of the largest g. Edge functions stay below 2^38 at every pixel within RAS-0, so sums stay below 2^102.
 const ATTRIBUTE_BITS: i32 = 62;
 
-/// Significant bits of a single-precision number.
+/// Number of significant bits of a single-precision number.
 const SIGNIFICANT: i32 = 24;
 
-/// Exponent of the last bit of the smallest single-precision numbers.
+/// Exponent of the last bit of a subnormal single-precision number.
 const SMALLEST_EXPONENT: i32 = -149;
 
-/// A linear function of the vertices over the triangle: its numerator at a sample is 2^exponent sum g_k E_k.
+/// The numerator of a linear function over a triangle. At a sample it is 2^exponent sum g_k E_k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attribute {
     g: [i64; 3],
     exponent: i32,
 }
 
-/// numerator / denominator * 2^exponent, the denominator positive.
+/// The number numerator / denominator * 2^exponent, with a positive denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
     numerator: i128,
@@ -34,15 +35,15 @@ pub struct Quotient {
 }
 
 impl Attribute {
-    /// g and the exponent, for observers.
+    /// Returns g and the exponent, for observers.
     pub fn numbers(&self) -> ([i64; 3], i32) {
         (self.g, self.exponent)
     }
 }
 
 impl Triangle {
-    /// P_k x_k of three finite numbers, exactly, unless they differ so much that the smaller ones fall below 2^-62 of the largest:
-    /// those are floored there (INT-4).
+    /// Returns the attribute with P_k x_k of three finite numbers. The products are exact, unless they differ so much
+    /// that the smaller ones fall below 2^-62 of the largest; those are floored there (INT-4).
     pub fn attribute(&self, x: [f32; 3]) -> Attribute {
         let products: [(i64, i32); 3] = std::array::from_fn(|k| {
             let (mantissa, exponent) = split(x[k]);
@@ -54,7 +55,8 @@ impl Triangle {
 }
 
 impl Sample<'_> {
-    /// The value here. 0 where D is not positive: at a pixel outside the triangle and beyond its horizon.
+    /// Returns the value of `attribute` at the sample. It is 0 if D is not positive, which happens only outside the
+    /// triangle, beyond its horizon.
     pub fn attribute(&self, attribute: &Attribute) -> Quotient {
         if self.d <= 0 {
             return Quotient { numerator: 0, denominator: 1, exponent: 0 };
@@ -62,7 +64,7 @@ impl Sample<'_> {
         Quotient { numerator: self.sum(&attribute.g), denominator: self.d, exponent: attribute.exponent }
     }
 
-    /// floor(2^bits times the value), ties as INT-4t has them, at a sample that the triangle covers.
+    /// Returns floor(2^bits * value), lowering ties as INT-4t says. The triangle must cover the sample.
     pub fn steps(&self, attribute: &Attribute, bits: i32) -> Floored {
         let (value, exact) = self.attribute(attribute).floor_steps(bits);
         let lowered = i64::from(self.lowers_tie(exact, || self.shortfall(&attribute.g)));
@@ -71,17 +73,19 @@ impl Sample<'_> {
 }
 
 impl Quotient {
-    /// The value as a binary number of at least 40 bits, cut toward zero; what is not positive is 0.
+    /// Returns the value as a binary number of at least 40 bits, truncated toward zero, or 0 if it is not positive.
     pub fn binary(&self) -> Binary {
         positive_ratio(self.numerator, i128::from(self.denominator), self.exponent)
     }
 
-    /// The same of this value by another of the same sample; by 0 it is larger than everything.
+    /// Returns the ratio of this value to another of the same sample, converted like [`binary`](Self::binary). A
+    /// division by 0 yields more than every depth.
     pub fn binary_ratio(&self, by: &Quotient) -> Binary {
         positive_ratio(self.numerator, by.numerator, self.exponent - by.exponent)
     }
 
-    /// The nearest single-precision number, ties to even; too large ones are infinite, 0 is positive (TSH-4).
+    /// TSH-4: returns the nearest single-precision number, with ties to even. Too large values become infinite, and
+    /// zero is positive.
     pub fn rounded_f32(&self) -> f32 {
         let sign = u32::from(self.numerator < 0) << 31;
         let Some((quotient, exponent, exact)) = self.digits() else { return 0.0 };
@@ -89,23 +93,24 @@ impl Quotient {
         if top > 128 {
             return f32::from_bits(sign | f32::INFINITY.to_bits());
         }
-        // The exponent of the last bit that is kept; at least 40 bits go.
+        // Exponent of the last bit that is kept. At least 40 bits are dropped.
         let last = (top - SIGNIFICANT).max(SMALLEST_EXPONENT);
         let drop = last - exponent;
         if drop > bits(quotient) {
-            // Below half of the smallest number.
+            // Less than half of the smallest number.
             return f32::from_bits(sign);
         }
         let kept = quotient.checked_shr(drop as u32).unwrap_or(0);
         let rest = quotient - kept.checked_shl(drop as u32).unwrap_or(0);
         let half = 1_u128 << (drop - 1);
         let up = rest > half || (rest == half && (!exact || kept & 1 == 1));
-        // The hidden bit of a normal number adds one to the exponent's field, and so does a carry out of the mantissa.
+        // The hidden bit of a normal number adds one to the exponent field, as does a carry out of the mantissa.
         let field = ((last - SMALLEST_EXPONENT) as u32) << 23;
         f32::from_bits(sign | (field + kept as u32 + u32::from(up)))
     }
 
-    /// The first 24 significant bits, toward zero: (m, e) for m 2^e, 2^23 <= |m| < 2^24. 0 is (0, 0). (FOG-2)
+    /// FOG-2: returns the first 24 significant bits, truncated toward zero, as (m, e) for m 2^e with 2^23 <= |m| <
+    /// 2^24. Zero is (0, 0).
     pub fn truncated_24(&self) -> (i64, i32) {
         let Some((quotient, exponent, _)) = self.digits() else { return (0, 0) };
         let drop = bits(quotient) - SIGNIFICANT;
@@ -113,14 +118,14 @@ impl Quotient {
         (if self.numerator < 0 { -mantissa } else { mantissa }, exponent + drop)
     }
 
-    /// floor(value * 2^bits), limited to what 64 bits hold, and whether it is the value, with room for one below it.
+    /// Returns floor(value * 2^bits), limited to 64 bits, and whether it is exact and one less would also fit.
     pub fn floor_steps(&self, bits: i32) -> (i64, bool) {
         let (mut numerator, mut exponent) = (self.numerator, self.exponent + bits);
         if numerator == 0 {
             return (0, true);
         }
         if exponent > 0 {
-            // What leaves 127 bits is more than 2^64 times the denominator.
+            // A number that does not fit into 127 bits is more than 2^64 times the denominator.
             if exponent > 126 || numerator.unsigned_abs() >= 1 << (126 - exponent) {
                 return (if numerator < 0 { i64::MIN } else { i64::MAX }, false);
             }
@@ -134,7 +139,7 @@ impl Quotient {
         (limited as i64, exact && limited > i128::from(i64::MIN))
     }
 
-    /// floor(value * scale), limited to what 64 bits hold.
+    /// Returns floor(value * scale), limited to 64 bits.
     pub fn floor_times(&self, scale: i64) -> i64 {
         let saturated = if (self.numerator < 0) == (scale < 0) { i64::MAX } else { i64::MIN };
         if self.numerator == 0 || scale == 0 {
@@ -142,7 +147,7 @@ impl Quotient {
         }
         let (mut numerator, mut exponent) = (self.numerator, self.exponent);
         if exponent > 0 {
-            // What leaves 127 bits is more than 2^65 times the denominator.
+            // A number that does not fit into 127 bits is more than 2^65 times the denominator.
             if exponent > 126 || numerator.unsigned_abs() >= 1 << (126 - exponent) {
                 return saturated;
             }
@@ -150,7 +155,7 @@ impl Quotient {
         }
         let (scale, denominator) = (i128::from(scale), i128::from(self.denominator));
         let (whole, rest) = (numerator.div_euclid(denominator), numerator.rem_euclid(denominator));
-        // numerator scale / denominator, floored, as high 2^63 + low: more than 128 bits may be needed.
+        // floor(numerator * scale / denominator) as high * 2^63 + low, because it may need more than 128 bits.
         let low = (whole & i128::from(i64::MAX)) * scale + (rest * scale).div_euclid(denominator);
         let high = (whole >> 63).saturating_mul(scale);
         let floor = if exponent <= -63 {
@@ -164,7 +169,8 @@ impl Quotient {
         floor.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
     }
 
-    /// At least 64 bits of the magnitude, truncated, their exponent, and whether that is all. `None`: it is zero.
+    /// Returns at least 64 bits of the magnitude, truncated, their exponent, and whether they are exact. Returns `None`
+    /// for zero.
     fn digits(&self) -> Option<(u128, i32, bool)> {
         let magnitude = self.numerator.unsigned_abs();
         if magnitude == 0 {
@@ -176,7 +182,8 @@ impl Quotient {
     }
 }
 
-/// n / d * 2^exponent, cut to 40 bits or some more; 0 where it is not positive. By 0 it is more than every depth.
+/// Returns n / d * 2^exponent, truncated to 40 bits or some more, or 0 if it is not positive. A positive n divided by 0
+/// yields more than every depth.
 fn positive_ratio(n: i128, d: i128, exponent: i32) -> Binary {
     const KEPT: i32 = 40;
     if n == 0 || d == 0 || (n < 0) != (d < 0) {
@@ -209,12 +216,13 @@ mod tests {
         Quotient { numerator, denominator, exponent }
     }
 
-    /// Finite floats of all sizes.
+    /// Generates finite floats of all sizes.
     fn finite() -> impl Strategy<Value = f32> {
         any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |f| f.is_finite())
     }
 
-    /// -1, 0 or 1: how `magnitude` compares with numerator / denominator * 2^exponent, whose own is exact. All small enough for 127 bits.
+    /// Compares `magnitude`, a mantissa and an exponent, with numerator / denominator * 2^exponent. All numbers must
+    /// fit into 127 bits.
     fn compare(magnitude: (u128, i32), numerator: u128, denominator: u128, exponent: i32) -> std::cmp::Ordering {
         let (left, right) = (magnitude.0 * denominator, numerator);
         let difference = magnitude.1 - exponent;
@@ -299,7 +307,8 @@ mod tests {
 
         #[test]
         fn floors_of_large_numerators(n in -(1_i128 << 101)..1 << 101, d in 1_i64..1 << 62, scale in 1_i64..1 << 62, e in -300..200) {
-            // A step less and a step more decide it: value * scale * d = n * scale * 2^e, halved on both sides where it is too large.
+            // Halving the numerator's scale and doubling the numerator changes nothing; halving the value halves the
+            // floor.
             let value = quotient(n, d, e).floor_times(scale);
             let other = quotient(n * 2, d, e - 1).floor_times(scale);
             prop_assert_eq!(value, other);

@@ -1,29 +1,29 @@
-//! Depth: what a pixel's is (DEP-1), its offset (DEP-5), its range (DEP-4), and the word that is stored (DEP-3).
+//! The depth of a pixel (DEP-1), its offset (DEP-5), its range (DEP-4), and the word that is stored (DEP-3).
 //!
-//! On the way a depth is a [`Binary`]: nothing is rounded but where a rule says so.
+//! Until it is stored a depth is a [`Binary`], which is rounded only where a rule says so.
 
 use super::interpolate::most_dominant;
 use super::setup::Triangle;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
 
-/// `mantissa` 2^`exponent`.
+/// The number `mantissa` * 2^`exponent`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Binary {
-    /// At most 62 bits and a sign.
+    /// Signed mantissa of at most 62 bits.
     pub mantissa: i64,
-    /// The power of two by which it is multiplied.
+    /// Power of two that scales the mantissa.
     pub exponent: i32,
 }
 
 impl Binary {
-    /// A finite number.
+    /// Converts a finite number exactly.
     pub fn new(n: f32) -> Binary {
         let (mantissa, exponent) = split(n);
         Binary { mantissa, exponent }
     }
 
-    /// The sum: exact unless it would need more than 61 bits, then floored.
+    /// Returns the sum. It is exact unless it would need more than 61 bits; then it is floored.
     fn plus(self, other: Binary) -> Binary {
         let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
         Binary { mantissa: a + b, exponent }
@@ -36,19 +36,20 @@ impl Binary {
     }
 }
 
-/// The depths of a triangle's vertices, in steps of the buffer, and what is added to those of its pixels.
+/// The depths of a triangle's vertices in steps of the buffer, and the offset of its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthPlane {
     /// z of the vertices, finite.
     pub z: [f32; 3],
-    /// w of the vertices, where the buffer holds w (DEP-6).
+    /// w of the vertices, if the buffer holds w (DEP-6).
     pub w: Option<[f32; 3]>,
-    /// DEP-5.
+    /// Offset that is added to every depth (DEP-5).
     pub offset: Binary,
 }
 
 impl DepthPlane {
-    /// That of a triangle whose vertices have these z and w, as `test` reads them for a buffer of `format`. `None`: the triangle is dropped (DEP-4).
+    /// Returns the plane of a triangle whose vertices have these z and w, as `test` reads them for a buffer of
+    /// `format`. Returns `None` if the triangle is dropped (DEP-4).
     #[inline(always)]
     pub fn new(
         test: &DepthTest,
@@ -57,7 +58,7 @@ impl DepthPlane {
         (z, w): ([f32; 3], [f32; 3]),
     ) -> Option<DepthPlane> {
         let z = match test.vertex_depths {
-            // Whole numbers of 24 bits: binary32 holds them.
+            // Integers of 24 bits are exact in binary32.
             VertexDepths::Fractions if !format.is_float() => z.map(|z| fraction(z, format.bits()) as f32),
             _ => z,
         };
@@ -74,7 +75,7 @@ impl DepthPlane {
         Some(DepthPlane { z, w: test.w_buffer.then_some(w), offset })
     }
 
-    /// DEP-1, DEP-5, DEP-6: the depth where the edge functions are `e`.
+    /// DEP-1, DEP-5, DEP-6: returns the depth where the edge functions are `e`.
     #[inline]
     pub fn at(&self, e: [i64; 3]) -> Binary {
         let depth = match self.w {
@@ -85,7 +86,7 @@ impl DepthPlane {
     }
 }
 
-/// DEP-4: a depth within the range. `None`: the pixel is dropped.
+/// DEP-4: limits a depth to the range. Returns `None` if the pixel is dropped.
 #[inline]
 pub fn ranged(range: Option<&DepthRange>, depth: Binary) -> Option<Binary> {
     let Some(range) = range else { return Some(depth) };
@@ -97,7 +98,7 @@ pub fn ranged(range: Option<&DepthRange>, depth: Binary) -> Option<Binary> {
     }
 }
 
-/// DEP-3: the word that stands for a depth in steps.
+/// DEP-3: returns the stored word of a depth in steps.
 #[inline]
 pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
     if mantissa <= 0 {
@@ -114,7 +115,7 @@ pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
             ((mantissa >> (-exponent).min(63)) as u32).min(full)
         };
     }
-    // The pattern of binary32, cut to as many bits as the format has.
+    // The pattern of binary32, truncated to the bits of the format.
     let (kept, bias) = match format {
         DepthFormat::Z16F => (12, 7),
         _ => (16, 127),
@@ -129,7 +130,7 @@ pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
     }
 }
 
-/// DEP-5: bias and slope of a triangle.
+/// DEP-5: returns the offset of a triangle from bias and slope.
 #[cold]
 fn offset(test: &DepthTest, triangle: &Triangle, z: [f32; 3]) -> Binary {
     let PolygonOffset { bias, factor } = test.offset;
@@ -141,7 +142,7 @@ fn offset(test: &DepthTest, triangle: &Triangle, z: [f32; 3]) -> Binary {
     Binary::new(bias).plus(scaled)
 }
 
-/// The larger of the magnitudes of dz/dx and dz/dy, cut at the 29th bit below that of the largest z.
+/// Returns the larger magnitude of dz/dx and dz/dy, truncated at the 29th bit from the top of the largest z.
 pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
     const KEPT: i32 = 62;
     let (aligned, exponent) = align(z.map(split), KEPT);
@@ -149,28 +150,28 @@ pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
         let sum: i128 = (0..3).map(|k| i128::from(edges[k]) * i128::from(aligned[k])).sum();
         sum.abs()
     };
-    // The largest z has its first bit at KEPT - 1 of `aligned`; of what stands below it 28 more count.
+    // The largest z has its leading bit at KEPT - 1 of `aligned`, and 28 bits below it count.
     let dropped = KEPT - 29;
     let steepest = along(triangle.a).max(along(triangle.b));
     let mantissa = steepest / (i128::from(triangle.doubled_area) << dropped);
     Binary { mantissa: mantissa as i64, exponent: exponent + dropped }
 }
 
-/// Bits that count of the largest edge number and of the largest term of a depth (DEP-1).
+/// Significant bits of the largest edge number, and of the largest term of a depth (DEP-1).
 const DEPTH_BITS: i32 = 29;
 
-/// DEP-1's sum, reciprocal and weights of edge numbers that are cut to 24 bits.
+/// DEP-1: sum, reciprocal and weights of edge numbers that are truncated to 24 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DepthWeights {
     edges: [i64; 3],
-    /// S.
+    /// The sum S.
     pub sum: i64,
-    /// R as a mantissa of 29 bits, and s, by which 2^-s times that is meant.
+    /// The reciprocal R as a mantissa of 29 bits, and the s of its scale 2^-s.
     pub reciprocal: (i64, i32),
 }
 
 impl DepthWeights {
-    /// Those of edge functions.
+    /// Computes the weights of edge functions.
     #[inline]
     pub fn from_edges(e: [i64; 3]) -> DepthWeights {
         DepthWeights::from_cut_edges(e.map(|e| significant(e, 24)))
@@ -179,13 +180,13 @@ impl DepthWeights {
     fn from_cut_edges(edges: [i64; 3]) -> DepthWeights {
         let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
         let dropped = (top - DEPTH_BITS).max(0);
-        // Outside the triangle, where nothing is stored, numbers may be negative.
+        // Outside the triangle, where nothing is stored, edge numbers may be negative.
         let sum = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
         let (mantissa, exponent) = reciprocal(sum);
         DepthWeights { edges, sum: sum << dropped, reciprocal: (mantissa, exponent + dropped) }
     }
 
-    /// b_k: a mantissa of at most 24 bits, and the power of two by which it is multiplied.
+    /// Returns the weight b_k as a mantissa of at most 24 bits and an exponent.
     #[inline]
     pub fn weight(&self, k: usize) -> (i64, i32) {
         let (mantissa, dropped) = first_24(i128::from(self.edges[k]) * i128::from(self.reciprocal.0));
@@ -193,7 +194,7 @@ impl DepthWeights {
     }
 }
 
-/// DEP-1: z_d + sum of b_k (z_k - z_d), each term cut; screen-linear.
+/// DEP-1: returns z_d + sum of b_k (z_k - z_d) with each term truncated. The interpolation is linear on the screen.
 #[inline]
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     let (reference, weights) = (largest_edge(e), DepthWeights::from_edges(e));
@@ -207,7 +208,7 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     sum_of_terms(terms)
 }
 
-/// DEP-6: w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with weights in perspective, each term cut as in DEP-1.
+/// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term truncated as in DEP-1.
 pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     let edges = std::array::from_fn(|k| {
         let (ratio, power) = w_ratio(w[1], w[k]);
@@ -218,7 +219,7 @@ pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     let (edges, _) = align(edges, 61);
     let cut = DepthWeights::from_cut_edges(edges);
     let mut weights = [0, 1, 2].map(|k| cut.weight(k));
-    // INT-3: the dominant weight is what the others leave.
+    // INT-3: the dominant weight is 1 less the others.
     let size = |(mantissa, exponent): (i64, i32)| {
         if mantissa > 0 { 64 - mantissa.leading_zeros() as i32 + exponent } else { i32::MIN }
     };
@@ -237,21 +238,21 @@ pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     sum_of_terms([term(0), split(w[1]), term(2)])
 }
 
-/// DEP-6: w_1/w_k of two positive w, 24 bits and an exponent.
+/// DEP-6: returns w_1/w_k of two positive w as a mantissa of 24 bits and an exponent.
 pub fn w_ratio(first: f32, w: f32) -> (i64, i32) {
     let ((first, power_of_first), (mantissa, power)) = (split(first), split(w));
     let (ratio, dropped) = first_24((i128::from(first) << 62) / i128::from(mantissa.max(1)));
     (ratio, power_of_first - power - 62 + dropped)
 }
 
-/// The first 24 bits of a number, toward zero, and by how many bits it was shifted.
+/// Returns the first 24 bits of a number, truncated toward zero, and the number of bits that were dropped.
 fn first_24(n: i128) -> (i64, i32) {
     let dropped = (128 - n.unsigned_abs().leading_zeros() as i32 - 24).max(0);
     let magnitude = (n.unsigned_abs() >> dropped) as i64;
     (if n < 0 { -magnitude } else { magnitude }, dropped)
 }
 
-/// DEP-1: terms aligned to the largest, cut toward zero at its 29th bit, and added.
+/// DEP-1: aligns terms to the largest, truncates them toward zero at its 29th bit, and adds them.
 fn sum_of_terms(terms: [(i64, i32); 3]) -> Binary {
     let bits = |n: i64| 64 - n.unsigned_abs().leading_zeros() as i32;
     let Some(top) = terms.iter().filter(|term| term.0 != 0).map(|term| bits(term.0) + term.1).max() else {
@@ -259,14 +260,14 @@ fn sum_of_terms(terms: [(i64, i32); 3]) -> Binary {
     };
     let unit = top - DEPTH_BITS;
     let cut = |(n, exponent): (i64, i32)| match exponent - unit {
-        // Zero may have any exponent.
+        // A zero may have any exponent.
         up if up >= 0 => n << up.min(63),
         down => n.signum() * (n.abs() >> (-down).min(63)),
     };
     Binary { mantissa: terms.into_iter().map(cut).sum(), exponent: unit }
 }
 
-/// The difference of two vertex depths in binary32, to nearest; one below 2^-126 is zero.
+/// Returns the difference of two vertex depths in binary32, rounded to nearest. A difference below 2^-126 becomes zero.
 #[allow(clippy::float_arithmetic, reason = "DEP-1 names binary32 for this one difference")]
 #[inline(always)]
 pub fn difference(a: f32, b: f32) -> f32 {
@@ -274,7 +275,8 @@ pub fn difference(a: f32, b: f32) -> f32 {
     if difference.is_subnormal() { 0.0 } else { difference }
 }
 
-/// DEP-1: the vertex whose edge number has the largest binary exponent; of equals 1 before 0 before 2.
+/// DEP-1: returns the vertex whose edge number has the largest binary exponent. Among equals, vertex 1 comes first,
+/// then 0, then 2.
 pub fn largest_edge(e: [i64; 3]) -> usize {
     let [first, second, third] = e.map(|e| if e > 0 { 64 - e.leading_zeros() } else { 0 });
     if second >= first && second >= third {
@@ -286,13 +288,14 @@ pub fn largest_edge(e: [i64; 3]) -> usize {
     }
 }
 
-/// A number cut toward zero to its first `bits` bits.
+/// Truncates a number toward zero to its first `bits` bits.
 fn significant(n: i64, bits: u32) -> i64 {
     let dropped = (64 - n.unsigned_abs().leading_zeros()).saturating_sub(bits);
     n.signum() * (n.abs() >> dropped << dropped)
 }
 
-/// DEP-1: the reciprocal of a sum of 31 bits at most as a mantissa of 29 bits, 3/16 of its last bit low, and s, by which 2^-s times that is meant.
+/// DEP-1: returns the reciprocal of a sum of at most 31 bits as a mantissa of 29 bits, which is low by 3/16 of its last
+/// bit, and the s of its scale 2^-s.
 pub fn reciprocal(sum: i64) -> (i64, i32) {
     let length = 63 - sum.leading_zeros() as i32;
     if sum & (sum - 1) == 0 {
@@ -310,7 +313,7 @@ mod tests {
     use crate::state::{CompareFunction, Named, Profile};
     use proptest::prelude::*;
 
-    /// A finite number of binary32 as the words of both float formats have it.
+    /// Converts a finite binary32 number to a word of the float formats by its bit pattern.
     fn by_pattern(format: DepthFormat, z: f32) -> u32 {
         let pattern = z.max(0.0).to_bits();
         match format {
@@ -384,10 +387,10 @@ mod tests {
         assert_eq!(word(DepthFormat::Z24S8, depth), 16_675_103);
     }
 
-    /// A slope of 486.4845 is cut to 486.4375 below a z of 2^24; times 16 it is 7783.
+    /// The slope is about 486.4845 and is cut to 486.4375 below a z of 2^24. Times 16 it is 7783.
     #[test]
     fn slopes_are_cut_at_the_29th_bit() {
-        // dz/dy = 486.4845 or nearly: 237070 over 487.3125 rows.
+        // dz/dy is about 486.4845: 237070 over 487.3125 rows.
         let p = [
             [53.1875, -34.3125, 16_809_768.0, 1.0],
             [1808.6875, 453.0, 16_572_698.0, 1.0],
@@ -401,7 +404,7 @@ mod tests {
         assert_eq!(biased.offset.mantissa as f64 * 2.0_f64.powi(biased.offset.exponent), 7782.5);
     }
 
-    /// Words of captured buffers: TriH and LargeZ.
+    /// Words of captured buffers, from TriH and LargeZ.
     #[test]
     fn w_is_interpolated_in_perspective() {
         let word_at = |e, w| word(DepthFormat::Z24S8, interpolate_w(e, w));
@@ -412,7 +415,7 @@ mod tests {
         let large = [16_777_046.0, 16_777_047.0, 16_777_047.0];
         assert_eq!(word_at([1_556_480, 24_637_440, 52_449_280], large), 16_777_047);
         assert_eq!(word_at([13_025_280, 24_637_440, 40_980_480], large), 16_777_046);
-        // Equal w leave no trace.
+        // Equal w are exact.
         assert_eq!(
             interpolate_w([5, 70_000, 3], [10.0; 3]).mantissa as f64
                 * 2.0_f64.powi(interpolate_w([5, 70_000, 3], [10.0; 3]).exponent),

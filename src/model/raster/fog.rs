@@ -1,8 +1,8 @@
-//! FOG-2, FOG-4, FOG-5: what becomes of the fog of the vertices at a pixel, in integers.
+//! FOG-2, FOG-4, FOG-5: the fog of a pixel, computed in integers from the fog of the vertices.
 //!
-//! Linear fog is a straight line of the interpolated coordinate, which enters with 24 significant bits; p0 and p1 are the
-//! single-precision numbers that they are, and nothing is lost before the floor to 4096ths. The exponentials are tables of 32 segments,
-//! read at the interpolated e less 3/2.
+//! Linear fog is a line over the interpolated coordinate, which enters with 24 significant bits. p0 and p1 are used as
+//! exact single-precision numbers, and nothing is lost before the floor to 4096ths. The exponential modes are tables of
+//! 32 segments, indexed by the interpolated e less 3/2.
 
 use super::attribute::Attribute;
 use super::interpolate::{Floored, Sample};
@@ -10,83 +10,83 @@ use super::setup::Triangle;
 use crate::number::convert::{factor_byte, shift, split};
 use crate::state::{FogFunction, FogMode};
 
-/// Fraction bits of 4096ths.
+/// Number of fraction bits of 4096ths.
 pub const FACTOR_BITS: i32 = 12;
 
-/// 3/2 in 4096ths: what is taken off e.
+/// 3/2 in 4096ths, which is subtracted from e.
 pub const CENTRE: i64 = 6144;
 
-/// The steps from the centre at which the tables end, 4096ths.
+/// Distance from the centre at which the tables end, in 4096ths.
 pub const TABLE_END: i64 = 2048;
 
-/// Steps of a segment of the tables.
+/// Width of a segment of the tables, in 4096ths.
 const SEGMENT: i64 = 64;
 
-/// floor(255 2^(-i/4) + 1/2).
+/// Table of FOG-4's exponential: floor(255 2^(-i/4) + 1/2).
 pub const EXPONENTIAL: [u8; 33] = [
     255, 214, 180, 152, 128, 107, 90, 76, 64, 54, 45, 38, 32, 27, 23, 19, 16, 13, 11, 9, 8, 7, 6, 5, 4, 3, 3, 2, 2, 2,
     1, 1, 1,
 ];
 
-/// floor(255 2^(-i^2/128) + 1/2).
+/// Table of FOG-4's squared exponential: floor(255 2^(-i^2/128) + 1/2).
 pub const SQUARED: [u8; 33] = [
     255, 254, 250, 243, 234, 223, 210, 196, 180, 164, 148, 132, 117, 102, 88, 75, 64, 53, 44, 36, 29, 23, 19, 15, 11,
     9, 7, 5, 4, 3, 2, 1, 1,
 ];
 
-/// What a triangle's vertices give for fog.
+/// The fog of a triangle, set up from its vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FogPlane {
     /// Factors, limited to 0..1: floor(4096 P_k f_k) (INT-5n).
     Factor([i64; 3]),
-    /// d', or e of INT-5n, for a straight line (FOG-2).
+    /// d', or e of INT-5n, for a linear function (FOG-2).
     Linear(Line, Attribute),
     /// e, for a table (FOG-4).
     Exponential(FogMode, Attribute),
-    /// Something is not finite: the byte that stands for it (FOG-4, FOG-5).
+    /// Some value is not finite. Holds the byte of all pixels (FOG-4, FOG-5).
     NotFinite(u8),
 }
 
-/// p0 + p1 d' - 1, limited to 0..1.
+/// The function p0 + p1 d' - 1, limited to 0..1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// What d' = 0 gives, and 1.
+    /// The constant term p0; the function is p0 - 1 at d' = 0.
     pub p0: f32,
-    /// How it changes with d'.
+    /// The slope.
     pub p1: f32,
-    /// The magnitude of d' counts.
+    /// Whether the magnitude of d' is used.
     pub absolute: bool,
 }
 
-/// A fog byte, and what it was made of.
+/// A fog byte and the value that it was computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FogFactor {
-    /// The factor as a byte: alpha of the fog register.
+    /// The factor as a byte: the alpha of the fog register.
     pub byte: u8,
-    /// The step before.
+    /// The value that the byte was computed from.
     pub from: FogStep,
 }
 
-/// What a fog byte was made of.
+/// The value that a fog byte was computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogStep {
     /// A factor in 4096ths, 0..=4096.
     Factor(i64),
-    /// The same, of the coordinate m 2^e as (m, e).
+    /// The same factor, and the coordinate m 2^e that it was computed from as (m, e).
     Linear(i64, (i64, i32)),
-    /// Steps of 1/4096 from the centre of the table, less the tie that was lowered.
+    /// Steps of 1/4096 from the centre of the table, lowered where a tie was lowered.
     Exponential(Floored),
     /// The coordinate is not a finite number.
     NotFinite,
 }
 
-/// INT-5n: a factor limited to 0..1. Clipping makes numbers that are none of infinite ones: they count as 0.
+/// INT-5n: limits a factor to 0..1. NaN, which clipping makes of infinite factors, counts as 0.
 pub(super) fn limited(factor: f32) -> f32 {
     if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
 impl FogPlane {
-    /// Sets up the fog of a triangle from what its vertices have: factors, or d' or e of the function.
+    /// Sets up the fog of a triangle from the values of its vertices: factors, or the d' or e of the function.
     pub fn new(triangle: &Triangle, function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
         let Some(function) = function else {
             return FogPlane::Factor(triangle.factor(vertices.map(limited)));
@@ -106,7 +106,7 @@ impl FogPlane {
         FogPlane::NotFinite(not_finite(mode))
     }
 
-    /// The factor at a sample that the triangle covers.
+    /// Returns the fog at a sample that the triangle covers.
     #[inline]
     pub fn at(&self, sample: &Sample<'_>) -> FogFactor {
         match self {
@@ -129,7 +129,7 @@ impl FogPlane {
     }
 }
 
-/// FOG-4, FOG-5: the byte where something is not finite.
+/// FOG-4, FOG-5: returns the byte of a triangle with a value that is not finite.
 pub fn not_finite(mode: FogMode) -> u8 {
     match mode {
         FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 255,
@@ -137,7 +137,7 @@ pub fn not_finite(mode: FogMode) -> u8 {
     }
 }
 
-/// FOG-4: the byte of q, steps of 1/4096 by which e lies above 3/2. The mode is not a linear one.
+/// FOG-4: returns the byte for q, the steps of 1/4096 by which e lies above 3/2. The mode must not be linear.
 #[inline]
 pub fn exponential(mode: FogMode, q: i64) -> u8 {
     if matches!(mode, FogMode::Exp) && q >= 0 {
@@ -153,29 +153,30 @@ pub fn exponential(mode: FogMode, q: i64) -> u8 {
 }
 
 impl Line {
-    /// FOG-2: v, 0..=4096, at the coordinate m 2^e given as (m, e), |m| < 2^24; p0 and p1 are finite.
+    /// FOG-2: returns the factor v, 0..=4096, at the coordinate m 2^e given as (m, e) with |m| < 2^24. p0 and p1 must
+    /// be finite.
     pub fn at(&self, coordinate: (i64, i32)) -> i64 {
         let ((m, e), (m1, e1)) = (coordinate, split(self.p1));
         let m = if self.absolute { m.abs() } else { m };
-        // 48 bits, exactly.
+        // An exact product of 48 bits.
         let product = (m * m1, e + e1);
         (floor_sum(split(self.p0), product) - (1 << FACTOR_BITS)).clamp(0, 1 << FACTOR_BITS) as i64
     }
 }
 
-/// floor(4096 (a + b)) of two numbers m 2^e of at most 48 bits; far outside 0..2 it is limited.
+/// Returns floor(4096 (a + b)) of two numbers m 2^e of at most 48 bits. Results far outside 0..2 are limited.
 fn floor_sum(a: (i64, i32), b: (i64, i32)) -> i128 {
-    // A zero must not decide where the other one is cut.
+    // A zero must not decide where the other number is truncated.
     let ((high, high_at), (low, low_at)) = if b.0 == 0 || (a.0 != 0 && a.1 >= b.1) { (a, b) } else { (b, a) };
-    // If the exponents are further apart than this, the lower number is less than 2^-28 of the higher one: they cannot cancel, and where the
-    // cut at 2^(high_at - 76) is not below 2^-12 the sum is beyond 2^43.
+    // If the exponents differ by more than this, the lower number is less than 2^-28 of the higher one, so they cannot
+    // cancel. Where the truncation at 2^(high_at - 76) is not below 2^-12, the sum is beyond 2^43.
     let gap = (high_at - low_at).clamp(0, 76);
     let sum = (i128::from(high) << gap) + shift(i128::from(low), low_at - (high_at - gap));
     let at = high_at - gap + FACTOR_BITS;
     if at <= 0 {
         return shift(sum, at);
     }
-    // Beyond 2^60 only the sign counts.
+    // Beyond 2^60 only the sign matters.
     let fits = at < 72 && sum.unsigned_abs() < 1 << (72 - at);
     if fits { sum << at } else { sum.signum() << 72 }
 }
@@ -195,7 +196,7 @@ mod tests {
         Line { p0, p1, absolute: true }
     }
 
-    /// Floats of moderate size, with few or many bits.
+    /// Generates floats of moderate size with few or many significant bits.
     fn moderate() -> impl Strategy<Value = f32> {
         (any::<u32>(), -30_i32..8, 0_u32..23).prop_map(|(bits, exponent, zeros)| {
             f32::from_bits(bits & 0x807f_ffff & !((1 << zeros) - 1) | ((exponent + 127) as u32) << 23)
@@ -209,7 +210,7 @@ mod tests {
     proptest! {
         #[test]
         fn linear_fog_is_exact(p0 in moderate(), p1 in moderate(), d in moderate()) {
-            // All in 2^-110: 2^-53 times 2^-53 is the last bit of a product, 2^16 its first.
+            // All numbers in units of 2^-106: the last bit of a product is at least 2^-53 times 2^-53.
             let at = |(m, e): (i64, i32)| i128::from(m) << (e + 106);
             let (a, b) = (split(d), split(p1));
             let sum = |d: i64| at(split(p0)) + at((d * b.0, a.1 + b.1)) - (1 << 106);
@@ -223,7 +224,7 @@ mod tests {
             let value = line(p0, p1).at(split(d));
             let (p0, product) = (f64::from(p0), f64::from(d) * f64::from(p1));
             let real = 4096.0 * (p0 + product - 1.0).clamp(0.0, 1.0);
-            // Where float64 knows.
+            // Only where float64 is accurate enough.
             let size = p0.abs().max(product.abs());
             if size < 1e6 || (p0 + product).abs() > 1e-9 * size {
                 prop_assert!((value as f64 - real).abs() <= 1.001, "{value} {real}");
@@ -231,7 +232,7 @@ mod tests {
             prop_assert!((0..=4096).contains(&value));
         }
 
-        /// The floor of an interpolated e, and its tie, by a division of what is brought to one denominator.
+        /// Compares the floor of an interpolated e, and its tie, with a division over a common denominator.
         #[test]
         fn steps_are_floors(e in proptest::array::uniform3(-2048_i32..2048), w in prop::sample::select(vec![1.0_f32, 4.0, 3.0])) {
             let p = [[1.0, 2.0, 0.0, w], [90.0, 7.0, 0.0, 1.0], [13.0, 71.0, 0.0, 1.0]];
@@ -273,7 +274,7 @@ mod tests {
                     FogMode::ExpAbs => (-16.0 * x.abs()).exp2(),
                     _ => (-32.0 * x * x).exp2(),
                 };
-                // Chords lie above a curve that is bent up, and each end is rounded.
+                // A chord lies above a convex curve, and each of its ends is rounded.
                 assert!((f64::from(exponential(mode, q)) - 255.0 * real).abs() < 2.0, "{mode:?} {q}");
             }
         }
@@ -297,7 +298,7 @@ mod tests {
         let (p0, p1) = (2.0_f32.powi(100), -2.0_f32.powi(60));
         assert_eq!(line(p0, p1).at(split(2.0_f32.powi(40))), 0);
         assert_eq!(magnitude(p0, p1).at(split(-(2.0_f32.powi(40)))), 0);
-        // Coordinates times parameters of which 24 bits each count.
+        // Coordinates times parameters that both have 24 significant bits.
         let d = (1 << 22) as f32 + 0.5;
         assert_eq!(line(-(2.0_f32.powi(44)) - 2.0_f32.powi(21), 2.0_f32.powi(22)).at(split(d)), 0);
         let product = (8_388_609.0_f32, 8_388_607.0_f32);
@@ -334,7 +335,8 @@ mod tests {
         assert_eq!(FogPlane::new(&triangle, Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
     }
 
-    /// Numbers of the light unit reach the ends of single precision: e far outside the table, also beside small ones.
+    /// Values of the light unit reach the ends of single precision: e may be far outside the table, also beside small
+    /// ones.
     #[test]
     fn steps_of_anything() {
         let triangle =
@@ -356,7 +358,7 @@ mod tests {
 
     #[test]
     fn distances_of_a_screen() {
-        // A row of a linear ramp from 0 to 100, start 0, end 100: byte by byte from 255 to 0, never rising.
+        // A row of a linear ramp with start 0 and end 100 falls from 255 to 0 and never rises.
         let f = line(2.0, -0.01);
         let mut last = 255;
         for d in 0..=100_u16 {

@@ -1,11 +1,12 @@
-//! Interpolation of the ideal: the same sample of the same snapped triangle, in float64 with nothing rounded.
+//! Interpolation of the ideal: the same sample of the same snapped triangle, in float64 and without rounding.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
 use super::fog::not_finite;
 use super::setup::Triangle;
 use crate::state::{DepthFormat, DepthTest, FogFunction, FogMode, VertexDepths};
 
-/// Barycentric weights of the three vertices at a sample, perspective-corrected by the vertices' w if asked for.
+/// Returns the barycentric weights of the three vertices at a sample, perspective-corrected by the vertices' w if
+/// `perspective` is set.
 pub fn barycentrics(triangle: &Triangle, e: [i64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
     let weighted: [f64; 3] = std::array::from_fn(|k| {
         let e = e[k] as f64;
@@ -15,7 +16,7 @@ pub fn barycentrics(triangle: &Triangle, e: [i64; 3], w: [f32; 3], perspective: 
     weighted.map(|e| e / sum)
 }
 
-/// Weights linear on the screen, of those that [`barycentrics`] would give.
+/// Returns the weights that are linear on the screen, from those that [`barycentrics`] returned.
 pub fn linear(weights: [f64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
     if !perspective {
         return weights;
@@ -25,12 +26,12 @@ pub fn linear(weights: [f64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
     weighted.map(|e| e / sum)
 }
 
-/// A quantity of the vertices at those weights.
+/// Returns the weighted sum of the vertices' values.
 pub fn mix(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// A vertex colour channel in 255ths, limited to 0..1, not rounded.
+/// Returns a channel of a vertex colour in 255ths, limited to 0..1 but not rounded.
 pub fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
     match color {
         crate::state::VertexColor::Bytes(bytes) => f64::from(bytes[channel]),
@@ -38,14 +39,15 @@ pub fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
     }
 }
 
-/// A coordinate divided by q; 0/0 is 0.
+/// Returns a coordinate divided by q, or 0 for 0/0.
 pub fn quotient(coordinate: f64, q: f64) -> f64 {
     let quotient = coordinate / q;
     if quotient.is_nan() { 0.0 } else { quotient }
 }
 
-/// 255 times the fog factor: interpolated from the vertices', or the function of their coordinates, in which nothing is rounded: e is
-/// p0 + p1 d + p2 d^2 at the vertices, or what they pass where no coordinate is known.
+/// Returns 255 times the fog factor: interpolated from factors of the vertices, or the function of their coordinates
+/// without rounding. e is p0 + p1 d + p2 d^2 at the vertices, or the value that they pass if the coordinate is not
+/// known.
 pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], coordinates: [Option<f32>; 3]) -> f64 {
     let Some(function) = function else {
         return 255.0 * mix(weights, passed.map(|f| f64::from(super::fog::limited(f))));
@@ -62,7 +64,7 @@ pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], 
     let factor = match mode {
         FogMode::Linear => p0 + p1 * x - 1.0,
         FogMode::LinearAbs => p0 + p1 * x.abs() - 1.0,
-        // Where the table ends, at 2^-8, fog begins to be all.
+        // Where the table ends, at 2^-8, fog is complete.
         FogMode::Exp if above <= -0.5 => 0.0,
         FogMode::ExpAbs if above.abs() >= 0.5 => 0.0,
         FogMode::Exp => power_of_two(16.0 * above),
@@ -72,7 +74,7 @@ pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], 
     255.0 * factor.clamp(0.0, 1.0)
 }
 
-/// What a vertex would pass if nothing were rounded: d, or p0 + p1 d + p2 d^2.
+/// Returns the value that a vertex would pass without rounding: d, or p0 + p1 d + p2 d^2.
 pub fn fog_of_vertex(function: &FogFunction, passed: f32, coordinate: Option<f32>) -> f64 {
     match coordinate.map(f64::from) {
         None => f64::from(passed),
@@ -84,17 +86,19 @@ pub fn fog_of_vertex(function: &FogFunction, passed: f32, coordinate: Option<f32
     }
 }
 
-/// 2^x by a series, so that every machine has the same; x is limited to -64..=16. Relative error below 2^-51.
+/// Returns 2^x by a series, so that every machine computes the same bits. x is limited to -64..=16. The relative error
+/// is below 2^-51.
 fn power_of_two(x: f64) -> f64 {
     let x = x.clamp(-64.0, 16.0);
     let whole = (x + 0.5).floor();
     let t = (x - whole) * std::f64::consts::LN_2;
-    // |t| < 0.35: the term after the last is below 2^-60.
+    // |t| < 0.35, so the first term that is left out is below 2^-60.
     let series = (1..=16).rev().fold(1.0, |sum, n| 1.0 + sum * t / f64::from(n));
     series * f64::from_bits(((1023 + whole as i64) as u64) << 52)
 }
 
-/// Depth in words of a buffer; of one that holds floats the words between two neighbours stand for what lies between them.
+/// Returns the depth in words of a buffer. If the buffer holds floats, values between two words are fractions between
+/// them.
 pub fn depth(
     weights: [f64; 3],
     (z, w): ([f32; 3], [f32; 3]),
@@ -119,36 +123,37 @@ pub fn depth(
     in_words(format, depth)
 }
 
-/// A depth in steps as words of a buffer count it, with what lies between them.
+/// Converts a depth in steps to words of a buffer, including fractions between words.
 pub fn in_words(format: DepthFormat, depth: f64) -> f64 {
     let full = f64::from(format.largest());
     if !format.is_float() {
         return depth.clamp(0.0, full);
     }
     let (kept, bias) = if format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
-    // The pattern of a double is such a scale of words, of more bits; below its smallest normal number nothing is kept.
+    // The pattern of a double counts words of more bits on the same scale. Below the smallest normal number of the
+    // format nothing is kept.
     let pattern = depth.max(0.0).to_bits() as f64 / (1_u64 << (52 - kept)) as f64;
     let word = pattern - f64::from((1023 - bias) << kept);
     if word < f64::from(1 << kept) { 0.0 } else { word.min(full) }
 }
 
-/// A triangle as it is before its vertices are snapped, in pixels.
+/// A triangle before its vertices are snapped, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
-    /// Edge functions, x, y and the rest: positive inside.
+    /// Coefficients of the edge functions: x, y and constant. They are positive inside.
     edges: [[f64; 3]; 3],
-    /// Whether samples on an edge belong to the triangle: left edges and horizontal top edges.
+    /// Whether samples on each edge belong to the triangle: left edges and horizontal top edges.
     owns: [bool; 3],
-    /// Reciprocals of the vertices' w; 1 without perspective.
+    /// Reciprocals of the vertices' w, or 1 without perspective.
     reciprocals: [f64; 3],
-    /// Rows whose centres it may cover, half-open.
+    /// Half-open range of the rows whose centres it may cover.
     pub rows: (i64, i64),
-    /// Which way it turns on the screen.
+    /// Whether it turns counter-clockwise on the screen.
     pub counter_clockwise: bool,
 }
 
 impl Outline {
-    /// From window positions; none if there is no area.
+    /// Sets up the outline from window positions. Returns `None` if it has no area.
     pub fn new(positions: [[f32; 4]; 3], perspective: bool) -> Option<Outline> {
         let [x, y] = [0, 1].map(|n| positions.map(|p| f64::from(p[n])));
         let mut edges = [[0.0; 3]; 3];
@@ -182,7 +187,7 @@ impl Outline {
         (0..3).all(|k| e[k] > 0.0 || (e[k] == 0.0 && self.owns[k]))
     }
 
-    /// Columns of row j that it covers, as a half-open range within `columns`.
+    /// Returns the columns of row j that it covers, as a half-open range within `columns`.
     pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
         let (mut low, mut high) = (columns.0 as f64, columns.1 as f64);
         for [a, b, c] in self.edges {
@@ -193,7 +198,7 @@ impl Outline {
                 high = high.min(zero);
             }
         }
-        // One column of leeway on either side; the edge functions settle it.
+        // The estimate may be off by one column on either side; the edge functions decide.
         let mut low = (low.floor() as i64 - 1).max(columns.0);
         let mut high = (high.ceil() as i64 + 2).min(columns.1);
         while low < high && !self.covers(low, j) {
@@ -205,7 +210,8 @@ impl Outline {
         (low, high.max(low))
     }
 
-    /// Weights of the vertices at the centre of a pixel that it covers, perspective-corrected if it was asked for.
+    /// Returns the weights of the vertices at the centre of a covered pixel, perspective-corrected if the outline was
+    /// set up with perspective.
     pub fn weights(&self, i: i64, j: i64) -> [f64; 3] {
         let e = self.at(i, j);
         let weighted: [f64; 3] = std::array::from_fn(|k| e[k] * self.reciprocals[k]);

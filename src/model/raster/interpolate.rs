@@ -1,13 +1,13 @@
-//! INT-1 to INT-4 and fog: the definition, in integers, of everything that is interpolated.
+//! INT-1 to INT-4 and fog: the definition of interpolation, in integers.
 //!
-//! With E the edge functions, P the perspective weights, N_k = P_k E_k and D their sum, every result is a floor of a quotient by D, and
-//! ties are decided by exact remainders. The rule for colours, [`color`], is generic over the lane.
+//! With E the edge functions, P the perspective weights, N_k = P_k E_k and D their sum, every result is a floor of a
+//! quotient by D, and exact remainders decide ties. The rule for colours, [`color`], is generic over the lane.
 
 use super::setup::Triangle;
 use crate::number::Blend;
 use std::cmp::Reverse;
 
-/// INT-2: one colour channel from the vertices' bytes; the second vertex takes the remainder.
+/// INT-2: interpolates a colour channel of the vertices with weights W0 and W2. The second vertex gets the remainder.
 #[inline(always)]
 pub fn color<L: Blend>(c: [L; 3], w0: L::Weight, w2: L::Weight) -> L {
     (c[0].times(w0) + c[1].times(L::WHOLE - w0 - w2) + c[2].times(w2)).round8()
@@ -16,48 +16,49 @@ pub fn color<L: Blend>(c: [L; 3], w0: L::Weight, w2: L::Weight) -> L {
 /// A sample point of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
-    /// The triangle.
+    /// The triangle that contains the sample.
     pub triangle: &'a Triangle,
-    /// Edge functions E_k.
+    /// The edge functions E_k.
     pub e: [i64; 3],
     /// N_k = P_k E_k.
     pub n: [i64; 3],
     /// D = N_0 + N_1 + N_2.
     pub d: i64,
-    /// The ideal's weights of the vertices, where they are not those of this triangle (its vertices are snapped).
+    /// The ideal's weights of the vertices, if they differ from those of this triangle, whose vertices are snapped.
     pub ideal: Option<[f64; 3]>,
 }
 
-/// A quotient's floor, and what weights that fall short did to it.
+/// The floor of a quotient, and the effect of weights that fall short on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Floored {
-    /// The result.
+    /// The resulting value.
     pub value: i64,
-    /// By how many steps that is lower than the floor of the exact quotient. 0 or 1 on a tie (INT-3, INT-4t); of coordinates divided by q (TEX-15)
-    /// or moved (TSH-7) also more, or less than none.
+    /// The number of steps by which `value` is lower than the floor of the exact quotient. It is 0 or 1 on a tie
+    /// (INT-3, INT-4t). For coordinates divided by q (TEX-15) or displaced (TSH-7) it may be more, or negative.
     pub lowered: i64,
 }
 
-/// INT-4t: a weight that falls short does so by 2^-24 of itself.
+/// INT-4t: a weight that falls short does so by 2^-24 of itself. This is that exponent.
 pub const SHORT_BITS: u32 = 24;
 
-/// Largest magnitude of a texel coordinate, 1/256 texel (RAS-0, TEX-15).
+/// Largest magnitude of a texel coordinate, in 1/256 texel (RAS-0, TEX-15).
 pub const COORDINATE_LIMIT: i64 = super::TEXEL_LIMIT << 8;
 
 impl<'a> Sample<'a> {
-    /// The sample with edge functions `e`, all covered.
+    /// Returns the sample whose edge functions are `e`.
     #[inline]
     pub fn new(triangle: &'a Triangle, e: [i64; 3]) -> Self {
         let n: [i64; 3] = std::array::from_fn(|k| triangle.p[k] * e[k]);
         Sample { triangle, e, n, d: n[0] + n[1] + n[2], ideal: None }
     }
 
-    /// INT-3's dominant weight: the largest binary exponent, a power of two counting as just below itself.
+    /// INT-3: returns the index of the dominant weight, which has the largest binary exponent. A power of two counts as
+    /// just below itself.
     pub fn dominant(&self) -> usize {
         dominant(self.n, self.d)
     }
 
-    /// INT-2, INT-3: W0 and W2, 0..=256; W1 is the remainder.
+    /// INT-2, INT-3: returns W0 and W2, each 0..=256. W1 is the remainder.
     #[inline]
     pub fn weights(&self) -> [Floored; 2] {
         [self.weight(0), self.weight(2)]
@@ -70,7 +71,7 @@ impl<'a> Sample<'a> {
         Floored { value: value - i64::from(lowered), lowered: lowered.into() }
     }
 
-    /// INT-4, INT-4t: floor(sum G E / D), 1/256 texel.
+    /// INT-4, INT-4t: returns floor(sum G E / D) in 1/256 texel.
     #[inline(always)]
     pub fn coordinate(&self, g: &[i64; 3]) -> Floored {
         let (value, rest) = quotient(self.sum(g), self.d);
@@ -78,14 +79,14 @@ impl<'a> Sample<'a> {
         Floored { value: value - lowered, lowered }
     }
 
-    /// A factor in 4096ths, 0..=4096.
+    /// Returns a factor in 4096ths, 0..=4096.
     #[inline]
     pub fn factor(&self, g: &[i64; 3]) -> i64 {
         quotient(self.sum(g), self.d).0.clamp(0, 4096)
     }
 
-    /// TEX-15: 256 size s/q as a floor, 1/256 texel, limited to [`COORDINATE_LIMIT`], of s and q with weights that fall short (INT-4t). By 0 it is
-    /// infinite; 0/0 is 0.
+    /// TEX-15: returns floor(256 size s/q) in 1/256 texel, limited to [`COORDINATE_LIMIT`], with s and q of weights
+    /// that fall short (INT-4t). A division by 0 is infinite; 0/0 is 0.
     pub fn ratio(&self, s: &[i64; 3], q: &[i64; 3], size: u32) -> Floored {
         let (scale, limit) = (i128::from(size) << 8, i128::from(COORDINATE_LIMIT));
         let (ns, nq) = (self.sum(s), self.sum(q));
@@ -94,12 +95,13 @@ impl<'a> Sample<'a> {
             _ => (ns * scale * nq.signum()).div_euclid(nq.abs()),
         };
         let (loss_s, loss_q) = (self.shortfall(s), self.shortfall(q));
-        // What a shortfall is divided by: P_1 2^24.
+        // The unit of shortfalls: P_1 2^24.
         let unit = i128::from(self.triangle.p[1]) << SHORT_BITS;
         let (numerator, denominator) = (ns * unit - loss_s, nq * unit - loss_q);
-        // Not far from the quotient, or beyond the limit as it is.
+        // An estimate that is close to the quotient, unless the quotient is beyond the limit.
         let near = exact.clamp(-2 * limit, 2 * limit);
-        // scale numerator - near denominator, which has more than 127 bits only where the quotient is many times the limit.
+        // scale * numerator - near * denominator. It overflows 127 bits only where the quotient is many times the
+        // limit.
         let rest = (ns * scale - near * nq).checked_mul(unit);
         let rest = rest.and_then(|rest| rest.checked_sub(loss_s * scale - near * loss_q));
         let value = match rest {
@@ -111,8 +113,8 @@ impl<'a> Sample<'a> {
         Floored { value, lowered: exact.clamp(-limit, limit) as i64 - value }
     }
 
-    /// TEX-12: 128 n (s + m)/m as a floor, 1/256 texel of a face of n texels, for a minor direction s and the major one m, which is not
-    /// negative; the zero vector is 0 (TEX-13). Ties as in INT-4t.
+    /// TEX-12: returns floor(128 n (s + m)/m) in 1/256 texel of a face of n texels, for a minor direction s and the
+    /// major direction m, which is not negative. The zero vector yields 0 (TEX-13). Ties are those of INT-4t.
     pub fn face_coordinate(&self, s: &[i64; 3], m: &[i64; 3], size: u32) -> Floored {
         let (ns, nm) = (self.sum(s), self.sum(m));
         if nm <= 0 {
@@ -128,13 +130,13 @@ impl<'a> Sample<'a> {
         Floored { value: value as i64 - i64::from(lowered), lowered: lowered.into() }
     }
 
-    /// sum G_k E_k.
+    /// Returns sum G_k E_k.
     #[inline]
     pub fn sum(&self, g: &[i64; 3]) -> i128 {
         (0..3).map(|k| i128::from(g[k]) * i128::from(self.e[k])).sum()
     }
 
-    /// INT-4t: whether weights 0 and 2 fall short: those that do not dominate, unless the reciprocal is exact.
+    /// INT-4t: returns whether weights 0 and 2 fall short. They do unless they dominate or the reciprocal is exact.
     pub fn short(&self) -> [bool; 2] {
         if self.triangle.exact_reciprocal {
             return [false; 2];
@@ -143,10 +145,11 @@ impl<'a> Sample<'a> {
         [dominant != 0, dominant != 2]
     }
 
-    /// INT-4t: what a linear function loses where weights 0 and 2 fall short and weight 1 takes up the difference, times 2^24 P_1.
+    /// INT-4t: returns what a linear function loses because weights 0 and 2 fall short and weight 1 takes up the
+    /// difference, times 2^24 P_1.
     ///
-    /// With u_k = G_k / P_k that is 2^-24 b_i (u_i - u_1) of the quotient, for each weight i that falls short, which is 2^-24 / (P_1 D) times
-    /// E_i (G_i P_1 - P_i G_1).
+    /// With u_k = G_k / P_k the quotient loses 2^-24 b_i (u_i - u_1) for each weight i that falls short, which is 2^-24
+    /// / (P_1 D) times E_i (G_i P_1 - P_i G_1).
     pub fn shortfall(&self, g: &[i64; 3]) -> i128 {
         let (p, [first, third]) = (&self.triangle.p, self.short());
         let lost = |i: usize, short: bool| {
@@ -156,21 +159,22 @@ impl<'a> Sample<'a> {
         lost(0, first) + lost(2, third)
     }
 
-    /// INT-4t: whether a quotient is one step lower, given if it is exact and what its numerator loses.
+    /// INT-4t: returns whether a quotient is one step lower, given whether it is exact and what its numerator loses.
     #[inline(always)]
     pub fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
         exact && !self.triangle.exact_reciprocal && shortfall() > 0
     }
 }
 
-/// INT-3: the dominant one of three weights n_k / d. d is positive; outside the triangle some weights are not, and those are not dominant.
+/// INT-3: returns the index of the dominant of three weights n_k / d. d is positive. Outside the triangle some weights
+/// are not positive; those do not dominate.
 fn dominant(n: [i64; 3], d: i64) -> usize {
-    // Class c: the weight lies in (2^-(c+1), 2^-c].
+    // Class c means that the weight is in (2^-(c+1), 2^-c].
     let class = n.map(|n| {
         if n <= 0 {
             return u32::MAX;
         }
-        // Shifted so, n has as many bits as d.
+        // Shifted by this much, n has as many bits as d.
         let shift = n.leading_zeros().saturating_sub(d.leading_zeros());
         if n << shift > d { shift.saturating_sub(1) } else { shift }
     });
@@ -181,17 +185,20 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
     }
 }
 
-/// INT-3: of three weights, larger numbers for larger classes: whether the first dominates, and whether the third. The first goes before the
-/// second, the second before the third, the third before the first, and before both.
+/// INT-3: given a number for each of three weights that is larger for larger classes, returns whether the first and
+/// whether the third dominates. Among equals the first precedes the second, the second precedes the third, and the
+/// third precedes the first; if all are equal, the third dominates.
 #[inline(always)]
 pub(crate) fn most_dominant<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [bool; 2] {
     let all = (a == b) & (b == c);
     [(a >= b) & (a > c), ((c > b) & (c >= a)) | all]
 }
 
-/// floor(n / d) and what remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach, with something for a remainder.
+/// Returns floor(n / d) and the remainder, for 0 < d < 2^62. Quotients are limited to 2^26, which only samples outside
+/// the triangle reach; the remainder is then some number that is not 0.
 ///
-/// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
+/// This avoids a 128-bit division: the top 35 bits of d estimate the quotient to within one step, and the exact
+/// remainder corrects it.
 #[inline(always)]
 fn quotient(n: i128, d: i64) -> (i64, i64) {
     if n.unsigned_abs() >> 26 >= u128::from(d.unsigned_abs()) {
@@ -272,7 +279,7 @@ mod tests {
     }
 
     proptest! {
-        /// The class of a weight by its statement: the smallest c with n 2^(c + 1) above d.
+        /// Compares the class of a weight with its statement: the smallest c with n 2^(c + 1) > d.
         #[test]
         fn classes_by_their_statement(d in 1_i64..1 << 62, small in 0_u32..62, parts in (0.0..1.0_f64, 0.0..1.0_f64), whole in 0..4) {
             let d = (d >> small).max(4);
@@ -300,7 +307,7 @@ mod tests {
         assert_eq!(dominant([2, 5, 5], 12), 1);
         assert_eq!(dominant([5, 2, 5], 12), 2);
         assert_eq!(dominant([4, 4, 4], 12), 2);
-        // An exact power of two counts as just below itself: 1/2 falls into the class of 3/8.
+        // An exact power of two counts as just below itself: 1/2 is in the class of 3/8.
         assert_eq!(dominant([4, 3, 1], 8), 0);
         assert_eq!(dominant([1, 3, 4], 8), 1);
         assert_eq!(dominant([0, 0, 8], 8), 2);

@@ -1,8 +1,9 @@
-//! Rasteriser: triangles from vertices, coverage, and what is interpolated across them.
+//! Rasteriser: assembly of triangles, coverage, and interpolation.
 //!
-//! [`triangles`], [`assemble`] and [`project`] clip and turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
-//! [`setup`] takes a triangle's floats apart; from there on everything is integer arithmetic with one answer:
-//! [`interpolate`] holds the definition of weights, coordinates and fog, [`mod@depth`] that of depths, [`attribute`] that of numbers which are used as numbers.
+//! [`triangles`], [`assemble`] and [`project`] convert the vertices of a draw to clipped triangles in window
+//! coordinates, once, when the plan is made. [`setup`] splits the floats of a triangle; everything after it is integer
+//! arithmetic. [`interpolate`] defines weights, texel coordinates and fog factors, [`mod@depth`] defines depths, and
+//! [`attribute`] defines values that are interpolated as numbers.
 
 pub mod assemble;
 pub mod attribute;
@@ -14,13 +15,14 @@ pub mod project;
 pub mod setup;
 pub mod triangles;
 
-/// RAS-0: snapped window coordinates stay below this many 1/16 pixels in magnitude (4096 pixels).
+/// RAS-0: limit of snapped window coordinates, which stay below it in magnitude: 4096 pixels in units of 1/16 pixel.
 pub const GUARD: i64 = 1 << 16;
 /// RAS-0: largest texel coordinate, in texels.
 pub const TEXEL_LIMIT: i64 = 1 << 16;
-/// RAS-6: the guard band reaches so many pixels from the origin: the last place that RAS-1 keeps below [`GUARD`].
+/// RAS-6: distance of the guard band's edges from the origin in pixels. It is the last position that RAS-1 keeps below
+/// [`GUARD`].
 pub const BAND: f32 = 4095.9375;
-/// RAS-0: smallest w; clip-space triangles are clipped here.
+/// RAS-0: smallest w, where clip-space triangles are clipped.
 pub const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
 /// RAS-0: largest w.
 pub const LARGEST_W: f32 = 1_048_576.0;

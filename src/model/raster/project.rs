@@ -1,4 +1,5 @@
-//! Clip space to window, and what is cut off before (RAS-6, RAS-7), in f32 and in this order of operations.
+//! Clipping (RAS-6, RAS-7) and the mapping from clip space to the window, in f32 and in exactly this order of
+//! operations.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 use super::{BAND, SMALLEST_W};
@@ -6,9 +7,9 @@ use crate::number::convert::snap;
 use crate::state::{ClipDepth, Vertex, VertexColor, Viewport, named};
 
 named! {
-    /// A plane that triangles are cut at (RAS-6), in the order in which they are.
+    /// A plane that triangles are clipped at (RAS-6). The order of the variants is the order of clipping.
     pub enum ClipPlane {
-        /// z = -w, or z = 0 where depths of clip space begin there.
+        /// z = -w, or z = 0 if clip-space depths start at 0.
         Near = "near",
         /// z = w.
         Far = "far",
@@ -16,32 +17,32 @@ named! {
         W = "w",
         /// The left edge of the guard band.
         Left = "left",
-        /// Its right edge.
+        /// The right edge of the guard band.
         Right = "right",
-        /// Its top edge.
+        /// The top edge of the guard band.
         Top = "top",
-        /// Its bottom edge.
+        /// The bottom edge of the guard band.
         Bottom = "bottom",
     }
 }
 
 impl ClipPlane {
-    /// The planes of the clip volume: all but those of the guard band.
+    /// The planes of the clip volume.
     const VOLUME: [ClipPlane; 3] = [ClipPlane::Near, ClipPlane::Far, ClipPlane::W];
     /// The planes of the guard band.
     const SIDES: [ClipPlane; 4] = [ClipPlane::Left, ClipPlane::Right, ClipPlane::Top, ClipPlane::Bottom];
 
-    /// Its bit in a set of planes.
+    /// Returns the bit of the plane in a set of planes.
     pub const fn bit(self) -> u8 {
         1 << self as u8
     }
 
-    /// The planes of a set, in order.
+    /// Returns the planes of a set, in order.
     pub fn in_set(set: u8) -> impl Iterator<Item = ClipPlane> {
         ClipPlane::VOLUME.into_iter().chain(ClipPlane::SIDES).filter(move |plane| set & plane.bit() != 0)
     }
 
-    /// How far inside a position lies; negative: outside.
+    /// Returns the distance of a position from the plane. It is negative outside.
     fn distance(self, [x, y, z, w]: [f32; 4], viewport: &Viewport) -> f32 {
         let (half_width, half_height) = (viewport.width / 2.0, viewport.height / 2.0);
         match self {
@@ -58,7 +59,7 @@ impl ClipPlane {
         }
     }
 
-    /// Puts a position that is near the plane onto it.
+    /// Moves a position that is near the plane onto it.
     fn snap(self, position: &mut [f32; 4], viewport: &Viewport) {
         let (half_width, half_height) = (viewport.width / 2.0, viewport.height / 2.0);
         let [x, y, z, w] = position;
@@ -76,17 +77,17 @@ impl ClipPlane {
         }
     }
 
-    /// What is not a number counts as inside: it is refused later.
+    /// Returns whether a position is inside. NaN counts as inside, because it is refused later.
     fn inside(self, position: [f32; 4], viewport: &Viewport) -> bool {
         let distance = self.distance(position, viewport);
         distance >= 0.0 || distance.is_nan()
     }
 
-    /// Where the edge from `inside` to `outside` meets the plane (RAS-7).
+    /// RAS-7: returns the vertex where the edge from `inside` to `outside` crosses the plane.
     fn crossing(self, inside: &Vertex, outside: &Vertex, viewport: &Viewport) -> Vertex {
         let [near, far] = [inside, outside].map(|vertex| self.distance(vertex.position, viewport));
         let t = match self {
-            // Their difference is that of the w.
+            // The difference of the distances is that of the w.
             ClipPlane::W => near / (inside.position[3] - outside.position[3]),
             _ => near / (near - far),
         };
@@ -95,7 +96,7 @@ impl ClipPlane {
         vertex
     }
 
-    /// The part of a polygon that lies inside, in the polygon's order.
+    /// Returns the part of a polygon that is inside the plane, in the polygon's order.
     fn cut(self, polygon: &[Vertex], viewport: &Viewport) -> Vec<Vertex> {
         let inside = |vertex: &Vertex| self.inside(vertex.position, viewport);
         let mut left = Vec::with_capacity(polygon.len() + 1);
@@ -112,22 +113,22 @@ impl ClipPlane {
     }
 }
 
-/// The planes of the clip volume that a draw has: depths that are limited are not cut.
+/// Returns the planes of the clip volume that apply. Clamped depths are not clipped.
 fn volume(viewport: &Viewport) -> &'static [ClipPlane] {
     if viewport.depth_clamp { &ClipPlane::VOLUME[2..] } else { &ClipPlane::VOLUME }
 }
 
-/// The planes of the clip volume that a position lies beyond, as a set.
+/// Returns the set of the clip volume's planes that a position is outside of.
 pub fn beyond(position: [f32; 4], viewport: &Viewport) -> u8 {
     volume(viewport).iter().filter(|plane| !plane.inside(position, viewport)).map(|plane| plane.bit()).sum()
 }
 
-/// Whether a window position lies where the rasteriser takes it: 4096 pixels around the origin (RAS-0).
+/// RAS-0: returns whether the rasteriser accepts a window position, which is within 4096 pixels of the origin.
 pub fn in_band([x, y, ..]: [f32; 4]) -> bool {
     [x, y].iter().all(|n| n.abs() <= 4096.0 && snap(*n).abs() < super::GUARD)
 }
 
-/// Window position of a clip-space position whose w is at least [`SMALLEST_W`].
+/// Returns the window position of a clip-space position whose w is at least [`SMALLEST_W`].
 pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     let w = clip[3];
     let ndc = [clip[0] / w, clip[1] / w, clip[2] / w];
@@ -139,9 +140,10 @@ pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     ]
 }
 
-/// Clips a clip-space triangle (RAS-6). Returns what is left, as a polygon in the triangle's order, and the set of planes that cut it.
+/// Clips a clip-space triangle (RAS-6). Returns what is left as a polygon in the triangle's order, and the set of
+/// planes that cut it.
 ///
-/// A new vertex is always computed from the inside vertex towards the outside one, so that neighbours meet.
+/// A new vertex is always computed from the inside vertex toward the outside one, so that adjacent triangles share it.
 pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {
     let (mut polygon, mut planes) = (triangle.to_vec(), 0);
     let mut cut = |polygon: &mut Vec<Vertex>, plane: ClipPlane| {
@@ -161,7 +163,7 @@ pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {
     (polygon, planes)
 }
 
-/// What lies `t` of the way from one vertex to another: a + (b - a) t for each number.
+/// Interpolates between two vertices: a + (b - a) t for each number.
 fn mixed(a: &Vertex, b: &Vertex, t: f32) -> Vertex {
     let mix = |a: f32, b: f32| a + (b - a) * t;
     let color = |a: VertexColor, b: VertexColor| {

@@ -1,44 +1,46 @@
-//! Triangle set-up: RAS-1 to RAS-3, and the perspective weights that INT-1 is made of.
+//! Triangle set-up: RAS-1 to RAS-3, and the perspective weights of INT-1.
 
 use super::GUARD;
 use crate::number::convert::{align, scaled, snap, split, w_16_bits};
 use crate::state::Profile;
 
-/// Bits of the perspective weights, so that their sum with the edge functions stays below 2^62.
+/// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
 pub const PERSPECTIVE_BITS: i32 = 28;
 
-/// A triangle ready to be walked.
+/// A triangle that is set up for drawing.
 ///
-/// Edge k at pixel (i, j) is `a[k] i + b[k] j + c[k]`, in 1/256 square pixel, not negative inside; the three add up to
-/// `doubled_area`.
+/// Edge function k at pixel (i, j) is `a[k] i + b[k] j + c[k]` in 1/256 square pixel. It is not negative inside, and
+/// the three add up to `doubled_area`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triangle {
-    /// Slope of each edge function along x.
+    /// Slopes of the edge functions along x.
     pub a: [i64; 3],
-    /// Slope along y.
+    /// Slopes of the edge functions along y.
     pub b: [i64; 3],
-    /// Value at the centre of pixel (0, 0).
+    /// Values of the edge functions at the centre of pixel (0, 0).
     pub c: [i64; 3],
-    /// Whether a sample exactly on edge k belongs to the triangle: left and horizontal top edges (RAS-3).
+    /// Whether a sample exactly on edge k belongs to the triangle: left edges and horizontal top edges (RAS-3).
     pub owns: [bool; 3],
-    /// P_k: the product of the other two w, block floating, the largest in [2^27, 2^28), none below 1. All 2^27 without perspective.
+    /// P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
+    /// Without perspective all are 2^27.
     pub p: [i64; 3],
-    /// Twice the area, 1/256 square pixel, positive, below 2^34.
+    /// Twice the area in 1/256 square pixel, positive, below 2^34.
     pub doubled_area: i64,
-    /// First row and the row after the last that can be covered.
+    /// Half-open range of the rows that can be covered.
     pub rows: (i64, i64),
-    /// First column and the column after the last.
+    /// Half-open range of the columns that can be covered.
     pub columns: (i64, i64),
-    /// The winding as seen on screen.
+    /// Whether it turns counter-clockwise as seen on the screen.
     pub counter_clockwise: bool,
-    /// INT-3's exception: the reciprocal of the weights' sum is exact, no tie is lowered.
+    /// INT-3's exception: whether the reciprocal of the weights' sum is exact, so that no tie is lowered.
     pub exact_reciprocal: bool,
 }
 
 impl Triangle {
-    /// Sets up a triangle from window positions x, y and w. `None` when nothing can be covered: zero area after RAS-1.
+    /// Sets up a triangle from window positions and w. Returns `None` if its area is zero after RAS-1, so that it
+    /// covers nothing.
     ///
-    /// Positions lie within RAS-0; the plan has checked that.
+    /// The positions must be within RAS-0, which the plan has checked.
     pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
         let (x, y) = (positions.map(|p| snap(p[0])), positions.map(|p| snap(p[1])));
         let mut triangle = Triangle::default();
@@ -49,8 +51,8 @@ impl Triangle {
         Some(triangle)
     }
 
-    /// Becomes the triangle of these x and y after RAS-1, 1/16 pixel, but for what [depends on w](Self::weigh). `false`, and worth nothing: zero
-    /// area.
+    /// Sets all fields that do not [depend on w](Self::weigh) from x and y after RAS-1, in 1/16 pixel. Returns `false`
+    /// if the area is zero; the triangle is then unusable.
     #[inline(always)]
     pub fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
@@ -74,12 +76,12 @@ impl Triangle {
         }
         self.doubled_area = area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
-        // y points down, so a positive area turns clockwise for the viewer.
+        // y points down, so a positive area is clockwise for the viewer.
         self.counter_clockwise = area < 0;
         true
     }
 
-    /// Sets what depends on the w of its vertices.
+    /// Sets the fields that depend on the w of the vertices.
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
         let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
@@ -88,23 +90,23 @@ impl Triangle {
         self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
     }
 
-    /// The three edge functions at the centre of pixel (i, j).
+    /// Returns the three edge functions at the centre of pixel (i, j).
     #[inline]
     pub fn edges(&self, i: i64, j: i64) -> [i64; 3] {
         std::array::from_fn(|k| self.a[k] * i + self.b[k] * j + self.c[k])
     }
 
-    /// RAS-3: whether the edge functions of a sample say that it belongs to the triangle.
+    /// RAS-3: returns whether the triangle covers a sample with these edge functions.
     #[inline]
     pub fn covers(&self, e: [i64; 3]) -> bool {
         (0..3).all(|k| e[k] > 0 || (e[k] == 0 && self.owns[k]))
     }
 
-    /// Columns of row j that [`covers`](Self::covers) accepts, as a half-open range within `columns`.
+    /// Returns the columns of row j that [`covers`](Self::covers) accepts, as a half-open range within `columns`.
     pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
         let (mut low, mut high) = columns;
         for k in 0..3 {
-            // Needed: a i + r >= 0.
+            // The condition is a i + r >= 0.
             let r = self.b[k] * j + self.c[k] - i64::from(!self.owns[k]);
             match self.a[k] {
                 0 if r < 0 => return (0, 0),
@@ -116,7 +118,8 @@ impl Triangle {
         (low, high.max(low))
     }
 
-    /// G_k of one coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel (INT-4).
+    /// Returns G_k of a coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel
+    /// (INT-4).
     #[inline(always)]
     pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
         let mut g = [0; 3];
@@ -127,7 +130,7 @@ impl Triangle {
         g
     }
 
-    /// A factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5n).
+    /// Returns G_k of a factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5n).
     pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
         std::array::from_fn(|k| {
             let (m, e) = split(f[k]);
@@ -135,8 +138,8 @@ impl Triangle {
         })
     }
 
-    /// The three linear functions of s, t and q, of which only ratios are used: nine numbers P_k x_k of one exponent, 28 bits, cut toward zero:
-    /// opposite ones stay opposite (TEX-15).
+    /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one
+    /// common exponent and 28 bits. They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
         let magnitudes: [(i64, i32); 9] = std::array::from_fn(|n| {
             let (axis, k) = (n / 3, n % 3);
@@ -149,14 +152,15 @@ impl Triangle {
     }
 }
 
-/// The first pixel whose centre lies among three positions, 1/16 pixel, and the one after the last: centres lie at 16 n + 8.
+/// Returns the half-open range of pixels whose centres lie between three positions in 1/16 pixel. Centres are at 16 n +
+/// 8.
 #[inline(always)]
 pub(crate) fn centres(n: [i64; 3]) -> (i64, i64) {
     let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
     ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1)
 }
 
-/// P_k: the exact product of the other two w, then one common exponent, floors, at least 1.
+/// Returns P_k: the exact products of the other two w, floored to one common exponent, each at least 1.
 #[inline(always)]
 fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
     let ((m0, e0), (m1, e1), (m2, e2)) = (split(w[0]), split(w[1]), split(w[2]));
@@ -210,7 +214,7 @@ mod tests {
 
     #[test]
     fn winding_is_the_viewers() {
-        // Right, then down: clockwise on a screen whose y points down.
+        // Right, then down, which is clockwise on a screen whose y points down.
         assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
         assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
     }

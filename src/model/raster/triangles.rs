@@ -1,37 +1,37 @@
-//! The triangles of a draw: RAS-4's splits and RAS-5's provoking vertices.
+//! The triangles of a draw: how primitives are split (RAS-4), and their provoking vertices (RAS-5).
 
 use std::sync::Arc;
 
 use crate::state::{ProvokingVertex, Topology};
 
-/// A triangle of a draw: the order of its vertices matters (INT-2 gives the second one the remainder).
+/// A triangle of a draw. The order of its vertices matters, because INT-2 gives the second one the remainder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Assembled {
     /// Indices into [`Assembly::vertices`](super::assemble::Assembly::vertices).
     pub vertices: [u32; 3],
-    /// The vertex whose colours a flat triangle takes.
+    /// Index of the vertex whose colours the triangle has if it is flat.
     pub provoking: u32,
 }
 
-/// Triangles in order. Those that a draw lists share its indices.
+/// A list of triangles. If a draw lists its triangles, its indices are shared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Triangles {
-    /// Three each; what is left over makes none.
+    /// Three indices for each triangle. A remainder of less than three is ignored.
     indices: Arc<[u32]>,
     provoking: Provoking,
 }
 
-/// The provoking vertices.
+/// The provoking vertices of a list of triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Provoking {
-    /// Of its three vertices this one.
+    /// The same one of each triangle's vertices, 0 to 2.
     Corner(usize),
-    /// Any vertex: its index, a triangle each.
+    /// The index of any vertex, for each triangle.
     Each(Arc<[u32]>),
 }
 
 impl Triangles {
-    /// Splits primitives. Indices that do not fill one are ignored.
+    /// Splits primitives into triangles. Indices that do not complete a primitive are ignored.
     pub fn split(indices: &Arc<[u32]>, topology: Topology, provoking: ProvokingVertex) -> Triangles {
         let first = provoking == ProvokingVertex::First;
         let triangle = |a: usize, b: usize, c: usize, provoking: usize| Assembled {
@@ -68,30 +68,30 @@ impl Triangles {
         }
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.indices.len() / 3
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The vertices of triangle `number`.
+    /// Returns the vertices of triangle `number`.
     ///
     /// # Panics
-    /// There is no such triangle.
+    /// Panics if there is no such triangle.
     #[inline(always)]
     pub fn vertices(&self, number: usize) -> [u32; 3] {
         self.indices.as_chunks().0[number]
     }
 
-    /// The vertex whose colours triangle `number` takes if it is flat.
+    /// Returns the vertex whose colours triangle `number` has if it is flat.
     ///
     /// # Panics
-    /// There is no such triangle.
+    /// Panics if there is no such triangle.
     pub fn provoking(&self, number: usize) -> u32 {
         match &self.provoking {
             Provoking::Corner(corner) => self.vertices(number)[*corner],
@@ -99,15 +99,15 @@ impl Triangles {
         }
     }
 
-    /// Triangle `number`.
+    /// Returns triangle `number`.
     ///
     /// # Panics
-    /// There is none.
+    /// Panics if there is no such triangle.
     pub fn at(&self, number: usize) -> Assembled {
         Assembled { vertices: self.vertices(number), provoking: self.provoking(number) }
     }
 
-    /// The triangles in order.
+    /// Returns an iterator over the triangles in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Assembled> + '_ {
         (0..self.len()).map(|number| self.at(number))
     }

@@ -1,4 +1,5 @@
-//! ROP-1 to ROP-5: alpha test, blend equations and factors, in the operations of an [`Algebra`]; [`run`] is them on numbers, with reports.
+//! ROP-1 to ROP-5: alpha test, blend equations and factors, written in the operations of an [`Algebra`]. [`run`]
+//! applies them to numbers, with reports.
 
 use super::surface;
 use crate::algebra::Algebra;
@@ -10,7 +11,7 @@ use crate::trace::{Decision, Observer, Operand, Rule, Work, report};
 
 const BLOCK: &str = "blend";
 
-/// ROP-4: a blend factor of one channel.
+/// ROP-4: returns the blend factor of one channel.
 #[inline(always)]
 pub fn factor<A: Algebra>(
     factor: BlendFactor,
@@ -43,7 +44,7 @@ pub fn factor<A: Algebra>(
     }
 }
 
-/// ROP-2, ROP-3: one channel, not yet clamped. `fs` and `fd` are the factors.
+/// ROP-2, ROP-3: returns the blended channel before clamping. `fs` and `fd` are the factors.
 #[inline(always)]
 pub fn equation<A: Algebra>(
     equation: BlendEquation,
@@ -91,7 +92,7 @@ pub fn equation<A: Algebra>(
     a.rounded(sum)
 }
 
-/// ROP-5: a fragment without the low bits that the surface drops. Its alpha keeps all.
+/// ROP-5: returns a fragment without the low bits that the surface drops. Alpha keeps all bits.
 #[inline(always)]
 pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 4], a: &mut A) -> [A::Register; 4] {
     for (value, bits) in fragment.iter_mut().zip(surface::dropped_bits(format)).filter(|(_, bits)| *bits != 0) {
@@ -100,18 +101,18 @@ pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 
     fragment
 }
 
-/// What blending a channel computes.
+/// The values of blending one channel.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendValues<R> {
     /// The factors of source and destination (ROP-4).
     pub factors: [R; 2],
-    /// By the equation, not yet clamped (ROP-2, ROP-3).
+    /// The result of the equation before clamping (ROP-2, ROP-3).
     raw: R,
-    /// Limited to a byte.
+    /// The result, clamped to a byte.
     pub blended: R,
 }
 
-/// ROP-2 to ROP-4 of one channel. `source` has been [`truncated`].
+/// ROP-2 to ROP-4: blends one channel. `source` must be [`truncated`].
 #[inline(always)]
 pub fn evaluate<A: Algebra>(
     blend: &Blend,
@@ -127,7 +128,8 @@ pub fn evaluate<A: Algebra>(
     BlendValues { factors: [fs, fd], raw, blended: a.clamped(raw) }
 }
 
-/// ROP-2 to ROP-5 on values of any kind: the `channels` (bits R, G, B, A) of a fragment blended, the others as the source has them.
+/// ROP-2 to ROP-5 in an algebra: blends the `channels` (bits R, G, B, A) of a fragment. The others are those of the
+/// source.
 pub fn blend<A: Algebra>(
     blend: &Blend,
     channels: u8,
@@ -143,19 +145,20 @@ pub fn blend<A: Algebra>(
     out
 }
 
-/// Whether the equation takes the source as two's complement (ROP-3).
+/// Returns whether the equation reads the source as two's complement (ROP-3).
 pub fn is_signed(equation: BlendEquation) -> bool {
     matches!(equation, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
 }
 
-/// Whether the equation takes its factors into account.
+/// Returns whether the equation uses its factors.
 pub fn uses_factors(equation: BlendEquation) -> bool {
     matches!(equation, BlendEquation::Add | BlendEquation::Subtract | BlendEquation::ReverseSubtract)
 }
 
-/// Blends the `channels` (bits R, G, B, A) of a fragment with what the surface holds; the others are left as the source has them.
+/// Blends the `channels` (bits R, G, B, A) of a fragment with the contents of the surface. The others are those of the
+/// source.
 ///
-/// `source` has been truncated to the surface's depth, except its alpha (ROP-5).
+/// `source` must be truncated to the surface's precision, except for its alpha (ROP-5).
 #[inline]
 pub fn run<L: Lane, O: Observer>(
     blend: &Blend,
@@ -184,7 +187,7 @@ pub fn run<L: Lane, O: Observer>(
     out
 }
 
-/// ROP-1: whether an alpha passes the test.
+/// ROP-1: returns whether an alpha passes the test.
 #[inline]
 pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
     let passes = |alpha: i32| test.function.passes(i64::from(alpha.clamp(0, 255)), i64::from(test.reference));
@@ -202,7 +205,7 @@ pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &m
     passed
 }
 
-/// A comparison's operation in traces.
+/// Returns the operation that traces show for a comparison.
 pub fn compare_operation(function: crate::state::CompareFunction) -> &'static str {
     use crate::state::CompareFunction;
     match function {
@@ -312,7 +315,7 @@ mod tests {
         run(&Blend { equation, source, destination }, 15, [0x55; 4], &s, &d, &mut Silent)
     }
 
-    /// One rounding after the sum, over every source byte and alpha: the captured rule.
+    /// The captured rule: one rounding after the sum, for every source byte and alpha.
     #[test]
     fn add_rounds_once() {
         for s in 0..=255 {
@@ -334,7 +337,7 @@ mod tests {
 
     #[test]
     fn captured_rows() {
-        // Blend_tests and Texture_signed_component_tests, one row each.
+        // One captured row each of Blend_tests and Texture_signed_component_tests.
         assert_eq!(blend(BlendEquation::SignedAdd, BlendFactor::Zero, BlendFactor::Zero, [200; 4], [127; 4])[0], 71);
         assert_eq!(
             blend(BlendEquation::SignedReverseSubtract, BlendFactor::Zero, BlendFactor::Zero, [200; 4], [127; 4])[0],

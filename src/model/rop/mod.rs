@@ -1,4 +1,4 @@
-//! Raster operations: alpha test, stencil test, depth test, blend, colour mask, surfaces.
+//! Raster operations: alpha test, stencil test, depth test, blending, colour mask and surfaces.
 
 pub mod blend;
 pub mod stencil;

@@ -2,13 +2,13 @@
 
 use crate::state::{StencilOperation, StencilTest};
 
-/// Whether a stored byte passes.
+/// Returns whether a stored stencil byte passes the test.
 #[inline(always)]
 pub fn passes(test: &StencilTest, stored: u8) -> bool {
     test.function.passes(test.reference & test.mask, stored & test.mask)
 }
 
-/// What is done with the stored byte after the stencil test and, where that passed, the depth test.
+/// Returns the operation that applies after the stencil test and, if it passed, the depth test.
 #[inline]
 pub fn operation(test: &StencilTest, passed: bool, depth_passed: bool) -> StencilOperation {
     match (passed, depth_passed) {
@@ -18,7 +18,7 @@ pub fn operation(test: &StencilTest, passed: bool, depth_passed: bool) -> Stenci
     }
 }
 
-/// What an operation leaves of a stored byte.
+/// Returns the stencil byte that an operation stores.
 #[inline(always)]
 pub fn written(test: &StencilTest, operation: StencilOperation, stored: u8) -> u8 {
     let new = match operation {
@@ -34,7 +34,7 @@ pub fn written(test: &StencilTest, operation: StencilOperation, stored: u8) -> u
     (stored & !test.write_mask) | (new & test.write_mask)
 }
 
-/// Whether the test can change a stored byte.
+/// Returns whether the test can change a stored byte.
 pub fn writes(test: &StencilTest) -> bool {
     test.write_mask != 0 && [test.fail, test.depth_fail, test.pass].iter().any(|o| *o != StencilOperation::Keep)
 }
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::state::{CompareFunction, Named};
 
-    /// The captured stacks of Stencil_func: zero, then operations, on bytes that were 0.
+    /// The captured stacks of Stencil_func: sequences of operations, and the byte that results.
     #[test]
     fn operations_wrap_or_saturate() {
         let test = StencilTest {
@@ -73,7 +73,7 @@ mod tests {
         }
     }
 
-    /// Masked bits neither change nor count.
+    /// Masked bits do not change and do not affect the test.
     #[test]
     fn masks_hold() {
         for operation in StencilOperation::ALL {

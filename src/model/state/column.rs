@@ -1,4 +1,4 @@
-//! A list of values that is held once where they are all the same.
+//! A list of values that stores one value if all are equal.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::VertexColor;
 
 /// A value that a [`Column`] can hold.
 pub(super) trait Value: Copy {
-    /// Whether the two cannot be told apart: -0 and 0 can.
+    /// Returns whether the two values have the same bits, so that -0 and 0 differ.
     fn same(&self, other: &Self) -> bool;
 }
 
@@ -38,17 +38,18 @@ impl Value for VertexColor {
     }
 }
 
-/// The list. How long it is only its owner knows. Copies share the values until one of them changes.
+/// A column of values. Its owner keeps the length, which a column of equal values does not know. Clones share their
+/// values until one of them changes.
 #[derive(Clone)]
 pub(super) enum Column<T> {
-    /// All are this one.
+    /// All values equal this one.
     Same(T),
-    /// A value of its own for each.
+    /// Each element has its own value.
     Each(Arc<Vec<T>>),
 }
 
 impl<T: Value> Column<T> {
-    /// Value `index`, which lies in the list.
+    /// Returns the value at `index`, which must be within the column.
     #[inline(always)]
     pub(super) fn at(&self, index: usize) -> T {
         match self {
@@ -57,7 +58,7 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// The values of a triangle's vertices.
+    /// Returns the values at the three indices of a triangle's vertices.
     #[inline(always)]
     pub(super) fn three(&self, [a, b, c]: [u32; 3]) -> [T; 3] {
         match self {
@@ -66,7 +67,7 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// Appends values to a list of `count`; there is going to be room for `capacity` in all.
+    /// Appends values to a column of `count` elements, and reserves room for `capacity` elements if it allocates.
     pub(super) fn extend(&mut self, count: usize, capacity: usize, values: impl Iterator<Item = T> + Clone) {
         if let (0, Some(first)) = (count, values.clone().next()) {
             *self = Column::Same(first);
@@ -85,7 +86,7 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// Bytes that its values take beside the column itself.
+    /// Returns the bytes that the values take on the heap.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Column::Same(_) => 0,

@@ -1,8 +1,8 @@
-//! Register combiners, in the terms of NV_register_combiners.
+//! State of the register combiners, in the terms of NV_register_combiners.
 
 use super::named;
 
-/// The registers of both; those of the final combiner begin as those of the general stages do.
+/// Declares [`Register`] and [`FinalRegister`]; the latter begins with the variants of the former.
 macro_rules! registers {
     ($($(#[$meta:meta])* $register:ident),+; $($(#[$final_meta:meta])* $final_register:ident),+ $(,)?) => {
         named! {
@@ -10,7 +10,7 @@ macro_rules! registers {
             pub enum Register { $($(#[$meta])* $register),+ }
         }
         named! {
-            /// A register of the final combiner: as a stage left it, if one wrote it.
+            /// A register that the final combiner can read. General stages may have written it before.
             pub enum FinalRegister { $($(#[$meta])* $register,)+ $($(#[$final_meta])* $final_register),+ }
         }
         impl From<Register> for FinalRegister {
@@ -21,49 +21,49 @@ macro_rules! registers {
     };
 }
 registers! {
-    /// Always 0. As a destination: discard.
+    /// Always 0. As a destination it discards the result.
     Zero,
     /// Constant colour 0.
     ConstantColor0,
     /// Constant colour 1.
     ConstantColor1,
-    /// Fog colour and factor.
+    /// Fog colour in RGB and fog factor in alpha.
     Fog,
     /// The interpolated diffuse colour.
     PrimaryColor,
     /// The interpolated specular colour.
     SecondaryColor,
-    /// Unit 0's result.
+    /// The result of texture unit 0.
     Texture0,
-    /// Unit 1's result.
+    /// The result of texture unit 1.
     Texture1,
-    /// Unit 2's result (nv2a).
+    /// The result of texture unit 2 (nv2a).
     Texture2,
-    /// Unit 3's result (nv2a).
+    /// The result of texture unit 3 (nv2a).
     Texture3,
-    /// Scratch; its alpha steers the mux.
+    /// Scratch register 0. Its alpha selects the output of the mux.
     Spare0,
-    /// A second scratch register.
+    /// Scratch register 1.
     Spare1;
-    /// SPARE0 + SECONDARY, up to 2.0 (FIN-3). Inputs A to D, RGB.
+    /// SPARE0 + SECONDARY, up to 2.0 (FIN-3). Only the RGB of inputs A to D can read it.
     Spare0PlusSecondary,
-    /// E times F (FIN-4). Inputs A to D, RGB.
+    /// The product of E and F (FIN-4). Only the RGB of inputs A to D can read it.
     ETimesF,
 }
 
 named! {
-    /// Which component of a register an input reads.
+    /// The component of a register that an input reads.
     pub enum Component {
-        /// R, G and B. RGB portion and final combiner only.
+        /// R, G and B. Only RGB portions and the final combiner read it.
         Rgb,
-        /// Blue. Alpha portion and final combiner's G only.
+        /// Blue. Only alpha portions and input G of the final combiner read it.
         Blue,
-        /// Alpha, replicated in an RGB portion.
+        /// Alpha, which an RGB portion replicates to all channels.
         Alpha,
     }
 }
 named! {
-    /// Input mappings of the general stages (CMB-2 to CMB-5).
+    /// Input mappings of the general stages (CMB-2 to CMB-5), as formulas of the register's value x.
     pub enum InputMapping {
         /// max(0, x).
         UnsignedIdentity,
@@ -84,33 +84,33 @@ named! {
     }
 }
 named! {
-    /// What an output is multiplied by (CMB-7).
+    /// The factor that scales the outputs of a portion (CMB-7).
     pub enum Scale {
-        /// x1.
+        /// Multiplies by 1.
         One,
-        /// x2.
+        /// Multiplies by 2.
         Two,
-        /// x4.
+        /// Multiplies by 4.
         Four,
-        /// x1/2.
+        /// Multiplies by 1/2.
         Half,
     }
 }
 named! {
-    /// Output bias, applied before the scale.
+    /// The bias of a portion's outputs, applied before the scale.
     pub enum Bias {
-        /// Nothing is subtracted.
+        /// Subtracts nothing.
         None,
-        /// -1/2. Legal with scales One and Two.
+        /// Subtracts 1/2. Legal only with [`Scale::One`] and [`Scale::Two`].
         NegativeHalf,
     }
 }
 named! {
-    /// Which bit of SPARE0's alpha steers the mux (CMB-10).
+    /// The bit of SPARE0's alpha that selects the output of the mux (CMB-10).
     pub enum MuxSelect {
-        /// Most significant: value >= 128.
+        /// The most significant bit, which is set if the value is at least 128.
         Msb,
-        /// Least significant: bit 0.
+        /// The least significant bit, bit 0.
         Lsb,
     }
 }
@@ -120,14 +120,14 @@ named! {
 pub struct CombinerInput {
     /// The register that is read.
     pub register: Register,
-    /// Which of its channels.
+    /// The component of that register.
     pub component: Component,
-    /// How its value becomes a factor.
+    /// The mapping that turns the register's value into a factor.
     pub mapping: InputMapping,
 }
 
 impl CombinerInput {
-    /// ZERO through the unsigned identity: 0.
+    /// Returns an input that reads ZERO through the unsigned identity, so that its value is 0.
     pub fn zero(component: Component) -> Self {
         CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedIdentity }
     }
@@ -136,32 +136,32 @@ impl CombinerInput {
 /// The RGB or the alpha half of a general stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Portion {
-    /// A, B, C, D.
+    /// Inputs A, B, C and D.
     pub inputs: [CombinerInput; 4],
-    /// Destination of AB; `Register::Zero` discards.
+    /// Destination of AB. [`Register::Zero`] discards it.
     pub ab_output: Register,
-    /// Destination of CD; `Register::Zero` discards.
+    /// Destination of CD. [`Register::Zero`] discards it.
     pub cd_output: Register,
-    /// Destination of AB + CD, or of the mux; `Register::Zero` discards.
+    /// Destination of AB + CD, or of the mux. [`Register::Zero`] discards it.
     pub sum_output: Register,
-    /// AB is a dot product (RGB only).
+    /// Whether AB is a dot product (RGB only).
     pub ab_dot_product: bool,
-    /// CD is a dot product (RGB only).
+    /// Whether CD is a dot product (RGB only).
     pub cd_dot_product: bool,
-    /// The third output is mux(AB, CD) instead of the sum.
+    /// Whether the third output is mux(AB, CD) instead of the sum.
     pub mux: bool,
-    /// What all three outputs are multiplied by.
+    /// The factor that multiplies all three outputs.
     pub scale: Scale,
-    /// What is subtracted from all three outputs first.
+    /// The bias that is added to all three outputs before the scale.
     pub bias: Bias,
-    /// AB's blue also goes to the alpha of `ab_output` (RGB only; nv2a).
+    /// Whether the blue of AB is also written to the alpha of `ab_output` (RGB only; nv2a).
     pub ab_blue_to_alpha: bool,
-    /// CD's blue also goes to the alpha of `cd_output` (RGB only; nv2a).
+    /// Whether the blue of CD is also written to the alpha of `cd_output` (RGB only; nv2a).
     pub cd_blue_to_alpha: bool,
 }
 
 impl Portion {
-    /// A portion that writes nothing.
+    /// Returns a portion that writes nothing.
     pub fn idle(component: Component) -> Self {
         Portion {
             inputs: [CombinerInput::zero(component); 4],
@@ -182,21 +182,21 @@ impl Portion {
 /// One general combiner stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GeneralStage {
-    /// What computes red, green and blue.
+    /// The portion that computes red, green and blue.
     pub rgb: Portion,
-    /// What computes alpha.
+    /// The portion that computes alpha.
     pub alpha: Portion,
-    /// Constant colours 0 and 1 of this stage, R, G, B, A bytes. Equal in all stages on nv10.
+    /// Constant colours 0 and 1 of this stage, as R, G, B, A bytes. On nv10 all stages have the same ones.
     pub constants: [[u8; 4]; 2],
 }
 
 impl GeneralStage {
-    /// A stage that changes nothing.
+    /// Returns a stage that changes no register.
     pub fn idle(constants: [[u8; 4]; 2]) -> Self {
         GeneralStage { rgb: Portion::idle(Component::Rgb), alpha: Portion::idle(Component::Alpha), constants }
     }
 
-    /// OpenGL's initial stage (NV_register_combiners, table 5): SPARE0 is the primary colour.
+    /// Returns OpenGL's initial stage (NV_register_combiners, table 5), which copies the primary colour to SPARE0.
     pub fn initial(constants: [[u8; 4]; 2]) -> Self {
         let portion = |component| {
             let input = |register, mapping| CombinerInput { register, component, mapping };
@@ -215,19 +215,19 @@ impl GeneralStage {
 pub struct FinalInput {
     /// The register that is read.
     pub register: FinalRegister,
-    /// Component: Rgb or Alpha for A to F, Blue or Alpha for G.
+    /// The component: `Rgb` or `Alpha` for inputs A to F, `Blue` or `Alpha` for input G.
     pub component: Component,
-    /// Unsigned invert instead of unsigned identity.
+    /// Whether the mapping is unsigned invert instead of unsigned identity.
     pub invert: bool,
 }
 
 impl FinalInput {
-    /// An input that reads ZERO.
+    /// Returns an input that reads ZERO.
     pub fn zero(component: Component) -> Self {
         FinalInput { register: FinalRegister::Zero, component, invert: false }
     }
 
-    /// Whether the input is 0 whatever the pixel.
+    /// Returns whether the input is 0 for every pixel.
     pub fn is_zero(&self) -> bool {
         self.register == FinalRegister::Zero && !self.invert
     }
@@ -236,22 +236,22 @@ impl FinalInput {
 /// The final combiner: rgb = A B + (1 - A) C + D, alpha = G.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FinalCombiner {
-    /// A, B, C, D, E, F.
+    /// Inputs A, B, C, D, E and F.
     pub inputs: [FinalInput; 6],
-    /// G: the alpha of the fragment.
+    /// Input G, the alpha of the fragment.
     pub g: FinalInput,
-    /// SPARE0 + SECONDARY is limited to 1.0 (FIN-3).
+    /// Whether SPARE0 + SECONDARY is limited to 1.0 (FIN-3).
     pub color_sum_clamp: bool,
-    /// 255 - SPARE0 enters the sum (FIN-3).
+    /// Whether 255 - SPARE0 enters the sum in place of SPARE0 (FIN-3).
     pub invert_spare0: bool,
-    /// 255 - SECONDARY enters the sum (FIN-3).
+    /// Whether 255 - SECONDARY enters the sum in place of SECONDARY (FIN-3).
     pub invert_secondary: bool,
-    /// Constant colours 0 and 1, R, G, B, A bytes. Equal to the stages' on nv10.
+    /// Constant colours 0 and 1, as R, G, B, A bytes. On nv10 they equal those of the stages.
     pub constants: [[u8; 4]; 2],
 }
 
 impl FinalCombiner {
-    /// OpenGL's initial final combiner: fog over SPARE0 + SECONDARY, alpha of SPARE0.
+    /// Returns OpenGL's initial final combiner: fog applied to SPARE0 + SECONDARY, and the alpha of SPARE0.
     pub fn initial(constants: [[u8; 4]; 2]) -> Self {
         let input = |register, component| FinalInput { register, component, invert: false };
         let zero = FinalInput::zero(Component::Rgb);
@@ -273,22 +273,22 @@ impl FinalCombiner {
     }
 }
 
-/// What a general stage was written as, in the language of an API. For reports; nothing is computed from it.
+/// The source text of a general stage in the language of an API. Only reports show it; nothing is computed from it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StageOrigin {
-    /// The RGB portion: "stage 0: ColorOp DotProduct3(Texture, Diffuse)".
+    /// Source of the RGB portion, such as "stage 0: ColorOp DotProduct3(Texture, Diffuse)".
     pub rgb: String,
-    /// The alpha portion.
+    /// Source of the alpha portion.
     pub alpha: String,
 }
 
-/// A whole combiner program.
+/// A complete combiner program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Combiners {
-    /// One to eight general stages (two on nv10).
+    /// The general stages: one to eight, or one to two on nv10.
     pub stages: Vec<GeneralStage>,
-    /// Mux bit, the same for all stages.
+    /// The bit that selects the output of the mux. It is the same for all stages.
     pub mux_select: MuxSelect,
-    /// What makes the fragment of the registers.
+    /// The final combiner, which computes the fragment from the registers.
     pub final_combiner: FinalCombiner,
 }

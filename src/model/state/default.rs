@@ -1,17 +1,18 @@
-//! What is left out: the state that a scene file has without saying so, and a draw that code describes by what differs.
+//! Default state: what a scene file means where it says nothing, and the base for draws that code describes by their
+//! differences.
 
 use super::*;
 use std::sync::Arc;
 
 impl Default for Scene {
-    /// An empty scene for [`Profile::Nv10`]; a render needs a target.
+    /// Returns an empty scene for [`Profile::Nv10`]. A render needs at least one target.
     fn default() -> Self {
         Scene { profile: Profile::Nv10, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] }
     }
 }
 
 impl Target {
-    /// A target of so many columns and rows, cleared to zero, without a depth buffer.
+    /// Returns a target of `width` columns and `height` rows, cleared to zero, without a depth buffer.
     pub fn new(width: u32, height: u32, format: SurfaceFormat) -> Self {
         Target {
             name: "frame".into(),
@@ -27,9 +28,11 @@ impl Target {
 }
 
 impl Default for Draw {
-    /// No vertices, window positions, triangles, smooth colours of the vertices; no texture, test or blend.
+    /// Returns a draw without vertices: window positions, triangles, smooth vertex colours, no texture, no test and no
+    /// blending.
     ///
-    /// [`Draw::texture_shader`] samples no unit: a draw with textures sets both, by [`ShaderStage::conventional`].
+    /// [`Draw::texture_shader`] samples no unit. A draw with textures has to set [`Draw::textures`] and the stages, the
+    /// latter by [`ShaderStage::conventional`].
     fn default() -> Self {
         Draw {
             name: "draw".into(),
@@ -62,21 +65,22 @@ impl Default for Draw {
 }
 
 impl Default for Fog {
-    /// Fog that is off, and black.
+    /// Returns disabled, black fog.
     fn default() -> Self {
         Fog { enabled: false, color: [0; 3], function: None }
     }
 }
 
 impl Default for GeneralStage {
-    /// A stage that writes nothing.
+    /// Returns a stage that writes nothing.
     fn default() -> Self {
         GeneralStage::idle([[0; 4]; 2])
     }
 }
 
 impl Default for FinalCombiner {
-    /// Black, with the alpha of SPARE0; the colour sum is limited to 1.0. What a scene's `final_combiner: ()` means.
+    /// Returns black with the alpha of SPARE0, and with the colour sum limited to 1.0. That is what `final_combiner:
+    /// ()` means in a scene.
     fn default() -> Self {
         FinalCombiner {
             inputs: [FinalInput::zero(Component::Rgb); 6],
@@ -90,7 +94,8 @@ impl Default for FinalCombiner {
 }
 
 impl FinalCombiner {
-    /// rgb = D = the register, alpha = G = its alpha. The fog register has no alpha here; the input reads it all the same.
+    /// Returns a final combiner whose fragment is `register`: D reads its RGB and G its alpha. Although the fog
+    /// register has no alpha in G, the input reads it anyway.
     pub fn showing(register: FinalRegister) -> Self {
         let mut shown = FinalCombiner { color_sum_clamp: false, ..FinalCombiner::default() };
         (shown.inputs[3].register, shown.g.register) = (register, register);
@@ -99,7 +104,8 @@ impl FinalCombiner {
 }
 
 impl Default for Combiners {
-    /// OpenGL's initial program: one stage that copies the primary colour to SPARE0, then [`FinalCombiner::initial`].
+    /// Returns OpenGL's initial program: one stage that copies the primary colour to SPARE0, and
+    /// [`FinalCombiner::initial`].
     fn default() -> Self {
         Combiners {
             stages: vec![GeneralStage::initial([[0; 4]; 2])],
@@ -110,7 +116,7 @@ impl Default for Combiners {
 }
 
 impl Combiners {
-    /// A program without general arithmetic, whose fragment is a [register](FinalCombiner::showing).
+    /// Returns a program without general arithmetic whose fragment is [`register`](FinalCombiner::showing).
     pub fn showing(register: FinalRegister) -> Self {
         Combiners {
             stages: vec![GeneralStage::default()],

@@ -1,8 +1,8 @@
 //! Decoded hardware state: what the chip is told to do, in its own terms.
 //!
-//! Plain data with exhaustive enums and public fields; nothing here renders, parses or fails. The scene front end produces a
-//! [`Scene`], the [plan](crate::plan) reduces it to what can reach the frame, and the independent oracle of the test suite
-//! reads it directly. State knows neither RON nor image files.
+//! State is plain data with exhaustive enums and public fields; nothing here renders, parses or fails. The scene front
+//! end produces a [`Scene`], the [plan](crate::plan) reduces it to what can reach the frame, and the independent oracle
+//! of the test suite reads it directly. State knows neither RON nor image files.
 
 mod column;
 mod combiner;
@@ -45,17 +45,18 @@ pub use texture::{
 pub use vertices::{TriangleVertices, Vertices};
 
 named! {
-    /// Which chip is modelled: its limits and the rules that differ.
+    /// The chip that is modelled. It decides the limits and which variant of a rule applies.
     pub enum Profile {
-        /// GeForce 256 (NV10): two general stages, two texture units.
+        /// GeForce 256 (NV10): two general stages and two texture units.
         Nv10,
-        /// The Xbox's NV2A: eight general stages, four texture units, blue-to-alpha. The measured profile.
+        /// The Xbox's NV2A: eight general stages, four texture units, and blue-to-alpha outputs. Its rules were
+        /// measured.
         Nv2a,
     }
 }
 
 impl Profile {
-    /// General combiner stages available.
+    /// Returns the number of general combiner stages that the chip has.
     pub fn general_stages(self) -> usize {
         match self {
             Profile::Nv10 => 2,
@@ -63,7 +64,7 @@ impl Profile {
         }
     }
 
-    /// Texture units available.
+    /// Returns the number of texture units that the chip has.
     pub fn texture_units(self) -> usize {
         match self {
             Profile::Nv10 => 2,
@@ -74,18 +75,19 @@ impl Profile {
 
 /// A scene: render targets, textures, and draws in order.
 ///
-/// Every index is in range, every size within the [limits](crate::limits::Limits) and every combination legal for the profile; positions
-/// are within the limits of RAS-0. [`Plan::compile`](crate::plan::Plan::compile) refuses a scene of which that is not so, wherever
-/// it comes from. Columns of [`Vertices`] cannot be of different lengths.
+/// A valid scene has every index in range, every size within the [limits](crate::limits::Limits), only combinations
+/// that are legal for the profile, and positions within the limits of RAS-0.
+/// [`Plan::compile`](crate::plan::Plan::compile) refuses any other scene, however it was made. The columns of
+/// [`Vertices`] cannot differ in length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The chip that draws, which decides what is legal.
+    /// The chip that draws. It decides what is legal.
     pub profile: Profile,
-    /// Render targets; the first is the default one.
+    /// Render targets. The first is the default target.
     pub targets: Vec<Target>,
-    /// Textures, referred to by index from [`TextureUnit::texture`].
+    /// Textures. [`TextureUnit::texture`] is an index into this list.
     pub textures: Vec<Texture>,
-    /// Palettes, referred to by index from [`TextureUnit::palette`].
+    /// Palettes. [`TextureUnit::palette`] is an index into this list.
     pub palettes: Vec<Palette>,
     /// Draws in submission order.
     pub draws: Vec<Draw>,
@@ -94,54 +96,54 @@ pub struct Scene {
 /// One draw call with all of its state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// Name for messages and traces.
+    /// Name that messages and traces show.
     pub name: String,
-    /// Index into [`Scene::targets`].
+    /// The target that is drawn to, as an index into [`Scene::targets`].
     pub target: usize,
-    /// How positions are to be read.
+    /// How the positions of the vertices are interpreted.
     pub positions: Positions,
-    /// The vertices, before they are assembled.
+    /// The vertices, before triangles are assembled.
     pub vertices: Vertices,
-    /// Indices into `vertices`, in the order of `topology`. The plan shares them.
+    /// Indices into `vertices`, in the order that `topology` requires. The plan shares them.
     pub indices: Arc<[u32]>,
-    /// How indices form triangles (RAS-4).
+    /// How the indices form triangles (RAS-4).
     pub topology: Topology,
-    /// Smooth or flat colours (RAS-5).
+    /// Whether colours are interpolated or flat (RAS-5).
     pub shade_model: ShadeModel,
     /// Which vertex gives the colour of a flat triangle (RAS-5).
     pub provoking_vertex: ProvokingVertex,
-    /// Perspective-corrected weights (INT-1); off: screen-linear.
+    /// Whether weights are perspective-corrected (INT-1); otherwise they are linear on the screen.
     pub perspective: bool,
-    /// Which faces are dropped.
+    /// Which faces are culled.
     pub cull: Cull,
-    /// Which winding on screen is the front.
+    /// Which winding on the screen makes a front face.
     pub front_face: FrontFace,
-    /// Pixels outside are not drawn. `None`: the whole target.
+    /// Scissor rectangle: pixels outside are not drawn. `None` means the whole target.
     pub scissor: Option<Rectangle>,
-    /// Rectangles that pixels are drawn inside of, or outside (CLP-1). `None`: the test is off.
+    /// Window clip rectangles, inside or outside of which pixels are drawn (CLP-1). `None` turns the test off.
     pub window_clip: Option<WindowClip>,
-    /// Fog colour and whether the vertices' fog factor is used.
+    /// Fog colour, and whether the fog factor of the vertices is used.
     pub fog: Fog,
-    /// Texture units; `None` is an unbound unit (TEX-16).
+    /// Texture units. `None` is an unbound unit (TEX-16).
     pub textures: [Option<TextureUnit>; TEXTURE_UNITS],
-    /// What each unit does; [`ShaderStage::conventional`] unless a texture shader is given (nv2a).
+    /// What each unit does: [`ShaderStage::conventional`] unless the draw has a texture shader (nv2a).
     pub texture_shader: [ShaderStage; TEXTURE_UNITS],
-    /// The program of each pixel.
+    /// The combiner program, which computes each pixel.
     pub combiners: Combiners,
-    /// What each general stage was written as; empty if the program was written for the combiners.
+    /// The source text of each general stage. Empty if the program was written directly for the combiners.
     pub program_origin: Vec<StageOrigin>,
-    /// The vertex program that made the vertices, if one did.
+    /// The vertex program that computed the vertices, if one did.
     pub vertex_program: Option<VertexProgram>,
-    /// Alpha test (ROP-1). `None`: every fragment passes.
+    /// Alpha test (ROP-1). `None` means that every fragment passes.
     pub alpha_test: Option<AlphaTest>,
-    /// Stencil test (STN-1). `None`: neither test nor write.
+    /// Stencil test (STN-1). `None` means that the stencil is neither tested nor written.
     pub stencil_test: Option<StencilTest>,
-    /// Depth test (DEP-1, DEP-2). `None`: neither test nor write.
+    /// Depth test (DEP-1, DEP-2). `None` means that the depth is neither tested nor written.
     pub depth_test: Option<DepthTest>,
-    /// Blend (ROP-2 to ROP-4). `None`: the source replaces the destination.
+    /// Blending (ROP-2 to ROP-4). `None` means that the source replaces the destination.
     pub blend: Option<Blend>,
-    /// Blend constant, R, G, B, A bytes (NUM-5).
+    /// Blend constant as R, G, B, A bytes (NUM-5).
     pub blend_constant: [u8; 4],
-    /// Channels that are written, R, G, B, A (ROP-6).
+    /// Colour mask: whether R, G, B and A are written (ROP-6).
     pub color_mask: [bool; 4],
 }

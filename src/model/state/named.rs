@@ -1,27 +1,28 @@
-//! Enumerations whose variants have names: one list serves the scene reader, traces and messages.
+//! Enumerations whose variants have names. The scene reader, traces and messages share one list of them.
 
 /// An enumeration whose variants can be listed and named.
 pub trait Named: Copy + PartialEq + 'static {
-    /// The enumeration's own name.
+    /// The name of the enumeration itself.
     const TYPE: &'static str;
     /// Every variant, in the order in which they are declared.
     const ALL: &'static [Self];
-    /// Names of [`ALL`](Self::ALL), in its order, spelled as in the source and in scene files.
+    /// The names of [`ALL`](Self::ALL) in the same order, spelled as in the source and in scene files.
     const NAMES: &'static [&'static str];
 
-    /// The name of this variant.
+    /// Returns the name of this variant.
     fn name(self) -> &'static str {
         Self::ALL.iter().position(|v| *v == self).map_or("", |i| Self::NAMES[i])
     }
 
-    /// The variant of that name.
+    /// Returns the variant of that name, or `None` if there is none.
     fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().position(|n| *n == name).map(|i| Self::ALL[i])
     }
 }
 
-/// Declares a field-less enumeration and implements [`Named`] for it. A variant is named as it is spelled, or `= "otherwise"`. With `=> method: Type` behind
-/// the enumeration's name each variant has a value of that type, which the method gives.
+/// Declares a field-less enumeration and implements [`Named`] for it. A variant's name is its spelling, or the text
+/// that follows as `= "name"`. With `=> method: Type` after the enumeration's name each variant also has a value of
+/// that type, which the method returns.
 #[macro_export]
 macro_rules! named {
     (@name $variant:ident) => { stringify!($variant) };

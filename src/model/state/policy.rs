@@ -1,9 +1,9 @@
-//! Policies: rules that no capture and no document decides, with the alternatives as selectable values.
+//! Policies: rules that no capture and no document settles, each with a choice of alternatives.
 
 use super::{Named, named};
 
 named! {
-    /// NUM-3: the lowest value that a register holds.
+    /// NUM-3: the lowest value that a register can hold.
     pub enum RegisterFloor {
         /// -256.
         Full,
@@ -12,7 +12,7 @@ named! {
     }
 }
 named! {
-    /// TSH-6: what makes a byte a coordinate of a dependent read.
+    /// TSH-6: how a byte becomes a coordinate of a dependent read.
     pub enum DependentScale {
         /// v / 255.
         Over255,
@@ -21,7 +21,7 @@ named! {
     }
 }
 named! {
-    /// CMB-3: what the expand mappings take as their centre.
+    /// CMB-3: the centre of the expand mappings.
     pub enum ExpandCentre {
         /// 2 (x - 128).
         Centred,
@@ -30,13 +30,13 @@ named! {
     }
 }
 named! {
-    /// CMB-4: the integer for one half in the half-bias mappings.
+    /// CMB-4: the integer that stands for one half in the half-bias mappings.
     pub enum HalfBiasConstant {
         /// x - 128.
         Half128,
         /// x - 127.
         Half127,
-        /// x - 127.5, the half bit kept up to the product.
+        /// x - 127.5, which keeps the half bit up to the product.
         Half127And5,
     }
 }
@@ -59,25 +59,25 @@ named! {
     }
 }
 named! {
-    /// CMB-9: whether the division by 255 precedes bias and scale.
+    /// CMB-9: whether the division by 255 comes before bias and scale.
     pub enum OutputRounding {
-        /// Rounded to a register step, then biased and scaled.
+        /// Rounds to a register step, then applies bias and scale.
         BeforeScale,
-        /// Biased and scaled at full width, then rounded.
+        /// Applies bias and scale at full width, then rounds.
         AfterScale,
     }
 }
 named! {
-    /// CMB-10: what a negative SPARE0.a selects in MSB mode.
+    /// CMB-10: how a negative SPARE0.a steers the mux in MSB mode.
     pub enum MuxNegative {
-        /// Not set: AB.
+        /// The bit counts as not set, which selects AB.
         Sign,
-        /// Bit 7 of the two's complement value.
+        /// The bit is bit 7 of the two's complement value.
         Bit7,
     }
 }
 named! {
-    /// FIN-2: where the final combiner's lerp is rounded.
+    /// FIN-2: where the final combiner's linear interpolation is rounded.
     pub enum LerpRounding {
         /// Once, after the sum.
         Once,
@@ -86,19 +86,19 @@ named! {
     }
 }
 
-/// One value for every policy, and what there is to be chosen: a rule each, the question, and names and meanings of the enumeration's values, in its
-/// order.
+/// Declares [`Policies`] and [`POLICIES`]. Each entry has a field, its type and default, the rule's id, the question,
+/// and the names and meanings of the values in the order of the enumeration.
 macro_rules! policies {
     ($($field:ident: $type:ident = $default:ident, $rule:literal, $question:literal, [$($value:expr),+];)+) => {
-        /// One value for every policy.
+        /// The chosen value of every policy.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct Policies { $(#[doc = concat!($rule, ".")] pub $field: $type),+ }
 
         impl Policies {
-            /// What the model takes unless told otherwise.
+            /// The values that the model uses unless told otherwise.
             pub const DEFAULT: Policies = Policies { $($field: $type::$default),+ };
 
-            /// Sets the policy of `rule` to its value number `index`; unknown rules and indices change nothing.
+            /// Sets the policy of `rule` to its value at `index`. Unknown rules and indices change nothing.
             pub fn choose(&mut self, rule: &str, index: usize) {
                 match rule {
                     $($rule => self.$field = $type::ALL.get(index).copied().unwrap_or(self.$field),)+
@@ -106,13 +106,13 @@ macro_rules! policies {
                 }
             }
 
-            /// Number of the chosen value of `rule`, as in [`Policy::values`].
+            /// Returns the index of the chosen value of `rule` in [`Policy::values`], or 0 if no policy has that rule.
             pub fn chosen(&self, rule: &str) -> usize {
                 match rule { $($rule => self.$field as usize,)+ _ => 0 }
             }
         }
 
-        /// Every policy, in the order of `docs/numerics.md`. Values stand in the order of the enumerations above.
+        /// All policies, in the order of `docs/numerics.md`. Their values are in the order of the enumerations above.
         pub const POLICIES: &[Policy] =
             &[$(Policy { rule: $rule, question: $question, values: &[$($value),+] }),+];
     };
@@ -139,10 +139,10 @@ policies! {
 }
 
 impl Policies {
-    /// Applies one assignment such as `CMB-3=literal`.
+    /// Applies one assignment, such as `CMB-3=literal`.
     ///
     /// # Errors
-    /// The text has no `=`, the rule has no alternative, or the value is not one of its alternatives.
+    /// Returns an error if the text has no `=`, the rule has no alternatives, or the value is not one of them.
     pub fn set(&mut self, assignment: &str) -> Result<(), PolicyError> {
         let (rule, value) =
             assignment.split_once('=').ok_or_else(|| PolicyError::Form(assignment.chars().take(60).collect()))?;
@@ -166,21 +166,21 @@ impl Default for Policies {
     }
 }
 
-/// A rule with alternatives.
+/// A rule that has alternatives.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Policy {
     /// Id of the rule in `docs/numerics.md`.
     pub rule: &'static str,
-    /// What is to be decided.
+    /// The question that the alternatives answer.
     pub question: &'static str,
-    /// Names and meanings; the first is the default.
+    /// Names and meanings of the values. The first is the default.
     pub values: &'static [(&'static str, &'static str)],
 }
 
 /// A `--policy` argument that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PolicyError {
-    /// There is no `=` in it.
+    /// The text has no `=`.
     Form(String),
     /// No rule of that id has alternatives.
     Rule(String),
@@ -188,7 +188,7 @@ pub enum PolicyError {
     Value {
         /// The rule that has alternatives.
         policy: &'static Policy,
-        /// What was given.
+        /// The value that was given.
         value: String,
     },
 }

@@ -4,7 +4,7 @@ use super::{Rectangle, TextureFormat, named};
 use std::sync::Arc;
 
 named! {
-    /// A comparison of two unsigned integers, incoming value on the left.
+    /// A comparison of two unsigned integers with the incoming value on the left.
     pub enum CompareFunction {
         /// No value passes.
         Never,
@@ -26,7 +26,7 @@ named! {
 }
 
 impl CompareFunction {
-    /// Whether `incoming` passes against `stored`.
+    /// Returns whether `incoming` passes against `stored`.
     pub fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
         match self {
             CompareFunction::Never => false,
@@ -42,7 +42,8 @@ impl CompareFunction {
 }
 
 named! {
-    /// Blend equations (ROP-2, ROP-3). S and D are source and destination, s8 reads a byte as two's complement.
+    /// Blend equations (ROP-2, ROP-3). S and D are source and destination, Fs and Fd their factors; s8 reads a byte as
+    /// two's complement.
     pub enum BlendEquation {
         /// S Fs + D Fd.
         Add,
@@ -69,7 +70,7 @@ named! {
         One,
         /// The source's own channel.
         SourceColor,
-        /// 255 - source colour.
+        /// The source colour, each channel by its own.
         OneMinusSourceColor,
         /// The source's alpha.
         SourceAlpha,
@@ -81,17 +82,17 @@ named! {
         OneMinusDestinationAlpha,
         /// The destination's own channel.
         DestinationColor,
-        /// 255 - destination colour.
+        /// The destination colour, each channel by its own.
         OneMinusDestinationColor,
         /// min(source alpha, 255 - destination alpha) for colour, 255 for alpha.
         SourceAlphaSaturate,
-        /// Blend constant's colour.
+        /// The colour of the blend constant.
         ConstantColor,
-        /// 255 - blend constant's colour.
+        /// 255 - colour of the blend constant.
         OneMinusConstantColor,
-        /// Blend constant's alpha.
+        /// The alpha of the blend constant.
         ConstantAlpha,
-        /// 255 - blend constant's alpha.
+        /// 255 - alpha of the blend constant.
         OneMinusConstantAlpha,
     }
 }
@@ -99,76 +100,79 @@ named! {
 /// Alpha test (ROP-1): `function(fragment alpha, reference)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AlphaTest {
-    /// How alpha, on the left, is compared.
+    /// The comparison, with the fragment's alpha on the left.
     pub function: CompareFunction,
-    /// What alpha is compared with, 0 to 255.
+    /// The reference that alpha is compared with, 0 to 255.
     pub reference: u8,
 }
 
 named! {
-    /// What z of a vertex counts.
+    /// The unit of a vertex's z.
     pub enum VertexDepths {
-        /// 0 is the nearest depth and 1 the farthest that a fixed-point buffer holds; a float buffer holds the number itself.
+        /// Fractions from 0, the nearest depth, to 1, the farthest that a fixed-point buffer holds. A float buffer
+        /// holds the number itself.
         Fractions,
-        /// Steps of the buffer's last bit, not rounded; a float buffer holds the number itself. Only window positions have them.
+        /// Steps of the buffer's last bit, not rounded. A float buffer holds the number itself. Only window positions
+        /// can use steps.
         Steps,
     }
 }
 
-/// DEP-4: the depths that a draw may have, in steps.
+/// DEP-4: the range of depths that a draw may have, in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    /// The lowest, finite.
+    /// Lowest depth, finite.
     pub lowest: f32,
-    /// The highest, finite and not below it.
+    /// Highest depth, finite and not below `lowest`.
     pub highest: f32,
-    /// Whether what lies outside is moved to the nearer limit; it is dropped, pixel by pixel, otherwise.
+    /// Whether depths outside the range are clamped to it. Otherwise the pixels with such depths are dropped.
     pub clamps: bool,
-    /// Whether a triangle is dropped whose three vertices lie beyond the same limit.
+    /// Whether a triangle is dropped if all its vertices lie beyond the same limit.
     pub drops_triangles: bool,
 }
 
-/// DEP-5: what is added to the depths of a triangle, in steps. Finite.
+/// DEP-5: the offset of a triangle's depths, in steps. Both parts are finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolygonOffset {
-    /// Added as it is.
+    /// Constant part of the offset.
     pub bias: f32,
-    /// Times the steeper slope of the triangle, in steps a pixel.
+    /// Factor of the triangle's steeper slope, which is in steps per pixel.
     pub factor: f32,
 }
 
 /// Depth test (DEP-2): `function(fragment depth, stored depth)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTest {
-    /// How the fragment's depth, on the left, is compared.
+    /// The comparison, with the fragment's depth on the left.
     pub function: CompareFunction,
-    /// Whether a passing fragment's depth is stored.
+    /// Whether the depth of a passing fragment is stored.
     pub write: bool,
-    /// What z of a vertex counts.
+    /// The unit of the vertices' z.
     pub vertex_depths: VertexDepths,
-    /// The range of depths; `None`: what the buffer holds, to which depths are limited.
+    /// The range of depths. If `None`, depths are limited to what the buffer holds.
     pub range: Option<DepthRange>,
-    /// What is added to depths; in a w buffer a bias alone.
+    /// The offset that is added to depths. For a w buffer only the bias is allowed.
     pub offset: PolygonOffset,
-    /// The buffer holds w, in its own steps, in place of z (DEP-6); limits of the range are of w, and triangles are dropped by z.
+    /// Whether the buffer holds w in place of z, in its own steps (DEP-6). The limits of `range` then apply to w, but
+    /// triangles are dropped by z.
     pub w_buffer: bool,
 }
 
 impl DepthTest {
-    /// A test of depths between 0 and 1, without an offset or a range.
+    /// Returns a test of depths between 0 and 1, without an offset or a range.
     pub fn new(function: CompareFunction, write: bool) -> DepthTest {
         let (vertex_depths, range, offset) = (VertexDepths::Fractions, None, PolygonOffset::default());
         DepthTest { function, write, vertex_depths, range, offset, w_buffer: false }
     }
 
-    /// Whether pixels are dropped for their depth before any test (DEP-4).
+    /// Returns whether pixels are dropped for their depth before any test (DEP-4).
     pub fn drops_by_range(&self) -> bool {
         self.range.is_some_and(|range| !range.clamps)
     }
 }
 
 named! {
-    /// What a stencil test stores (STN-1). S is what is stored, R the reference.
+    /// What a stencil test stores (STN-1). S is the stored stencil, R the reference.
     pub enum StencilOperation {
         /// S.
         Keep,
@@ -182,9 +186,9 @@ named! {
         DecrementSaturate,
         /// 255 - S.
         Invert,
-        /// S + 1, and 0 after 255.
+        /// S + 1, wrapping from 255 to 0.
         Increment,
-        /// S - 1, and 255 after 0.
+        /// S - 1, wrapping from 0 to 255.
         Decrement,
     }
 }
@@ -192,38 +196,38 @@ named! {
 /// Stencil test (STN-1): `function(reference & mask, stored & mask)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StencilTest {
-    /// How the reference, on the left, is compared.
+    /// The comparison, with the reference on the left.
     pub function: CompareFunction,
-    /// R, 0 to 255: what the stencil is compared with.
+    /// The reference R, 0 to 255, that the stencil is compared with.
     pub reference: u8,
-    /// Bits that are compared.
+    /// Mask of the bits that are compared.
     pub mask: u8,
-    /// Bits that are written.
+    /// Mask of the bits that are written.
     pub write_mask: u8,
-    /// What is stored where the stencil test fails.
+    /// Operation if the stencil test fails.
     pub fail: StencilOperation,
-    /// Where it passes and the depth test fails.
+    /// Operation if the stencil test passes and the depth test fails.
     pub depth_fail: StencilOperation,
-    /// Where both pass; without a depth test that passes.
+    /// Operation if both tests pass. A draw without a depth test passes it.
     pub pass: StencilOperation,
 }
 
-/// Window clip (CLP-1): pixels of a draw that are left out by rectangles.
+/// Window clip (CLP-1): rectangles that limit where a draw has pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WindowClip {
-    /// One to [`WINDOW_CLIP_RECTANGLES`] of them; their right and bottom edges are outside.
+    /// One to [`WINDOW_CLIP_RECTANGLES`] rectangles. Their right and bottom edges are exclusive.
     pub rectangles: Vec<Rectangle>,
-    /// Pixels inside any rectangle are left out; otherwise those inside none are.
+    /// Whether pixels inside of any rectangle are dropped. Otherwise pixels outside of all rectangles are.
     pub exclusive: bool,
 }
 
-/// Rectangles that the window clip has.
+/// Most rectangles that a window clip can have.
 pub const WINDOW_CLIP_RECTANGLES: usize = 8;
 
-/// Blend function. Factors are ignored by Min, Max and the signed equations.
+/// Blend function. Min, Max and the signed equations ignore the factors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blend {
-    /// How both products are combined.
+    /// How the two products are combined.
     pub equation: BlendEquation,
     /// Factor of the source.
     pub source: BlendFactor,
@@ -232,40 +236,40 @@ pub struct Blend {
 }
 
 named! {
-    /// Colour surface formats (ROP-5). A trailing Z or O says what the unused bits are written with.
+    /// Colour surface formats (ROP-5). A trailing Z or O says that the unused bits are written as zeros or ones.
     pub enum SurfaceFormat {
         /// 32 bits, A in the top byte.
         A8R8G8B8,
-        /// 32 bits, top byte written 0; destination alpha 255.
+        /// 32 bits, top byte written as 0; destination alpha is 255.
         X8R8G8B8Z,
-        /// 32 bits, top byte written 255; destination alpha 255.
+        /// 32 bits, top byte written as 255; destination alpha is 255.
         X8R8G8B8O,
-        /// 16 bits, truncated; destination alpha 255.
+        /// 16 bits, truncated; destination alpha is 255.
         R5G6B5,
-        /// 16 bits, truncated, top bit written 0 (nv2a).
+        /// 16 bits, truncated, top bit written as 0 (nv2a).
         X1R5G5B5Z,
-        /// 16 bits, truncated, top bit written 1 (nv2a).
+        /// 16 bits, truncated, top bit written as 1 (nv2a).
         X1R5G5B5O,
-        /// 32 bits, seven bits of alpha, top bit written 0 (nv2a).
+        /// 32 bits with seven bits of alpha, top bit written as 0 (nv2a).
         X1A7R8G8B8Z,
-        /// 32 bits, seven bits of alpha, top bit written 1 (nv2a).
+        /// 32 bits with seven bits of alpha, top bit written as 1 (nv2a).
         X1A7R8G8B8O,
-        /// Blue byte only; blending is not allowed.
+        /// The blue byte only; blending is not allowed.
         B8,
-        /// Blue and green bytes, green high; blending is not allowed (nv2a).
+        /// Blue in the low and green in the high byte; blending is not allowed (nv2a).
         G8B8,
     }
 }
 
 impl BlendEquation {
-    /// Whether only nv2a has it.
+    /// Returns whether only nv2a has the equation.
     pub fn is_nv2a_only(self) -> bool {
         matches!(self, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
     }
 }
 
 impl SurfaceFormat {
-    /// Whether only nv2a has it.
+    /// Returns whether only nv2a has the format.
     pub fn is_nv2a_only(self) -> bool {
         matches!(
             self,
@@ -277,7 +281,7 @@ impl SurfaceFormat {
         )
     }
 
-    /// Bytes of one pixel.
+    /// Returns the bytes of one pixel.
     pub fn bytes(self) -> u32 {
         match self {
             SurfaceFormat::R5G6B5 | SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O | SurfaceFormat::G8B8 => 2,
@@ -290,7 +294,7 @@ impl SurfaceFormat {
         }
     }
 
-    /// The texture format that shows the surface as a picture: the same bits, read by TEX-1.
+    /// Returns the texture format that shows the surface as a picture: the same bits, read by TEX-1.
     pub fn texture_format(self) -> TextureFormat {
         match self {
             SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O => {
@@ -310,17 +314,17 @@ named! {
     pub enum DepthFormat {
         /// 16 bits of depth, no stencil.
         Z16,
-        /// 24 bits of depth, eight of stencil.
+        /// 24 bits of depth and eight of stencil.
         Z24S8,
-        /// A float of 16 bits: four of exponent, twelve of fraction (nv2a).
+        /// A float depth of 16 bits: four of exponent, twelve of fraction (nv2a).
         Z16F,
-        /// A float of 24 bits, eight of exponent and sixteen of fraction, and eight bits of stencil (nv2a).
+        /// A float depth of 24 bits, eight of exponent and sixteen of fraction, with eight bits of stencil (nv2a).
         Z24S8F,
     }
 }
 
 impl DepthFormat {
-    /// Bits of depth.
+    /// Returns the bits of depth.
     pub fn bits(self) -> u32 {
         match self {
             DepthFormat::Z16 | DepthFormat::Z16F => 16,
@@ -328,55 +332,55 @@ impl DepthFormat {
         }
     }
 
-    /// Whether its words are floats.
+    /// Returns whether depths are floats.
     #[inline(always)]
     pub fn is_float(self) -> bool {
         matches!(self, DepthFormat::Z16F | DepthFormat::Z24S8F)
     }
 
-    /// Its largest word.
+    /// Returns the largest depth word.
     #[inline(always)]
     pub fn largest(self) -> u32 {
         (1 << self.bits()) - 1
     }
 
-    /// Whether it has a stencil byte.
+    /// Returns whether the format has a stencil byte.
     pub fn has_stencil(self) -> bool {
         matches!(self, DepthFormat::Z24S8 | DepthFormat::Z24S8F)
     }
 }
 
-/// A depth buffer and what it is cleared to.
+/// A depth buffer and its clear values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DepthBuffer {
     /// How depth and stencil are stored.
     pub format: DepthFormat,
-    /// Integer written by the clear, below 2^bits.
+    /// Depth word that the clear writes, below 2^bits.
     pub clear: u32,
-    /// Stencil byte written by the clear; 0 where the format has none.
+    /// Stencil byte that the clear writes. It is 0 if the format has no stencil.
     pub clear_stencil: u8,
 }
 
 impl DepthBuffer {
-    /// The cleared pixel as a surface holds it: the depth in the low 24 bits, the stencil above.
+    /// Returns the cleared pixel as a surface holds it: the depth in the low 24 bits, the stencil above.
     pub fn cleared(&self) -> u32 {
         depth_stencil(self.clear, self.clear_stencil)
     }
 }
 
-/// A depth, of at most 24 bits, and a stencil as a surface holds them: the stencil above the depth.
+/// Packs a depth of at most 24 bits and a stencil as a surface holds them, with the stencil above the depth.
 #[inline(always)]
 pub fn depth_stencil(depth: u32, stencil: u8) -> u32 {
     u32::from(stencil) << 24 | depth
 }
 
-/// The depth of such a word.
+/// Returns the depth of a word packed by [`depth_stencil`].
 #[inline(always)]
 pub fn depth_of(word: u32) -> u32 {
     word & 0x00ff_ffff
 }
 
-/// The stencil of such a word.
+/// Returns the stencil of a word packed by [`depth_stencil`].
 #[inline(always)]
 pub fn stencil_of(word: u32) -> u8 {
     (word >> 24) as u8
@@ -385,21 +389,22 @@ pub fn stencil_of(word: u32) -> u8 {
 /// A render target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// Name in the scene.
+    /// Name that the scene, messages and outputs use.
     pub name: String,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
     /// How colours are stored.
     pub format: SurfaceFormat,
-    /// R, G, B, A bytes; the clear stores them by the format's own rule.
+    /// Clear colour as R, G, B, A bytes, which the clear stores by the rule of the format.
     pub clear_color: [u8; 4],
-    /// What the target holds before the first draw, in place of the cleared colour: a word a pixel, row by row from the top, with no bit above
-    /// the format's. Bits that the format does not use are kept until a draw writes them.
+    /// Contents before the first draw, in place of the cleared colour: one word for each pixel, row by row from the
+    /// top, with no bit set above those of the format. Bits that the format does not use are kept until a draw writes
+    /// the pixel.
     pub contents: Option<Arc<[u32]>>,
-    /// Depth buffer, if there is one.
+    /// Depth buffer, if the target has one.
     pub depth: Option<DepthBuffer>,
-    /// Surface clip (CLP-2): nothing is drawn outside. `None`: the whole target.
+    /// Surface clip (CLP-2): nothing is drawn outside. `None` means the whole target.
     pub clip: Option<Rectangle>,
 }

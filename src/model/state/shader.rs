@@ -1,73 +1,76 @@
-//! The texture shader: what each texture unit does with its coordinates and with what units before it have fetched (nv2a).
+//! The texture shader: what each texture unit does with its coordinates and with the colours that earlier units fetched
+//! (nv2a).
 //!
-//! On nv10, and on nv2a without a texture shader, every bound unit is [`ShaderOperation::Sample`] and every unbound one
-//! [`ShaderOperation::None`].
+//! On nv10, and on nv2a without a texture shader, every bound unit is [`ShaderOperation::Sample`] and every unbound
+//! unit is [`ShaderOperation::None`].
 
 use super::{Named, TEXTURE_UNITS, TextureKind, named};
 
 named! {
-    /// How a byte of a fetched colour becomes a number for a dot product (TSH-1 to TSH-3).
+    /// How the bytes of a fetched colour become numbers for a dot product (TSH-1 to TSH-3).
     pub enum DotMapping {
         /// v / 255.
         ZeroToOne,
         /// (v - 128) / 127.
         MinusOneToOneD3d,
-        /// (2s + 1) / 255 of the two's complement s.
+        /// (2s + 1) / 255, where s is the byte as two's complement.
         MinusOneToOneGl,
-        /// s / 127 of the two's complement s.
+        /// s / 127, where s is the byte as two's complement.
         MinusOneToOne,
-        /// Two halves of 16 bits / 65535; the third component is 1.
+        /// Two 16-bit halves, each divided by 65535. The third component is 1.
         Hilo1,
-        /// Two signed halves / 32768; the third component completes a unit vector.
+        /// Two signed 16-bit halves, each divided by 32768. The third component completes a unit vector.
         HiloHemisphere,
     }
 }
 
-/// What a unit does.
+/// The operation of a texture unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShaderOperation {
-    /// Nothing: black, opaque (TEX-16).
+    /// Does nothing; the result is opaque black (TEX-16).
     None,
-    /// Samples the unit's texture, whatever its kind, at the interpolated coordinates.
+    /// Samples the unit's texture, of any kind, at the interpolated coordinates.
     Sample,
-    /// The coordinates s, t, r, q as a colour (TSH-9).
+    /// Returns the coordinates s, t, r, q as a colour (TSH-9).
     PassThrough,
-    /// Drops the fragment when a coordinate is on the wrong side (TSH-10): of s, t, r, q, `true` tests for >= 0 being dropped,
-    /// `false` for < 0. Otherwise black, opaque.
+    /// Drops the fragment if one of its coordinates has the wrong sign (TSH-10). Otherwise the result is opaque black.
     CullFragment {
-        /// For s, t, r, q.
+        /// For each of s, t, r, q: `true` drops the fragment if the coordinate is >= 0, `false` if it is < 0.
         drops_not_negative: [bool; 4],
     },
-    /// Samples at the coordinates moved by a matrix times the blue and green of an earlier unit (TSH-7).
+    /// Samples at the coordinates displaced by a matrix times the blue and green of an earlier unit (TSH-7).
     BumpEnvironment {
-        /// m0 to m3 in register order: u + (m0 B + m3 G)/128, v + (m1 B + m2 G)/128.
+        /// m0 to m3 in register order: u + (m0 B + m3 G)/128 and v + (m1 B + m2 G)/128.
         matrix: [f32; 4],
         /// Scale and offset of the luminance, which multiplies the colour (TSH-8).
         luminance: Option<[f32; 2]>,
     },
-    /// Samples at alpha and red of an earlier unit (TSH-6).
+    /// Samples at the alpha and red of an earlier unit (TSH-6).
     DependentAlphaRed,
-    /// Samples at green and blue of an earlier unit (TSH-6).
+    /// Samples at the green and blue of an earlier unit (TSH-6).
     DependentGreenBlue,
-    /// The dot product of the coordinates and an earlier unit's colour, for a later unit (TSH-4). Transparent black.
+    /// Computes the dot product of the coordinates and an earlier unit's colour, for a later unit (TSH-4). The result
+    /// is transparent black.
     DotProduct,
-    /// The second dot product; samples a 2D texture at the two (texm3x2tex).
+    /// Computes the second dot product and samples a 2D texture at the two (texm3x2tex).
     DotProduct2D,
-    /// The third dot product; samples a cube map in the direction of the three (texm3x3tex).
+    /// Computes the third dot product and samples a cube map in the direction of the three (texm3x3tex).
     DotProductCube,
-    /// The second dot product; samples a cube map with the vector of all three, the normal itself (the third is the next unit's).
+    /// Computes the second dot product and samples a cube map in the direction of the vector of all three, which is the
+    /// normal. The next unit computes the third product.
     DotReflectDiffuse,
-    /// The third dot product; samples a cube map in the direction reflected about it, the eye from the three q (texm3x3vspec; TSH-5).
+    /// Computes the third dot product and samples a cube map in the direction of the eye vector reflected about the
+    /// normal. The eye vector is the q of the three units (texm3x3vspec; TSH-5).
     DotReflectSpecular,
-    /// The same with a constant eye vector (texm3x3spec).
+    /// Like [`DotReflectSpecular`](Self::DotReflectSpecular), but with a constant eye vector (texm3x3spec).
     DotReflectConstantEye {
-        /// Toward the eye.
+        /// Vector toward the eye.
         eye: [f32; 3],
     },
 }
 
 impl ShaderOperation {
-    /// Its name in scenes, messages and traces.
+    /// Returns the name in scenes, messages and traces.
     pub fn name(&self) -> &'static str {
         match self {
             ShaderOperation::None => "None",
@@ -86,7 +89,7 @@ impl ShaderOperation {
         }
     }
 
-    /// Whether it samples the unit's texture.
+    /// Returns whether the operation samples the unit's texture.
     pub fn samples(&self) -> bool {
         !matches!(
             self,
@@ -97,7 +100,7 @@ impl ShaderOperation {
         )
     }
 
-    /// Whether it reads the colour of an earlier unit, [`ShaderStage::previous`].
+    /// Returns whether the operation reads the colour of an earlier unit, [`ShaderStage::previous`].
     pub fn reads_previous(&self) -> bool {
         !matches!(
             self,
@@ -108,7 +111,7 @@ impl ShaderOperation {
         )
     }
 
-    /// The kinds of texture that it samples; of one that samples nothing they say nothing.
+    /// Returns the kinds of texture that the operation can sample. Meaningless for an operation that samples nothing.
     pub fn kinds(&self) -> &'static [TextureKind] {
         match self {
             ShaderOperation::BumpEnvironment { .. }
@@ -120,7 +123,7 @@ impl ShaderOperation {
         }
     }
 
-    /// Whether it takes a dot product.
+    /// Returns whether the operation computes a dot product.
     pub fn is_dot(&self) -> bool {
         matches!(
             self,
@@ -134,21 +137,21 @@ impl ShaderOperation {
     }
 }
 
-/// One unit's part of the texture shader.
+/// The part of the texture shader that one unit runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaderStage {
-    /// What it does.
+    /// The operation of the unit.
     pub operation: ShaderOperation,
-    /// Which of the vertex's four coordinate sets is its own.
+    /// Index of the vertex's coordinate set that the unit uses, 0 to 3.
     pub coordinate_set: usize,
-    /// The earlier unit whose colour it reads, if it reads one: always 0 for unit 1.
+    /// Index of the earlier unit whose colour the operation reads, if it reads one. For unit 1 it is always 0.
     pub previous: usize,
     /// How that colour enters a dot product.
     pub mapping: DotMapping,
 }
 
 impl ShaderStage {
-    /// The stage of unit `index` without a texture shader.
+    /// Returns the stage of unit `index` without a texture shader: it samples if a texture is bound.
     pub fn conventional(index: usize, bound: bool) -> ShaderStage {
         ShaderStage {
             operation: if bound { ShaderOperation::Sample } else { ShaderOperation::None },
@@ -158,7 +161,8 @@ impl ShaderStage {
         }
     }
 
-    /// TSH-10: why the operation of stage `index` may not stand where it does: where it belongs. `None`: it may.
+    /// TSH-10: returns the reason why the operation of stage `index` may not stand there, including where it belongs,
+    /// or `None` if it may.
     pub fn misplaced(stages: &[ShaderStage; TEXTURE_UNITS], index: usize) -> Option<&'static str> {
         use ShaderOperation as Op;
         let at = |n: usize| stages.get(n).map_or(Op::None, |stage| stage.operation);
@@ -192,7 +196,7 @@ impl ShaderStage {
         }
     }
 
-    /// TSH-10: whether stage `index` reads unit 2 although its dot product is needed at stage 2 already.
+    /// TSH-10: returns whether stage `index` reads unit 2 although stage 2 already needs its dot product.
     pub fn reads_too_late(stages: &[ShaderStage; TEXTURE_UNITS], index: usize) -> bool {
         index == 3 && matches!(stages[2].operation, ShaderOperation::DotReflectDiffuse) && stages[3].previous == 2
     }

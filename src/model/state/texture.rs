@@ -1,4 +1,4 @@
-//! Texture images and the units that sample them.
+//! Texture images, and the units that sample them.
 
 use super::{CompareFunction, DepthFormat, Profile, named};
 use std::sync::Arc;
@@ -6,31 +6,32 @@ use std::sync::Arc;
 /// Number of texture units in the state. NV10 has the first two.
 pub const TEXTURE_UNITS: usize = 4;
 
-/// Texels that a texture with border texels stores beyond each edge (TEX-7).
+/// Number of border texels that a texture stores beyond each edge, if it has border texels (TEX-7).
 pub const BORDER_TEXELS: u32 = 4;
 
-/// The longest side of a volume, and the most layers.
+/// Longest side of a volume texture, and its largest number of layers.
 pub const LARGEST_VOLUME: u32 = 512;
 
-/// Faces of a cube map, in the order +X, -X, +Y, -Y, +Z, -Z (TEX-12).
+/// Number of faces of a cube map, in the order +X, -X, +Y, -Y, +Z, -Z (TEX-12).
 pub const CUBE_FACES: u32 = 6;
 
 named! {
-    /// What a texture is sampled as.
+    /// How a texture is addressed.
     pub enum TextureKind {
-        /// Two coordinates, 1.0 the whole texture; sides are powers of two.
+        /// Two coordinates, where 1.0 spans the whole texture. Sides are powers of two.
         TwoDimensional,
         /// Six square faces, chosen by a direction (TEX-12).
         Cube,
-        /// Two coordinates in texels; any sides, one level (the chip's linear layouts).
+        /// Two coordinates in texels. Sides are arbitrary, and there is one level (the chip's linear layouts).
         Rectangle,
-        /// Layers that a third coordinate chooses from, 1.0 all of them; sides and layers are powers of two, one level (VOL-1; nv2a).
+        /// A volume: a third coordinate, where 1.0 spans all layers, chooses the layer. Sides and the number of layers
+        /// are powers of two, and there is one level (VOL-1; nv2a).
         ThreeDimensional,
     }
 }
 
 impl TextureKind {
-    /// The longest side that the chip takes.
+    /// Returns the longest side that the chip accepts, in texels.
     pub fn largest_side(self, format: TextureFormat, profile: Profile) -> u32 {
         let large = matches!(
             format,
@@ -57,11 +58,11 @@ impl TextureKind {
 }
 
 named! {
-    /// How the bits of a texel become R, G, B, A (TEX-1 to TEX-4).
+    /// How the bits of a texel encode R, G, B, A (TEX-1 to TEX-4).
     pub enum TextureFormat {
         /// 32 bits, A in the top byte.
         A8R8G8B8,
-        /// 32 bits, top byte ignored, alpha 255.
+        /// 32 bits, top byte ignored, alpha is 255.
         X8R8G8B8,
         /// 32 bits, A in the top byte, then B, G, R (nv2a).
         A8B8G8R8,
@@ -69,15 +70,15 @@ named! {
         B8G8R8A8,
         /// 32 bits, R in the top byte, then G, B, A (nv2a).
         R8G8B8A8,
-        /// 16 bits, alpha 255.
+        /// 16 bits, alpha is 255.
         R5G6B5,
-        /// 16 bits: 6, 5, 5; alpha 255 (nv2a).
+        /// 16 bits with 6, 5 and 5 bits a channel; alpha is 255 (nv2a).
         R6G5B5,
-        /// 16 bits, top bit ignored, alpha 255.
+        /// 16 bits, top bit ignored, alpha is 255.
         X1R5G5B5,
-        /// 16 bits, the top bit is alpha: 0 or 255.
+        /// 16 bits; the top bit is alpha, 0 or 255.
         A1R5G5B5,
-        /// 16 bits, 4 a channel.
+        /// 16 bits, 4 bits a channel.
         A4R4G4B4,
         /// Luminance byte: L, L, L, 255.
         L8,
@@ -91,31 +92,31 @@ named! {
         G8B8,
         /// 16 bits, R in the high byte: G = B, A = R (nv2a).
         R8B8,
-        /// Two halves of 16 bits, filtered at 16 bits, read as the bytes of A8R8G8B8 (nv2a; HILO).
+        /// Two 16-bit halves, filtered at 16 bits and read as the bytes of A8R8G8B8 (nv2a; HILO).
         R16B16,
-        /// 16 bits, filtered at 16 bits: R 255, G the high byte, B the low byte, A 255 (nv2a).
+        /// 16 bits, filtered at 16 bits: R is 255, G the high byte, B the low byte, A is 255 (nv2a).
         Y16,
-        /// A byte that is looked up in the unit's palette, index masked to its length.
+        /// Index byte into the unit's palette, masked to the palette's length.
         P8,
         /// Blocks of 4 x 4 texels in 8 bytes; dithered on nv2a (TEX-3, TEX-4).
         Dxt1 = "DXT1",
-        /// Blocks of 4 x 4 texels in 16 bytes, 4 bits of alpha each.
+        /// Blocks of 4 x 4 texels in 16 bytes, with 4 bits of alpha for each texel.
         Dxt3 = "DXT3",
-        /// Blocks of 4 x 4 texels in 16 bytes, alpha between two bytes.
+        /// Blocks of 4 x 4 texels in 16 bytes, with alpha interpolated between two bytes.
         Dxt5 = "DXT5",
-        /// A depth of 16 bits, which is compared (SHD-1; nv2a).
+        /// 16 bits of depth, which the unit compares (SHD-1; nv2a).
         Z16,
-        /// A depth of 24 bits above eight bits that are ignored, likewise.
+        /// 24 bits of depth above eight ignored bits, which the unit compares (SHD-1; nv2a).
         Z24S8,
-        /// A depth of 16 bits, a float, likewise.
+        /// A float depth of 16 bits, which the unit compares (SHD-1; nv2a).
         Z16F,
-        /// A depth of 24 bits, a float, above eight bits that are ignored, likewise.
+        /// A float depth of 24 bits above eight ignored bits, which the unit compares (SHD-1; nv2a).
         Z24S8F,
     }
 }
 
 impl TextureFormat {
-    /// Whether texels have an alpha of their own.
+    /// Returns whether texels have their own alpha.
     pub fn has_alpha(self) -> bool {
         !matches!(
             self,
@@ -128,7 +129,7 @@ impl TextureFormat {
         ) && self.depth().is_none()
     }
 
-    /// The format of the depths that it holds, if it holds depths: a unit compares them (SHD-1).
+    /// Returns the depth format of texels that are depths, which a unit compares (SHD-1); `None` for colours.
     #[inline(always)]
     pub fn depth(self) -> Option<DepthFormat> {
         match self {
@@ -140,7 +141,7 @@ impl TextureFormat {
         }
     }
 
-    /// Bytes of one texel, or of one block of a compressed format.
+    /// Returns the bytes of one texel, or of one block of a compressed format.
     pub fn bytes(self) -> u32 {
         match self {
             TextureFormat::Dxt3 | TextureFormat::Dxt5 => 16,
@@ -168,12 +169,12 @@ impl TextureFormat {
         }
     }
 
-    /// Whether texels come in blocks of 4 x 4.
+    /// Returns whether texels are stored in compressed blocks of 4 x 4.
     pub fn is_compressed(self) -> bool {
         matches!(self, TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5)
     }
 
-    /// Whether only nv2a has it.
+    /// Returns whether only nv2a has the format.
     pub fn is_nv2a_only(self) -> bool {
         matches!(
             self,
@@ -189,7 +190,7 @@ impl TextureFormat {
         ) || self.depth().is_some()
     }
 
-    /// Whether the chip has a linear layout of it, which rectangle textures need.
+    /// Returns whether the chip has a linear layout of the format, which rectangle textures need.
     pub fn is_linear(self, profile: Profile) -> bool {
         match profile {
             Profile::Nv2a => self != TextureFormat::P8 && !self.is_compressed(),
@@ -200,7 +201,8 @@ impl TextureFormat {
         }
     }
 
-    /// Words that a level of so many texels takes: one a texel, whatever its size; two (DXT1) or four a block.
+    /// Returns the number of words of a level of this size: one for each texel of any size, two (DXT1) or four for each
+    /// block.
     pub fn words(self, width: u32, height: u32) -> usize {
         if self.is_compressed() {
             (self.bytes() / 4 * width.div_ceil(4) * height.div_ceil(4)) as usize
@@ -211,65 +213,65 @@ impl TextureFormat {
 }
 
 named! {
-    /// What happens to a texel index outside the image (TEX-7).
+    /// What happens to a texel index outside the image (TEX-7). i is the index and n the number of texels.
     pub enum AddressMode {
         /// i mod n.
         Wrap,
-        /// Back and forth, the edge texel doubled.
+        /// Repeats back and forth; the edge texel occurs twice.
         Mirror,
-        /// 0..n-1.
+        /// i limited to 0..n-1.
         ClampToEdge,
-        /// Outside reads the border: the border colour, or the texture's own border texels (nv2a).
+        /// Texels outside are the border colour, or the texture's own border texels (nv2a).
         ClampToBorder,
-        /// OpenGL's clamp, taken as clamp to edge.
+        /// OpenGL's clamp, which behaves as clamp to edge.
         Clamp,
     }
 }
 named! {
-    /// Nearest or bilinear (TEX-5, TEX-6).
+    /// Filter within a level: nearest or bilinear (TEX-5, TEX-6).
     pub enum Filter {
         /// One texel is read.
         Nearest,
-        /// Four texels are read and mixed.
+        /// Four texels are read and interpolated.
         Linear,
     }
 }
 named! {
-    /// Which levels are mixed when a texture is minified (TEX-9).
+    /// How levels are chosen when a texture is minified (TEX-9).
     pub enum MipFilter {
-        /// Level 0 only.
+        /// Only level 0 is read.
         None,
-        /// The nearest level.
+        /// The nearest level is read.
         Nearest,
-        /// Two levels are read and mixed.
+        /// Two levels are read and interpolated.
         Linear,
     }
 }
 
-/// A named image.
+/// A named texture image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Name in the scene.
+    /// Name that the scene and messages use.
     pub name: String,
-    /// What it is sampled as.
+    /// How the texture is addressed.
     pub kind: TextureKind,
-    /// Meaning of its words.
+    /// How its words encode colours or depths.
     pub format: TextureFormat,
-    /// The texels, or the surface that holds them.
+    /// The texels, or the render target that holds them.
     pub image: TextureImage,
 }
 
-/// Texels given, or the contents of a render target drawn before.
+/// The texels of a texture: given by the scene, or the contents of an earlier render target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureImage {
-    /// Texels that the scene brings.
+    /// Texels that the scene provides.
     Texels(Texels),
-    /// The words of a render target, of as many bytes as the format has; one level.
+    /// The colour words of a render target, which have as many bytes as the texture's format. There is one level.
     Target {
         /// Index into [`Scene::targets`](super::Scene::targets).
         target: usize,
     },
-    /// The depth buffer of a render target, read in a format of depths of as many bytes; one level.
+    /// The depth buffer of a render target, read in a depth format of as many bytes. There is one level.
     Depth {
         /// Index into [`Scene::targets`](super::Scene::targets).
         target: usize,
@@ -277,7 +279,7 @@ pub enum TextureImage {
 }
 
 impl TextureImage {
-    /// The target whose colours or depths it shows.
+    /// Returns the index of the render target whose colours or depths it shows, if it shows one.
     pub fn target(&self) -> Option<usize> {
         match self {
             TextureImage::Texels(_) => None,
@@ -286,43 +288,44 @@ impl TextureImage {
     }
 }
 
-/// Raw texels of all faces and levels.
+/// Raw texels of all faces, layers and levels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texels {
-    /// Columns of level 0, border texels not counted.
+    /// Columns of level 0, without border texels.
     pub width: u32,
-    /// Rows of level 0.
+    /// Rows of level 0, without border texels.
     pub height: u32,
-    /// Levels, at least 1. Sides halve from level to level, rounded down, at least 1.
+    /// Number of levels, at least 1. Each level has half the sides of the one before, rounded down, but at least 1.
     pub levels: u32,
-    /// Layers of a volume; of other kinds 1.
+    /// Number of layers of a volume; 1 for all other kinds.
     pub layers: u32,
-    /// Each level stores [`BORDER_TEXELS`] more texels beyond each of its edges.
+    /// Whether each level stores [`BORDER_TEXELS`] more texels beyond each of its edges.
     pub border: bool,
-    /// The words: face after face (one, six of a cube map, or a volume's layers), in it level after level, in it row after row from the top. One word a
-    /// texel, unused high bits zero; of depths as [`depth_stencil`](super::depth_stencil) has them; a compressed block is 2 (DXT1) or 4 words, little-endian, row of blocks after row of blocks.
-    /// Shared, because plans hold them too.
+    /// The words: face after face (one, the six of a cube map, or the layers of a volume), within it level after level,
+    /// within that row after row from the top. Each texel is one word whose unused high bits are zero; a depth is
+    /// packed as by [`depth_stencil`](super::depth_stencil). A compressed block is two (DXT1) or four little-endian
+    /// words, and blocks are stored row after row. Shared, because plans hold them too.
     pub words: Arc<[u32]>,
 }
 
-/// Where one level of one face lies in [`Texels::words`].
+/// The place of one level of one face in [`Texels::words`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Level {
-    /// Index of its first word.
+    /// Index of the level's first word, counted from the start of its face.
     pub offset: usize,
-    /// Columns, border texels not counted.
+    /// Columns, without border texels.
     pub width: u32,
-    /// Texels down.
+    /// Rows, without border texels.
     pub height: u32,
 }
 
 impl Level {
-    /// How many levels a texture of these sides can have: down to 1 x 1.
+    /// Returns the most levels that a texture of these sides can have, down to 1 x 1.
     pub fn most(width: u32, height: u32) -> u32 {
         width.max(height).max(1).ilog2() + 1
     }
 
-    /// All levels of one face, level 0 first, and the words of one face.
+    /// Returns all levels of one face, starting at level 0, and the number of words of one face.
     pub fn chain(format: TextureFormat, width: u32, height: u32, levels: u32, border: bool) -> (Vec<Level>, usize) {
         let beyond = if border { 2 * BORDER_TEXELS } else { 0 };
         let mut offset = 0;
@@ -338,28 +341,29 @@ impl Level {
     }
 }
 
-/// Colours that texels of [`TextureFormat::P8`] stand for.
+/// The colours that the texels of [`TextureFormat::P8`] index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Palette {
-    /// Name in the scene.
+    /// Name that the scene and messages use.
     pub name: String,
-    /// 32, 64, 128 or 256 words, A8R8G8B8.
+    /// 32, 64, 128 or 256 words in the format A8R8G8B8.
     pub entries: Arc<[u32]>,
 }
 
 impl Palette {
-    /// The numbers of entries that a palette can have. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
+    /// The numbers of entries that a palette can have. The scene format allows only the longest on nv10 (NB0332).
+    /// Indices are masked to the length.
     pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 
 named! {
-    /// What a texel that equals the colour key becomes (KEY-1).
+    /// What happens to a texel that equals the colour key (KEY-1).
     pub enum ColorKeyMode {
-        /// Its alpha is 0.
+        /// The texel's alpha becomes 0.
         Alpha,
-        /// All of its channels are 0.
+        /// All channels of the texel become 0.
         Color,
-        /// Nothing: the fragment is dropped, whether or not anything reads the unit.
+        /// The fragment is dropped, even if nothing reads the unit.
         Texel,
     }
 }
@@ -367,32 +371,32 @@ named! {
 /// A colour key (KEY-1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColorKey {
-    /// The colour that texels are compared with, R, G, B, A bytes; without A where the format has none.
+    /// The colour that texels are compared with, as R, G, B, A bytes. A is ignored if the format has no alpha.
     pub color: [u8; 4],
-    /// What those that are equal become.
+    /// What happens to texels that are equal.
     pub mode: ColorKeyMode,
 }
 
-/// What a depth that a unit fetches is compared with (SHD-1).
+/// The comparison of a depth that a unit fetches (SHD-1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowComparison {
-    /// The reference stands on its left, the texel on its right. The chip has one for all units.
+    /// The comparison, with the reference on the left and the texel on the right. The chip has one for all units.
     pub function: CompareFunction,
-    /// What texels are compared with.
+    /// The reference that texels are compared with.
     pub reference: ShadowReference,
 }
 
 named! {
-    /// The reference of a comparison (SHD-1).
+    /// The reference of a shadow comparison (SHD-1).
     pub enum ShadowReference {
-        /// r/q: the stage projects in three dimensions.
+        /// r/q, if the stage projects in three dimensions.
         R,
-        /// 0: the stage projects in two.
+        /// 0, if the stage projects in two dimensions.
         Zero,
     }
 }
 
-/// Most taps that anisotropy can ask for along an axis of the screen (TEX-17), by profile.
+/// Returns the most taps that a unit of this profile can take along an axis of anisotropy (TEX-17).
 pub fn largest_anisotropy(profile: Profile) -> u32 {
     match profile {
         Profile::Nv10 => 2,
@@ -400,57 +404,60 @@ pub fn largest_anisotropy(profile: Profile) -> u32 {
     }
 }
 
-/// A texture unit's state.
+/// State of a texture unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureUnit {
-    /// Index into [`Scene::textures`](super::Scene::textures).
+    /// The bound texture, as an index into [`Scene::textures`](super::Scene::textures).
     pub texture: usize,
-    /// Index into [`Scene::palettes`](super::Scene::palettes); given where the texture's format is [`TextureFormat::P8`].
+    /// The palette, as an index into [`Scene::palettes`](super::Scene::palettes). Present if the texture's format is
+    /// [`TextureFormat::P8`].
     pub palette: Option<usize>,
-    /// Along s. Cube maps ignore it (TEX-14).
+    /// Address mode along s. Cube maps ignore it (TEX-14).
     pub address_s: AddressMode,
-    /// How t addresses texels outside the image.
+    /// Address mode along t. Cube maps ignore it (TEX-14).
     pub address_t: AddressMode,
-    /// Along the layers of a volume.
+    /// Address mode along the layers of a volume.
     pub address_r: AddressMode,
-    /// Filter within a level where the texture is minified (lod > 0).
+    /// Filter within a level if the texture is minified (lod > 0).
     pub min_filter: Filter,
-    /// Filter where it is magnified (lod <= 0).
+    /// Filter if the texture is magnified (lod <= 0).
     pub mag_filter: Filter,
-    /// Levels where it is minified.
+    /// How levels are chosen if the texture is minified.
     pub mip_filter: MipFilter,
-    /// Added to the lod: signed 5.8, -4096..=4095 (TEX-9).
+    /// Bias that is added to the lod: signed 5.8 fixed point, -4096..=4095 (TEX-9).
     pub lod_bias: i32,
-    /// Least lod, unsigned 4.8, 0..=4095.
+    /// Smallest lod: unsigned 4.8 fixed point, 0..=4095.
     pub min_lod: i32,
-    /// Greatest lod, unsigned 4.8, 0..=4095.
+    /// Largest lod: unsigned 4.8 fixed point, 0..=4095.
     pub max_lod: i32,
-    /// Border colour, R, G, B, A bytes (NUM-5).
+    /// Border colour as R, G, B, A bytes (NUM-5).
     pub border_color: [u8; 4],
-    /// Channels (R, G, B, A) read as two's complement (TEX-18; nv2a).
+    /// Whether R, G, B and A are read as two's complement (TEX-18; nv2a).
     pub signed: [bool; 4],
-    /// Colour key; the unit's filters are then nearest (KEY-1).
+    /// Colour key. A unit with one must use nearest filters (KEY-1).
     pub color_key: Option<ColorKey>,
-    /// How long a footprint may be compared with its width: 1, 2, 4 or 8 (TEX-17). Levels are then not mixed.
+    /// Largest ratio of a footprint's length to its width: 1, 2, 4 or 8 (TEX-17). Above 1, levels are not interpolated.
     pub anisotropy: u32,
-    /// Along s and t the vertices' coordinates go the shorter way around (CYL-1). Of 2D textures that are not projected.
+    /// Whether s and t of the vertices are interpolated along the shorter way around (CYL-1). Only for 2D textures that
+    /// are not projected.
     pub cylindrical_wrap: [bool; 2],
-    /// What depths are compared with; given where the texture's format is one of depths, whose filters are nearest (SHD-1).
+    /// Comparison of depths. Present if the texture's format holds depths, which are fetched with nearest filters
+    /// (SHD-1).
     pub shadow: Option<ShadowComparison>,
 }
 
 impl TextureUnit {
-    /// Whether a texel can drop the fragment (KEY-1).
+    /// Returns whether a texel can drop the fragment (KEY-1).
     pub fn kills(&self) -> bool {
         self.color_key.is_some_and(|key| key.mode == ColorKeyMode::Texel)
     }
 
-    /// Whether the unit reads texels as they are, one at a time, from one level.
+    /// Returns whether the unit reads single texels of one level, without interpolation.
     pub fn is_nearest(&self) -> bool {
         (self.min_filter, self.mag_filter) == (Filter::Nearest, Filter::Nearest) && self.mip_filter != MipFilter::Linear
     }
 
-    /// The unit as it is unless a scene says otherwise: wraps, bilinear without levels, no bias, all lods, nothing signed.
+    /// Returns the default state of a unit: wraps, bilinear without levels, no bias, all lods, unsigned channels.
     pub fn new(texture: usize) -> TextureUnit {
         TextureUnit {
             texture,

@@ -1,13 +1,13 @@
-//! Many vertices, an attribute after the other.
+//! A list of vertices, stored as one column for each component of an attribute.
 
 use std::fmt;
 
 use super::column::Column;
 use super::{TEXTURE_UNITS, Vertex, VertexColor};
 
-/// A list of vertices that takes little memory: a component of an attribute that is the same at all vertices is held once, one that
-/// differs as a column of its own; coordinate sets that are alike at all vertices are held once as well. A copy shares the columns
-/// with the list it was made of, until either changes.
+/// A compact list of vertices. A component that is the same at all vertices is stored once; one that differs has its
+/// own column. Coordinate sets that are equal at all vertices share their columns. A clone shares the columns with the
+/// original until either changes.
 #[derive(Clone)]
 pub struct Vertices {
     count: usize,
@@ -17,15 +17,16 @@ pub struct Vertices {
     fog: Column<f32>,
     fog_coordinate: Column<Option<f32>>,
     coordinates: [[Column<f32>; 4]; TEXTURE_UNITS],
-    /// Where each coordinate set is held: the first that is alike. What others hold is not kept.
-    held: [usize; TEXTURE_UNITS],
+    /// For each coordinate set, the first set that equals it, whose columns are used. The columns of other sets are not
+    /// kept up to date.
+    representative: [usize; TEXTURE_UNITS],
 }
 
-/// How many vertices are taken apart at a time.
+/// Number of vertices that are converted to columns at a time.
 const CHUNK: usize = 256;
 
 impl Vertices {
-    /// A list without vertices.
+    /// Creates an empty list.
     pub fn new() -> Self {
         let Vertex { position, diffuse, specular, fog, fog_coordinate, texture_coordinates } = Vertex::default();
         Vertices {
@@ -36,29 +37,29 @@ impl Vertices {
             fog: Column::Same(fog),
             fog_coordinate: Column::Same(fog_coordinate),
             coordinates: texture_coordinates.map(|set| set.map(Column::Same)),
-            held: [0; TEXTURE_UNITS],
+            representative: [0; TEXTURE_UNITS],
         }
     }
 
-    /// The number of vertices.
+    /// Returns the number of vertices.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there are none.
+    /// Returns whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Appends a vertex. Many are faster appended together, by [`Extend`] or [`FromIterator`].
+    /// Appends a vertex. To append many, [`Extend`] and [`FromIterator`] are faster.
     pub fn push(&mut self, vertex: Vertex) {
         self.append(&[vertex], self.count + 1);
     }
 
-    /// Vertex `index`.
+    /// Returns vertex `index`.
     ///
     /// # Panics
-    /// There is none.
+    /// Panics if `index` is not below the number of vertices.
     pub fn at(&self, index: usize) -> Vertex {
         assert!(index < self.count, "vertex {index} of {}", self.count);
         Vertex {
@@ -71,12 +72,12 @@ impl Vertices {
         }
     }
 
-    /// The vertices in order.
+    /// Returns an iterator over the vertices in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Vertex> + Clone + '_ {
         (0..self.count).map(|index| self.at(index))
     }
 
-    /// The position of vertex `index`, which must be one of these.
+    /// Returns the position of vertex `index`, which must exist.
     #[inline(always)]
     pub fn position(&self, index: usize) -> [f32; 4] {
         debug_assert!(index < self.count);
@@ -84,53 +85,53 @@ impl Vertices {
         [x.at(index), y.at(index), z.at(index), w.at(index)]
     }
 
-    /// s, t, r, q of vertex `index`, which must be one of these, in a coordinate set.
+    /// Returns s, t, r, q of vertex `index`, which must exist, in a coordinate set.
     #[inline(always)]
     pub fn coordinates(&self, index: usize, set: usize) -> [f32; 4] {
         debug_assert!(index < self.count);
-        let [s, t, r, q] = &self.coordinates[self.held[set]];
+        let [s, t, r, q] = &self.coordinates[self.representative[set]];
         [s.at(index), t.at(index), r.at(index), q.at(index)]
     }
 
-    /// Whether two coordinate sets are equal at every vertex.
+    /// Returns whether two coordinate sets are equal at every vertex.
     pub fn same_coordinates(&self, one: usize, other: usize) -> bool {
-        self.held[one] == self.held[other]
+        self.representative[one] == self.representative[other]
             || (0..self.count).all(|index| self.coordinates(index, one) == self.coordinates(index, other))
     }
 
-    /// A component of a coordinate set, s, t, r, q, if it is the same at every vertex.
+    /// Returns a component (s, t, r or q) of a coordinate set if it is the same at every vertex, and `None` otherwise.
     pub fn same_coordinate(&self, set: usize, component: usize) -> Option<f32> {
         let mut all = (0..self.count).map(|index| self.coordinates(index, set)[component]);
         let first = all.next()?;
         all.all(|other| other == first).then_some(first)
     }
 
-    /// Diffuse of vertex `index`, which must be one of these.
+    /// Returns the diffuse colour of vertex `index`, which must exist.
     pub fn diffuse(&self, index: usize) -> VertexColor {
         debug_assert!(index < self.count);
         self.diffuse.at(index)
     }
 
-    /// Specular of vertex `index`, which must be one of these.
+    /// Returns the specular colour of vertex `index`, which must exist.
     pub fn specular(&self, index: usize) -> VertexColor {
         debug_assert!(index < self.count);
         self.specular.at(index)
     }
 
-    /// Fog factor, or d' or e, of vertex `index`, which must be one of these.
+    /// Returns the fog of vertex `index`, which must exist: a factor, d' or e.
     pub fn fog(&self, index: usize) -> f32 {
         debug_assert!(index < self.count);
         self.fog.at(index)
     }
 
-    /// The vertices `indices`, which must be of these, as the vertices of a triangle.
+    /// Returns the triangle of the vertices `indices`, which must exist.
     #[inline(always)]
     pub fn triangle(&self, indices: [u32; 3]) -> TriangleVertices<'_> {
         debug_assert!(indices.iter().all(|index| (*index as usize) < self.count));
         TriangleVertices { vertices: self, indices }
     }
 
-    /// Changes vertices: `change` is given each with its index.
+    /// Calls `change` with the index and the contents of each vertex, and stores the changed vertices.
     pub fn update(&mut self, mut change: impl FnMut(usize, &mut Vertex)) {
         let changed = self.iter().enumerate().map(|(index, mut vertex)| {
             change(index, &mut vertex);
@@ -139,7 +140,7 @@ impl Vertices {
         *self = changed.collect();
     }
 
-    /// Puts every vertex where `map` takes its position. Components that stay as they are remain shared.
+    /// Replaces every position by `map` of it. Components that do not change keep sharing their columns.
     pub fn map_positions(&mut self, mut map: impl FnMut([f32; 4]) -> [f32; 4]) {
         let mut mapped: [Option<Column<f32>>; 4] = [const { None }; 4];
         let mut chunk = Vec::with_capacity(CHUNK.min(self.count));
@@ -167,9 +168,10 @@ impl Vertices {
         }
     }
 
-    /// Bytes that the columns take, beside the list itself.
+    /// Returns the bytes that the columns take on the heap.
     pub fn bytes(&self) -> usize {
-        let sets = (0..TEXTURE_UNITS).filter(|set| self.held[*set] == *set).flat_map(|set| &self.coordinates[set]);
+        let sets =
+            (0..TEXTURE_UNITS).filter(|set| self.representative[*set] == *set).flat_map(|set| &self.coordinates[set]);
         let floats = self.position.iter().chain([&self.fog]).chain(sets);
         let fog = self.fog_coordinate.bytes();
         floats.map(Column::bytes).sum::<usize>() + fog + self.diffuse.bytes() + self.specular.bytes()
@@ -184,8 +186,10 @@ impl Vertices {
         self.specular.extend(count, capacity, vertices.iter().map(|v| v.specular));
         self.fog.extend(count, capacity, vertices.iter().map(|v| v.fog));
         self.fog_coordinate.extend(count, capacity, vertices.iter().map(|v| v.fog_coordinate));
-        self.part_sets(vertices);
-        for (set, columns) in self.coordinates.iter_mut().enumerate().filter(|(set, _)| self.held[*set] == *set) {
+        self.separate_sets(vertices);
+        for (set, columns) in
+            self.coordinates.iter_mut().enumerate().filter(|(set, _)| self.representative[*set] == *set)
+        {
             for (n, column) in columns.iter_mut().enumerate() {
                 column.extend(count, capacity, vertices.iter().map(|v| v.texture_coordinates[set][n]));
             }
@@ -193,19 +197,19 @@ impl Vertices {
         self.count += vertices.len();
     }
 
-    /// Gives coordinate sets that were alike so far columns of their own where these vertices tell them apart.
-    fn part_sets(&mut self, vertices: &[Vertex]) {
+    /// Separates coordinate sets that were equal so far and that these vertices distinguish: each gets its own columns.
+    fn separate_sets(&mut self, vertices: &[Vertex]) {
         let alike = |one: usize, other: usize| {
             vertices.iter().all(|v| {
                 let [one, other] = [one, other].map(|set| v.texture_coordinates[set].map(f32::to_bits));
                 one == other
             })
         };
-        let before = self.held;
+        let before = self.representative;
         for set in 1..TEXTURE_UNITS {
             let first = (before[set]..set).find(|other| before[*other] == before[set] && alike(*other, set));
-            self.held[set] = first.unwrap_or(set);
-            if before[set] != set && self.held[set] == set {
+            self.representative[set] = first.unwrap_or(set);
+            if before[set] != set && self.representative[set] == set {
                 self.coordinates[set] = self.coordinates[before[set]].clone();
             }
         }
@@ -249,7 +253,7 @@ impl From<Vec<Vertex>> for Vertices {
     }
 }
 
-/// By value: what is held once and what is not plays no part.
+/// Compares the vertices themselves, however they are stored.
 impl PartialEq for Vertices {
     fn eq(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())
@@ -270,37 +274,37 @@ pub struct TriangleVertices<'a> {
 }
 
 impl TriangleVertices<'_> {
-    /// All of them.
+    /// Returns the three vertices.
     pub fn all(&self) -> [Vertex; 3] {
         self.indices.map(|index| self.vertices.at(index as usize))
     }
 
-    /// x, y, z, w of each vertex.
+    /// Returns x, y, z, w of each vertex.
     #[inline(always)]
     pub fn positions(&self) -> [[f32; 4]; 3] {
-        turned([self.position(0), self.position(1), self.position(2), self.position(3)])
+        transposed([self.position(0), self.position(1), self.position(2), self.position(3)])
     }
 
-    /// A component of their positions: 0 to 3 for x, y, z, w.
+    /// Returns a component of the positions: 0 to 3 for x, y, z, w.
     #[inline(always)]
     pub fn position(&self, component: usize) -> [f32; 3] {
         self.vertices.position[component].three(self.indices)
     }
 
-    /// Their s, t, r, q in a coordinate set.
+    /// Returns s, t, r, q of each vertex in a coordinate set.
     #[inline(always)]
     pub fn coordinates(&self, set: usize) -> [[f32; 4]; 3] {
-        let ([s, t, r, q], indices) = (&self.vertices.coordinates[self.vertices.held[set]], self.indices);
-        turned([s.three(indices), t.three(indices), r.three(indices), q.three(indices)])
+        let ([s, t, r, q], indices) = (&self.vertices.coordinates[self.vertices.representative[set]], self.indices);
+        transposed([s.three(indices), t.three(indices), r.three(indices), q.three(indices)])
     }
 
-    /// Their fog factors, or d' or e.
+    /// Returns the fog of each vertex: factors, d' or e.
     #[inline(always)]
     pub fn fog(&self) -> [f32; 3] {
         self.vertices.fog.three(self.indices)
     }
 
-    /// The fog coordinates that those were made of.
+    /// Returns the fog coordinates that the fog was computed from.
     pub fn fog_coordinates(&self) -> [Option<f32>; 3] {
         self.vertices.fog_coordinate.three(self.indices)
     }
@@ -312,13 +316,13 @@ impl fmt::Debug for TriangleVertices<'_> {
     }
 }
 
-/// Components of three vertices to three vertices' components.
+/// Converts components of three vertices to vertices of four components.
 #[inline(always)]
-fn turned([x, y, z, w]: [[f32; 3]; 4]) -> [[f32; 4]; 3] {
+fn transposed([x, y, z, w]: [[f32; 3]; 4]) -> [[f32; 4]; 3] {
     [[x[0], y[0], z[0], w[0]], [x[1], y[1], z[1], w[1]], [x[2], y[2], z[2], w[2]]]
 }
 
-/// Colours: bytes or floats, and only if need be some of both.
+/// A column of colours: all bytes, all floats, or a mixture if the list has both.
 #[derive(Clone)]
 enum Colors {
     Bytes(Column<[u8; 4]>),
@@ -327,7 +331,7 @@ enum Colors {
 }
 
 impl Colors {
-    /// All of them this one.
+    /// Returns a column in which all colours are `color`.
     fn from_color(color: VertexColor) -> Self {
         match color {
             VertexColor::Bytes(bytes) => Colors::Bytes(Column::Same(bytes)),
@@ -343,7 +347,7 @@ impl Colors {
         }
     }
 
-    /// Appends colours to `count`.
+    /// Appends colours to a column of `count` elements, and reserves room for `capacity` elements if it allocates.
     fn extend(&mut self, count: usize, capacity: usize, colors: impl Iterator<Item = VertexColor> + Clone) {
         if let (0, Some(first)) = (count, colors.clone().next()) {
             *self = Colors::from_color(first);
@@ -393,7 +397,7 @@ mod tests {
 
     use super::*;
 
-    /// Vertices whose attributes stay as they are for a while, as those of scenes do.
+    /// Generates vertices whose attributes often stay the same from one vertex to the next, as in scenes.
     fn some(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Vertex>> {
         let number = || prop::sample::select(vec![0.0_f32, -0.0, 1.0, 0.25, -3.5]);
         let color = || {
@@ -423,7 +427,7 @@ mod tests {
         })
     }
 
-    /// Every bit of a vertex.
+    /// Formats a vertex so that every bit of its values shows.
     fn bits(vertex: &Vertex) -> String {
         format!("{vertex:?}")
     }

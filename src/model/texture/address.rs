@@ -1,9 +1,9 @@
-//! TEX-7, TEX-8: texel indices outside the image.
+//! TEX-7, TEX-8: address modes, which handle texel indices outside the image.
 
 use crate::state::{AddressMode, BORDER_TEXELS};
 
-/// The index of texel `i` inside 0..n, or `None` for the border colour. With border texels [`AddressMode::ClampToBorder`] reaches them:
-/// -4..n+4; the other modes stay inside.
+/// Maps texel index `i` into 0..n. Returns `None` for the border colour. If the texture has border texels,
+/// [`AddressMode::ClampToBorder`] addresses them and returns -4..n+4; the other modes never do.
 #[inline(always)]
 pub fn address(mode: AddressMode, i: i64, n: u32, border_texels: bool) -> Option<i64> {
     let size = i64::from(n);
@@ -28,7 +28,7 @@ pub fn address(mode: AddressMode, i: i64, n: u32, border_texels: bool) -> Option
 mod tests {
     use super::*;
 
-    /// Every mode for all sizes up to 64, against its statement.
+    /// Compares every mode with its statement, for all sizes up to 64.
     #[test]
     fn modes_by_their_statement() {
         for n in 1..=64_i64 {

@@ -1,34 +1,34 @@
-//! TEX-17: several taps along the longer axis of a footprint.
+//! TEX-17: anisotropic filtering takes several taps along the longer axis of a footprint.
 
 use super::lod::Quad;
 
-/// Most taps of a footprint.
+/// Largest number of taps of a footprint.
 pub const MAX_TAPS: usize = 8;
 
-/// One level-0 texel in the coordinates of a [`Quad`].
+/// One texel of level 0 in the coordinates of a [`Quad`].
 pub(crate) const TEXEL: u32 = 65536;
 
-/// Taps of a footprint.
+/// The taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taps<Offset, Weight> {
-    /// The number of taps, 1 to [`MAX_TAPS`].
+    /// Number of taps, 1 to [`MAX_TAPS`].
     pub count: usize,
-    /// Where they lie from the pixel's coordinates, u and v in 1/256 texel.
+    /// Offsets of the taps from the pixel's coordinates: u and v in 1/256 texel.
     pub offsets: [[Offset; 2]; MAX_TAPS],
-    /// What they weigh, 256 together.
+    /// Weights of the taps, which add up to 256.
     pub weights: [Weight; MAX_TAPS],
 }
 
 impl Taps<i64, i32> {
-    /// One tap, where the pixel is.
+    /// A single tap at the pixel's own coordinates.
     const ONE: Self = Taps { count: 1, offsets: [[0; 2]; MAX_TAPS], weights: [256, 0, 0, 0, 0, 0, 0, 0] };
 }
 
-/// The taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. `None`: a pixel of the quad lies behind the
-/// viewer, and one tap is left.
+/// Returns the taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. Without a
+/// quad, because one of its pixels lies behind the viewer, there is one tap.
 pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
     let Some([origin, right, lower]) = quad else { return Taps::ONE };
-    // Farther than this everything is as far.
+    // Larger steps are limited to this.
     let most = 1 << 40;
     let along = |to: [i64; 2]| [0, 1].map(|n| to[n].saturating_sub(origin[n]).clamp(-most, most));
     let (x, y) = (along(right), along(lower));
@@ -40,10 +40,10 @@ pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
     }
 }
 
-/// Steps of a footprint that need no more than 64 bits.
+/// Steps below this need no more than 64 bits.
 const MAX_NARROW_STEP: u64 = 1 << 26;
 
-/// The taps of a footprint's two steps, in integers of some width.
+/// Defines the computation of taps from a footprint's two steps, in integers of a given width.
 macro_rules! taps_in {
     ($name:ident, $signed:ty, $unsigned:ty) => {
         fn $name(x: [$signed; 2], y: [$signed; 2], limit: u32) -> Taps<i64, i32> {
@@ -55,10 +55,10 @@ macro_rules! taps_in {
             if long <= width {
                 return Taps::ONE;
             }
-            // Half the distance of two taps, as parts of the axis: `step` of twice its length.
+            // Half the distance between two taps is `step` / (2 `long`) of the axis.
             let pairs = long.div_ceil(2 * width) as usize;
             let step = if pairs == 1 { long - width } else { width };
-            // To nearest; what the outermost two weigh is not negative.
+            // Rounded to nearest. The limit keeps the weight of the outermost two from being negative.
             let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
             let mut taps = Taps { count: 2 * pairs, weights: [0; MAX_TAPS], ..Taps::ONE };
             for pair in 0..pairs {
@@ -76,7 +76,7 @@ macro_rules! taps_in {
 taps_in!(taps_of_near, i64, u64);
 taps_in!(taps_of_far, i128, u128);
 
-/// The same of real numbers: s and t at the quad, sides in texels.
+/// Returns the taps of the ideal from s and t at the quad and the texture's sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's footprint")]
 pub fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Taps<f64, f64> {
     let mut taps = Taps { count: 1, offsets: [[0.0; 2]; MAX_TAPS], weights: [0.0; MAX_TAPS] };
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn two_taps_by_hand() {
-        // 1.226 texels along one axis, 0.2 along the other: 0.113 to both sides.
+        // 1.226 texels along one axis and 0.2 along the other yield 0.113 to both sides.
         let texels = |n: f64| (n * 65536.0) as i64;
         let near = taps(quad([texels(0.2), 0], [0, texels(1.226)]), 2);
         assert_eq!((near.count, near.offsets[0], near.offsets[1]), (2, [0, 28], [0, -28]));
@@ -147,7 +147,7 @@ mod tests {
             prop_assert!(taps.weights.iter().all(|weight| *weight >= 0));
         }
 
-        /// Where lengths are whole texels, the real taps are the same ones.
+        /// The real taps are close wherever their number is the same.
         #[test]
         fn real_taps_are_near(x in proptest::array::uniform2(-900..900_i64), y in proptest::array::uniform2(-900..900_i64), limit in 1..=3_u32) {
             let fixed = taps(quad(x.map(|n| n << 13), y.map(|n| n << 13)), 1 << limit);

@@ -1,4 +1,4 @@
-//! TSH-1 to TSH-10: the stages of a texture shader, in order, for one pixel.
+//! TSH-1 to TSH-10: runs the stages of a texture shader in order, for one pixel.
 
 use super::coordinates::{Coordinates, Interpolated, quad_samples, real_coordinate};
 use super::dependent::{Dependent, Moved, QuadTargets, Target};
@@ -13,45 +13,45 @@ use crate::raster::interpolate::Sample;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, TriangleVertices};
 use crate::trace::{Decision, Observer, Rule, Silent, Work};
 
-/// A texture shader with everything that it looks at.
+/// A texture shader with everything that it reads.
 #[derive(Debug)]
 pub struct Chain<'a, L> {
     /// The stages, one for each texture unit.
     pub shader: &'a PlannedShader,
     /// The units of the draw.
     pub units: &'a [PlannedUnit],
-    /// The triangle's coordinates.
+    /// The coordinates of the triangle.
     pub setup: &'a ShaderSetup,
-    /// The images, by number of the texture.
+    /// The images, indexed by the number of the texture.
     pub textures: &'a [Image<'a, L>],
     /// The triangle's vertices, for the ideal.
     pub vertices: TriangleVertices<'a>,
-    /// Whether that divides by their w.
+    /// Whether the ideal divides by the w of the vertices.
     pub perspective: bool,
-    /// How vectors of a dependent read are scaled (TSH-6).
+    /// How the bytes of a dependent read become coordinates (TSH-6).
     pub scale: DependentScale,
 }
 
-/// What the stages have yielded so far.
+/// The results of the stages so far.
 struct State<L> {
     registers: [[L; 4]; TEXTURE_UNITS],
     dots: [Option<Dot>; TEXTURE_UNITS],
 }
 
-/// A pixel, as the stages see it.
+/// The pixel that the stages run for.
 #[derive(Clone, Copy)]
 struct At<'s> {
     sample: &'s Sample<'s>,
     pixel: (i64, i64),
 }
 
-/// TEX-16: black, opaque.
+/// Returns opaque black (TEX-16).
 fn black<L: Lane>() -> [L; 4] {
     [L::ZERO, L::ZERO, L::ZERO, L::ONE]
 }
 
 impl<L: Lane> Chain<'_, L> {
-    /// Runs the stages; the four texture registers. `None`: the fragment is dropped (TSH-10, KEY-1).
+    /// Runs the stages and returns the four texture registers, or `None` if the fragment is dropped (TSH-10, KEY-1).
     pub fn run<O: Observer>(
         &self,
         sample: &Sample<'_>,
@@ -67,7 +67,7 @@ impl<L: Lane> Chain<'_, L> {
         Some(state.registers)
     }
 
-    /// What the stages before one yield at another pixel of the quad; nothing is dropped there.
+    /// Runs the stages before `last` at another pixel of the quad, where nothing is dropped.
     fn before(&self, last: usize, at: At<'_>) -> State<L> {
         let mut state = State::new();
         for index in 0..last {
@@ -76,12 +76,12 @@ impl<L: Lane> Chain<'_, L> {
         state
     }
 
-    /// Whether anybody wants real numbers.
+    /// Returns whether anything uses real numbers.
     fn wants_real<O: Observer>() -> bool {
         O::ON || O::MEASURES || L::DECIDES
     }
 
-    /// One stage. `false`: the fragment is dropped.
+    /// Runs one stage. Returns `false` if it drops the fragment.
     fn stage<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> bool {
         let planned = &self.shader.stages[index];
         if !planned.runs() {
@@ -120,23 +120,23 @@ impl<L: Lane> Chain<'_, L> {
         kept
     }
 
-    /// The vertices' coordinate set of a stage.
+    /// Returns the vertices' coordinate set of a stage.
     fn set(&self, index: usize) -> [[f32; 4]; 3] {
         self.vertices.coordinates(self.shader.stages[index].state.coordinate_set)
     }
 
-    /// The ideal's weights of the vertices.
+    /// Returns the ideal's weights of the vertices.
     fn weights(&self, at: &Sample<'_>) -> [f64; 3] {
         at.ideal.unwrap_or_else(|| ideal::barycentrics(at.triangle, at.e, self.vertices.position(3), self.perspective))
     }
 
-    /// The ideal's interpolated coordinates of a stage.
+    /// Returns the ideal's interpolated coordinates of a stage.
     fn real_coordinates(&self, index: usize, at: &Sample<'_>) -> [f64; 4] {
         let (weights, set) = (self.weights(at), self.set(index));
         [0, 1, 2, 3].map(|n| ideal::mix(weights, set.map(|v| f64::from(v[n]))))
     }
 
-    /// A unit that samples at its own coordinates.
+    /// Samples at the stage's own coordinates. Returns the colour, and whether the fragment is dropped.
     fn sampled<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> ([L; 4], bool) {
         let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
             return (black(), false);
@@ -150,7 +150,7 @@ impl<L: Lane> Chain<'_, L> {
         self.shader.stages[index].unit.map(|unit| &self.units[unit])
     }
 
-    /// TSH-9: the coordinates, limited, as a colour.
+    /// TSH-9: returns the coordinates, limited, as a colour.
     fn pass_through<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
         let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return black() };
         let live = self.shader.stages[index].live;
@@ -169,7 +169,8 @@ impl<L: Lane> Chain<'_, L> {
         })
     }
 
-    /// TSH-10: whether a coordinate is on the side that is dropped. Exact: neither rounding nor a tie moves a sign.
+    /// TSH-10: returns whether a coordinate has the sign that is dropped. The test is exact, because neither rounding
+    /// nor a tie changes a sign.
     fn drops<O: Observer>(&self, index: usize, not_negative: [bool; 4], at: At<'_>, observer: &mut O) -> bool {
         let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return false };
         let fixed: [bool; 4] = std::array::from_fn(|n| {
@@ -188,7 +189,7 @@ impl<L: Lane> Chain<'_, L> {
         dropped
     }
 
-    /// The colour of an earlier unit. Its channels that are not live mean nothing.
+    /// Returns the colour of an earlier unit. Channels that are not live have no meaning.
     fn color<O: Observer>(&self, unit: usize, state: &State<L>) -> Color {
         let register = state.registers[unit];
         let planned = &self.shader.stages[unit];
@@ -210,7 +211,7 @@ impl<L: Lane> Chain<'_, L> {
         Color { unit, bytes, held: held.map(i64::from), doubled, real }
     }
 
-    /// TSH-1 to TSH-4: the dot product of a stage, computed once.
+    /// TSH-1 to TSH-4: returns the dot product of a stage, which is computed once.
     fn dot<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> Dot {
         if let Some(dot) = state.dots[index] {
             return dot;
@@ -236,12 +237,13 @@ impl<L: Lane> Chain<'_, L> {
         dot
     }
 
-    /// The dot products of stages 1 to 3.
+    /// Returns the dot products of stages 1 to 3.
     fn normal<O: Observer>(&self, at: At<'_>, state: &mut State<L>, observer: &mut O) -> [Dot; 3] {
         [1, 2, 3].map(|index| self.dot(index, at, state, observer))
     }
 
-    /// Where a stage samples that depends on an earlier one, and where the ideal would.
+    /// Returns where a stage that depends on an earlier one samples, and where the ideal would sample by its own
+    /// numbers.
     fn target<'t, O: Observer>(
         &'t self,
         index: usize,
@@ -282,7 +284,7 @@ impl<L: Lane> Chain<'_, L> {
             ShaderOperation::BumpEnvironment { matrix, luminance } => {
                 let color = self.color::<O>(previous, state);
                 if O::ON {
-                    // Luminance is of colours: where only alpha is read, red need not have been sampled.
+                    // The luminance affects colours only. If only alpha is read, red need not have been sampled.
                     let lit = luminance.is_some() && self.shader.stages[index].live & 7 != 0;
                     let red: &[usize] = if lit { &[0, 1, 2] } else { &[1, 2] };
                     report::previous(index, &color, red, observer);
@@ -297,7 +299,7 @@ impl<L: Lane> Chain<'_, L> {
                 });
                 (Target::Moved(Moved { planes, at: *at.sample, matrix, blue_green }), own)
             }
-            // DotProductCube, DotReflectDiffuse.
+            // DotProductCube and DotReflectDiffuse.
             _ => {
                 let normal = self.normal(at, state, observer);
                 (Target::Vector(normal.map(|d| d.fixed)), real(&|| RealTarget::Vector(normal.map(|d| d.real))))
@@ -305,7 +307,7 @@ impl<L: Lane> Chain<'_, L> {
         }
     }
 
-    /// TSH-5: the eye vector, the definition's and the ideal's.
+    /// TSH-5: returns the eye vector of the definition and of the ideal.
     fn eye<O: Observer>(&self, index: usize, at: &Sample<'_>, observer: &mut O) -> ([f32; 3], [f64; 3]) {
         if let ShaderOperation::DotReflectConstantEye { eye } = self.shader.stages[index].state.operation {
             return (eye, eye.map(f64::from));
@@ -325,7 +327,7 @@ impl<L: Lane> Chain<'_, L> {
         (fixed, real)
     }
 
-    /// A stage that samples where an earlier one sends it.
+    /// Samples where an earlier stage points to. Returns the colour, and whether the fragment is dropped.
     fn dependent<O: Observer>(
         &self,
         index: usize,
@@ -359,7 +361,8 @@ impl<L: Lane> Chain<'_, L> {
         (color, dropped)
     }
 
-    /// What the ideal samples with: its own coordinates where it decides, else the definition's.
+    /// Returns the coordinates at which the ideal samples: its own if the lane decides by its own numbers, otherwise
+    /// those of the definition.
     fn followed(&self, index: usize, target: &Target<'_>, own: RealTarget, at: &Sample<'_>) -> RealTarget {
         if L::DECIDES {
             return own;
@@ -370,7 +373,8 @@ impl<L: Lane> Chain<'_, L> {
         })
     }
 
-    /// TEX-11 of a dependent read: the chain at the three pixels of the quad.
+    /// TEX-11 for a dependent read: runs the chain at the three pixels of the quad. Returns `None` if a pixel lies
+    /// behind the viewer or the face.
     fn quad(&self, index: usize, unit: &PlannedUnit, at: At<'_>) -> Option<QuadTargets> {
         let samples = quad_samples(at.sample.triangle, at.pixel);
         let (i, j) = (at.pixel.0 & !1, at.pixel.1 & !1);
@@ -393,7 +397,7 @@ impl<L: Lane> Chain<'_, L> {
         Some(QuadTargets { fixed, real, face: face? })
     }
 
-    /// TSH-8: the texel times scaled luminance.
+    /// TSH-8: multiplies the texel by the scaled luminance.
     fn luminance<O: Observer>(
         &self,
         index: usize,
@@ -424,13 +428,13 @@ impl<L: Lane> Chain<'_, L> {
 }
 
 impl<L: Lane> State<L> {
-    /// Units that have not yielded anything are black (TEX-16).
+    /// Returns the initial state, in which every unit is opaque black (TEX-16).
     fn new() -> Self {
         State { registers: [black(); TEXTURE_UNITS], dots: [None; TEXTURE_UNITS] }
     }
 }
 
-/// Whether the register holds twice the two's complement byte of a channel (TEX-18).
+/// Returns whether the register holds twice the two's complement byte of a channel (TEX-18).
 pub(crate) fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
     match (unit.format, channel) {
         (TextureFormat::R16B16 | TextureFormat::Y16, 3) => unit.signed_lane(0),

@@ -1,4 +1,4 @@
-//! KEY-1: texels of one colour made transparent, black, or left out.
+//! KEY-1: colour keys, which make texels of one colour transparent or black, or drop the fragment.
 
 use super::planned::PlannedUnit;
 use super::report::Report;
@@ -6,12 +6,12 @@ use crate::number::Lane;
 use crate::state::{ColorKey, ColorKeyMode};
 use crate::trace::Observer;
 
-/// Channels that are compared: all, or R, G and B of a format without alpha.
+/// Returns the number of channels that are compared: four, or three (R, G, B) if the format has no alpha.
 fn compared(unit: &PlannedUnit) -> usize {
     if unit.format.has_alpha() { 4 } else { 3 }
 }
 
-/// The key as lanes hold a texel: bytes, of signed channels two's complement.
+/// Returns the key in the form in which lanes hold a texel: bytes, or two's complement values for signed channels.
 pub(super) fn as_lanes(unit: &PlannedUnit, key: &ColorKey) -> [i32; 4] {
     std::array::from_fn(|n| {
         let byte = key.color[n];
@@ -19,13 +19,13 @@ pub(super) fn as_lanes(unit: &PlannedUnit, key: &ColorKey) -> [i32; 4] {
     })
 }
 
-/// A texel's lanes as bytes of a word, R the lowest, with the bits that are compared of those.
+/// Returns the key as a word of bytes with R lowest, and the mask of the bits that are compared.
 pub fn as_word(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
     let mask = if compared(unit) == 4 { u32::MAX } else { 0x00ff_ffff };
     (u32::from_le_bytes(key.color) & mask, mask)
 }
 
-/// Channels that a match makes 0.
+/// Returns the channels that a match sets to 0.
 pub(super) fn cleared(mode: ColorKeyMode) -> [bool; 4] {
     match mode {
         ColorKeyMode::Alpha => [false, false, false, true],
@@ -34,7 +34,7 @@ pub(super) fn cleared(mode: ColorKeyMode) -> [bool; 4] {
     }
 }
 
-/// A texel, whose lanes are bytes, behind the unit's key, and whether the fragment is dropped.
+/// Applies the unit's key to a texel whose lanes are bytes. Returns the texel, and whether the fragment is dropped.
 #[inline]
 pub fn apply<L: Lane, O: Observer>(
     unit: &PlannedUnit,

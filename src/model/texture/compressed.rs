@@ -1,34 +1,37 @@
-//! TEX-2, TEX-3, TEX-4: a texel out of a compressed block of 4 x 4.
+//! TEX-2, TEX-3, TEX-4: decodes texels of compressed 4 x 4 blocks.
 //!
-//! A block holds two colours of 5, 6 and 5 bits and two bits for each texel, which choose one of the two or a mix. In front of them a
-//! DXT3 block has four bits of alpha for each texel, a DXT5 block two bytes of alpha and three bits for each texel.
+//! A block holds two colours of 5, 6 and 5 bits, and two bits for each texel that choose one of the colours or a
+//! mixture. In front of these a DXT3 block has four bits of alpha for each texel, and a DXT5 block has two bytes of
+//! alpha and three bits for each texel.
 
 use super::format::{replicate5, replicate6};
 use crate::state::TextureFormat;
 
-/// Largest value of red, green and blue in a block's end points.
+/// Largest red, green and blue of the two colours.
 const MAX_CHANNELS: [i32; 3] = [31, 63, 31];
 
-/// TEX-3: what is added to red before it is cut to five bits, by row and column of the texel. Blue takes the rows upside down.
+/// TEX-3: dither that is added to red before it is cut to five bits, by row and column of the texel. Blue uses the rows
+/// in reverse order.
 const DITHER_5: [[i32; 4]; 4] = [[0, 4, 7, 3], [6, 2, 5, 1], [3, 7, 4, 0], [1, 5, 2, 6]];
 
-/// TEX-3: the same of green, which keeps six bits.
+/// TEX-3: dither of green, which keeps six bits.
 const DITHER_6: [[i32; 4]; 4] = [[1, 3, 2, 0], [2, 0, 3, 1], [3, 1, 0, 2], [0, 2, 1, 3]];
 
-/// A texel of a compressed block.
+/// A decoded texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decoded {
     /// R, G, B, A bytes.
     pub bytes: [u8; 4],
-    /// R, G, B, A as the real numbers 0..1 that the format means, numerator and denominator: end points v/31 and v/63, exact thirds,
-    /// halves, fifths and sevenths, no dither.
+    /// R, G, B, A as the real numbers in 0..1 that the format defines, each a numerator and a denominator: colours are
+    /// v/31 and v/63, mixtures are exact, and there is no dither.
     pub ideal: [(i32, i32); 4],
 }
 
-/// The texel in column `x` and row `y` of its level out of the block that it lies in.
+/// Decodes the texel at column `x` and row `y` of a level from the block that contains it.
 ///
-/// `block` is 2 words for DXT1 (the two colours, the first in the low half; the indices) and 4 for DXT3 and DXT5 (two of alpha before
-/// those), little-endian. `dithered` says that DXT1 follows TEX-3 (nv2a), not TEX-4 (nv10). Other formats have no blocks and give zero.
+/// `block` has two little-endian words for DXT1 (the two colours with the first in the low half, then the indices), and
+/// four for DXT3 and DXT5 (two of alpha before those). If `dithered` is set, DXT1 follows TEX-3 (nv2a), otherwise TEX-4
+/// (nv10). Returns zero for formats that have no blocks.
 pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u32) -> Decoded {
     let texel = 4 * (y & 3) + (x & 3);
     match (format, block) {
@@ -41,7 +44,7 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
             mix.opaque(if dithered { dither(mix.at_eight_bits(), x, y) } else { mix.at_own_width() })
         }
         (TextureFormat::Dxt3 | TextureFormat::Dxt5, &[low, high, colors, indices]) => {
-            // Always four colours, whichever of the two is larger.
+            // These formats always have four colours, whichever of the two is larger.
             let mix = Mix::from_index(colors, indices >> (2 * texel) & 3, true);
             let mut decoded = mix.opaque(mix.at_eight_bits());
             let explicit = format == TextureFormat::Dxt3;
@@ -53,10 +56,10 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
     }
 }
 
-/// Black that lets everything through.
+/// Transparent black.
 const NOTHING: Decoded = Decoded { bytes: [0; 4], ideal: [(0, 1); 4] };
 
-/// How a texel's colour is made of the two end points: (a first + b second) / (a + b).
+/// How the colour of a texel is mixed from the two colours of the block: (a first + b second) / (a + b).
 #[derive(Clone, Copy)]
 struct Mix {
     first: [i32; 3],
@@ -66,7 +69,7 @@ struct Mix {
 }
 
 impl Mix {
-    /// By an index 0..=3; of three colours 0..=2.
+    /// Returns the mixture that an index stands for: 0..=3 of four colours, or 0..=2 of three.
     #[inline]
     fn from_index(colors: u32, index: u32, four_colors: bool) -> Mix {
         let channels = |c: u32| [c >> 11 & 31, c >> 5 & 63, c & 31].map(|v| v as i32);
@@ -80,14 +83,14 @@ impl Mix {
         Mix { first: channels(colors), second: channels(colors >> 16), a, b }
     }
 
-    /// Rounded to the nearest: thirds (2a + b + 1) div 3, halves (a + b + 1) >> 1.
+    /// Mixes a channel and rounds to nearest: (2a + b + 1) div 3 for thirds, (a + b + 1) >> 1 for halves.
     #[inline]
     fn round(&self, first: i32, second: i32) -> i32 {
         let whole = self.a + self.b;
         (self.a * first + self.b * second + whole / 2) / whole
     }
 
-    /// TEX-2: end points widened to bytes, then mixed.
+    /// TEX-2: widens the two colours to bytes, then mixes.
     #[inline]
     fn at_eight_bits(&self) -> [i32; 3] {
         let widened = |v: [i32; 3]| widen(v).map(i32::from);
@@ -95,13 +98,13 @@ impl Mix {
         [0, 1, 2].map(|n| self.round(first[n], second[n]))
     }
 
-    /// TEX-4: mixed at five, six and five bits, then widened (TEX-1).
+    /// TEX-4: mixes at five, six and five bits, then widens (TEX-1).
     #[inline]
     fn at_own_width(&self) -> [i32; 3] {
         widen([0, 1, 2].map(|n| self.round(self.first[n], self.second[n]))).map(i32::from)
     }
 
-    /// These bytes with alpha 255, beside the mix as real numbers.
+    /// Returns a texel of these bytes with alpha 255, and the mixture as real numbers.
     #[inline]
     fn opaque(&self, [r, g, b]: [i32; 3]) -> Decoded {
         let ideal = |n: usize| (self.a * self.first[n] + self.b * self.second[n], (self.a + self.b) * MAX_CHANNELS[n]);
@@ -109,13 +112,14 @@ impl Mix {
     }
 }
 
-/// TEX-1: five, six and five bits as bytes.
+/// TEX-1: widens five, six and five bits to bytes.
 #[inline]
 fn widen([r, g, b]: [i32; 3]) -> [u8; 3] {
     [replicate5(r as u32), replicate6(g as u32), replicate5(b as u32)]
 }
 
-/// TEX-3: bytes cut to five, six and five bits with the dither of column `x` and row `y`, which reading takes off again.
+/// TEX-3: cuts bytes to five, six and five bits with the dither of column `x` and row `y`, and removes the dither again
+/// as reading does.
 #[inline]
 fn dither([r, g, b]: [i32; 3], x: u32, y: u32) -> [i32; 3] {
     let (column, row) = ((x & 3) as usize, (y & 3) as usize);
@@ -126,7 +130,7 @@ fn dither([r, g, b]: [i32; 3], x: u32, y: u32) -> [i32; 3] {
     ]
 }
 
-/// One channel: `cut` bits lost. The lowest and the highest stored level stand for 0 and 255.
+/// Cuts `cut` bits of one channel. The lowest and the highest stored level stand for 0 and 255.
 #[inline]
 fn through(value: i32, dither: i32, cut: u32) -> i32 {
     let lost = (1 << cut) - 1;
@@ -141,7 +145,7 @@ fn through(value: i32, dither: i32, cut: u32) -> i32 {
     }
 }
 
-/// TEX-2: four bits, times 17.
+/// TEX-2: multiplies four bits of alpha by 17.
 #[inline]
 fn explicit_alpha(low: u32, high: u32, texel: u32) -> (u8, (i32, i32)) {
     let word = if texel < 8 { low } else { high };
@@ -149,7 +153,8 @@ fn explicit_alpha(low: u32, high: u32, texel: u32) -> (u8, (i32, i32)) {
     ((n * 17) as u8, (n as i32, 15))
 }
 
-/// TEX-2: two bytes and what lies between them: six steps, or four and the values 0 and 255 where the first byte is not the larger.
+/// TEX-2: mixes two bytes of alpha in sevenths, or in fifths with the additional values 0 and 255 if the first byte is
+/// not larger.
 #[inline]
 fn mixed_alpha(low: u32, high: u32, texel: u32) -> (u8, (i32, i32)) {
     let bits = u64::from(high) << 32 | u64::from(low);
@@ -171,19 +176,19 @@ fn mixed_alpha(low: u32, high: u32, texel: u32) -> (u8, (i32, i32)) {
 mod tests {
     use super::*;
 
-    /// One texel of a DXT5 block with these bytes of alpha, through the whole decoder.
+    /// Decodes one texel of a DXT5 block with the given alpha.
     fn dxt5_alpha(first: u32, second: u32, code: u64, texel: u32) -> Decoded {
         let bits = code << (16 + 3 * texel) | u64::from(second) << 8 | u64::from(first);
         decode(TextureFormat::Dxt5, true, &[bits as u32, (bits >> 32) as u32, 0, 0], texel & 3, texel >> 2)
     }
 
-    /// Every pair of bytes with every code; the texel's place in the block goes round with them.
+    /// Tests every pair of bytes with every code, at varying places in the block.
     #[test]
     fn alpha_between_two_bytes() {
         for first in 0..=255_u32 {
             for second in 0..=255_u32 {
                 for code in 0..8_u64 {
-                    // The nearest of all bytes to the real number, by search: no seventh or fifth lies half way between two bytes.
+                    // The byte that is nearest to the real number. No seventh or fifth lies half way between two bytes.
                     let (a, b) = (first as i32, second as i32);
                     let real = match (code as i32, first > second) {
                         (0, _) => (a, 1),
@@ -219,7 +224,8 @@ mod tests {
         }
     }
 
-    /// Both ends of every channel, every pair, every index: thirds to the nearest byte, in 888 space, whichever end is larger.
+    /// Tests every pair of ends of every channel with every index. Thirds are rounded to the nearest byte, whichever
+    /// end is larger.
     #[test]
     fn colors_beside_alpha() {
         for (shift, most, wide) in [(11, 31, replicate5 as fn(u32) -> u8), (5, 63, replicate6), (0, 31, replicate5)] {
@@ -248,7 +254,7 @@ mod tests {
         }
     }
 
-    /// TEX-3 at every position: every level of five and six bits that a block can hold, against the formula as it is stated.
+    /// TEX-3 at every position: compares every level of five and six bits with the formula as it is stated.
     #[test]
     fn dither_at_every_position() {
         let red = [[0, 4, 7, 3], [6, 2, 5, 1], [3, 7, 4, 0], [1, 5, 2, 6]];
@@ -277,7 +283,7 @@ mod tests {
                     let (f, s) =
                         ((first & 31) << 11 | first << 5 | first & 31, (second & 31) << 11 | second << 5 | second & 31);
                     for index in 0..4_u32 {
-                        // Four colours, then three.
+                        // Four colours, then three colours.
                         let four = [f.max(s) | f.min(s) << 16, index * 0x5555_5555];
                         let three = [f.min(s) | f.max(s) << 16, index * 0x5555_5555];
                         for (block, halves) in [(four, f == s), (three, true)] {
@@ -311,7 +317,7 @@ mod tests {
         }
     }
 
-    /// TEX-4: mixed before widening, position without meaning.
+    /// TEX-4 mixes before widening, and the position does not matter.
     #[test]
     fn at_own_width_without_dither() {
         for first in 0..=31_u32 {
@@ -331,10 +337,11 @@ mod tests {
         let clear = decode(TextureFormat::Dxt1, false, &[0, !0], 2, 1);
         assert_eq!((clear.bytes, clear.ideal), ([0; 4], [(0, 1); 4]));
     }
-    /// Every pair of end points with every index at every position: the extremes that the handbook states, in exact fractions.
+    /// Tests every pair of colours with every index at every position. The handbook states these extremes; the
+    /// fractions are exact.
     #[test]
     fn errors_are_as_stated() {
-        // Lowest and highest of (byte - ideal) as numerators over what every denominator divides; of red and green.
+        // Lowest and highest byte - ideal of red and green, as numerators over a common multiple of all denominators.
         const WHOLE: i64 = 31 * 63 * 6;
         let mut extremes = [[[0_i64; 2]; 2]; 3];
         let mut note = |rule: usize, channel: usize, decoded: &Decoded| {
@@ -362,7 +369,7 @@ mod tests {
                 }
             }
         }
-        // In thousandths, away from zero.
+        // In thousandths, rounded away from zero.
         let rounded = |error: i64| (1000 * error.abs() + WHOLE - 1) / WHOLE * error.signum();
         let stated = [[[-936, 936], [-1016, 1016]], [[-13_710, 5484], [-6072, 2699]], [[-3420, 4791], [-2064, 2739]]];
         assert_eq!(extremes.map(|rule| rule.map(|channel| channel.map(rounded))), stated);

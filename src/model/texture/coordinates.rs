@@ -1,4 +1,4 @@
-//! Where a unit samples: coordinates of each kind of texture, on each of its levels, at a pixel and at its quad.
+//! Texture coordinates: where a unit samples on each level of each kind of texture, at a pixel and at its quad.
 
 use super::cube::{Face, Signed};
 use super::lod::Quad;
@@ -11,19 +11,19 @@ use crate::raster::{ideal, setup::Triangle};
 use crate::state::{AddressMode, DepthFormat, Level, Named, TextureKind, TriangleVertices};
 use crate::trace::{Observer, Operand, Rule, Step, plain};
 
-/// A unit's coordinates, set up for one triangle.
+/// The coordinates of a unit, set up for one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
-    /// q is 1 at all three vertices: u and v of level 0 are linear functions over D (INT-4).
+    /// q is 1 at all three vertices, so that u and v of level 0 are linear functions over D (INT-4).
     Plane([[i64; 3]; 2]),
-    /// s/q and t/q, a ratio of linear functions (TEX-15).
+    /// Linear functions of s, t and q, for the ratios s/q and t/q (TEX-15).
     Ratio([[i64; 3]; 3]),
-    /// The direction s, t, r of a cube map (TEX-12); q is ignored.
+    /// Linear functions of the direction s, t, r into a cube map (TEX-12). q is ignored.
     Direction([[i64; 3]; 3]),
 }
 
 impl Coordinates {
-    /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its three vertices.
+    /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its vertices.
     #[inline(always)]
     pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
         let [a, b, c] = wrapped(unit, vertices);
@@ -40,7 +40,8 @@ impl Coordinates {
     }
 }
 
-/// CYL-1: the coordinates of a triangle's vertices, moved by whole repeats to within a half of those of the first.
+/// CYL-1: moves the coordinates of a triangle's vertices by whole repeats to within half a repeat of those of the first
+/// vertex.
 #[allow(clippy::float_arithmetic, reason = "CYL-1: repeats are counted and taken off in binary32")]
 #[inline]
 pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3] {
@@ -54,14 +55,14 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
         let first = vertices[0][axis];
         for vertex in &mut vertices[1..] {
             let ahead = vertex[axis] - first;
-            // What lies exactly half a repeat away stays.
+            // A distance of exactly half a repeat is kept.
             vertex[axis] -= if ahead > 0.0 { (ahead - 0.5).ceil().max(0.0) } else { (ahead + 0.5).floor().min(0.0) };
         }
     }
     vertices
 }
 
-/// VOL-1: r of the vertices as a plane over D, or r and q, of which the ratio counts.
+/// VOL-1: returns r of the vertices as a linear function over D, or r and q if the coordinates are ratios.
 pub fn layer_planes(
     triangle: &Triangle,
     coordinates: &Coordinates,
@@ -77,7 +78,7 @@ pub fn layer_planes(
     }
 }
 
-/// The three linear functions of sc, tc and |ma| of a direction on a face.
+/// Returns the linear functions of sc, tc and |ma| of a direction on a face.
 pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
     face.components().map(
         |Signed { axis, negative }| {
@@ -86,30 +87,31 @@ pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
     )
 }
 
-/// The ideal's coordinates.
+/// Coordinates of the ideal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Real {
-    /// The face that they lie on.
+    /// The face of a cube map that they lie on.
     pub face: Face,
-    /// s and t, of which 1.0 is the whole image; texels of a rectangle.
+    /// s and t, where 1.0 spans the whole image, or texels of a rectangle.
     pub st: [f64; 2],
 }
 
-/// Where a unit samples. Implementations differ in what the coordinates come from.
+/// The coordinates at which a unit samples. Implementations differ in where the coordinates come from.
 pub trait SampleCoordinates {
-    /// The face of a cube map; [`Face::PositiveX`] of other kinds.
+    /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
     fn face(&self) -> Face;
-    /// u and v on a level, 1/256 texel.
+    /// Returns u and v on a level, in 1/256 texel.
     fn on(&self, level: &Level) -> [Floored; 2];
-    /// TEX-11: u and v at the quad, on the face of its top-left pixel. `None`: some of it lies behind the viewer.
+    /// TEX-11: returns u and v at the quad, on the face of its top-left pixel. Returns `None` if part of the quad lies
+    /// behind the viewer.
     fn quad(&self) -> Option<Quad>;
-    /// The ideal's coordinates, on a given face or on its own.
+    /// Returns the ideal's coordinates, on the given face or, without one, on their own.
     fn real(&self, face: Option<Face>) -> Real;
-    /// The ideal's s and t at the quad, likewise.
+    /// Returns the ideal's s and t at the quad, or `None` if part of the quad lies behind the viewer.
     fn real_quad(&self) -> Option<[[f64; 2]; 3]>;
-    /// The rule that yields u and v.
+    /// Returns the rule that yields u and v.
     fn rule(&self) -> Rule;
-    /// Tells an observer where u and v on a level come from.
+    /// Reports how u and v on a level are computed.
     fn describe<O: Observer>(
         &self,
         report: &Report<'_>,
@@ -118,24 +120,25 @@ pub trait SampleCoordinates {
         ideal: [f64; 2],
         observer: &mut O,
     );
-    /// Tells an observer where the coordinates of the quad come from.
+    /// Reports how the coordinates of the quad are computed.
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O);
 
-    /// VOL-1: the place among so many layers, 1/256 layer. Only interpolated coordinates have one: 0.
+    /// VOL-1: returns the coordinate among `layers` layers, in 1/256 layer. Only interpolated coordinates have one; for
+    /// others it is 0.
     fn layer(&self, _layers: u32) -> Floored {
         Floored { value: 0, lowered: 0 }
     }
-    /// The ideal's r/q, likewise.
+    /// Returns the ideal's r/q, or 0 if the coordinates are not interpolated.
     fn real_r(&self) -> f64 {
         0.0
     }
-    /// Tells an observer where that comes from.
+    /// Reports how the layer coordinate is computed.
     fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: Floored, _observer: &mut O) {}
-    /// SHD-1: r/q in steps of a depth buffer, likewise.
+    /// SHD-1: returns r/q in steps of a depth buffer, or 0 if the coordinates are not interpolated.
     fn reference(&self) -> Binary {
         Binary::default()
     }
-    /// Tells an observer where the word that it becomes comes from.
+    /// Reports how the reference word is computed.
     fn describe_reference<O: Observer>(
         &self,
         _report: &Report<'_>,
@@ -146,24 +149,24 @@ pub trait SampleCoordinates {
     }
 }
 
-/// Coordinates interpolated from the vertices.
+/// Coordinates that are interpolated from the vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated<'a> {
     /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// Its coordinates, set up for the triangle.
+    /// The coordinates that were set up for the triangle.
     pub coordinates: &'a Coordinates,
-    /// The pixel, or rather what interpolation takes of it.
+    /// The sample point of the pixel.
     pub at: &'a Sample<'a>,
-    /// Its column and row.
+    /// Column and row of the pixel.
     pub pixel: (i64, i64),
     /// The vertices of the triangle, for the ideal.
     pub vertices: TriangleVertices<'a>,
-    /// Whether the ideal divides by their w.
+    /// Whether the ideal divides by the w of the vertices.
     pub perspective: bool,
 }
 
-/// Samples at the top-left pixel of a pixel's quad, at its right and at its lower neighbour.
+/// Returns samples at the top-left pixel of a pixel's quad and at its right and lower neighbours.
 pub fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] {
     let (i, j) = (i & !1, j & !1);
     [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| Sample::new(triangle, triangle.edges(i, j)))
@@ -175,7 +178,8 @@ impl Interpolated<'_> {
         Face::from_direction(sums, sums.map(i128::abs), 0)
     }
 
-    /// One pixel of the quad, on a face, in 1/65536 texel of level 0. `None`: behind the viewer.
+    /// Returns the coordinates of one pixel of the quad on a face, in 1/65536 texel of level 0, or `None` if it lies
+    /// behind the viewer.
     fn at_quad(&self, at: &Sample<'_>, face: Face) -> Option<[i64; 2]> {
         let [width, height] = self.unit.scale(&self.unit.levels[0]).map(i128::from);
         let floor = |numerator: i128, denominator: i128| {
@@ -201,24 +205,24 @@ impl Interpolated<'_> {
         }
     }
 
-    /// One component of the vertices' coordinates.
+    /// Returns one component of the vertices' coordinates.
     fn component(&self, n: usize) -> [f32; 3] {
         self.vertices.coordinates(self.unit.stage.coordinate_set).map(|vertex| vertex[n])
     }
 
-    /// [`layer_planes`] of this place.
+    /// Returns the [`layer_planes`] of these coordinates.
     fn layer_planes(&self, layers: u32) -> ([i64; 3], Option<[i64; 3]>) {
         layer_planes(self.at.triangle, self.coordinates, [self.component(2), self.component(3)], layers)
     }
 
-    /// r, and q where it is not 1 at all three vertices.
+    /// Returns r, and q if it is not 1 at all three vertices.
     fn reference_parts(&self) -> (Attribute, Option<Attribute>) {
         let q = self.component(3);
         let r = self.at.triangle.attribute(self.component(2));
         (r, (q != [1.0; 3]).then(|| self.at.triangle.attribute(q)))
     }
 
-    /// The ideal's weights of the vertices at edge functions that need not be covered.
+    /// Returns the ideal's weights of the vertices, for edge functions that need not be covered.
     fn weights(&self, e: [i64; 3]) -> [f64; 3] {
         ideal::barycentrics(self.at.triangle, e, self.vertices.position(3), self.perspective)
     }
@@ -234,7 +238,8 @@ impl Interpolated<'_> {
     }
 }
 
-/// TEX-12 of real numbers.
+/// TEX-12 in real numbers: returns the coordinates of a direction on the given face or, without one, on the face that
+/// it meets.
 pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
     let face = face.unwrap_or_else(|| Face::from_direction(direction, direction.map(f64::abs), 0.0));
     #[allow(clippy::float_arithmetic, reason = "the ideal's direction")]
@@ -460,7 +465,8 @@ impl SampleCoordinates for Interpolated<'_> {
 }
 
 impl Interpolated<'_> {
-    /// The direction's numbers at the vertices as operands, and the face of this pixel; nothing of other coordinates.
+    /// Reports the direction at the vertices and the face of this pixel, and returns the direction as operands. Does
+    /// nothing for other coordinates.
     fn tell_direction<O: Observer>(&self, report: &Report<'_>, observer: &mut O) -> Vec<Operand> {
         let Coordinates::Direction(direction) = self.coordinates else { return Vec::new() };
         let mut planes = Vec::new();
@@ -488,7 +494,7 @@ impl Interpolated<'_> {
     }
 }
 
-/// The ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.
+/// Returns the ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.
 #[allow(clippy::float_arithmetic, reason = "the ideal's coordinate")]
 pub fn real_coordinate(coordinate: f64, side: u32) -> f64 {
     let limit = COORDINATE_LIMIT as f64;

@@ -1,9 +1,9 @@
-//! TEX-12, TEX-13: which face of a cube map a direction meets, and where.
+//! TEX-12, TEX-13: the face of a cube map that a direction meets, and the coordinates on it.
 
 use crate::state::named;
 
 named! {
-    /// The faces, in the order in which a cube map stores them.
+    /// Faces of a cube map, in the order in which they are stored.
     pub enum Face {
         /// +X.
         PositiveX,
@@ -20,18 +20,18 @@ named! {
     }
 }
 
-/// A component of the direction: its axis (0 x, 1 y, 2 z), and whether it enters negated.
+/// A component of a direction, which may be negated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signed {
-    /// 0 x, 1 y, 2 z.
+    /// Axis of the component: 0 for x, 1 for y, 2 for z.
     pub axis: usize,
-    /// The component is taken with the other sign.
+    /// Whether the component is negated.
     pub negative: bool,
 }
 
 impl Face {
-    /// The face that a direction meets: that of its largest component; ties X over Y over Z. The zero vector, and one that cannot be compared,
-    /// meets +X. `zero` is the number 0.
+    /// Returns the face that a direction meets, which is that of its largest component. Ties prefer X to Y and Y to Z.
+    /// The zero vector, and a vector that cannot be compared, meets +X. `zero` is the number 0.
     pub fn from_direction<T: PartialOrd + Copy>(direction: [T; 3], magnitudes: [T; 3], zero: T) -> Face {
         let [x, y, z] = magnitudes;
         let axis = if x >= y && x >= z {
@@ -52,7 +52,7 @@ impl Face {
         }
     }
 
-    /// The components sc, tc and ma: u = (sc/|ma| + 1)/2, v = (tc/|ma| + 1)/2, and ma as it is not negative on this face.
+    /// Returns the components sc, tc and |ma| of the face, so that u = (sc/|ma| + 1)/2 and v = (tc/|ma| + 1)/2.
     pub fn components(self) -> [Signed; 3] {
         let of = |(axis, negative)| Signed { axis, negative };
         let (x, y, z) = ((0, false), (1, false), (2, false));
@@ -87,7 +87,7 @@ mod tests {
         );
     }
 
-    /// u and v stay within 0..1 on the face that is chosen.
+    /// u and v are within 0..1 on the chosen face.
     #[test]
     fn minor_components_are_not_larger() {
         for n in 0..33_i32.pow(3) {

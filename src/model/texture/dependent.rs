@@ -1,4 +1,4 @@
-//! Where a stage of the texture shader samples whose coordinates come from earlier units.
+//! Dependent reads: where a stage of the texture shader samples if its coordinates come from earlier units.
 
 use super::coordinates::{Real, SampleCoordinates};
 use super::cube::Face;
@@ -15,57 +15,57 @@ use crate::trace::{Observer, Rule};
 /// The coordinates of a dependent read.
 #[derive(Clone, Copy, Debug)]
 pub enum Target<'a> {
-    /// Interpolated coordinates, moved (TSH-7).
+    /// Interpolated coordinates that are displaced (TSH-7).
     Moved(Moved<'a>),
-    /// Two bytes (TSH-6).
+    /// Two bytes of a colour (TSH-6).
     Bytes([u8; 2], DependentScale),
-    /// Two numbers of the dot unit, of which 1.0 is the whole image; texels of a rectangle (TSH-4).
+    /// Two results of the dot unit, where 1.0 spans the whole image, or texels of a rectangle (TSH-4).
     Floats([f32; 2]),
-    /// A direction made by the dot unit (TSH-4, TSH-5).
+    /// A direction that the dot unit computed (TSH-4, TSH-5).
     Vector([f32; 3]),
 }
 
-// One unit for both: 2^-24.
+// Both count in units of 2^-24.
 const _: () = assert!(OFFSET_BITS == SHORT_BITS);
 
-/// TSH-7: planes of level 0 over D, and what they are moved by.
+/// TSH-7: linear functions of level 0 over D, and their displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved<'a> {
-    /// u and v at the vertices (INT-4), 1/256 texel of level 0. q plays no part.
+    /// u and v at the vertices (INT-4), in 1/256 texel of level 0. q has no effect.
     pub planes: &'a [[i64; 3]; 2],
-    /// The pixel, as interpolation takes it.
+    /// The sample point of the pixel.
     pub at: Sample<'a>,
-    /// m0 to m3.
+    /// The matrix m0 to m3 in register order.
     pub matrix: [f32; 4],
-    /// Blue and green of the earlier unit.
+    /// Blue and green bytes of the earlier unit.
     pub blue_green: [u8; 2],
 }
 
 impl Moved<'_> {
-    /// Entries of the matrix that blue and green are multiplied by: along u, along v.
+    /// Returns the entries of the matrix that multiply blue and green: along u, then along v.
     pub fn entries(&self) -> [[f32; 2]; 2] {
         let [m0, m1, m2, m3] = self.matrix;
         [[m0, m3], [m1, m2]]
     }
 
-    /// The planes of a level.
+    /// Returns the linear functions of a level.
     pub fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
         let shifts = unit.plane_shifts(level);
         std::array::from_fn(|n| self.planes[n].map(|g| g >> shifts[n]))
     }
 
-    /// What is added on a level, 2^-24 of 1/256 texel.
+    /// Returns the displacement on a level, in 2^-24 of 1/256 texel.
     pub fn offsets(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
         let sides = unit.scale(level);
         std::array::from_fn(|n| shader::offset(self.entries()[n], self.blue_green, sides[n]))
     }
 
-    /// INT-4 of the moved coordinate, with weights that fall short (INT-4t).
+    /// INT-4 of the displaced coordinate, with weights that fall short (INT-4t).
     fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
         std::array::from_fn(|n| {
             let (exact, rest) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
-            // The remainder is of 2^24 D, which the shortfall is of too.
+            // The remainder is in units of 2^24 D, as is the shortfall.
             let unit = i128::from(self.at.triangle.p[1]);
             let short = rest * unit - self.at.shortfall(&planes[n]);
             let floor = exact + short.div_euclid((i128::from(self.at.d) << OFFSET_BITS) * unit);
@@ -74,7 +74,7 @@ impl Moved<'_> {
         })
     }
 
-    /// floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and what remains of D 2^drop.
+    /// Returns floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and the remainder of the division by D 2^drop.
     fn quotient(&self, planes: &[i64; 3], offset: i64, drop: u32) -> (i128, i128) {
         let d = i128::from(self.at.d);
         let numerator = (self.at.sum(planes) << OFFSET_BITS) + i128::from(offset) * d;
@@ -84,7 +84,7 @@ impl Moved<'_> {
 }
 
 impl Target<'_> {
-    /// The face of a cube map; [`Face::PositiveX`] of other kinds.
+    /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
     pub fn face(&self) -> Face {
         match self {
             Target::Vector(vector) => {
@@ -95,14 +95,14 @@ impl Target<'_> {
         }
     }
 
-    /// s or t, and the major component, on a face.
+    /// Returns the pairs of s and t, each with the major component, on a face.
     fn on_face(vector: [f32; 3], face: Face) -> [[i64; 2]; 2] {
         let direction = shader::direction(vector);
         let [s, t, m] = face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
         [[s, m], [t, m]]
     }
 
-    /// u and v on a level, 1/256 texel.
+    /// Returns u and v on a level, in 1/256 texel.
     pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let sides = unit.scale(level);
         let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Floored { value: of(n), lowered: 0 });
@@ -117,7 +117,8 @@ impl Target<'_> {
         }
     }
 
-    /// u and v on level 0, on a face, in 1/65536 texel (TEX-11). `None`: the face does not face this direction.
+    /// Returns u and v on level 0 and a face, in 1/65536 texel (TEX-11), or `None` if the direction points away from
+    /// the face.
     pub fn at_quad(&self, unit: &PlannedUnit, face: Face) -> Option<[i64; 2]> {
         let level = &unit.levels[0];
         let sides = unit.scale(level);
@@ -140,7 +141,8 @@ impl Target<'_> {
         })
     }
 
-    /// The same coordinates as real numbers, for an ideal that follows them; `interpolated` gives the ideal's s and t.
+    /// Returns these coordinates as real numbers, for an ideal that follows the definition. `interpolated` returns the
+    /// ideal's s and t.
     pub fn followed(&self, interpolated: impl FnOnce() -> [f64; 2]) -> RealTarget {
         match self {
             Target::Moved(moved) => {
@@ -156,33 +158,33 @@ impl Target<'_> {
                 RealTarget::bytes(bytes.map(f64::from), whole)
             }
             Target::Floats(floats) => RealTarget::Coordinates(floats.map(f64::from)),
-            // Its integers: NaN and infinity have been dealt with.
+            // As integers, because they have no NaN or infinity.
             Target::Vector(vector) => RealTarget::Vector(shader::direction(*vector).map(|c| c as f64)),
         }
     }
 }
 
-/// What the same chain of stages gives at the three pixels of the quad that the lod is made of.
+/// The results of the same chain of stages at the three pixels of the quad that determine the lod.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadTargets {
     /// u and v of the definition, on the face of the first pixel.
     pub fixed: Quad,
     /// s and t of the ideal.
     pub real: [[f64; 2]; 3],
-    /// The face that the first pixel lies on.
+    /// The face of the first pixel.
     pub face: Face,
 }
 
-/// Coordinates that an earlier unit gives.
+/// Coordinates that come from an earlier unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Dependent<'a> {
     /// The unit that samples.
     pub unit: &'a PlannedUnit,
-    /// Where on its image it samples.
+    /// Where the unit samples.
     pub target: Target<'a>,
-    /// The ideal's, where somebody wants them.
+    /// Where the ideal samples. It is valid only if something uses real numbers.
     pub real: RealTarget,
-    /// For the lod, where it counts and can be had.
+    /// The quad, if the lod is needed and no pixel of the quad lies behind the viewer.
     pub quad: Option<QuadTargets>,
 }
 

@@ -1,15 +1,16 @@
-//! TSH-1 to TSH-5, TSH-7: the dot unit, which computes in single precision because the chip does. The one place of the fixed path with floats.
+//! TSH-1 to TSH-5, TSH-7: the dot unit. It computes in single precision, because the chip does, and is the only place
+//! of the fixed path with floats.
 //!
-//! Only + - * / of IEEE single precision occur, each rounded on its own, in the order written here; nothing is fused. Every
-//! machine therefore gets the same bits (those of a NaN excepted, which counts as 0 wherever it arrives).
+//! It uses only + - * / of IEEE single precision, each rounded separately in the order written here; nothing is fused.
+//! Every machine therefore computes the same bits, except those of a NaN, which counts as 0 wherever it is used.
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4); its ideal stands beside it")]
 
 use crate::state::DotMapping;
 use std::ops::{Add, Mul, Sub};
 
-/// A number of the dot unit: `f32` the definition, `f64` the ideal.
+/// A number of the dot unit: `f32` for the definition, `f64` for the ideal.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// 2.
+    /// The number 2.
     const TWO: Self;
 }
 
@@ -21,11 +22,11 @@ impl Number for f64 {
     const TWO: f64 = 2.0;
 }
 
-/// Three numbers: coordinates, a remapped colour, a vector.
+/// A vector of three numbers, such as coordinates or a remapped colour.
 pub type Vector<N> = [N; 3];
 
-/// TSH-1, TSH-2 and TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
-/// 24 bits.
+/// TSH-1, TSH-2 and TSH-3: returns three fractions, each a numerator and a denominator, of the bytes R, G, B, A of a
+/// colour. All have at most 24 bits.
 #[inline(always)]
 pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     let [r, g, b, a] = bytes;
@@ -44,50 +45,52 @@ pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     }
 }
 
-/// TSH-3: floor(2^14 sqrt(max(0, 1 - x^2 - y^2))) of x = high/32768 and y = low/32768.
+/// TSH-3: returns floor(2^14 sqrt(max(0, 1 - x^2 - y^2))) for x = high/32768 and y = low/32768.
 fn third_of_unit(high: i32, low: i32) -> i32 {
     let left = (1 << 30) - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
     // floor(floor(sqrt n) / d) is floor(sqrt n / d).
     (left.max(0).unsigned_abs().isqrt() / 2) as i32
 }
 
-/// TSH-1 to TSH-3 in single precision: each fraction rounded once.
+/// TSH-1 to TSH-3 in single precision, with each fraction rounded once.
 #[inline(always)]
 pub fn remap(mapping: DotMapping, bytes: [u8; 4]) -> Vector<f32> {
     fractions(mapping, bytes).map(|(numerator, denominator)| numerator as f32 / denominator as f32)
 }
 
-/// TSH-4: the three products of a dot product.
+/// TSH-4: returns the three products of a dot product.
 #[inline(always)]
 pub fn products<N: Number>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
     [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
-/// TSH-4: their sum, the first two first.
+/// TSH-4: adds three products, starting with the first two.
 #[inline(always)]
 pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
     (x + y) + z
 }
 
-/// TSH-4: the dot product.
+/// TSH-4: returns the dot product.
 #[inline(always)]
 pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     sum(products(a, b))
 }
 
-/// TSH-7: blue and green times what they move a coordinate by; each operation is rounded.
+/// TSH-7: returns the displacement of a coordinate, which is two matrix entries times blue and green. Each operation is
+/// rounded.
 #[inline(always)]
 pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 
-/// Products and sums of a dot product.
+/// Number of products and sums in a dot product.
 pub const DOT_OPERATIONS: u64 = 5;
 
-/// Products and sums of a reflection: two dot products, a scale, and two products and a difference for each component.
+/// Number of products and sums in a reflection: two dot products, a scale, and two products and a difference for each
+/// component.
 pub const REFLECTION_OPERATIONS: u64 = 2 * DOT_OPERATIONS + 1 + 9;
 
-/// TSH-5: a reflection, with what it is made of.
+/// TSH-5: a reflection with its intermediate results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflection<N> {
     /// n . e.
@@ -96,11 +99,12 @@ pub struct Reflection<N> {
     pub square: N,
     /// 2 (n . e).
     pub scale: N,
-    /// scale n - square e: longer than e by n . n, which a direction does not show.
+    /// scale n - square e. It is longer than e by the factor n . n, which does not change its direction.
     pub vector: Vector<N>,
 }
 
-/// TSH-5: the direction of the eye vector reflected about a normal of any length, without a division; the zero vector for that of none.
+/// TSH-5: reflects the eye vector about a normal of any length, without a division. Returns the zero vector for the
+/// zero normal.
 #[inline(always)]
 pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
     let (toward, square) = (dot(normal, eye), dot(normal, normal));
@@ -116,9 +120,9 @@ mod tests {
     use crate::state::Named;
     use proptest::prelude::*;
 
-    /// The nearest f32 to a fraction of small numbers, by comparing neighbours exactly: |n/d - m 2^e| in integers.
+    /// Returns whether `value` is the nearest f32 to a fraction, by comparing the distances of its neighbours exactly.
     fn is_nearest(value: f32, (n, d): (i32, i32)) -> bool {
-        // Everything below 2^24 / 127, and not below 2^-24: 60 fraction bits hold every candidate.
+        // All candidates are below 2^24 / 127 and not below 2^-24, so 60 fraction bits hold them.
         let scaled = |f: f32| (f64::from(f) * (1_u64 << 60) as f64) as i128;
         let exact = i128::from(n) << 60;
         let distance = |f: f32| (scaled(f) * i128::from(d) - exact).abs();
@@ -126,7 +130,7 @@ mod tests {
         distance(value) <= distance(lower) && distance(value) <= distance(upper)
     }
 
-    /// Every byte in every place of every mapping, against its statement and the exact fraction.
+    /// Compares every byte in every place of every mapping with its statement and the exact fraction.
     #[test]
     fn bytes_by_their_statement() {
         for byte in 0..=255_u8 {
@@ -144,7 +148,7 @@ mod tests {
         assert_eq!((plus, minus), ((127, 127), (-128, 127)));
     }
 
-    /// Every half: A R and G B, high byte first.
+    /// Tests every half: A R and G B, high byte first.
     #[test]
     fn halves_by_their_statement() {
         for half in 0..=65535_u16 {
@@ -164,7 +168,7 @@ mod tests {
     fn third_components_complete_unit_vectors() {
         assert_eq!((third_of_unit(0, 0), third_of_unit(32767, 0), third_of_unit(-32768, 0)), (1 << 14, 127, 0));
         assert_eq!(third_of_unit(30000, 30000), 0);
-        // 3-4-5: x = 3/5, y = 0 gives 4/5, as far as 32768 allows.
+        // 3-4-5: x = 3/5 and y = 0 yield 4/5, as closely as 32768 allows.
         let third = third_of_unit(19661, 0);
         assert!((f64::from(third) / f64::from(1 << 14) - 0.8).abs() < 1e-4);
     }
@@ -188,7 +192,8 @@ mod tests {
             prop_assert!((2 * third + 2).pow(2) > left);
         }
 
-        /// Each operation is the correctly rounded one: single precision by way of double, which is innocuous for one operation.
+        /// Each operation is correctly rounded. A single operation may be checked in double precision and rounded to
+        /// single.
         #[test]
         fn no_operation_is_fused(a in prop::array::uniform3(-2.0..2.0_f32), b in prop::array::uniform3(-2.0..2.0_f32)) {
             let by_double = |x: f32, y: f32, of: fn(f64, f64) -> f64| of(f64::from(x), f64::from(y)) as f32;
@@ -198,7 +203,7 @@ mod tests {
             prop_assert_eq!(moved([a[0], a[1]], [b[0], b[1]]), by_double(x, y, |x, y| x + y));
         }
 
-        /// The reflection keeps the length, but for the factor n . n, and the normal halves the angle.
+        /// The reflection keeps the length, except for the factor n . n, and the normal bisects the angle.
         #[test]
         fn reflections_keep_lengths(n in prop::array::uniform3(-2.0..2.0_f64), e in prop::array::uniform3(-2.0..2.0_f64)) {
             let (r, square) = (reflect(n, e).vector, dot(n, n));
@@ -206,7 +211,7 @@ mod tests {
             prop_assert!((dot(r, n) - square * dot(e, n)).abs() < 1e-9);
         }
 
-        /// In single precision it stays close to the real one.
+        /// In single precision the reflection stays close to the real one.
         #[test]
         fn single_precision_is_close(n in prop::array::uniform3(-1.0..1.0_f32), e in prop::array::uniform3(-1.0..1.0_f32)) {
             prop_assume!(dot(n, n) > 0.1);

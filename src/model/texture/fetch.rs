@@ -1,6 +1,6 @@
-//! TEX-1 to TEX-4, TEX-7, TEX-8: from texel indices to the channels of a texel.
+//! TEX-1 to TEX-4, TEX-7, TEX-8: fetches texels by their indices and converts them to channels.
 //!
-//! A texel has up to four *lanes*: R, G, B, A, or the 16-bit halves of the formats that are filtered at 16 bits.
+//! A texel has up to four *lanes*: R, G, B, A, or the 16-bit halves of formats that are filtered at 16 bits.
 
 use super::address::address;
 use super::planned::{Image, PlannedUnit};
@@ -9,12 +9,12 @@ use crate::number::Lane;
 use crate::state::{AddressMode, BORDER_TEXELS, Level, Named, TextureFormat, TextureKind};
 use crate::trace::{Observer, Rule, Work};
 
-/// One texel of the footprint: where it is, `None` for the border colour, and its raw word; of a compressed format the place of its block.
+/// One texel of the footprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Texel {
-    /// Column and row, negative or past the end in border texels.
+    /// Column and row, which are negative or past the end for border texels. `None` is the border colour.
     pub at: Option<[i64; 2]>,
-    /// Raw word, or index of the block's first word.
+    /// Raw word of the texel, or for a compressed format the index of its block's first word.
     pub word: u32,
 }
 
@@ -25,23 +25,24 @@ pub struct Slice<'a> {
     pub unit: &'a PlannedUnit,
     /// The level that is read.
     pub level: &'a Level,
-    /// The number of the face or layer; `None` beyond the layers of a volume, where everything is the border colour.
+    /// Number of the face or layer. `None` is outside the layers of a volume, where everything is the border colour.
     pub image: Option<usize>,
 }
 
 impl PlannedUnit {
-    /// What coordinates are multiplied by on a level: its sides; 1 for rectangles, whose coordinates are texels.
+    /// Returns the factors of coordinates on a level: its sides, or 1 for rectangles, whose coordinates are in texels.
     pub fn scale(&self, level: &Level) -> [u32; 2] {
         if self.kind == TextureKind::Rectangle { [1, 1] } else { [level.width, level.height] }
     }
 
-    /// The shift from planes of level 0 (INT-4) to those of a level, in bits: sides are powers of two, and a floor of a floor is one.
+    /// Returns the shifts in bits from linear functions of level 0 (INT-4) to those of a level. Shifting is exact
+    /// because sides are powers of two and the floor of a floor is a floor.
     pub fn plane_shifts(&self, level: &Level) -> [u32; 2] {
         let (sides, whole) = (self.scale(level), self.scale(&self.levels[0]));
         [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]
     }
 
-    /// Address modes along s and t: cube maps stay on the face (TEX-14).
+    /// Returns the address modes along s and t. Cube maps stay on the face (TEX-14).
     pub fn modes(&self) -> [AddressMode; 2] {
         match self.kind {
             TextureKind::Cube => [AddressMode::ClampToEdge; 2],
@@ -51,19 +52,19 @@ impl PlannedUnit {
         }
     }
 
-    /// Whether texels are filtered at 16 bits, as halves.
+    /// Returns whether texels are filtered at 16 bits, as halves.
     pub fn is_wide(&self) -> bool {
         matches!(self.format, TextureFormat::R16B16 | TextureFormat::Y16)
     }
 
-    /// Lanes that anybody reads, bit n lane n: channels R, G, B, A, or the high and the low half.
+    /// Returns the lanes that are read, as bit n for lane n: channels R, G, B, A, or the high and the low half.
     pub fn live_lanes(&self) -> u8 {
         let any = |channels: u8| u8::from(self.live & channels != 0);
         if self.is_wide() { any(1 | 8) | any(2 | 4) << 1 } else { self.live }
     }
 
-    /// Whether a lane is two's complement (TEX-18): halves by the flags of A (high) and G (low). The high half of Y16, which is constant,
-    /// never is.
+    /// Returns whether a lane is two's complement (TEX-18). Halves use the flags of A (high) and G (low). The high half
+    /// of Y16, which is constant, never is.
     pub fn signed_lane(&self, lane: usize) -> bool {
         match (self.format, lane) {
             (TextureFormat::R16B16, 0) => self.state.signed[3],
@@ -75,14 +76,14 @@ impl PlannedUnit {
 }
 
 impl Slice<'_> {
-    /// The texel at an index that may lie outside.
+    /// Returns the texel at an index that may lie outside.
     #[inline(always)]
     pub fn texel(&self, words: &[u32], x: i64, y: i64) -> Texel {
         let (x, y) = (self.column(x), self.row(y));
         self.inside(words, x, y)
     }
 
-    /// TEX-8: the 2x2 footprint whose upper left texel is (x, y), row by row; each index is wrapped on its own.
+    /// TEX-8: returns the 2x2 footprint whose upper left texel is (x, y), row by row. Each index is wrapped separately.
     #[inline(always)]
     pub fn footprint(&self, words: &[u32], x: i64, y: i64) -> [Texel; 4] {
         let (x0, x1) = (self.column(x), self.column(x + 1));
@@ -90,19 +91,20 @@ impl Slice<'_> {
         [self.inside(words, x0, y0), self.inside(words, x1, y0), self.inside(words, x0, y1), self.inside(words, x1, y1)]
     }
 
-    /// The column that an index along s stands for; `None`: it lies outside.
+    /// Returns the column that an index along s addresses, or `None` if it is outside.
     #[inline(always)]
     pub(crate) fn column(&self, x: i64) -> Option<i64> {
         address(self.unit.modes()[0], x, self.level.width, self.unit.border)
     }
 
-    /// The same along t.
+    /// Returns the row that an index along t addresses, or `None` if it is outside.
     #[inline(always)]
     pub(crate) fn row(&self, y: i64) -> Option<i64> {
         address(self.unit.modes()[1], y, self.level.height, self.unit.border)
     }
 
-    /// TEX-7: the texel inside, or the border colour, which is A8R8G8B8 whatever the format.
+    /// TEX-7: returns the texel at an addressed column and row, or the border colour, which is A8R8G8B8 for every
+    /// format.
     #[inline(always)]
     pub(crate) fn inside(&self, words: &[u32], x: Option<i64>, y: Option<i64>) -> Texel {
         let (Some(x), Some(y), Some(image)) = (x, y, self.image) else {
@@ -123,19 +125,19 @@ impl Slice<'_> {
     }
 }
 
-/// The colour that a texel of a palette format stands for, A8R8G8B8 (TEX-1).
+/// Returns the palette entry of an index, in A8R8G8B8 (TEX-1).
 pub fn palette_entry(unit: &PlannedUnit, index: u32) -> u32 {
     let entries = unit.palette.as_deref().unwrap_or(&[0]);
     entries[index as usize & (entries.len() - 1)]
 }
 
-/// The words of a texel's block.
+/// Returns the words of a texel's compressed block.
 pub fn block<'a>(unit: &PlannedUnit, words: &'a [u32], texel: &Texel) -> &'a [u32] {
     let first = texel.word as usize;
     &words[first..first + unit.format.bytes() as usize / 4]
 }
 
-/// The lanes of a texel.
+/// Returns the lanes of a texel.
 #[inline(always)]
 pub fn lanes<L: Lane, O: Observer>(
     unit: &PlannedUnit,
@@ -186,7 +188,7 @@ pub fn lanes<L: Lane, O: Observer>(
     lanes
 }
 
-/// The rule that decodes a unit's compressed texels.
+/// Returns the rule that decodes the compressed texels of a unit.
 pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
     match (unit.format, unit.dithered) {
         (TextureFormat::Dxt1, true) => Rule::Tex3,
@@ -195,14 +197,14 @@ pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
     }
 }
 
-/// The halves of a texel of a format that is filtered at 16 bits. The high half of Y16 is 255 in both bytes; those of a border colour are
-/// its bytes, A and R, G and B, whatever the format.
+/// Returns the halves of a texel of a format that is filtered at 16 bits. The high half of Y16 is 255 in both bytes.
+/// The halves of a border colour are its bytes, A and R, G and B, for every format.
 pub fn halves(format: TextureFormat, texel: &Texel) -> [u32; 2] {
     let (high, low) = (texel.word >> 16, texel.word & 0xffff);
     if has_no_high_half(format, texel) { [0xffff, low] } else { [high, low] }
 }
 
-/// Whether the high half of a texel is not stored but constant.
+/// Returns whether the high half of a texel is constant instead of stored.
 pub fn has_no_high_half(format: TextureFormat, texel: &Texel) -> bool {
     format == TextureFormat::Y16 && texel.at.is_some()
 }
@@ -220,7 +222,7 @@ fn compressed_lanes<L: Lane>(decoded: &compressed::Decoded, signed: &[bool; 4]) 
     })
 }
 
-/// High and low half as lanes 0 and 1.
+/// Returns the high and the low half as lanes 0 and 1.
 fn wide_lanes<L: Lane>(unit: &PlannedUnit, halves: [u32; 2]) -> [L; 4] {
     let half = |lane: usize| {
         if unit.signed_lane(lane) {
@@ -234,7 +236,8 @@ fn wide_lanes<L: Lane>(unit: &PlannedUnit, halves: [u32; 2]) -> [L; 4] {
     [half(0), half(1), L::ZERO, L::ZERO]
 }
 
-/// What an operation on texels of this format is called in traces: the format that [`format::expand`] takes.
+/// Returns the name that traces give to the format of an expanded texel, which is the format that [`format::expand`]
+/// takes.
 pub fn expanded_as(unit: &PlannedUnit, texel: &Texel) -> &'static str {
     match unit.format {
         _ if texel.at.is_none() => TextureFormat::A8R8G8B8.name(),

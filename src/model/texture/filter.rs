@@ -1,28 +1,28 @@
-//! TEX-5, TEX-6: from coordinates in 1/256 texel to texel indices and weights, and the mix of four texels.
+//! TEX-5, TEX-6: texel indices and weights of coordinates in 1/256 texel, and bilinear filtering.
 
 use crate::number::Blend;
 
-/// TEX-6: one linear step.
+/// TEX-6: returns one step of linear interpolation with the weight `w` of `b`.
 #[inline(always)]
 pub fn lerp<L: Blend>(a: L, b: L, w: L::Weight) -> L {
     (a.times(L::WHOLE - w) + b.times(w)).round8()
 }
 
-/// TEX-6: along u on both rows, then along v, eight bits between. `t` is the 2x2 footprint, row by row; `observe` is told what each
-/// step yields and returns what goes on.
+/// TEX-6: interpolates along u in both rows, then along v, with eight bits in between. `t` is the 2x2 footprint, row by
+/// row. `observe` is called with the result of each step and returns the value to continue with.
 #[inline(always)]
 pub fn bilinear<L: Blend>(t: [L; 4], u: L::Weight, v: L::Weight, mut observe: impl FnMut(L) -> L) -> L {
     let rows = [observe(lerp(t[0], t[1], u)), observe(lerp(t[2], t[3], u))];
     observe(lerp(rows[0], rows[1], v))
 }
 
-/// TEX-5: the texel at a coordinate in 1/256 texel.
+/// TEX-5: returns the index of the texel at a coordinate in 1/256 texel.
 #[inline]
 pub fn nearest(u: i64) -> i64 {
     u >> 8
 }
 
-/// TEX-6: the lower texel of the pair and the weight of the upper one, 0..=255.
+/// TEX-6: returns the index of the lower of two texels, and the weight of the upper one, 0..=255.
 #[inline]
 pub fn linear(u: i64) -> (i64, i32) {
     let f = u - 128;
@@ -33,7 +33,7 @@ pub fn linear(u: i64) -> (i64, i32) {
 mod tests {
     use super::*;
 
-    /// Every weight with every pair of bytes, in both lanes that filter.
+    /// Tests every weight with every pair of bytes, in both lanes that filter.
     #[test]
     fn one_step_by_its_formula() {
         for w in 0..=255_i32 {

@@ -1,15 +1,15 @@
-//! TEX-1: the bits of a texel as channels.
+//! TEX-1: converts the bits of a texel to channels.
 
 use crate::number::{Lane, Word};
 use crate::state::TextureFormat;
 
-/// 5 bits to 8 by replication.
+/// Widens 5 bits to 8 by replication.
 #[inline]
 pub fn replicate5(v: u32) -> u8 {
     five_to_eight(v) as u8
 }
 
-/// 6 bits to 8 by replication.
+/// Widens 6 bits to 8 by replication.
 #[inline]
 pub fn replicate6(v: u32) -> u8 {
     six_to_eight(v) as u8
@@ -25,8 +25,8 @@ fn six_to_eight<W: Word>(v: W) -> W {
     v << 2 | v >> 4
 }
 
-/// R, G, B, A of a raw texel, each 0 to 255; of a depth its highest byte. Texels of P8 are looked up first, and those of compressed formats
-/// [decoded](super::compressed::decode): here they are zero.
+/// Returns R, G, B, A of a raw texel, each 0 to 255. A depth returns its highest byte. Texels of P8 have to be looked
+/// up first, and those of compressed formats [decoded](super::compressed::decode); here they are zero.
 #[inline(always)]
 pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
     let [none, all] = [0, 255].map(W::from);
@@ -53,25 +53,26 @@ pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
         TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
         TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
         TextureFormat::Y16 => [all, byte(8), byte(0), all],
-        // As it is shown; units compare it.
+        // Depths as pictures show them. Units compare them instead.
         TextureFormat::Z16 | TextureFormat::Z16F => [byte(8), byte(8), byte(8), all],
         TextureFormat::Z24S8 | TextureFormat::Z24S8F => [byte(16), byte(16), byte(16), all],
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [none; 4],
     }
 }
 
-/// [`channels`] as bytes.
+/// Returns [`channels`] as bytes.
 #[inline(always)]
 pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     channels(format, word).map(|channel| channel as u8)
 }
 
-/// Whether channels of the format have 5 or 6 bits, whose widening is off; 1 and 4 bits widen exactly.
+/// Returns whether the format has channels of 5 or 6 bits, which widening does not convert exactly. 1 and 4 bits are
+/// exact.
 pub fn is_narrow(format: TextureFormat) -> bool {
     fields(format).is_some()
 }
 
-/// Shift and largest value of red, green and blue where the format gives them 5 or 6 bits.
+/// Returns the shift and the largest value of red, green and blue if the format gives them 5 or 6 bits.
 #[inline(always)]
 fn fields(format: TextureFormat) -> Option<[(u32, u32); 3]> {
     match format {
@@ -82,8 +83,8 @@ fn fields(format: TextureFormat) -> Option<[(u32, u32); 3]> {
     }
 }
 
-/// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31 and 6-bit ones as v/63. Signed channels (TEX-18) come as their two's
-/// complement value, s/128 in the ideal.
+/// Returns [`expand`] in a lane. The ideal takes 5-bit channels as v/31 and 6-bit ones as v/63. Signed channels
+/// (TEX-18) are their two's complement value, s/128 in the ideal.
 #[inline(always)]
 pub fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [L; 4] {
     let bytes = expand(format, word).map(i32::from);
@@ -105,17 +106,17 @@ mod tests {
     use super::*;
     use crate::state::Named;
 
-    /// Where R, G, B, A of a format come from.
+    /// The source of a channel of a format.
     #[derive(Clone, Copy)]
     enum Channel {
-        /// Bits of the word: the lowest, and how many.
+        /// Bits of the word: the lowest one, and their number.
         Bits(u32, u32),
-        /// The same value whatever the word.
+        /// A constant.
         Fixed(u8),
     }
     use Channel::{Bits, Fixed};
 
-    /// Every format whose texels are expanded, channel by channel.
+    /// Returns the sources of R, G, B, A for every format whose texels are expanded.
     fn channels(format: TextureFormat) -> Option<[Channel; 4]> {
         let byte = |shift| Bits(shift, 8);
         Some(match format {
@@ -142,12 +143,12 @@ mod tests {
         })
     }
 
-    /// Bits repeated until they fill a byte, one by one.
+    /// Repeats bits one by one until they fill a byte.
     fn repeated(value: u32, bits: u32) -> u8 {
         (0..8).fold(0, |byte, n| byte << 1 | (value >> (bits - 1 - n % bits) & 1) as u8)
     }
 
-    /// Bytes, the i32 lane and the ideal of one word.
+    /// Checks bytes, the i32 lane and the ideal of one word.
     #[allow(clippy::float_arithmetic, reason = "the ideal against its formula")]
     fn check(format: TextureFormat, word: u32) {
         let Some(channels) = channels(format) else { return };
@@ -170,7 +171,7 @@ mod tests {
         }
     }
 
-    /// Every texel of 16 bits or less of every format.
+    /// Tests every texel of at most 16 bits in every format.
     #[test]
     fn every_small_texel() {
         for format in TextureFormat::ALL.iter().filter(|format| format.bytes() <= 2) {
@@ -180,7 +181,7 @@ mod tests {
         }
     }
 
-    /// Each byte of each 32-bit format takes every value while the others hold something else.
+    /// Tests every value of each byte in the 32-bit formats, while the other bytes hold something else.
     #[test]
     fn every_byte_of_large_texels() {
         for format in TextureFormat::ALL.iter().filter(|format| format.bytes() == 4) {

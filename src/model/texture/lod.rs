@@ -1,19 +1,19 @@
-//! TEX-9 to TEX-11: how small a texture appears, and which levels are read for it.
+//! TEX-9 to TEX-11: the level of detail (lod), and the levels that are read for it.
 
 use super::planned::PlannedUnit;
 use crate::state::{Filter, MipFilter};
 
-/// The lod where nothing is known, or a texture has no extent on the screen: the magnification side of everything.
+/// The lod if it is unknown, or if the texture has no extent on the screen. It always magnifies.
 pub const LEAST: i32 = -32768;
 
-/// u and v of the top-left pixel of a quad, of its right and of its lower neighbour, in 1/65536 texel of level 0.
+/// u and v at the top-left pixel of a quad and at its right and lower neighbours, in 1/65536 texel of level 0.
 pub type Quad = [[i64; 2]; 3];
 
-/// Coordinates beyond this are as far away as any, 1/65536 texel.
+/// Limit of coordinates in 1/65536 texel, beyond which all count as equally far.
 const FARTHEST: i64 = 1 << 60;
 
-/// TEX-11, TEX-10: 256 log2 of the larger of the two lengths, in texels, by which the coordinates move from the top-left pixel to its right
-/// and its lower neighbour; floored. `None`: a pixel of the quad lies behind the viewer.
+/// TEX-11, TEX-10: returns floor(256 log2) of the larger distance in texels from the coordinates of the top-left pixel
+/// to those of its right and lower neighbours. `quad` is `None` if one of its pixels lies behind the viewer.
 pub fn log2_ratio(quad: Option<Quad>) -> i32 {
     let Some(quad) = quad else { return LEAST };
     let [origin, right, lower] = quad.map(|p| p.map(|c| i128::from(c.clamp(-FARTHEST, FARTHEST))));
@@ -25,14 +25,14 @@ pub fn log2_ratio(quad: Option<Quad>) -> i32 {
     if largest == 0 {
         return LEAST;
     }
-    // Squares are in 2^-32 texel^2, and log2 of a length is half of that of its square.
+    // Squares are in 2^-32 texel^2, and the log2 of a length is half of that of its square.
     log2_128(largest) - 128 * 32
 }
 
-/// floor(128 log2 n), n > 0: the exponent, then seven bits by squaring the mantissa.
+/// Returns floor(128 log2 n) for n > 0: the exponent, then seven bits by squaring the mantissa.
 fn log2_128(n: u128) -> i32 {
     let exponent = 127 - n.leading_zeros() as i32;
-    // 1.0 to 2.0 with 63 fraction bits. A power of two stays exactly 1.0.
+    // 1.0 to 2.0 with 63 fraction bits. A power of two is exactly 1.0.
     let mut mantissa = if exponent > 63 { n >> (exponent - 63) } else { n << (63 - exponent) };
     let mut log = exponent;
     for _ in 0..7 {
@@ -44,7 +44,7 @@ fn log2_128(n: u128) -> i32 {
     log
 }
 
-/// The ideal's log2 of the same ratio, of s and t at the quad, in 256ths; sides in texels.
+/// Returns the ideal's log2 ratio in 256ths, from s and t at the quad and the texture's sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's lod")]
 pub fn real_log2_ratio(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2]) -> f64 {
     let Some([origin, right, lower]) = quad else { return f64::from(LEAST) };
@@ -62,31 +62,31 @@ pub fn real_biased(unit: &PlannedUnit, log2_ratio: f64) -> f64 {
     (log2_ratio + f64::from(state.lod_bias)).max(f64::from(state.min_lod)).min(f64::from(state.max_lod))
 }
 
-/// What is read for a lod.
+/// The filter and the levels that are read for a lod.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// Filter within a level.
     pub filter: Filter,
-    /// The level that is read first, 0 the largest.
+    /// The first level that is read. 0 is the largest.
     pub level: usize,
-    /// The level that is mixed in, and its weight, 0..=255.
+    /// The second level if levels are interpolated, and its weight, 0..=255.
     pub next: Option<(usize, i32)>,
 }
 
 impl Choice {
-    /// A number for each choice of filter and levels.
+    /// Returns a number that identifies the filter and the levels.
     pub fn code(&self) -> i64 {
         let next = self.next.map_or(0, |(next, _)| next as i64 + 1);
         next << 16 | (self.level as i64) << 8 | self.filter as i64
     }
 }
 
-/// TEX-9: bias, then the limits.
+/// TEX-9: adds the bias to a lod, then applies the limits.
 pub fn biased(unit: &PlannedUnit, log2_ratio: i32) -> i32 {
     Selection::from_unit(unit).biased(log2_ratio)
 }
 
-/// TEX-9: filter and levels for a lod in 1/256.
+/// TEX-9: returns filter and levels for a lod in 1/256.
 pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
     let state = &unit.state;
     if lod <= 0 {
@@ -97,24 +97,26 @@ pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
     Choice { filter: state.min_filter, level: level as usize, next }
 }
 
-/// TEX-9: the level, the one that is mixed in, which may be the same, and its weight, 0..=255, for a lod that is not negative.
+/// TEX-9: returns the level, the second level (which may be the same) and its weight, 0..=255, for a lod that is not
+/// negative.
 pub fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
     Selection::from_unit(unit).levels(lod)
 }
 
-/// What of a unit selects levels, as numbers: a loop over lanes that compares or branches by a filter would not become one over vectors.
+/// The state of a unit that selects levels, in numbers, because a loop over lanes with comparisons or branches by
+/// filters would not be vectorised.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Selection {
     bias: i32,
     min_lod: i32,
     max_lod: i32,
-    /// The last level.
+    /// The index of the last level.
     last: i32,
-    /// What is added to a lod before its fraction is cut off.
+    /// Number that is added to a lod before its fraction is dropped.
     rounding: i32,
-    /// By how many levels what is mixed in lies further.
+    /// Distance of the second level from the first.
     step: i32,
-    /// The bits of a lod that make the weight.
+    /// Mask of the bits of a lod that are the weight.
     fraction: i32,
 }
 
@@ -153,7 +155,7 @@ mod tests {
         for k in -10..20 {
             let step = if k < 0 { 65536 >> -k } else { 65536 << k };
             assert_eq!(log2_ratio(Some([[7, 7], [7 + step, 7], [7, 8]])), 256 * k);
-            // A hair less is below.
+            // A slightly smaller step is below.
             assert!(log2_ratio(Some([[7, 7], [7, 7], [7, 7 - step + 1]])) < 256 * k);
         }
     }

@@ -1,4 +1,4 @@
-//! Texture units: where they sample, which levels and texels, how texels become channels, how they are filtered.
+//! Texture units: coordinates, choice of levels, texel fetch, formats, filters, and texture shaders.
 
 pub mod address;
 pub mod anisotropy;

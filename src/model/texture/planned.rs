@@ -1,50 +1,51 @@
-//! A texture unit as a plan has it, and the image that it samples.
+//! A texture unit as the plan prepares it, and the image that it samples.
 
 use crate::state::{Level, MipFilter, ShaderStage, TextureFormat, TextureKind, TextureUnit};
 use std::sync::Arc;
 
-/// A texture unit with the image it samples.
+/// A texture unit with the properties of the image that it samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedUnit {
-    /// The unit's number.
+    /// Number of the unit, 0 to 3.
     pub index: usize,
-    /// The unit's registers.
+    /// State of the unit.
     pub state: TextureUnit,
-    /// Its part of the texture shader.
+    /// The unit's stage of the texture shader.
     pub stage: ShaderStage,
-    /// What the image is sampled as.
+    /// How the image is addressed.
     pub kind: TextureKind,
-    /// Format of the image.
+    /// Format of the image's words.
     pub format: TextureFormat,
-    /// Its levels, as they lie in each face.
+    /// Levels of the image. Their offsets are relative to the face.
     pub levels: Vec<Level>,
-    /// Words of each face.
+    /// Number of words of each face or layer.
     pub face_words: usize,
-    /// Layers of a volume; of other kinds 1.
+    /// Number of layers of a volume; 1 for all other kinds.
     pub layers: u32,
-    /// Each level has border texels.
+    /// Whether each level has border texels.
     pub border: bool,
-    /// DXT1 is dithered (TEX-3; nv10: TEX-4).
+    /// Whether DXT1 is dithered (TEX-3), which it is not on nv10 (TEX-4).
     pub dithered: bool,
-    /// The colours of a palette format.
+    /// The entries of the palette, if the format is P8.
     pub palette: Option<Arc<[u32]>>,
-    /// Channels R, G, B, A (bits 1, 2, 4, 8) that anybody reads.
+    /// Channels that are read, as bits 1, 2, 4, 8 for R, G, B, A.
     pub live: u8,
 }
 
 impl PlannedUnit {
-    /// Whether the lod can make a difference.
+    /// Returns whether the lod can affect the result.
     pub fn needs_lod(&self) -> bool {
         self.state.min_filter != self.state.mag_filter
             || (self.levels.len() > 1 && self.state.mip_filter != MipFilter::None)
     }
 }
 
-/// The image that a unit samples, as it stands when a draw begins.
+/// The image that a unit samples, as it is when a draw begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a, L> {
-    /// The words of all faces and levels, as they are stored.
+    /// The stored words of all faces and levels.
     pub words: &'a [u32],
-    /// What the lane holds of them, where the image is a surface read in its own format, and of which channels (bits R, G, B, A).
+    /// If the image is a surface that is read in its own format: the lane's values of its pixels, and the channels they
+    /// hold (bits R, G, B, A).
     pub memory: Option<(&'a [[L; 4]], u8)>,
 }

@@ -1,4 +1,4 @@
-//! The ideal of the texture shader: the same stages in real numbers.
+//! The ideal of the texture shader: its stages in real numbers.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
 use super::coordinates::{Real, real_direction};
@@ -6,7 +6,7 @@ use super::cube::Face;
 use super::dot::Vector;
 use crate::state::DotMapping;
 
-/// A colour as the ideal reads it: real bytes, and halves.
+/// A colour as the ideal reads it, in bytes and in halves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RealColor {
     /// R, G, B, A in steps of a byte, 0 to 256.
@@ -16,14 +16,14 @@ pub struct RealColor {
 }
 
 impl RealColor {
-    /// The colour of these bytes.
+    /// Returns the colour of these bytes.
     pub fn from_bytes(bytes: [f64; 4]) -> RealColor {
         let [r, g, b, a] = bytes;
         RealColor { bytes, halves: [256.0 * a + r, 256.0 * g + b] }
     }
 
-    /// The colour that registers hold, in steps of 1/255. `doubled` channels stand for a signed byte s as s/128 (TEX-18). Of a unit that
-    /// filters halves (`wide`), the high bytes' registers stand for whole halves.
+    /// Returns the colour that registers hold in steps of 1/255. Channels that are `doubled` hold a signed byte s as
+    /// s/128 (TEX-18). If the unit filters halves (`wide`), the registers of the high bytes hold whole halves.
     pub fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: bool) -> RealColor {
         let part = |n: usize, signed: f64, unsigned: f64| {
             let value = registers[n] / 255.0 * if doubled[n] { signed } else { unsigned };
@@ -36,13 +36,13 @@ impl RealColor {
         color
     }
 
-    /// A byte as two's complement.
+    /// Returns a byte as two's complement.
     pub fn signed(&self, channel: usize) -> f64 {
         let byte = self.bytes[channel];
         if byte < 128.0 { byte } else { byte - 256.0 }
     }
 
-    /// TSH-1 to TSH-3.
+    /// TSH-1 to TSH-3: returns the vector that the colour is mapped to.
     pub fn remap(&self, mapping: DotMapping) -> Vector<f64> {
         let each = |of: &dyn Fn(usize) -> f64| [of(0), of(1), of(2)];
         match mapping {
@@ -59,18 +59,18 @@ impl RealColor {
     }
 }
 
-/// TSH-7: what blue and green add to s and t.
+/// TSH-7: returns the displacement of s and t by blue and green.
 pub fn offset([m0, m1, m2, m3]: [f32; 4], color: &RealColor) -> [f64; 2] {
     let (blue, green) = (color.signed(2), color.signed(1));
     [[m0, m3], [m1, m2]].map(|[b, g]| (f64::from(b) * blue + f64::from(g) * green) / 128.0)
 }
 
-/// TSH-8: what the colour is multiplied by, for a red in steps of a byte; not negative.
+/// TSH-8: returns the factor of the colour for a red in steps of a byte. It is not negative.
 pub fn luminance(red: f64, [scale, offset]: [f32; 2]) -> f64 {
     (red / 255.0 * f64::from(scale) + f64::from(offset)).max(0.0)
 }
 
-/// TSH-9: a coordinate as a channel.
+/// TSH-9: returns a coordinate as a channel in 255ths.
 pub fn pass_through(coordinate: f64) -> f64 {
     255.0 * coordinate.clamp(0.0, 1.0)
 }
@@ -78,24 +78,25 @@ pub fn pass_through(coordinate: f64) -> f64 {
 /// Where the ideal samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RealTarget {
-    /// s and t, of which 1.0 is the whole image; texels of a rectangle.
+    /// s and t, where 1.0 spans the whole image, or texels of a rectangle.
     Coordinates([f64; 2]),
     /// A direction into a cube map, of any length.
     Vector([f64; 3]),
 }
 
 impl RealTarget {
-    /// s and t moved.
+    /// Returns displaced coordinates.
     pub fn moved(st: [f64; 2], by: [f64; 2]) -> RealTarget {
         RealTarget::Coordinates([st[0] + by[0], st[1] + by[1]])
     }
 
-    /// A byte as a coordinate, 1.0 being `whole`.
+    /// Returns the coordinates of two bytes, where `whole` is 1.0.
     pub fn bytes(st: [f64; 2], whole: f64) -> RealTarget {
         RealTarget::Coordinates(st.map(|byte| byte / whole))
     }
 
-    /// The coordinates, on a given face of a cube map or on its own. A vector that is no number is the zero vector.
+    /// Returns the coordinates, for a cube map on the given face or, without one, on their own. A vector with a
+    /// component that is not finite counts as the zero vector.
     pub fn real(&self, face: Option<Face>) -> Real {
         match *self {
             RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
@@ -111,7 +112,7 @@ mod tests {
     use crate::state::Named;
     use crate::texture::dot;
 
-    /// Every byte and every half, against the definition's fractions.
+    /// Compares every byte and every half with the definition's fractions.
     #[test]
     fn remaps_are_the_definitions() {
         for half in 0..=65535_u16 {
@@ -120,7 +121,7 @@ mod tests {
             for mapping in DotMapping::ALL {
                 let real = RealColor::from_bytes(bytes.map(f64::from)).remap(*mapping);
                 for (n, (fixed, real)) in dot::remap(*mapping, bytes).into_iter().zip(real).enumerate() {
-                    // The root is floored to 14 bits.
+                    // The definition floors the root to 14 bits.
                     let root = *mapping == DotMapping::HiloHemisphere && n == 2;
                     let bits = if root { 14 } else { 24 };
                     let error = (f64::from(fixed) - real).abs();

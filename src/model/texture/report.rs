@@ -1,4 +1,4 @@
-//! What a texture unit tells an observer. Nothing here computes a value that is used.
+//! The reports of a texture unit to an observer. Nothing here computes a value that is used.
 
 use super::color_key;
 use super::fetch::{self, Slice, Texel};
@@ -13,50 +13,50 @@ use crate::rop::blend::compare_operation;
 use crate::state::*;
 use crate::trace::{Observer, Operand, Step, TexelAddress, part, plain, report};
 
-/// How many make one texel in the coordinates of a quad.
+/// Units of a quad's coordinates in one texel.
 const QUAD_PART: i64 = 65536;
 
-/// The components of a set of coordinates.
+/// Names of the components of a coordinate set.
 pub(super) const COORDINATES: [&str; 4] = ["s", "t", "r", "q"];
 
-/// Names for the steps of one unit, or of its second level.
+/// The reports of one unit, with names for its steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
-    /// The unit whose steps are told.
+    /// The unit that is reported.
     pub unit: &'a PlannedUnit,
-    /// Put before the names of what happens on the second of two levels: `"next."`.
+    /// Prefix of the names of steps, such as `"next."` on the second of two levels.
     pub prefix: &'a str,
 }
 
-/// INT-4t: the weights of the vertices, and whether weights 0 and 2 fall short of their shares.
+/// INT-4t: returns operands for the perspective weights of the vertices, and for whether weights 0 and 2 fall short.
 pub fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
     let [first, third] = at.short().map(i64::from);
     let weights = (0..3).map(|k| plain(format!("P{k}"), at.triangle.p[k]));
     weights.chain([plain("short0", first), plain("short2", third)]).collect()
 }
 
-/// The block of the chip.
+/// Returns the name of a unit's block of the chip.
 pub fn block(index: usize) -> String {
     format!("texture unit {index}")
 }
 
 impl Report<'_> {
-    /// The block of this unit.
+    /// Returns the name of this unit's block.
     pub fn block(&self) -> String {
         block(self.unit.index)
     }
 
-    /// The name of something of this unit.
+    /// Returns the name of a value of this unit.
     pub fn name(&self, suffix: &str) -> String {
         format!("unit{}.{}{suffix}", self.unit.index, self.prefix)
     }
 
-    /// A step of this unit.
+    /// Returns a step of this unit.
     pub fn step(&self, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
         Step::given(&self.block(), rule, self.name(suffix), value)
     }
 
-    /// Numbers of a linear function at the vertices, told to the observer, as operands.
+    /// Reports the values of a linear function at the vertices, and returns them as operands.
     pub fn planes<O: Observer>(
         &self,
         rule: &'static str,
@@ -71,7 +71,7 @@ impl Report<'_> {
         (0..3).map(|k| plain(named(k), g[k])).collect()
     }
 
-    /// A coordinate on a level.
+    /// Reports a coordinate on a level.
     pub fn coordinate<O: Observer>(
         &self,
         rule: &'static str,
@@ -88,7 +88,7 @@ impl Report<'_> {
         observer.step(self.step(rule, letter, floored.value).per(256).by(operation, inputs).ideal(ideal).note(note));
     }
 
-    /// A coordinate of a pixel of the quad.
+    /// Reports a coordinate of a pixel of the quad.
     pub fn quad_coordinate<O: Observer>(
         &self,
         (pixel, letter): (usize, &str),
@@ -100,7 +100,7 @@ impl Report<'_> {
         observer.step(Step::given(&self.block(), "TEX-11", name, value).per(QUAD_PART).by(operation, inputs));
     }
 
-    /// TEX-9 to TEX-11: the lod and what it chooses.
+    /// TEX-9 to TEX-11: reports the lod, and the filter and levels that it chooses.
     pub(super) fn lod<O: Observer>(
         &self,
         quad: Option<Quad>,
@@ -153,7 +153,7 @@ impl Report<'_> {
         }
     }
 
-    /// TEX-9: the weight of the second level.
+    /// TEX-9: reports the weight of the second level.
     pub(super) fn lod_weight<L: Lane, O: Observer>(&self, lod: i32, weight: L::Weight, observer: &mut O) {
         let (weight, ideal) = L::observe_weight(weight);
         let inputs = vec![part(self.name("lod"), lod)];
@@ -192,7 +192,7 @@ impl Report<'_> {
         }
     }
 
-    /// VOL-1: the layer that a place lies in.
+    /// VOL-1: reports the layer that the coordinate `w` lies in.
     pub(super) fn layer<O: Observer>(&self, w: i64, layer: Option<usize>, observer: &mut O) {
         let index = nearest(w);
         let block = self.block();
@@ -205,7 +205,7 @@ impl Report<'_> {
         }
     }
 
-    /// TEX-17: one tap, in whose names the prefix is.
+    /// TEX-17: reports one tap. The prefix names it.
     pub(super) fn tap<O: Observer>(
         &self,
         (quad, limit, tap): (Option<Quad>, u32, usize),
@@ -234,7 +234,7 @@ impl Report<'_> {
         observer.step(step.by("tap_weight", footprint()).ideal(ideal_weight));
     }
 
-    /// TEX-17: the sum of the taps.
+    /// TEX-17: reports the weighted sum of the taps.
     pub(super) fn taps<L: Lane, O: Observer>(
         &self,
         lane: usize,
@@ -254,7 +254,7 @@ impl Report<'_> {
         observer.step(step.by("weighted_sum", inputs));
     }
 
-    /// SHD-1: a reference, a word of a depth format, against what was fetched.
+    /// SHD-1: reports the comparison of a reference, which is a word of a depth format, with the stored depth.
     pub(super) fn shadow<L: Lane, O: Observer>(
         &self,
         shadow: ShadowComparison,
@@ -280,7 +280,7 @@ impl Report<'_> {
         }
     }
 
-    /// A texel as it was fetched: its place after addressing, and its raw words, of which the one that channels are made of is returned.
+    /// Reports a texel as it was fetched: its address and its raw words. Returns the word that channels are made of.
     pub(super) fn fetched<O: Observer>(
         &self,
         slice: &Slice<'_>,
@@ -322,7 +322,7 @@ impl Report<'_> {
         word
     }
 
-    /// A texel: its place after addressing, its raw words, its lanes.
+    /// Reports a texel: its address, its raw words and its lanes.
     pub(super) fn texel<L: Lane, O: Observer>(
         &self,
         slice: &Slice<'_>,
@@ -360,7 +360,8 @@ impl Report<'_> {
         }
     }
 
-    /// The word that the lanes are taken from: the raw one, the palette's, the decoded one, or the border colour.
+    /// Reports and returns the word that the lanes are taken from: the raw word, the palette's, the decoded one, or the
+    /// border colour.
     fn word<O: Observer>(
         &self,
         words: &[u32],
@@ -391,7 +392,7 @@ impl Report<'_> {
                     tell("", &format!("block{n}"), *word, "fetch", place.clone());
                     inputs.push(plain(name(&format!("block{n}")), *word));
                 }
-                // Blocks lie in one layer.
+                // Blocks are within one layer.
                 inputs.extend(place.into_iter().take(2));
                 let decoded = super::compressed::decode(self.unit.format, self.unit.dithered, raw, x as u32, y as u32);
                 let [r, g, b, a] = decoded.bytes.map(u32::from);
@@ -448,7 +449,8 @@ impl Report<'_> {
         observer.step(self.lane_step("TEX-9", self.name(&format!("levels.{suffix}")), value).by("mix", inputs));
     }
 
-    /// KEY-1: so many channels of a texel against the key, and what it becomes.
+    /// KEY-1: reports the comparison of the first `compared` channels of a texel with the key, and the texel that
+    /// results.
     pub(super) fn color_key<L: Lane, O: Observer>(
         &self,
         key: &ColorKey,
@@ -478,7 +480,7 @@ impl Report<'_> {
         }
     }
 
-    /// A channel of the register, from the lane of the name `from`.
+    /// Reports a channel of the register, from the lane whose name begins with `from`.
     pub(super) fn register<L: Lane, O: Observer>(
         &self,
         from: &str,
@@ -494,7 +496,7 @@ impl Report<'_> {
         observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
     }
 
-    /// A channel of the register that is a byte of a half.
+    /// Reports a channel of the register that is a byte of a half.
     pub(super) fn byte_of_half<L: Lane, O: Observer>(
         &self,
         from: &str,
@@ -513,7 +515,7 @@ impl Report<'_> {
         observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
     }
 
-    /// The name of a lane.
+    /// Returns the name of a lane.
     fn lane(&self, lane: usize) -> &'static str {
         match self.unit.format {
             TextureFormat::R16B16 | TextureFormat::Y16 => ["hi", "lo", "", ""][lane],
@@ -530,14 +532,14 @@ impl Report<'_> {
     }
 
     fn lane_step<L: Lane>(&self, rule: &'static str, name: String, value: L) -> Step {
-        // The ideal is counted in 255ths whatever the lane's own unit.
+        // The ideal is in 255ths, whatever the unit of the lane.
         let mut step = report::register_step(&self.block(), rule, name, value);
         step.per_one = self.per_one();
         step
     }
 }
 
-/// What the name of a level's result begins with.
+/// Returns the prefix of the name of a level's result.
 pub(super) fn filtered(filter: Filter) -> &'static str {
     match filter {
         Filter::Nearest => "texel.",
@@ -545,7 +547,7 @@ pub(super) fn filtered(filter: Filter) -> &'static str {
     }
 }
 
-/// TEX-7: the step from an index (the first of `inputs`; the second is the image's size) to a texel inside the image.
+/// TEX-7: returns the step from an index to a texel inside the image. `inputs` are the index and the size of the image.
 pub fn address_step(
     block: &str,
     name: impl Into<String>,
@@ -571,7 +573,8 @@ fn address_operation(mode: AddressMode, border_texels: bool) -> &'static str {
     }
 }
 
-/// The numbers of a coordinate at the vertices and the edge functions, as operands: the value is their sum of products over D, times 2^exponent.
+/// Reports a coordinate at the vertices, and returns it and the edge functions as operands. The value is the sum of
+/// their products over D, times 2^exponent.
 pub(super) fn linear<O: Observer>(
     index: usize,
     n: usize,

@@ -1,21 +1,21 @@
-//! TSH-6 to TSH-9, and what becomes of the dot unit's results: dependent coordinates and colours, in integers.
+//! TSH-6 to TSH-9, and the use of the dot unit's results: dependent coordinates and colours, in integers.
 
 use super::dot::moved;
 use crate::number::convert::{align, factor_byte, shift, split};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::DependentScale;
 
-/// Fraction bits of an [`offset`] below 1/256 texel.
+/// Number of fraction bits of an [`offset`] below 1/256 texel.
 pub const OFFSET_BITS: u32 = 24;
 
-/// Offsets beyond this lie outside every image, 2^-24 of 1/256 texel.
+/// Limit of offsets, in 2^-24 of 1/256 texel. Larger ones are outside every image.
 const OFFSET_LIMIT: i128 = 1 << 50;
 
-/// Bits kept of a sum of products. Each product has at most 32, so what is floored away is too small to reach the next step of
-/// anything that is made of the sum.
+/// Number of bits that a sum of products keeps. Each product has at most 32, so that the bits that are floored away
+/// cannot reach the next step of any result.
 const SUM_BITS: i32 = 100;
 
-/// a f + b g as n 2^e.
+/// Returns a f + b g as (n, e) for n 2^e.
 fn sum_of_products(terms: [(i64, f32); 2]) -> (i128, i32) {
     let terms = terms.map(|(factor, f)| {
         let (mantissa, exponent) = split(f);
@@ -27,14 +27,15 @@ fn sum_of_products(terms: [(i64, f32); 2]) -> (i128, i32) {
     (terms.map(|(n, e)| shift(n, e - unit)).iter().sum(), unit)
 }
 
-/// TSH-7: by how much blue and green (two's complement) move one coordinate: floor(2^24 256 side f / 128) of f = m_b B + m_g G in single
-/// precision, in 2^-24 of 1/256 texel. `side` is 1 where coordinates are texels. NaN is 0.
+/// TSH-7: returns the displacement of one coordinate by blue and green (two's complement): floor(2^24 256 side f / 128)
+/// with f = m_b B + m_g G in single precision, in 2^-24 of 1/256 texel. `side` is 1 if coordinates are texels. NaN
+/// counts as 0.
 pub fn offset(entries: [f32; 2], blue_green: [u8; 2], side: u32) -> i64 {
     let f = moved(entries, blue_green.map(|byte| f32::from(byte as i8)));
     scaled(f, side, OFFSET_BITS as i32 + 8 - 7, OFFSET_LIMIT)
 }
 
-/// TSH-8: floor(4096 f) of f = c/255 (R/255 scale + offset), not negative and limited to 2^20. A negative c counts as 0.
+/// TSH-8: returns floor(4096 f) of f = c/255 (R/255 scale + offset), limited to 0..=2^20. A negative c counts as 0.
 pub fn luminance(c: i32, red: u8, [scale, offset]: [f32; 2]) -> i64 {
     let (n, e) = sum_of_products([(i64::from(red), scale), (255, offset)]);
     let limit = 1 << 20;
@@ -43,13 +44,13 @@ pub fn luminance(c: i32, red: u8, [scale, offset]: [f32; 2]) -> i64 {
     v.clamp(0, limit) as i64
 }
 
-/// TSH-8: that number as a byte, by NUM-6 and saturated to 255.
+/// TSH-8: converts the result of [`luminance`] to a byte by NUM-6, saturated to 255.
 pub fn luminance_byte(v: i64) -> u8 {
-    // Everything from 4096 on gives 255.
+    // 4096 and everything above yield 255.
     factor_byte(v.min(4096))
 }
 
-/// TSH-6: floor(256 side v / 255), 1/256 texel; v / 256 under the alternative.
+/// TSH-6: returns floor(256 side v / 255) in 1/256 texel, or with v / 256 under the alternative.
 pub fn dependent(v: u8, side: u32, scale: DependentScale) -> i64 {
     let whole = match scale {
         DependentScale::Over255 => 255,
@@ -58,7 +59,7 @@ pub fn dependent(v: u8, side: u32, scale: DependentScale) -> i64 {
     ((i64::from(v) * i64::from(side)) << 8) / whole
 }
 
-/// A float coordinate in parts of a texel: floor(2^bits side f) within a limit. NaN is 0.
+/// Returns floor(2^bits side f), limited to `limit` in magnitude. NaN counts as 0.
 fn scaled(f: f32, side: u32, bits: i32, limit: i128) -> i64 {
     if f.is_nan() {
         return 0;
@@ -70,20 +71,21 @@ fn scaled(f: f32, side: u32, bits: i32, limit: i128) -> i64 {
     value as i64
 }
 
-/// A coordinate of the dot unit on an image, 1/256 texel, floored; limited as in TEX-15. NaN is 0.
+/// Returns a coordinate of the dot unit on an image in 1/256 texel, floored and limited as in TEX-15. NaN counts as 0.
 pub fn coordinate(f: f32, side: u32) -> i64 {
     scaled(f, side, 8, i128::from(COORDINATE_LIMIT))
 }
 
-/// The same in 1/65536 texel, for the lod (TEX-11).
+/// Like [`coordinate`], in 1/65536 texel for the lod (TEX-11).
 pub fn quad_coordinate(f: f32, side: u32) -> i64 {
     scaled(f, side, 16, 1 << 62)
 }
 
-/// A vector of the dot unit as integers of one unit. A component that is NaN or infinite makes it the zero vector (TEX-13).
+/// Returns a vector of the dot unit as integers of a common exponent. A vector with a component that is NaN or infinite
+/// becomes the zero vector (TEX-13).
 ///
-/// The largest keeps 62 bits and the others are floored, which moves no texel: a component below 2^-38 of the largest counts only by its sign,
-/// and keeps that.
+/// The largest component keeps 62 bits and the others are floored, which changes no texel: only the sign of a component
+/// below 2^-38 of the largest matters, and it is kept.
 pub fn direction(vector: [f32; 3]) -> [i64; 3] {
     if vector.iter().any(|c| !c.is_finite()) {
         return [0; 3];
@@ -92,7 +94,8 @@ pub fn direction(vector: [f32; 3]) -> [i64; 3] {
     std::array::from_fn(|n| if vector[n] > 0.0 { aligned[n].max(1) } else { aligned[n] })
 }
 
-/// TEX-12 of such a vector: floor(2^bits size (s + m) / 2m) with the minor component s and the major one m; the zero vector is 0.
+/// TEX-12: returns floor(2^bits size (s + m) / 2m) with the minor component s and the major component m of a
+/// [`direction`]. The zero vector yields 0.
 pub fn face_coordinate(s: i64, m: i64, size: u32, bits: u32) -> i64 {
     if m <= 0 {
         return 0;
@@ -110,24 +113,25 @@ mod tests {
     #[test]
     fn offsets_by_hand() {
         let texel = 256 << OFFSET_BITS;
-        // B = 64 is one half: half a texture of 8 texels along u.
+        // B = 64 is one half, and moves by half a texture of 8 texels along u.
         assert_eq!(offset([1.0, 0.0], [64, 0], 8), 4 * texel);
         assert_eq!(offset([1.0, 0.0], [192, 0], 8), -4 * texel);
         assert_eq!(offset([0.5, -0.25], [0, 128], 1), texel / 4);
-        // A hair below zero is one step down, whatever its size.
+        // Slightly below zero is one step down, however small.
         assert_eq!(offset([-1e-30, 0.0], [1, 0], 1), -1);
-        // A sum in single precision: what is tiny beside the other is lost, and 0.3 * 10, which is a hair above 3, is 3.
+        // A sum in single precision: a tiny term is lost beside the other, and 0.3 * 10, which is slightly above 3, is
+        // 3.
         assert_eq!(offset([-1e-30, 1.0], [1, 1], 1), texel / 128);
         assert_eq!(offset([0.3, 1.0], [10, 125], 1), texel);
         assert_eq!(offset([1e30, 0.0], [1, 0], 1), OFFSET_LIMIT as i64);
         assert_eq!(offset([1e30, 1e30], [1, 255], 1), 0);
-        // Infinity less infinity.
+        // Infinity minus infinity.
         assert_eq!(offset([f32::MAX, f32::MAX], [2, 254], 1), 0);
     }
 
     #[test]
     fn luminance_by_hand() {
-        // R = 255, scale 1: the colour itself.
+        // R = 255 and scale 1 yield the colour itself.
         for c in 0..=255 {
             let v = luminance(c, 255, [1.0, 0.0]);
             assert_eq!(v, i64::from(4096 * c / 255));
@@ -149,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Every byte for every side.
+    /// Tests every byte for every side.
     #[test]
     fn dependent_reads() {
         for bits in 0..=12 {
@@ -179,7 +183,7 @@ mod tests {
         assert_eq!(on([f32::INFINITY, -1.0, 0.0]), [0; 3]);
         let [x, y, z] = on([f32::MAX, -1.0, 0.0]);
         assert!(x > 0 && y < 0 && z == 0);
-        // Whichever sign a face sees them with.
+        // Faces may use either sign.
         assert_eq!(on([f32::MAX, 1.0, -1.0])[1..], [1, -1]);
         assert_eq!(face_coordinate(y, x, 4, 8), 511);
         assert_eq!(
@@ -189,7 +193,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against whole numbers: matrix entries and luminance that are multiples of 2^-10.
+        /// Compares with integers: the matrix entries and the luminance are multiples of 2^-10.
         #[test]
         fn offsets_are_floors(m in prop::array::uniform2(-40_000..40_000_i32), b: u8, g: u8, side in 0..=12_u32) {
             let side = 1 << side;
@@ -207,7 +211,7 @@ mod tests {
             prop_assert_eq!(v, exact.div_euclid(255 * 255).clamp(0, 1 << 20));
         }
 
-        /// Terms of any size: never a panic, and the sign is right.
+        /// Terms of any size never panic, and stay within the limits.
         #[test]
         fn any_float_is_safe(m: [f32; 2], b: u8, g: u8, c in -256..=255_i32, vector: [f32; 3], side in 0..=12_u32) {
             let moved = offset(m, [b, g], 1 << side);
@@ -221,14 +225,14 @@ mod tests {
             prop_assert!(largest == 0 || (61..=62).contains(&largest.ilog2()));
         }
 
-        /// The 62 bits of a direction give the texel of the exact quotient.
+        /// The 62 bits of a direction yield the texel of the exact quotient.
         #[test]
         fn faces_are_exact(s in -1.0..1.0_f32, small in 0..60_i32, n in 0..=12_u32) {
             let s = s * (0.5_f32).powi(small);
             let m = 1.0_f32;
             let [s_fixed, _, m_fixed] = direction([s, 0.0, m]);
             let (mantissa, exponent) = split(s);
-            // floor(128 n (s + 1)), s = mantissa 2^exponent.
+            // floor(128 n (s + 1)) with s = mantissa 2^exponent.
             let side = 1_i128 << n;
             let exact = (side << 7) + shift(i128::from(mantissa) * side, exponent + 7);
             prop_assert_eq!(i128::from(face_coordinate(s_fixed, m_fixed, side as u32, 8)), exact);

@@ -1,4 +1,4 @@
-//! What the texture shader tells an observer. Nothing here computes a value that is used.
+//! The reports of the texture shader to an observer. Nothing here computes a value that is used.
 
 use super::dependent::{Dependent, Target};
 use super::dot::Reflection;
@@ -22,12 +22,12 @@ fn step(index: usize, rule: &'static str, suffix: &str, value: impl Into<i64>) -
     Step::given(&block(index), rule, name(index, suffix), value)
 }
 
-/// A step that yields a single-precision number.
+/// Returns a step that yields a single-precision number.
 fn single(index: usize, rule: &'static str, suffix: &str, value: f32, ideal: f64) -> Step {
     float_step(&block(index), rule, name(index, suffix), value, ideal)
 }
 
-/// A register that a stage yields whatever the pixel.
+/// Reports the register of a stage whose result is the same for every pixel.
 pub(super) fn constant<L: Lane, O: Observer>(
     index: usize,
     rule: &'static str,
@@ -41,7 +41,7 @@ pub(super) fn constant<L: Lane, O: Observer>(
     }
 }
 
-/// TSH-9: one channel.
+/// TSH-9: reports one channel of a coordinate as a colour.
 pub(super) fn pass_through<L: Lane, O: Observer>(
     index: usize,
     n: usize,
@@ -58,7 +58,7 @@ pub(super) fn pass_through<L: Lane, O: Observer>(
     observer.step(report::register_step(&block(index), "TSH-9", register, value).by("factor_byte", inputs));
 }
 
-/// TSH-10: whether one coordinate drops the fragment.
+/// TSH-10: reports whether one coordinate drops the fragment.
 pub(super) fn sign<O: Observer>(
     index: usize,
     n: usize,
@@ -76,7 +76,7 @@ pub(super) fn sign<O: Observer>(
     observer.step(step.by(operation, inputs).note(note));
 }
 
-/// A coordinate in single precision.
+/// Reports a coordinate that is rounded to single precision, and returns it as an operand.
 pub(super) fn rounded<O: Observer>(
     index: usize,
     n: usize,
@@ -91,7 +91,7 @@ pub(super) fn rounded<O: Observer>(
     observer.tell(step.by("nearest_float", inputs))
 }
 
-/// The bytes of the earlier unit's colour that a stage reads.
+/// Reports the bytes of the earlier unit's colour that a stage reads.
 pub(super) fn previous<O: Observer>(index: usize, color: &Color, channels: &[usize], observer: &mut O) {
     for &n in channels {
         let register = format!("texture{}.{}", color.unit, channel_name(n));
@@ -116,7 +116,7 @@ pub(super) struct DotParts<'a> {
     pub(super) dot: Dot,
 }
 
-/// TSH-1 to TSH-4: a dot product. `real` are the ideal's coordinates and its remapped colour.
+/// TSH-1 to TSH-4: reports a dot product. `real` holds the ideal's coordinates and its remapped colour.
 pub(super) fn dot<O: Observer>(
     index: usize,
     color: &Color,
@@ -159,7 +159,7 @@ fn product_of((a, b): ([f64; 3], [f64; 3]), n: usize) -> f64 {
     a[n] * b[n]
 }
 
-/// TSH-5: a reflection. The eye is the scene's or the q of the three stages.
+/// TSH-5: reports a reflection. The eye vector is a constant of the scene, or the q of the three stages.
 pub(super) fn reflection<O: Observer>(
     index: usize,
     normal: [Dot; 3],
@@ -187,14 +187,14 @@ pub(super) fn reflection<O: Observer>(
     }
 }
 
-/// TSH-8: scale and offset.
+/// TSH-8: reports scale and offset of the luminance.
 pub(super) fn luminance_state<O: Observer>(index: usize, luminance: [f32; 2], observer: &mut O) {
     for (what, value) in ["luminance.scale", "luminance.offset"].into_iter().zip(luminance) {
         observer.step(single(index, "TSH-8", what, value, f64::from(value)));
     }
 }
 
-/// TSH-8: one channel, from the colour as sampled, the number in 4096ths and the result.
+/// TSH-8: reports one channel: the colour as sampled, the product in 4096ths and the result.
 pub(super) fn luminance<L: Lane, O: Observer>(
     index: usize,
     n: usize,
@@ -215,7 +215,7 @@ pub(super) fn luminance<L: Lane, O: Observer>(
     observer.step(report::register_step(&block(index), "TSH-8", register, value).by("luminance_byte", inputs));
 }
 
-/// Where the coordinates of a dependent read on a level come from.
+/// Reports how the coordinates of a dependent read on a level are computed.
 pub(super) fn coordinates<O: Observer>(
     place: &Dependent<'_>,
     report: &Report<'_>,
@@ -279,7 +279,7 @@ pub(super) fn coordinates<O: Observer>(
     }
 }
 
-/// Where the components of the vector that a unit samples with were reported.
+/// Returns the names under which the components of the vector that a unit samples with were reported.
 fn vector_names(place: &Dependent<'_>) -> [String; 3] {
     use crate::state::ShaderOperation as Op;
     let index = place.unit.index;
@@ -291,7 +291,7 @@ fn vector_names(place: &Dependent<'_>) -> [String; 3] {
     }
 }
 
-/// The channels that a dependent read takes as u and v.
+/// Returns the channels that a dependent read uses as u and v.
 fn dependent_channels(place: &Dependent<'_>) -> [usize; 2] {
     match place.unit.stage.operation {
         crate::state::ShaderOperation::DependentAlphaRed => [3, 0],
@@ -299,7 +299,7 @@ fn dependent_channels(place: &Dependent<'_>) -> [usize; 2] {
     }
 }
 
-/// TEX-11: u and v of the quad, as the same chain gives them there.
+/// TEX-11: reports u and v at the quad, where the same chain computes them.
 pub(super) fn quad<O: Observer>(place: &Dependent<'_>, report: &Report<'_>, observer: &mut O) {
     let Some(quad) = place.quad else { return };
     for (n, uv) in quad.fixed.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! SHD-1: textures of depths, which a unit does not read but compares.
+//! SHD-1: depth textures, which a unit compares with a reference instead of returning their texels.
 
 use super::coordinates::SampleCoordinates;
 use super::fetch::Texel;
@@ -10,13 +10,13 @@ use crate::raster::ideal;
 use crate::state::{DepthFormat, ShadowComparison, ShadowReference, depth_of};
 use crate::trace::{Decision, Observer};
 
-/// Whether a reference, a word of the unit's format, compares with a texel as the function says.
+/// Returns whether a reference, which is a word of the unit's format, passes the comparison with a texel.
 #[inline]
 pub fn passes(shadow: ShadowComparison, reference: u32, texel: &Texel) -> bool {
     shadow.function.passes(reference, depth_of(texel.word))
 }
 
-/// SHD-1 of a texel: 255 in every channel if the reference compares with it as the unit's function says, else 0.
+/// SHD-1: returns 255 in every channel if the reference passes the comparison with the texel, and 0 otherwise.
 #[inline]
 pub fn compare<L: Lane, O: Observer>(
     unit: &PlannedUnit,

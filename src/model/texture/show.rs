@@ -1,22 +1,23 @@
-//! A level of a texture as a picture: what a unit reads of each texel (TEX-1 to TEX-4), unfiltered.
+//! Shows a level of a texture as a picture: the unfiltered colour of each texel (TEX-1 to TEX-4).
 
 use super::compressed;
 use super::format::expand;
 use crate::state::{BORDER_TEXELS, Level, Texels, TextureFormat};
 
-/// A level of a face, border texels included.
+/// The picture of a level of a face, including border texels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
-    /// R, G, B, A of each texel, row by row from the top.
+    /// R, G, B, A bytes of each texel, row by row from the top.
     pub pixels: Vec<[u8; 4]>,
 }
 
-/// Reads every texel of a level; `None` if the words do not hold so many faces or levels. `palette` is that of [`TextureFormat::P8`],
-/// a power of two of words A8R8G8B8; without one its texels are zero. `dithered` is said of DXT1 as in [`compressed::decode`].
+/// Decodes every texel of a level. Returns `None` if the words hold fewer faces or levels. `palette` holds A8R8G8B8
+/// words for [`TextureFormat::P8`], and its length is a power of two; without one the texels are zero. `dithered`
+/// applies to DXT1 as in [`compressed::decode`].
 pub fn level(
     texels: &Texels,
     format: TextureFormat,
@@ -81,7 +82,7 @@ mod tests {
         assert_eq!(without.map(|shown| shown.pixels), Some(vec![[0; 4]; 2]));
     }
 
-    /// Columns and rows count within the level, blocks row by row; sides below four use a part of a block.
+    /// Columns and rows count within the level, and blocks are stored row by row. Sides below four use part of a block.
     #[test]
     fn blocks_cover_levels() {
         let flat = |n: u32| [n << 11 | n << 27, 0];

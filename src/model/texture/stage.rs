@@ -1,4 +1,4 @@
-//! The stages of a texture shader as they are planned for a draw, and their coordinates as they are set up for a triangle.
+//! The stages of a texture shader as planned for a draw, and their coordinates as set up for a triangle.
 
 use super::coordinates::Coordinates;
 use super::planned::PlannedUnit;
@@ -7,7 +7,7 @@ use crate::raster::attribute::Attribute;
 use crate::raster::setup::Triangle;
 use crate::state::{ShaderOperation, ShaderStage, TEXTURE_UNITS, TriangleVertices};
 
-/// A texture shader reduced to what can reach the frame.
+/// A texture shader, reduced to what can reach the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedShader {
     /// The stages of the four units.
@@ -15,49 +15,50 @@ pub struct PlannedShader {
 }
 
 impl PlannedShader {
-    /// Whether a stage can drop fragments.
+    /// Returns whether a stage can drop fragments.
     pub fn kills(&self) -> bool {
         self.stages.iter().any(|stage| matches!(stage.state.operation, ShaderOperation::CullFragment { .. }))
     }
 }
 
-/// A stage of it.
+/// A planned stage of the texture shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedShaderStage {
-    /// What it does.
+    /// State of the stage.
     pub state: ShaderStage,
-    /// Index of its unit among those of the draw, if it samples.
+    /// Index of the stage's unit among those of the draw, if the stage samples.
     pub unit: Option<usize>,
-    /// Channels of its register, R, G, B, A, that combiners or later stages read.
+    /// Channels of its register that combiners or later stages read, as bits 1, 2, 4, 8 for R, G, B, A.
     pub live: u8,
-    /// Its dot product is part of what is sampled.
+    /// Whether its dot product is needed for sampling.
     pub dots: bool,
 }
 
 impl PlannedShaderStage {
-    /// Whether it has to run.
+    /// Returns whether the stage has to run.
     pub fn runs(&self) -> bool {
         let drops = matches!(self.state.operation, ShaderOperation::CullFragment { .. });
         drops || self.dots || (self.live != 0 && self.state.operation != ShaderOperation::None)
     }
 }
 
-/// What a triangle's vertices give a stage.
+/// The coordinates of a stage, set up from a triangle's vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StageSetup {
     Nothing,
-    /// Coordinates of its unit's image.
+    /// Coordinates on the image of its unit.
     Places(Coordinates),
-    /// s, t, r, q as numbers.
+    /// s, t, r, q, interpolated as numbers.
     Numbers([Attribute; 4]),
 }
 
-/// The texture shader's coordinates, set up for one triangle.
+/// The coordinates of the texture shader, set up for one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShaderSetup(pub(super) [StageSetup; TEXTURE_UNITS]);
 
 impl ShaderSetup {
-    /// Where a stage samples, before anything moves it.
+    /// Returns the coordinates at which a stage samples, before they are displaced. Returns `None` if the stage has no
+    /// interpolated coordinates on an image.
     pub fn coordinates(&self, index: usize) -> Option<&Coordinates> {
         match &self.0[index] {
             StageSetup::Places(coordinates) => Some(coordinates),
@@ -101,21 +102,21 @@ impl ShaderSetup {
     }
 }
 
-/// A dot product, and what the ideal has in its place.
+/// A dot product of the definition and of the ideal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Dot {
     pub(super) fixed: f32,
     pub(super) real: f64,
 }
 
-/// The colour of an earlier unit as a stage reads it: bytes, whatever their sign flags.
+/// The colour of an earlier unit as a stage reads it: as bytes, whatever their sign flags.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Color {
     pub(super) unit: usize,
     pub(super) bytes: [u8; 4],
-    /// The registers that they were taken from.
+    /// The registers that the bytes were taken from.
     pub(super) held: [i64; 4],
-    /// Channels whose registers hold twice their two's complement value (TEX-18).
+    /// Whether the register of each channel holds twice its two's complement value (TEX-18).
     pub(super) doubled: [bool; 4],
     pub(super) real: RealColor,
 }

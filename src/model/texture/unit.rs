@@ -1,4 +1,4 @@
-//! One texture unit: place, level, address, fetch, filter, register.
+//! Sampling of one texture unit: coordinates, level, address, fetch, filter, register.
 
 use super::address::address;
 use super::anisotropy::{self, MAX_TAPS};
@@ -15,14 +15,14 @@ use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::{Filter, Level, TextureKind};
 use crate::trace::{Decision, Observer, Rule, Work};
 
-/// What is read: chosen by the lod, or the only possibility.
+/// The filter and levels that were chosen by the lod, or the only possible ones.
 struct Chosen<L: Lane> {
     choice: Choice,
-    /// Weight of the next level.
+    /// Weight of the second level.
     weight: L::Weight,
 }
 
-/// Samples a unit at a place, and says whether its colour key drops the fragment.
+/// Samples a unit. Returns its register, and whether its colour key drops the fragment.
 #[inline]
 pub fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
@@ -82,7 +82,7 @@ pub fn sample<L: Lane, O: Observer>(
     (load(unit, value, "keyed.", observer), dropped)
 }
 
-/// TEX-9 to TEX-11.
+/// TEX-9 to TEX-11: chooses filter and levels.
 #[inline(always)]
 fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer: &mut O) -> Chosen<L> {
     let whole = |choice| Chosen { choice, weight: L::weight(0, || 0.0) };
@@ -111,7 +111,7 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinat
     Chosen { choice, weight }
 }
 
-/// VOL-1: the layer of a volume. `None`: beyond them, in the border.
+/// VOL-1: returns the layer of a volume, or `None` if it is in the border beyond the layers.
 #[inline(always)]
 pub fn layer<L: Lane, O: Observer>(
     unit: &PlannedUnit,
@@ -132,7 +132,7 @@ pub fn layer<L: Lane, O: Observer>(
     layer
 }
 
-/// u and v on a level, 1/256 texel, and the ideal's where somebody wants them.
+/// Returns u and v on a level in 1/256 texel, and those of the ideal if something uses them.
 #[inline(always)]
 fn coordinates<L: Lane, O: Observer>(
     slice: &Slice<'_>,
@@ -149,7 +149,7 @@ fn coordinates<L: Lane, O: Observer>(
     (if L::DECIDES { wanted.map(floored) } else { fixed.map(|c| c.value) }, wanted)
 }
 
-/// TEX-17: the taps of a footprint on level 0, each filtered.
+/// TEX-17: filters each tap of a footprint on level 0 and returns their weighted sum.
 #[cold]
 fn taps<L: Lane, O: Observer>(
     slice: &Slice<'_>,
@@ -167,7 +167,7 @@ fn taps<L: Lane, O: Observer>(
     let ideal = if O::ON || O::MEASURES || L::DECIDES { Some(real()) } else { None };
     let count = if L::DECIDES { ideal.map_or(1, |ideal| ideal.count) } else { fixed.count };
     observer.decided(Decision::Level, count as i64, || real().count as i64);
-    // Where the ideal has another number of taps, it follows these.
+    // If the ideal has another number of taps, it follows those of the definition.
     let ideal = ideal.filter(|ideal| ideal.count == count);
     if O::ON {
         place.describe_quad(&Report { unit, prefix: "" }, observer);
@@ -209,7 +209,7 @@ fn taps<L: Lane, O: Observer>(
     })
 }
 
-/// What a unit reads at u and v on one level of one face, or layer.
+/// Returns what a unit reads at u and v on one level of one face or layer.
 #[inline(always)]
 fn fetched<L: Lane, O: Observer>(
     slice: &Slice<'_>,
@@ -260,8 +260,8 @@ fn fetched<L: Lane, O: Observer>(
     }
 }
 
-/// TEX-6: the footprint's upper left texel and the weights of its right and lower ones, from u and v in 1/256 texel, which `ideal`
-/// gives as real numbers; `rule` is the one that they come from.
+/// TEX-6: returns the upper left texel of the footprint, and the weights of its right and lower texels, for u and v in
+/// 1/256 texel. `ideal` holds u and v as real numbers, and `rule` is the rule that yields them.
 #[inline(always)]
 pub fn footprint_weights<L: Lane, O: Observer>(
     report: &Report<'_>,
@@ -284,7 +284,7 @@ pub fn footprint_weights<L: Lane, O: Observer>(
     ([x, y], weights)
 }
 
-/// TEX-6: the mix of the 2x2 footprint, row by row.
+/// TEX-6: filters the 2x2 footprint, whose texels are in rows.
 #[inline(always)]
 pub fn mix<L: Lane, O: Observer>(
     report: &Report<'_>,
@@ -293,10 +293,10 @@ pub fn mix<L: Lane, O: Observer>(
     observer: &mut O,
 ) -> [L; 4] {
     let unit = report.unit;
-    // All four channels: cheaper than asking which are read.
+    // Computing all four channels is cheaper than checking which are read.
     observer.count(Work::Lerps, 12);
     let live = unit.live_lanes();
-    // `map` would copy all of them for each lane.
+    // `map` would copy all texels for each lane.
     let of = |lane: usize| [texels[0][lane], texels[1][lane], texels[2][lane], texels[3][lane]];
     let out: [L; 4] = std::array::from_fn(|lane| {
         if O::MEASURES && live >> lane & 1 == 0 {
@@ -312,7 +312,7 @@ pub fn mix<L: Lane, O: Observer>(
     out
 }
 
-/// TEX-9: two levels, each filtered.
+/// TEX-9: interpolates between two filtered levels.
 #[inline(always)]
 fn trilinear<L: Lane, O: Observer>(
     unit: &PlannedUnit,
@@ -338,14 +338,15 @@ fn trilinear<L: Lane, O: Observer>(
     out
 }
 
-/// A linear step has yielded a lane. A signed or wide one counts in another unit until it becomes a register (TEX-18).
+/// Observes the result of a linear step. Signed and wide lanes are not observed, because their unit differs until they
+/// become registers (TEX-18).
 #[inline(always)]
 fn observed_step<L: Lane, O: Observer>(unit: &PlannedUnit, lane: usize, value: L, observer: &mut O) -> L {
     if O::MEASURES && !unit.is_wide() && !unit.state.signed[lane] { observer.observe(Rule::Tex6, value) } else { value }
 }
 
-/// What was sampled as the unit's register: signed channels are doubled (TEX-18), halves become bytes (TEX-1). Traces call what was
-/// sampled `from` and the channel.
+/// Converts what was sampled to the unit's register: signed channels are doubled (TEX-18), halves become bytes (TEX-1).
+/// In traces, `from` is the prefix of the sampled channels' names.
 #[inline(always)]
 pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str, observer: &mut O) -> [L; 4] {
     let report = Report { unit, prefix: "" };
@@ -364,11 +365,12 @@ pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str,
     register
 }
 
-/// TEX-1 of the formats that are filtered at 16 bits: the bytes of the halves. The high byte of a signed half enters doubled (TEX-18).
+/// TEX-1 for formats that are filtered at 16 bits: returns the bytes of the halves. The high byte of a signed half is
+/// doubled (TEX-18).
 fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report<'_>, observer: &mut O) -> [L; 4] {
     let unit = report.unit;
     let mut register = [L::ONE; 4];
-    // Channel, lane, and whether it is the high byte.
+    // Channel, lane, and whether the channel is the high byte.
     for (channel, lane, high) in [(0, 0, false), (1, 1, true), (2, 1, false), (3, 0, true)] {
         if unit.live >> channel & 1 != 0 {
             let signed = unit.signed_lane(lane);
@@ -383,7 +385,7 @@ fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report
     register
 }
 
-/// One byte of a 16-bit half as a register.
+/// Returns one byte of a 16-bit half as a register.
 fn byte_of_half<L: Lane>(half: L, high: bool, signed: bool) -> L {
     let (fixed, ideal) = half.observe();
     let real = ideal.unwrap_or(0.0);
@@ -394,17 +396,17 @@ fn byte_of_half<L: Lane>(half: L, high: bool, signed: bool) -> L {
         (true, false) => whole >> 8 & 255,
         (false, _) => whole & 255,
     } as i32;
-    // Low bytes mean nothing to the ideal.
+    // The ideal has no low bytes.
     L::value(byte, || if high { real } else { f64::from(byte) })
 }
 
-/// The ideal's u and v on a level.
+/// Returns the ideal's u and v on a level.
 fn real_on(unit: &PlannedUnit, level: &Level, st: [f64; 2]) -> [f64; 2] {
     let [width, height] = unit.scale(level);
     [real_coordinate(st[0], width), real_coordinate(st[1], height)]
 }
 
-/// The ideal's number as a whole one, for decisions.
+/// Floors a number of the ideal for a decision.
 #[allow(clippy::float_arithmetic, reason = "the ideal's texel")]
 pub(super) fn floored(coordinate: f64) -> i64 {
     let limit = COORDINATE_LIMIT as f64;
