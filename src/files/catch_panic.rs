@@ -36,7 +36,7 @@ pub struct Panic {
     /// Message of the panic.
     pub message: String,
     /// File, line and column of the source, if known.
-    pub place: Option<String>,
+    pub(crate) place: Option<String>,
 }
 
 impl Panic {

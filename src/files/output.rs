@@ -175,7 +175,9 @@ impl Destination {
 /// # Errors
 /// The path is a folder or a read-only file, its folder is missing or not writable, or the disk is full.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    write_file_with(path, |out| out.write_all(bytes))
+    let mut file = PendingFile::create(path)?;
+    file.write_all(bytes).map_err(|error| file.refused(error))?;
+    file.commit()
 }
 
 /// Makes a folder, including the folders around it.
@@ -194,17 +196,6 @@ pub fn write_below(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     path.parent().map_or(Ok(()), make_folder)?;
     files::claim(path)?;
     write_file(path, bytes)
-}
-
-/// Replaces a file like [`write_file`], by what `fill` writes. Returns the result of `fill`.
-///
-/// # Errors
-/// Those of [`write_file`], or an error of `fill`.
-pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, OutputError> {
-    let mut file = PendingFile::create(path)?;
-    let result = fill(&mut file).map_err(|error| file.refused(error))?;
-    file.commit()?;
-    Ok(result)
 }
 
 /// Prefix and suffix of the names of temporary files.

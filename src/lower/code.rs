@@ -80,7 +80,7 @@ pub(crate) fn collected(renamed: impl FnOnce(&mut dyn FnMut(Operand) -> Operand)
 
 impl Operation {
     /// Returns the kind of the result.
-    pub fn kind(&self) -> Kind {
+    pub(crate) fn kind(&self) -> Kind {
         match self {
             Operation::Input(input) => input.kind(),
             Operation::Word(_)
@@ -94,7 +94,7 @@ impl Operation {
     }
 
     /// Returns the kind of the operands.
-    pub fn takes(&self) -> Kind {
+    pub(crate) fn takes(&self) -> Kind {
         match self {
             Operation::Number(_) => Kind::Word,
             Operation::Word(_) => Kind::Number,
@@ -103,7 +103,7 @@ impl Operation {
     }
 
     /// Returns the operands.
-    pub fn operands(&self) -> Vec<Operand> {
+    pub(crate) fn operands(&self) -> Vec<Operand> {
         collected(|name| _ = self.renamed(name))
     }
 
@@ -163,18 +163,18 @@ pub type Range = (i64, i64);
 #[derive(Clone, Debug)]
 pub struct Line {
     /// The operation.
-    pub operation: Operation,
+    pub(crate) operation: Operation,
     /// Range of the result.
     pub range: Range,
     /// Id of the rule that asks for the operation.
-    pub rule: &'static str,
+    pub(crate) rule: &'static str,
     /// Name of the result, if the chip's documents have one.
     pub name: Option<String>,
 }
 
 /// Code under construction: lines, each of which uses earlier ones.
 #[derive(Debug, Default)]
-pub struct Code {
+pub(crate) struct Code {
     lines: RefCell<Vec<Line>>,
     known: RefCell<HashMap<Operation, u32>>,
     rule: Cell<&'static str>,
@@ -182,7 +182,7 @@ pub struct Code {
 
 impl Code {
     /// Returns the lines on which `roots` depend, renumbered, and a function that maps operands to the new numbers.
-    pub fn kept(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
+    pub(crate) fn kept(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
         let lines = self.lines.into_inner();
         let mut used = vec![false; lines.len()];
         let mut open: Vec<Operand> = roots.to_vec();
@@ -211,12 +211,12 @@ impl Code {
     }
 
     /// Sets the rule of the lines that are made from now on.
-    pub fn by(&self, rule: &'static str) {
+    pub(crate) fn by(&self, rule: &'static str) {
         self.rule.set(rule);
     }
 
     /// Names a value, unless it has a name.
-    pub fn name(&self, operand: Operand, name: impl FnOnce() -> String) {
+    pub(crate) fn name(&self, operand: Operand, name: impl FnOnce() -> String) {
         if let Operand::Line(line) = operand {
             let line = &mut self.lines.borrow_mut()[line as usize];
             if line.name.is_none() && !matches!(line.operation, Operation::Input(_)) {
@@ -226,7 +226,7 @@ impl Code {
     }
 
     /// Narrows the range of a value that is known to stay within it, even if its operands alone would allow more.
-    pub fn narrow(&self, operand: Operand, (low, high): Range) {
+    pub(crate) fn narrow(&self, operand: Operand, (low, high): Range) {
         if let Operand::Line(line) = operand {
             let range = &mut self.lines.borrow_mut()[line as usize].range;
             *range = (range.0.max(low), range.1.min(high));
@@ -234,7 +234,7 @@ impl Code {
     }
 
     /// Returns the range of a value.
-    pub fn range(&self, operand: Operand) -> Range {
+    pub(crate) fn range(&self, operand: Operand) -> Range {
         match operand {
             Operand::Constant(value) => (value, value),
             Operand::Line(line) => self.lines.borrow()[line as usize].range,
@@ -254,7 +254,7 @@ impl Code {
     }
 
     /// Returns the result of an operation: that of a simpler or an existing line if it is equal, otherwise that of a new line.
-    pub fn make(&self, operation: Operation) -> Operand {
+    pub(crate) fn make(&self, operation: Operation) -> Operand {
         let constant = |operand: &Operand| matches!(operand, Operand::Constant(_));
         if !matches!(operation, Operation::Input(_)) && operation.operands().iter().all(constant) {
             return Operand::Constant(operation.of(|operand| value_of(&[], operand)));
@@ -275,7 +275,7 @@ impl Code {
     }
 
     /// Returns the value of an input, whose range may be known to be narrower than usual.
-    pub fn input(&self, input: Input, range: Range) -> Operand {
+    pub(crate) fn input(&self, input: Input, range: Range) -> Operand {
         let mut lines = self.lines.borrow_mut();
         Operand::Line(*self.known.borrow_mut().entry(Operation::Input(input)).or_insert_with(|| {
             lines.push(Line { operation: Operation::Input(input), range, rule: "", name: None });
@@ -381,7 +381,7 @@ impl Code {
     }
 
     /// Returns the result of a test if it is the same in every pixel.
-    pub fn decided(&self, Test(function, [a, b]): Test) -> Option<bool> {
+    pub(crate) fn decided(&self, Test(function, [a, b]): Test) -> Option<bool> {
         let ((a0, a1), (b0, b1)) = (self.range(a), self.range(b));
         let decided = |always: bool, never: bool| if always { Some(true) } else { never.then_some(false) };
         match function {

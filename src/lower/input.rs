@@ -41,11 +41,11 @@ pub enum Input {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Local {
     /// Name of the variable in the text.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Kind of its value.
-    pub kind: Kind,
+    pub(crate) kind: Kind,
     /// Range of its value.
-    pub range: Range,
+    pub(crate) range: Range,
 }
 
 /// A weight of a filter.
@@ -65,17 +65,17 @@ pub enum Weight {
 
 impl Weight {
     /// All weights, in the order of the variants.
-    pub const ALL: [Weight; 5] = [Weight::U, Weight::V, Weight::NextU, Weight::NextV, Weight::Level];
+    pub(crate) const ALL: [Weight; 5] = [Weight::U, Weight::V, Weight::NextU, Weight::NextV, Weight::Level];
 
     /// Returns the name of the weight in ports.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         ["u", "v", "next_u", "next_v", "level"][self as usize]
     }
 }
 
 impl Input {
     /// Returns the range of the input.
-    pub fn range(self) -> Range {
+    pub(crate) fn range(self) -> Range {
         match self {
             Input::Texture(..) => (-256, 255),
             Input::Texel(..) | Input::Destination => (0, 0xffff_ffff),
@@ -94,7 +94,7 @@ impl Input {
     }
 
     /// Returns whether it is a constant of the draw, not of the pixel.
-    pub fn is_constant(self) -> bool {
+    pub(crate) fn is_constant(self) -> bool {
         matches!(
             self,
             Input::StageConstant(..)

@@ -249,7 +249,7 @@ impl Function {
 
 impl Result {
     /// Returns all operands of the result.
-    pub fn operands(&self) -> Vec<Operand> {
+    pub(crate) fn operands(&self) -> Vec<Operand> {
         collected(|name| _ = self.renamed(name))
     }
 

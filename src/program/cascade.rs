@@ -10,7 +10,7 @@ use ninebit::state::*;
 
 /// Source of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub(crate) enum Source {
     /// The constant 0.
     Zero,
     /// A constant colour: bytes R, G, B, A.
@@ -29,7 +29,7 @@ pub enum Source {
 
 /// The channels of a source that an argument reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
+pub(crate) enum Channel {
     /// R, G, B in an equation of colour, A in one of alpha.
     Own,
     /// Blue, in an equation of alpha.
@@ -40,33 +40,33 @@ pub enum Channel {
 
 /// An argument of an equation: x, or 1 - x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Argument {
+pub(crate) struct Argument {
     /// Source of x.
-    pub source: Source,
+    pub(crate) source: Source,
     /// The channels of the source that are read.
-    pub channel: Channel,
+    pub(crate) channel: Channel,
     /// Whether the argument is 1 - x.
-    pub complement: bool,
+    pub(crate) complement: bool,
 }
 
 impl Argument {
     /// The argument 0.
-    pub const ZERO: Argument = Argument::new(Source::Zero);
+    pub(crate) const ZERO: Argument = Argument::new(Source::Zero);
     /// The argument 1, the complement of 0.
-    pub const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
+    pub(crate) const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
 
     /// Makes the argument that reads a source's own channels.
-    pub const fn new(source: Source) -> Argument {
+    pub(crate) const fn new(source: Source) -> Argument {
         Argument { source, channel: Channel::Own, complement: false }
     }
 
     /// Returns the argument that reads the source's alpha instead; a complement stays.
-    pub const fn alpha(self) -> Argument {
+    pub(crate) const fn alpha(self) -> Argument {
         Argument { channel: Channel::Alpha, ..self }
     }
 
     /// Returns the argument 1 - x.
-    pub const fn inverted(self) -> Argument {
+    pub(crate) const fn inverted(self) -> Argument {
         Argument { complement: !self.complement, ..self }
     }
 }
@@ -84,7 +84,7 @@ enum Use {
 
 /// An equation of a stage: A B + C D, or A B - C D, or the dot product of A and B. The result is biased, scaled and clamped to 0..1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Equation {
+pub(crate) struct Equation {
     ab: [Argument; 2],
     cd: Option<[Argument; 2]>,
     form: Form,
@@ -109,42 +109,42 @@ impl Equation {
     }
 
     /// Returns the equation a.
-    pub const fn copy(a: Argument) -> Equation {
+    pub(crate) const fn copy(a: Argument) -> Equation {
         Equation::product(a, Argument::ONE)
     }
 
     /// Returns the equation a b.
-    pub const fn product(a: Argument, b: Argument) -> Equation {
+    pub(crate) const fn product(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Sum)
     }
 
     /// Returns the equation a b + c d.
-    pub const fn products(ab: [Argument; 2], cd: [Argument; 2]) -> Equation {
+    pub(crate) const fn products(ab: [Argument; 2], cd: [Argument; 2]) -> Equation {
         Equation::from_products(ab, Some(cd), Form::Sum)
     }
 
     /// Returns the equation a + b.
-    pub const fn sum(a: Argument, b: Argument) -> Equation {
+    pub(crate) const fn sum(a: Argument, b: Argument) -> Equation {
         Equation::products([a, Argument::ONE], [b, Argument::ONE])
     }
 
     /// Returns the equation f a + (1 - f) b.
-    pub const fn lerp(f: Argument, a: Argument, b: Argument) -> Equation {
+    pub(crate) const fn lerp(f: Argument, a: Argument, b: Argument) -> Equation {
         Equation::products([a, f], [b, f.inverted()])
     }
 
     /// Returns the equation a - b.
-    pub const fn difference(a: Argument, b: Argument) -> Equation {
+    pub(crate) const fn difference(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, Argument::ONE], Some([b, Argument::ONE]), Form::Difference)
     }
 
     /// Returns the equation of the dot product: the sum over R, G, B of (2a - 1)(2b - 1).
-    pub const fn dot(a: Argument, b: Argument) -> Equation {
+    pub(crate) const fn dot(a: Argument, b: Argument) -> Equation {
         Equation::from_products([a, b], None, Form::Dot)
     }
 
     /// Returns the equation a + b - 1/2, times 1, 2 or 4.
-    pub fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
+    pub(crate) fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
         match scale {
             Scale::Four | Scale::Half => Equation {
                 scale,
@@ -155,12 +155,12 @@ impl Equation {
     }
 
     /// Returns the equation minus 1/2, which only scales 1 and 2 allow.
-    pub const fn biased(self) -> Equation {
+    pub(crate) const fn biased(self) -> Equation {
         Equation { bias: Bias::NegativeHalf, ..self }
     }
 
     /// Returns the equation times a scale.
-    pub const fn scaled(self, scale: Scale) -> Equation {
+    pub(crate) const fn scaled(self, scale: Scale) -> Equation {
         Equation { scale, ..self }
     }
 
@@ -172,7 +172,7 @@ impl Equation {
 
 /// The alpha result of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Alpha {
+pub(crate) enum Alpha {
     /// The result of its own equation.
     Equation(Equation),
     /// The dot product of the colour's equation.
@@ -181,7 +181,7 @@ pub enum Alpha {
 
 /// Destination of a stage's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Destination {
+pub(crate) enum Destination {
     /// The colour that the next stage reads as [`Source::Current`], in SPARE0.
     Current,
     /// The colour that the next stage reads as [`Source::Temporary`], in SPARE1.
@@ -190,11 +190,11 @@ pub enum Destination {
 
 /// What the final combiner does after the last stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct End {
+pub(crate) struct End {
     /// Whether the secondary colour is added, with the sum clamped to 1.0.
-    pub specular: bool,
+    pub(crate) specular: bool,
     /// Whether the result is blended with the fog colour by the fog factor.
-    pub fog: bool,
+    pub(crate) fog: bool,
 }
 
 /// A result and the register that holds it.
@@ -208,7 +208,7 @@ struct Value {
 
 /// General stages under construction.
 #[derive(Debug)]
-pub struct Cascade {
+pub(crate) struct Cascade {
     profile: Profile,
     /// Whether the colour of each texture unit can be negative.
     signed_textures: [bool; 4],
@@ -233,7 +233,7 @@ pub struct Lowered {
 
 impl Cascade {
     /// Makes a cascade without stages, in which the current colour is the primary colour.
-    pub fn new(profile: Profile, signed_textures: [bool; 4]) -> Cascade {
+    pub(crate) fn new(profile: Profile, signed_textures: [bool; 4]) -> Cascade {
         Cascade {
             profile,
             signed_textures,
@@ -248,7 +248,14 @@ impl Cascade {
     }
 
     /// Adds a stage. Findings about it have the place `span`; reports show its `origin`.
-    pub fn stage(&mut self, span: Span, rgb: &Equation, alpha: Alpha, destination: Destination, origin: StageOrigin) {
+    pub(crate) fn stage(
+        &mut self,
+        span: Span,
+        rgb: &Equation,
+        alpha: Alpha,
+        destination: Destination,
+        origin: StageOrigin,
+    ) {
         if self.profile == Profile::Nv2a {
             self.constants.clear();
         }
@@ -373,7 +380,12 @@ impl Cascade {
     }
 
     /// Returns the program, or all findings: `findings`, then those about the cascade. `what` is what messages call the program, such as "cascade".
-    pub fn finish(mut self, what: &str, end: End, mut findings: Vec<Diagnostic>) -> Result<Lowered, Vec<Diagnostic>> {
+    pub(crate) fn finish(
+        mut self,
+        what: &str,
+        end: End,
+        mut findings: Vec<Diagnostic>,
+    ) -> Result<Lowered, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // No stage affects the result.
             let nothing = Cascade::new(self.profile, self.signed_textures);

@@ -4,8 +4,8 @@
 //! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/programs.md`).
 //! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
-//!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
-//!   turns equations into general stages.
+//!   (`docs/programs.md`). Both write each of their stages as equations over arguments, which `cascade` turns into
+//!   general stages.
 //! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
 //! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/vertex-shader.md`).
 //! * [`legality`](ninebit::legality): what the chip allows (CMB-12), which is the same for every language. A language adds the places of a
@@ -15,7 +15,7 @@
 
 pub mod c_source;
 mod calls;
-pub mod cascade;
+pub(crate) mod cascade;
 pub mod combiner_calls;
 mod cursor;
 mod finding;

@@ -66,14 +66,14 @@ pub enum Contents {
 #[error("image `{}` {fault}", ninebit::shown::path(path))]
 pub struct ImageError {
     /// Path of the image file.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// What is wrong with it.
-    pub fault: ImageFault,
+    pub(crate) fault: ImageFault,
 }
 
 /// The fault of an image file.
 #[derive(Debug, Error)]
-pub enum ImageFault {
+pub(crate) enum ImageFault {
     /// There is no such file.
     #[error("does not exist")]
     Missing,
@@ -214,7 +214,7 @@ pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
 ///
 /// # Errors
 /// Those of [`open`], except for errors of reading.
-pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
+pub(crate) fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
     if bytes.starts_with(&dds::SIGNATURE) {
         return dds::decode(bytes, path, limits).map(Contents::Texture);
     }

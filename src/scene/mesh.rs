@@ -17,31 +17,36 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-pub use round::{cylinder, torus};
+pub(crate) use round::{cylinder, torus};
 pub use tangent::{Surface, mesh};
-pub use wavefront::read as wavefront;
+pub(crate) use wavefront::read as wavefront;
 
 /// Largest number of vertices of a generated mesh.
-pub const MAXIMUM_VERTICES: u32 = 1 << 20;
+pub(crate) const MAXIMUM_VERTICES: u32 = 1 << 20;
 
 /// Vertices and triangles. All lists of vertices have the same length; all vectors but positions are of unit length, to rounding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Positions x, y, z in object space.
-    pub positions: Vec<[f32; 3]>,
+    pub(crate) positions: Vec<[f32; 3]>,
     /// Normals, which point out of the surface.
-    pub normals: Vec<[f32; 3]>,
+    pub(crate) normals: Vec<[f32; 3]>,
     /// Tangents, which point along increasing s.
-    pub tangents: Vec<[f32; 3]>,
+    pub(crate) tangents: Vec<[f32; 3]>,
     /// Binormals, which point along decreasing t.
-    pub binormals: Vec<[f32; 3]>,
+    pub(crate) binormals: Vec<[f32; 3]>,
     /// Texture coordinates s and t.
-    pub texture_coordinates: Vec<[f32; 2]>,
+    pub(crate) texture_coordinates: Vec<[f32; 2]>,
     /// Three indices for each triangle. Draws share them.
-    pub indices: Arc<[u32]>,
+    pub(crate) indices: Arc<[u32]>,
 }
 
 impl Mesh {
+    /// Returns tangent, binormal and normal of a vertex.
+    pub fn basis(&self, vertex: usize) -> [[f32; 3]; 3] {
+        [self.tangents[vertex], self.binormals[vertex], self.normals[vertex]]
+    }
+
     /// Adds a vertex with its position, its tangent, binormal and normal, and its texture coordinates.
     fn push(&mut self, position: [f32; 3], [tangent, binormal, normal]: [[f32; 3]; 3], coordinates: [f32; 2]) {
         self.positions.push(position);
@@ -64,7 +69,7 @@ fn across(at: [u32; 2], cells: [u32; 2], repeat: [f32; 2]) -> [f32; 2] {
 
 /// The error that a mesh cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum MeshError {
+pub(crate) enum MeshError {
     /// The shape needs more divisions.
     #[error("a {shape} needs at least {minimum} {what}, not {given}")]
     TooCoarse {
@@ -93,7 +98,7 @@ pub enum MeshError {
 ///
 /// # Errors
 /// No columns or rows, or too many vertices.
-pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result<Mesh, MeshError> {
+pub(crate) fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result<Mesh, MeshError> {
     at_least("grid", "columns", 1, columns)?;
     at_least("grid", "rows", 1, rows)?;
     let mut mesh = with_room("grid", columns, rows)?;
@@ -117,7 +122,7 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
 ///
 /// # Errors
 /// Fewer than 3 slices or 2 stacks, or too many vertices.
-pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result<Mesh, MeshError> {
+pub(crate) fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result<Mesh, MeshError> {
     at_least("sphere", "slices", 3, slices)?;
     at_least("sphere", "stacks", 2, stacks)?;
     let mut mesh = with_room("sphere", slices, stacks)?;
@@ -156,7 +161,7 @@ pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result
 /// 1, and sin(-a) = -sin(a). In that eighth, Taylor polynomials of degree 15 and 14 in f64 are off by less than 3e-16.
 ///
 /// `denominator` must be from 1 to 2^28.
-pub fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
+pub(crate) fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
     debug_assert!(denominator > 0 && denominator <= 1 << 28);
     let (n, d) = (u64::from(numerator % denominator), u64::from(denominator));
     // The angle is `octant` eighths of a turn, plus `rest / d` of the next.

@@ -13,14 +13,14 @@ use thiserror::Error;
 #[error("`{name}` {fault}")]
 pub struct PathError {
     /// The name, shortened for messages.
-    pub name: String,
+    pub(crate) name: String,
     /// The fault of the name.
-    pub fault: PathFault,
+    pub(crate) fault: PathFault,
 }
 
 /// The fault of a name.
 #[derive(Debug, Error)]
-pub enum PathFault {
+pub(crate) enum PathFault {
     /// The name is not a plain relative path; the text says why.
     #[error("is not a plain relative path: {0}")]
     Form(&'static str),

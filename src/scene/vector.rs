@@ -5,17 +5,17 @@
 pub type Vector = [f64; 3];
 
 /// Converts a vector of f32 to f64.
-pub fn wide(v: [f32; 3]) -> Vector {
+pub(crate) fn wide(v: [f32; 3]) -> Vector {
     v.map(f64::from)
 }
 
 /// Returns a + b.
-pub fn plus(a: Vector, b: Vector) -> Vector {
+pub(crate) fn plus(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// Returns a - b.
-pub fn minus(a: Vector, b: Vector) -> Vector {
+pub(crate) fn minus(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -30,12 +30,12 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns v with every component multiplied by a factor.
-pub fn scaled(v: Vector, by: f64) -> Vector {
+pub(crate) fn scaled(v: Vector, by: f64) -> Vector {
     v.map(|c| c * by)
 }
 
 /// Returns the vector of unit length; `None` if it is so short that it is zero compared with `scale`.
-pub fn unit(v: Vector, scale: f64) -> Option<Vector> {
+pub(crate) fn unit(v: Vector, scale: f64) -> Option<Vector> {
     let length = dot(v, v).sqrt();
     (length > scale * 1e-12).then(|| v.map(|c| c / length))
 }

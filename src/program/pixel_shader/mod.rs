@@ -55,7 +55,7 @@ named! {
 
 impl Bank {
     /// Returns the number of registers of this kind.
-    pub fn count(self) -> u8 {
+    pub(crate) fn count(self) -> u8 {
         match self {
             Bank::Constant => CONSTANTS as u8,
             Bank::Temporary | Bank::Color => 2,
@@ -64,7 +64,7 @@ impl Bank {
     }
 
     /// Returns how many different registers of this kind an instruction can read.
-    pub fn ports(self, version: Version) -> usize {
+    pub(crate) fn ports(self, version: Version) -> usize {
         match (self, version) {
             (Bank::Constant | Bank::Temporary, _) => 2,
             (Bank::Texture | Bank::Color, Version::Ps10) => 1,
@@ -185,11 +185,11 @@ named! {
 
 /// The channels of a source's register that an instruction reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reads {
+pub(crate) struct Reads {
     /// Whether it reads channels of the colour.
-    pub color: bool,
+    pub(crate) color: bool,
     /// Whether it reads the alpha channel.
-    pub alpha: bool,
+    pub(crate) alpha: bool,
 }
 
 /// One arithmetic instruction.
@@ -213,7 +213,7 @@ pub struct Arithmetic {
 
 impl Arithmetic {
     /// Returns the channels of a source's register that the instruction reads.
-    pub fn reads(&self, source: &Source) -> Reads {
+    pub(crate) fn reads(&self, source: &Source) -> Reads {
         let mask = self.target.value.mask;
         // A dot product reads the colours, whatever channels it writes.
         let [color, alpha] = match self.operation {
@@ -264,22 +264,22 @@ named! {
 
 impl TextureOperation {
     /// Returns the number of registers behind its name.
-    pub fn operands(self) -> usize {
+    pub(crate) fn operands(self) -> usize {
         self.form().0
     }
 
     /// Returns whether it has a source register.
-    pub fn has_source(self) -> bool {
+    pub(crate) fn has_source(self) -> bool {
         self.operands() > 1
     }
 
     /// Returns whether it is a row of a matrix, whose source may have `_bx2`.
-    pub fn is_row(self) -> bool {
+    pub(crate) fn is_row(self) -> bool {
         self.name().starts_with("texm3x")
     }
 
     /// Returns whether its register holds a colour afterwards.
-    pub fn gives_color(self) -> bool {
+    pub(crate) fn gives_color(self) -> bool {
         self.form().1
     }
 }

@@ -14,7 +14,8 @@ use ninebit::state::{Named, Profile, named};
 
 pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
-pub use program::{decode, encode, word_of};
+use program::word_of;
+pub use program::{decode, encode};
 pub use text::{Written, read};
 
 named! {
@@ -66,7 +67,7 @@ impl Word {
     }
 
     /// Returns the word's name in text: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.
-    pub fn label(self, chip: Profile, index: usize) -> String {
+    pub(crate) fn label(self, chip: Profile, index: usize) -> String {
         let name = self.name().to_uppercase();
         if self.count(chip) > 1 { format!("{name}[{index}]") } else { name }
     }

@@ -67,7 +67,7 @@ impl StageArgument {
     }
 
     /// Returns the argument of a D3DTA value; `None` if there is no such value.
-    pub fn from_value(value: u32) -> Option<StageArgument> {
+    pub(crate) fn from_value(value: u32) -> Option<StageArgument> {
         use ninebit::state::Named;
         let source = ArgumentSource::ALL.get(value as usize & 15)?;
         (value < 64).then_some(StageArgument {

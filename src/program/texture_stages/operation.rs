@@ -63,7 +63,7 @@ named! {
 
 impl Operation {
     /// Returns the operation of a D3DTEXTUREOP value; `None` if there is none.
-    pub fn from_value(value: u32) -> Option<Operation> {
+    pub(crate) fn from_value(value: u32) -> Option<Operation> {
         Operation::ALL.get((value as usize).checked_sub(1)?).copied()
     }
 

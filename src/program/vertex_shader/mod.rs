@@ -31,9 +31,9 @@ pub struct Written {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InstructionPlaces {
     /// Place of the instruction's name.
-    pub opcode: Span,
+    pub(crate) opcode: Span,
     /// Place of the destination.
-    pub destination: Span,
+    pub(crate) destination: Span,
     /// Places of the sources, in order.
     pub sources: Vec<Span>,
 }

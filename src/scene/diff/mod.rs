@@ -66,9 +66,9 @@ impl Difference {
 #[error("pictures of {} x {} and {} x {} cannot be compared", first.0, first.1, second.0, second.1)]
 pub struct SizeError {
     /// Columns and rows of the first picture.
-    pub first: (u32, u32),
+    pub(crate) first: (u32, u32),
     /// Columns and rows of the second picture.
-    pub second: (u32, u32),
+    pub(crate) second: (u32, u32),
 }
 
 /// Compares two pictures of the same size.

@@ -48,7 +48,7 @@ pub fn normals(options: &Options) -> Rgba {
 }
 
 /// Returns the normals of the same map before they become bytes, row by row from the top.
-pub fn vectors(options: &Options) -> Vec<[f64; 3]> {
+pub(crate) fn vectors(options: &Options) -> Vec<[f64; 3]> {
     let size = options.size.clamp(*SIDES.start(), *SIDES.end());
     let noise = if options.noise > 0.0 { options.noise.min(MAXIMUM_NOISE) } else { 0.0 };
     let mut vectors = Vec::with_capacity((size * size) as usize);
@@ -73,7 +73,7 @@ fn outside(zero: bool) -> [f64; 3] {
 }
 
 /// Returns the normal, without noise, at any point of the image; s and t go from 0 to 1 across it.
-pub fn normal_at([s, t]: [f64; 2], zero_outside: bool) -> [f64; 3] {
+pub(crate) fn normal_at([s, t]: [f64; 2], zero_outside: bool) -> [f64; 3] {
     let (x, y) = (2.0 * s - 1.0, 1.0 - 2.0 * t);
     let square = x * x + y * y;
     if square < 1.0 { [x, y, (1.0 - square).sqrt()] } else { outside(zero_outside) }

@@ -70,7 +70,7 @@ fn byte([red, _, _, alpha]: [u8; 4], channel: HeightChannel) -> u8 {
 /// Returns the unit normals of a height field's texels before they become bytes, row by row from the top.
 ///
 /// `options.scale` must be finite; its magnitude is limited to 2^20.
-pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
+pub(crate) fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
     let (columns, rows) = (height.width as usize, height.height as usize);
     let at = |x: usize, y: usize| byte(height.pixels[y * columns + x], options.channel);
     let scale = if options.scale.is_finite() { options.scale.clamp(-1_048_576.0, 1_048_576.0) } else { 0.0 };
@@ -124,7 +124,7 @@ pub fn encode(vector: [f64; 3]) -> [u8; 3] {
 }
 
 /// Returns the vector that bytes stand for: the inverse of [`encode`].
-pub fn decode(bytes: [u8; 3]) -> [f64; 3] {
+pub(crate) fn decode(bytes: [u8; 3]) -> [f64; 3] {
     bytes.map(|byte| (f64::from(byte) - 128.0) / 127.0)
 }
 

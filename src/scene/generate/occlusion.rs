@@ -15,7 +15,7 @@ const RAYS: u32 = 16;
 const MAX_RAY: u32 = 24;
 
 /// Returns the share of the sky that each texel sees, 0 to 1, row by row from the top. `options` says how heights are read, as for a normal map.
-pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
+pub(crate) fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
     let scale = options.scale / 255.0;
     let directions: Vec<[f64; 2]> = (0..RAYS).map(|ray| circle(ray, RAYS)).collect();
     let mut open = Vec::with_capacity(height.pixels.len());

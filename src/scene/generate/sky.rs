@@ -32,7 +32,7 @@ pub struct HemisphereLight {
 
 impl HemisphereLight {
     /// Returns R, G and B of the light that falls on a surface with this unit normal.
-    pub fn at(&self, normal: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn at(&self, normal: [f64; 3]) -> [f64; 3] {
         let sky = self.share(normal);
         [0, 1, 2].map(|n| sky * self.sky[n] + (1.0 - sky) * self.ground[n])
     }

@@ -156,8 +156,7 @@ pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
         if !tangent_space {
             return extend(vector);
         }
-        let axes = [mesh.tangents[index], mesh.binormals[index], mesh.normals[index]];
-        extend(axes.map(|axis| dot(vector, axis)))
+        extend(mesh.basis(index).map(|axis| dot(vector, axis)))
     };
     match source {
         Source::Color(_) => [0.0, 0.0, 0.0, 1.0],

@@ -57,7 +57,7 @@ pub struct DrawSpans {
     /// Places of its vertices.
     pub vertices: VertexSpans,
     /// Places of its texture units; empty for units that are not bound.
-    pub units: [Span; ninebit::state::TEXTURE_UNITS],
+    pub(crate) units: [Span; ninebit::state::TEXTURE_UNITS],
 }
 
 /// Places of vertices.

@@ -10,7 +10,7 @@ use super::{Mesh, MeshError, across, at_least, cells, circle, narrow, with_room}
 ///
 /// # Errors
 /// Fewer than 3 slices or sides, or too many vertices.
-pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) -> Result<Mesh, MeshError> {
+pub(crate) fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) -> Result<Mesh, MeshError> {
     at_least("torus", "slices", 3, slices)?;
     at_least("torus", "sides", 3, sides)?;
     let mut mesh = with_room("torus", slices, sides)?;
@@ -38,7 +38,7 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
 ///
 /// # Errors
 /// Fewer than 3 slices or 1 stack, or too many vertices.
-pub fn cylinder(
+pub(crate) fn cylinder(
     slices: u32,
     stacks: u32,
     radius: f32,

@@ -25,7 +25,7 @@ type Found<T> = Result<T, Box<Diagnostic>>;
 /// # Errors
 /// The first line that is not understood; numbers that are not finite; indices without an element; more than `vertices` vertices or
 /// `indices` indices.
-pub fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<Diagnostic>> {
+pub(crate) fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<Diagnostic>> {
     let file = File { text };
     let data = file.count(indices).and_then(|()| file.parse()).map_err(|finding| vec![*finding])?;
     let mut findings = file.not_finite(&data);

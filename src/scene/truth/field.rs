@@ -4,18 +4,18 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<const N: usize> {
     /// Number of columns.
-    pub width: u32,
+    pub(crate) width: u32,
     /// Number of rows.
-    pub height: u32,
+    pub(crate) height: u32,
     /// `width * height` texels, row by row from the top.
-    pub texels: Vec<[f64; N]>,
+    pub(crate) texels: Vec<[f64; N]>,
     /// Whether the picture repeats; otherwise its edges extend outward.
-    pub wrap: bool,
+    pub(crate) wrap: bool,
 }
 
 impl<const N: usize> Field<N> {
     /// Interpolates bilinearly at s, t, which go from 0 to 1 across the picture. A texel's own value is at its centre.
-    pub fn at(&self, [s, t]: [f64; 2]) -> [f64; N] {
+    pub(crate) fn at(&self, [s, t]: [f64; 2]) -> [f64; N] {
         let (x, y) = (s * f64::from(self.width) - 0.5, t * f64::from(self.height) - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right_weight, bottom_weight) = (x - left, y - top);

@@ -23,7 +23,7 @@ pub struct Pixel {
     /// Unit normal in object space that the light was computed with.
     pub normal: [f64; 3],
     /// Unit tangent, binormal and normal of the mesh, in object space.
-    pub basis: [[f64; 3]; 3],
+    pub(crate) basis: [[f64; 3]; 3],
 }
 
 impl Pixel {
