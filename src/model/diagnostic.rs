@@ -5,28 +5,28 @@ use std::sync::Arc;
 
 use crate::state::Profile;
 
-/// How bad it is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// The scene is not accepted.
+    /// The scene is refused.
     Error,
-    /// The scene is accepted; something in it is probably not meant.
+    /// The scene is accepted, but something in it is probably not intended.
     Warning,
 }
 
-/// What a caller does about a refused scene: each kind has its exit code.
+/// Kind of an error, which decides the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The scene, or a file that it names, makes no sense.
+    /// The scene, or a file that it names, is not valid.
     Invalid = 3,
     /// The scene, or a file that it names, does not exist.
     Missing = 4,
-    /// Sound as far as looked at, but more than is allowed.
+    /// The scene is valid as far as it was checked, but exceeds a limit.
     Limit = 5,
 }
 
 impl ErrorKind {
-    /// Exit code of the command line.
+    /// Returns the exit code of the command line.
     pub fn exit_code(self) -> u8 {
         self as u8
     }
@@ -35,39 +35,39 @@ impl ErrorKind {
 /// An error or a warning about an input, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Stable code, for example "NB0201"; `docs/errors.md` lists them.
+    /// Stable code, such as "NB0201". `docs/errors.md` lists them.
     pub code: &'static str,
-    /// Error or warning.
+    /// Whether it is an error or a warning.
     pub severity: Severity,
     /// What is wrong, in one line.
     pub message: String,
-    /// Bytes of [`Source::text`] that are to blame; `None` if no text is.
+    /// The bytes of [`Source::text`] that are marked. `None` if no text is to blame.
     pub span: Option<Span>,
-    /// Said under the marked text.
+    /// Text shown under the marked bytes.
     pub label: String,
     /// Other places that matter, and why.
     pub related: Vec<(Span, String)>,
-    /// The rule of `docs/numerics.md` behind it.
+    /// The rule of `docs/numerics.md` that is violated.
     pub rule: Option<&'static str>,
-    /// What helps to understand it, a line each.
+    /// Explanations, one line each.
     pub notes: Vec<String>,
-    /// What to do.
+    /// Advice on what to do.
     pub help: Option<String>,
-    /// The other text that the places point into; `None`: the one that was given.
+    /// The file that the places refer to, if it is not the input itself.
     pub file: Option<Arc<File>>,
 }
 
-/// A text that a scene names: a program in a file of its own.
+/// A text in its own file that a scene names, such as a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
     /// The text and its name.
     pub source: Source,
-    /// Where the scene names it.
+    /// The place where the scene names the file.
     pub named: Span,
 }
 
 impl Diagnostic {
-    /// An error about `span`.
+    /// Creates an error about `span`.
     pub fn error(code: &'static str, span: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Diagnostic {
             code,
@@ -83,48 +83,48 @@ impl Diagnostic {
         }
     }
 
-    /// A warning about `span`.
+    /// Creates a warning about `span`.
     pub fn warning(code: &'static str, span: Span, message: impl Into<String>) -> Self {
         Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message) }
     }
 
-    /// Says something under the marked text.
+    /// Sets the text under the marked bytes.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
-    /// Says what to do.
+    /// Sets the advice on what to do.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Names the rule of `docs/numerics.md` behind it.
+    /// Sets the rule of `docs/numerics.md` that is violated.
     pub fn rule(mut self, rule: &'static str) -> Self {
         self.rule = Some(rule);
         self
     }
 
-    /// Adds a line that helps to understand the finding.
+    /// Adds a line of explanation.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    /// Marks another place that matters, and says why.
+    /// Adds another place that matters, and says why.
     pub fn related(mut self, span: Span, label: impl Into<String>) -> Self {
         self.related.push((span, label.into()));
         self
     }
 
-    /// The same about places of another text.
+    /// Makes the places refer to another file.
     pub fn inside(mut self, file: &Arc<File>) -> Self {
         self.file = Some(Arc::clone(file));
         self
     }
 
-    /// Where it is mentioned in the text that was given: findings are sorted by this.
+    /// Returns the sort key of a finding: where it is mentioned in the input, then the place in the named file.
     pub fn order(&self) -> (usize, usize) {
         let start = self.span.as_ref().map_or(0, |span| span.start);
         match &self.file {
@@ -133,7 +133,7 @@ impl Diagnostic {
         }
     }
 
-    /// What a caller does about it.
+    /// Returns the kind of the error, by its code.
     pub fn kind(&self) -> ErrorKind {
         match self.code {
             "NB0111" | "NB0502" | "NB0510" | "NB0530" | "NB0536" => ErrorKind::Missing,
@@ -144,7 +144,7 @@ impl Diagnostic {
     }
 }
 
-/// The finding that something needs the larger chip.
+/// Returns the finding that `what` requires nv2a.
 pub fn only_nv2a(code: &'static str, place: impl Into<Option<Span>>, what: &str, rule: &'static str) -> Diagnostic {
     Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
         .label("not on this chip")
@@ -152,7 +152,7 @@ pub fn only_nv2a(code: &'static str, place: impl Into<Option<Span>>, what: &str,
         .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
 }
 
-/// [`only_nv2a`], where something needs the larger chip and `profile` is the smaller one.
+/// Returns [`only_nv2a`] if `needs` is set and the profile is nv10.
 pub fn needs_nv2a(
     profile: Profile,
     needs: bool,
@@ -164,17 +164,17 @@ pub fn needs_nv2a(
     (needs && profile == Profile::Nv10).then(|| only_nv2a(code, place, what, rule))
 }
 
-/// A text and its name in messages.
+/// A text and its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Shown before line and column.
+    /// Name that is shown before line and column.
     pub name: String,
-    /// The text, without a byte order mark.
+    /// The text without a byte order mark.
     pub text: String,
 }
 
 impl Source {
-    /// Line and column of a byte offset, both from 1; columns count characters.
+    /// Returns line and column of a byte offset, both counted from 1. Columns count characters.
     pub fn position(&self, offset: usize) -> (usize, usize) {
         let offset = floor_boundary(&self.text, offset);
         let before = &self.text[..offset];
@@ -183,7 +183,7 @@ impl Source {
     }
 }
 
-/// The largest character boundary at or below `offset`.
+/// Returns the largest character boundary that is not above `offset`.
 pub fn floor_boundary(text: &str, offset: usize) -> usize {
     let mut offset = offset.min(text.len());
     while !text.is_char_boundary(offset) {
@@ -192,7 +192,7 @@ pub fn floor_boundary(text: &str, offset: usize) -> usize {
     offset
 }
 
-/// At most forty characters of one line.
+/// Shortens a text to at most forty characters of its first line.
 pub fn shorten(text: &str) -> String {
     let line = text.lines().next().unwrap_or("");
     if line.chars().count() <= 40 { line.to_owned() } else { line.chars().take(37).chain("...".chars()).collect() }

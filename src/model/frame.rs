@@ -1,52 +1,54 @@
-//! What a render leaves behind: surfaces of stored words.
+//! The result of a render: surfaces of stored words.
 
 use crate::rop::surface::show;
 use crate::state::{SurfaceFormat, depth_of, stencil_of};
 
-/// A render target's memory after (or during) a render.
+/// The memory of a render target after a render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surface {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
     /// Format of the words.
     pub format: SurfaceFormat,
-    /// `width * height` stored pixels, row by row from the top; unused high bits zero.
+    /// `width * height` stored pixels, row by row from the top. Unused high bits are zero.
     pub words: Vec<u32>,
-    /// Stored depths in the same order, each with the stencil above it ([`depth_stencil`](crate::state::depth_stencil)); empty without a depth buffer.
+    /// Stored depths in the same order, each with the stencil above it
+    /// ([`depth_stencil`](crate::state::depth_stencil)). Empty without a depth buffer.
     pub depth: Vec<u32>,
 }
 
 impl Surface {
-    /// The stored depths, without stencils.
+    /// Returns the stored depths without stencils.
     pub fn depths(&self) -> impl Iterator<Item = u32> {
         self.depth.iter().copied().map(depth_of)
     }
 
-    /// The stored stencils.
+    /// Returns the stored stencils.
     pub fn stencils(&self) -> impl Iterator<Item = u8> {
         self.depth.iter().copied().map(stencil_of)
     }
 
-    /// The words of depth and stencil as the chip has them: the stencil in the low byte. Of Z24S8.
+    /// Returns the words of depth and stencil as the chip stores them for Z24S8, with the stencil in the low byte.
     pub fn chip_depth_words(&self) -> impl Iterator<Item = u32> {
         self.depth.iter().map(|word| word.rotate_left(8))
     }
 
-    /// The surface as R, G, B, A, row by row from the top: the stored bits read by rule TEX-1 as
-    /// [`texture_format`](crate::state::SurfaceFormat::texture_format) says.
+    /// Returns the surface as R, G, B, A, row by row from the top. The stored bits are read by rule TEX-1 in the format
+    /// [`texture_format`](crate::state::SurfaceFormat::texture_format).
     ///
-    /// Bits that the format does not store come out as TEX-1 says: alpha 255 where there is none, blue in red for B8 and G8B8.
+    /// Channels that the format does not store follow TEX-1: alpha is 255 if there is none, and red equals blue for B8
+    /// and G8B8.
     pub fn rgba8(&self) -> Vec<[u8; 4]> {
         self.words.iter().map(|word| show(self.format, *word)).collect()
     }
 }
 
-/// Every surface of a scene, in the order of [`Scene::targets`](crate::state::Scene::targets).
+/// The surfaces of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// A surface for each target, in the plan's order.
+    /// One surface for each of [`Scene::targets`](crate::state::Scene::targets), in the same order.
     pub surfaces: Vec<Surface>,
 }
 

@@ -1,6 +1,7 @@
-//! What the chip allows of a program (CMB-12 and its neighbours), decided on the state alone.
+//! What the chip allows in a program (CMB-12 and related rules), checked on the state alone.
 //!
-//! Every language of programs ends here. Its front end keeps the places of what it read and names the registers in its own words.
+//! Every language of programs is checked here. Its front end records the places of what it read, and names registers in
+//! its own terms.
 
 pub mod surface;
 pub mod texture;
@@ -10,68 +11,69 @@ use crate::diagnostic::{Diagnostic, only_nv2a};
 use crate::place::Span;
 use crate::state::*;
 
-/// What a language calls things.
+/// The terms of a language.
 pub trait Notation {
-    /// What the language calls a register of the final combiner.
+    /// Returns the language's name of a register of the final combiner.
     fn register(&self, register: FinalRegister) -> &'static str {
         register.name()
     }
 
-    /// An output scale.
+    /// Returns the language's name of an output scale.
     fn scale(&self, scale: Scale) -> &'static str {
         scale.name()
     }
 
-    /// What to do about a finding.
+    /// Returns the advice on a finding, in the language's terms.
     fn help(&self, help: Help) -> &'static str {
         help.text()
     }
 }
 
 named! {
-    /// Advice that each language words for itself.
+    /// Advice that each language expresses in its own terms.
     pub enum Help =>
-    /// In the words of the state.
+    /// Returns the advice in the terms of the state.
     text: &'static str {
-        /// There is no stage: how to write one that does nothing.
+        /// The program has no stage: how to write one that does nothing.
         EmptyStage => "one whose portions are `Portion::idle` changes nothing",
-        /// Constants of single stages on nv10: how to write those of the whole program.
+        /// Stages have different constants on nv10: how to write those of the whole program.
         SharedConstants => "give all stages and the final combiner the same constants; the profile Nv2a allows own ones",
-        /// Two results for one register.
+        /// Two results are sent to one register.
         OtherRegister => "send one of them to another register, or to Zero, which discards it",
-        /// A bias with a scale of 4 or 1/2.
+        /// A bias is combined with a scale of 4 or 1/2.
         BiasScale => "with this bias the scale is One or Two",
-        /// The fog factor in an RGB portion.
+        /// An RGB portion reads the fog factor.
         FogColor => "read Rgb here",
-        /// The fog factor in an alpha portion.
+        /// An alpha portion reads the fog factor.
         FogBlue => "read Blue here, the fog colour's",
-        /// The secondary colour's alpha on nv10.
+        /// The secondary colour's alpha is read on nv10.
         SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
-        /// Blue in an RGB portion.
+        /// An RGB portion reads blue.
         RgbComponents => "take Rgb or Alpha",
-        /// RGB in an alpha portion.
+        /// An alpha portion reads RGB.
         AlphaComponents => "take Alpha or Blue",
-        /// Blue in A to F.
+        /// An input A to F reads blue.
         FinalComponents => "inputs A to F read Rgb or Alpha",
-        /// RGB in G.
+        /// Input G reads RGB.
         FinalAlphaComponents => "G reads Alpha or Blue",
-        /// A destination that is read only.
+        /// The destination is read-only.
         Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
-        /// A register of the final combiner where it cannot be read.
+        /// A register of the final combiner is read where it cannot be.
         OtherInput => "read Spare0 or another register",
     }
 }
 
-/// What was found, besides errors, about a program.
+/// The result of checking a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
     /// Errors and warnings, in no particular order.
     pub findings: Vec<Diagnostic>,
-    /// The first place that reads what each texture unit gives; `None`: nothing does, or the place is not written.
+    /// The first place that reads the result of each texture unit. `None` if nothing reads it, or if the place is not
+    /// in the text.
     pub reads: [Option<Span>; 4],
 }
 
-/// Refuses more general stages than the chip has; `place` tells where stage n stands.
+/// Checks the number of general stages. `place` returns where a stage is written.
 pub fn stage_count(count: usize, profile: Profile, place: impl Fn(usize) -> Option<Span>) -> Option<Diagnostic> {
     let most = profile.general_stages();
     if count <= most {
@@ -87,14 +89,14 @@ pub fn stage_count(count: usize, profile: Profile, place: impl Fn(usize) -> Opti
     })
 }
 
-/// Checks a program. With too many stages nothing else is looked at.
+/// Checks a program. If it has too many stages, nothing else is checked.
 pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation: &dyn Notation) -> Checked {
     let mut check = Check {
         profile,
         places,
         notation,
         checked: Checked::default(),
-        // SPARE0.a starts as texture 0's alpha.
+        // SPARE0.a starts as the alpha of texture 0.
         spares: [false, true, false, false],
         textures: [[false; 2]; 4],
     };
@@ -107,7 +109,8 @@ pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation:
     check.checked
 }
 
-/// The finding that a general stage reads a register of the final combiner. The state cannot express it, so front ends do.
+/// Returns the finding that a general stage reads a register of the final combiner. Front ends call it, because the
+/// state cannot express this.
 pub fn only_final(place: Span, name: &str, help: &str) -> Diagnostic {
     Diagnostic::error("NB0313", place, format!("{name} exists only in the final combiner"))
         .label("not in a general stage")
@@ -115,7 +118,8 @@ pub fn only_final(place: Span, name: &str, help: &str) -> Diagnostic {
         .help(help)
 }
 
-/// The finding that an input of the final combiner is mapped otherwise than by inversion. The state cannot express it, so front ends do.
+/// Returns the finding that an input of the final combiner has a mapping other than identity or inversion, or `None` if
+/// it has not. Front ends call it, because the state cannot express this.
 pub fn final_mapping(place: impl Into<Option<Span>>, mapping: InputMapping) -> Option<Diagnostic> {
     let has = matches!(mapping, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert);
     let message = format!("the final combiner has no mapping {}", mapping.name());
@@ -124,15 +128,15 @@ pub fn final_mapping(place: impl Into<Option<Span>>, mapping: InputMapping) -> O
     (!has).then(|| finding.help(help))
 }
 
-/// The walk over a program, in the order of execution.
+/// Checks a program in the order of execution.
 struct Check<'p> {
     profile: Profile,
     places: &'p Places,
     notation: &'p dyn Notation,
     checked: Checked,
-    /// SPARE0.rgb, SPARE0.a, SPARE1.rgb, SPARE1.a hold something defined.
+    /// Whether SPARE0.rgb, SPARE0.a, SPARE1.rgb and SPARE1.a are defined.
     spares: [bool; 4],
-    /// A stage has written TEXTURE0 to TEXTURE3: RGB, alpha.
+    /// Whether a stage has written RGB and alpha of TEXTURE0 to TEXTURE3.
     textures: [[bool; 2]; 4],
 }
 
@@ -157,13 +161,14 @@ impl Check<'_> {
             .help(self.notation.help(Help::EmptyStage));
             self.push(finding);
         }
-        // A text that gives constants of their own to some says so there; what then differs elsewhere is no finding of its own.
+        // A text with separate constants is reported where it writes them, so that differences elsewhere are not
+        // reported again.
         let owners = (0..combiners.stages.len()).map(Place::StageConstants).chain([Place::FinalConstants]);
         let written = owners.map(|owner| self.places.get(owner)).any(|place| place.is_some());
         for (index, stage) in combiners.stages.iter().enumerate() {
             let differ = !written && stage.constants != combiners.final_combiner.constants;
             self.own_constants(Place::StageConstants(index), differ, "general stages");
-            // Both portions read what the stages before have written.
+            // Both portions read what earlier stages have written.
             self.portion(index, &stage.rgb, false);
             self.portion(index, &stage.alpha, true);
             self.blue_to_alpha(index, stage);
@@ -171,7 +176,7 @@ impl Check<'_> {
         }
     }
 
-    /// Constants of one stage or of the final combiner: not on nv10.
+    /// Checks separate constants of one stage or of the final combiner, which nv10 does not have.
     fn own_constants(&mut self, place: Place, differ: bool, owner: &str) {
         let span = self.places.get(place);
         if self.profile == Profile::Nv10 && (span.is_some() || differ) {
@@ -266,7 +271,7 @@ impl Check<'_> {
         }
     }
 
-    /// No two results of a portion go to the same register.
+    /// Checks that no two results of a portion go to the same register.
     fn distinct(&mut self, outputs: [Register; 3], at: impl Fn(Part) -> Place) {
         for second in 1..3 {
             let register = outputs[second];
@@ -287,7 +292,7 @@ impl Check<'_> {
         }
     }
 
-    /// Legality of blue-to-alpha within a stage.
+    /// Checks blue-to-alpha within a stage.
     fn blue_to_alpha(&mut self, index: usize, stage: &GeneralStage) {
         let (rgb, alpha) = (&stage.rgb, &stage.alpha);
         for (n, on, output) in [(0, rgb.ab_blue_to_alpha, rgb.ab_output), (1, rgb.cd_blue_to_alpha, rgb.cd_output)] {
@@ -348,7 +353,7 @@ impl Check<'_> {
         self.push(Diagnostic::error("NB0311", place, message).label("not here").rule("CMB-12").help(help));
     }
 
-    /// NV10 has two texture registers.
+    /// Checks that the chip has the register: NV10 has two texture registers.
     fn on_chip(&mut self, register: FinalRegister, place: Option<Span>) {
         if matches!(register, FinalRegister::Texture2 | FinalRegister::Texture3) && self.profile == Profile::Nv10 {
             let what = format!("register {}", self.name(register));
@@ -367,7 +372,7 @@ impl Check<'_> {
         }
     }
 
-    /// Notes a read, and warns if nothing defines what it gives. What is not written is not meant to be read.
+    /// Records a read, and warns if nothing defines the value. Inputs that are not in the text are ignored.
     fn read(&mut self, register: FinalRegister, alpha: bool, place: Option<Span>) {
         let Some(place) = place else { return };
         if let Some(unit) = texture(register) {
@@ -384,7 +389,7 @@ impl Check<'_> {
         if self.spares[index] {
             return;
         }
-        // Once is enough for each.
+        // One warning for each is enough.
         self.spares[index] = true;
         let name = self.name([FinalRegister::Spare0, FinalRegister::Spare1][index / 2]);
         let what = ["RGB", "alpha"][index % 2];
@@ -396,7 +401,7 @@ impl Check<'_> {
         );
     }
 
-    /// Notes what a stage writes.
+    /// Records what a stage writes.
     fn write(&mut self, stage: &GeneralStage) {
         let mut note = |register: Register, alpha: bool| match register {
             Register::Spare0 => self.spares[usize::from(alpha)] = true,
@@ -422,7 +427,7 @@ impl Check<'_> {
     }
 }
 
-/// The texture unit of a register.
+/// Returns the texture unit of a register, if it has one.
 fn texture(register: FinalRegister) -> Option<usize> {
     match register {
         FinalRegister::Texture0 => Some(0),

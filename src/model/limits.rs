@@ -1,18 +1,18 @@
-//! How much a scene or a file may ask for.
+//! Limits of what a scene or a file may ask for.
 //!
-//! Scenes come from anywhere. Every size that a scene chooses is compared with one of these before memory or time is spent. Files of other kinds have the
-//! limits of [`FILES`].
+//! Scenes are untrusted. Every size that a scene chooses is compared with one of these limits before memory or time is
+//! spent. [`FILES`] holds the limits of other files.
 
 use std::fmt;
 
-/// The most bytes that a file may have, under the name by which `ninebit limits` lists it.
+/// The largest size of a kind of file, under the name by which `ninebit limits` lists it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileLimit {
-    /// Its name in the list.
+    /// Name of the limit.
     pub name: &'static str,
-    /// The most bytes that are read.
+    /// Largest size in bytes.
     pub bytes: u64,
-    /// What is counted.
+    /// What the limit counts.
     pub counted: &'static str,
 }
 
@@ -30,7 +30,7 @@ const fn limit(name: &'static str, bytes: u64, counted: &'static str) -> FileLim
 pub const EXPECTATION: FileLimit = limit("expectation_bytes", 64 << 10, "bytes of an expectation");
 /// The limit of a table of `ninebit op`.
 pub const OPERATION_TABLE: FileLimit = limit("operation_table_bytes", 64 << 20, "bytes of a table of `ninebit op`");
-/// The limit of the manifest of a pack.
+/// The limit of a pack's manifest.
 pub const MANIFEST: FileLimit = limit("manifest_bytes", 4 << 20, "bytes of the manifest of a pack");
 /// The limit of a table of vectors or of results.
 pub const VECTOR_TABLE: FileLimit = limit("vector_table_bytes", 2 << 30, "bytes of a table of vectors or results");
@@ -44,43 +44,43 @@ pub const DEVICE: FileLimit = limit("device_bytes", 1 << 20, "bytes of the devic
 pub const EVALUATORS: FileLimit = limit("evaluators_bytes", 1 << 20, "bytes of a file of evaluators");
 /// The limit of a list of waivers.
 pub const WAIVERS: FileLimit = limit("waivers_bytes", 1 << 20, "bytes of a list of waivers");
-/// The limit of a page that stands beside scenes.
+/// The limit of a page that a chart reads.
 pub const PAGE: FileLimit = limit("page_bytes", 4 << 20, "bytes of a page that a chart reads");
 
-/// Limits of files that are neither scenes nor named by one.
+/// Limits of files that are neither scenes nor named by a scene.
 pub const FILES: [FileLimit; 10] =
     [EXPECTATION, OPERATION_TABLE, MANIFEST, VECTOR_TABLE, LEAF, TREE, DEVICE, EVALUATORS, WAIVERS, PAGE];
 
-/// Upper bounds on everything that a scene chooses.
+/// Upper bounds of everything that a scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Bytes of the scene file.
+    /// Size of the scene file in bytes.
     pub scene_bytes: u64,
-    /// Levels of brackets inside each other.
+    /// Depth of nested brackets.
     pub nesting: usize,
-    /// Render targets of a scene.
+    /// Number of render targets.
     pub targets: usize,
-    /// Columns and rows of a render target, each.
+    /// Longest side of a render target in pixels.
     pub target_side: u32,
-    /// Bytes of all colour and depth surfaces together, at four bytes a pixel each.
+    /// Size of all colour and depth surfaces together in bytes, at four bytes for each pixel.
     pub surface_bytes: u64,
-    /// Textures of a scene.
+    /// Number of textures.
     pub textures: usize,
-    /// Columns and rows of a texture, each; a profile may allow less.
+    /// Longest side of a texture in texels. A profile may allow less.
     pub texture_side: u32,
-    /// Bytes of all textures together, decoded, at four bytes a texel.
+    /// Size of all decoded textures together in bytes, at four bytes for each texel.
     pub texture_bytes: u64,
-    /// Bytes of one image file.
+    /// Size of an image file in bytes.
     pub image_file_bytes: u64,
-    /// Bytes of the text of one program.
+    /// Size of the text of a program in bytes.
     pub program_bytes: u64,
-    /// Bytes of one mesh file.
+    /// Size of a mesh file in bytes.
     pub mesh_file_bytes: u64,
-    /// Draws of a scene.
+    /// Number of draws.
     pub draws: usize,
-    /// Vertices of all draws together.
+    /// Number of vertices of all draws together.
     pub vertices: usize,
-    /// Indices of all draws together.
+    /// Number of indices of all draws together.
     pub indices: usize,
 }
 
@@ -106,28 +106,28 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// [`scene_bytes`](Self::scene_bytes) as the limit of a file.
+    /// Returns [`scene_bytes`](Self::scene_bytes) as the limit of a file.
     pub fn scene_file(&self) -> FileLimit {
         limit("scene_bytes", self.scene_bytes, "bytes of the scene file")
     }
 
-    /// [`image_file_bytes`](Self::image_file_bytes) as the limit of a file.
+    /// Returns [`image_file_bytes`](Self::image_file_bytes) as the limit of a file.
     pub fn image_file(&self) -> FileLimit {
         limit("image_file_bytes", self.image_file_bytes, "bytes of one image file")
     }
 
-    /// [`program_bytes`](Self::program_bytes) as the limit of a file.
+    /// Returns [`program_bytes`](Self::program_bytes) as the limit of a file.
     pub fn program_file(&self) -> FileLimit {
         limit("program_bytes", self.program_bytes, "bytes of the text of one program")
     }
 
-    /// [`mesh_file_bytes`](Self::mesh_file_bytes) as the limit of a file.
+    /// Returns [`mesh_file_bytes`](Self::mesh_file_bytes) as the limit of a file.
     pub fn mesh_file(&self) -> FileLimit {
         limit("mesh_file_bytes", self.mesh_file_bytes, "bytes of one mesh file")
     }
 }
 
-/// Every limit: its name, its value, and what is counted.
+/// Returns every limit: its name, its value, and what it counts.
 pub fn table(limits: &Limits) -> Vec<(&'static str, u64, &'static str)> {
     let file = |limit: FileLimit| (limit.name, limit.bytes, limit.counted);
     let mut table = vec![

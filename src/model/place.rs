@@ -1,6 +1,6 @@
-//! Parts of a program, and where they stand in a text.
+//! Parts of a program, and where they are written in a text.
 
-/// A part of a text: its bytes from `start` to before `end`.
+/// A range of bytes in a text.
 pub type Span = std::ops::Range<usize>;
 
 /// A part of a program that a finding can point at.
@@ -8,39 +8,39 @@ pub type Span = std::ops::Range<usize>;
 pub enum Place {
     /// All general stages.
     Stages,
-    /// The beginning of a general stage.
+    /// The start of a general stage.
     Stage(usize),
-    /// Constants of its own that a general stage has.
+    /// Separate constants of a general stage.
     StageConstants(usize),
-    /// Constants of its own that the final combiner has.
+    /// Separate constants of the final combiner.
     FinalConstants,
-    /// Part of a portion of a general stage.
+    /// A part of a portion of a general stage.
     General {
         /// Index of the stage.
         stage: usize,
-        /// The alpha portion.
+        /// Whether the portion is the alpha portion.
         alpha: bool,
-        /// Which part of the portion.
+        /// The part of the portion.
         part: Part,
     },
-    /// An input of the final combiner: 0 to 6 for A to G.
+    /// An input of the final combiner, 0 to 6 for A to G.
     FinalInput(usize),
-    /// The component of an input of the final combiner, if it is written.
+    /// The component of an input of the final combiner, 0 to 6 for A to G, if it is written.
     FinalComponent(usize),
 }
 
-/// A part of a portion. Products are 0 (AB) and 1 (CD).
+/// A part of a portion. Products are numbered 0 (AB) and 1 (CD).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// An input: 0 to 3 for A to D.
+    /// An input, 0 to 3 for A to D.
     Input(usize),
-    /// The component of an input, if it is written.
+    /// The component of an input, 0 to 3 for A to D, if it is written.
     Component(usize),
-    /// A destination: of AB, of CD, of the sum.
+    /// The destination of AB (0), CD (1) or the sum (2).
     Output(usize),
-    /// What makes a product a dot product.
+    /// The notation that makes a product a dot product.
     Dot(usize),
-    /// What sends the blue of a product to alpha.
+    /// The notation that sends the blue of a product to alpha.
     BlueToAlpha(usize),
     /// The output scale.
     Scale,
@@ -48,17 +48,17 @@ pub enum Part {
     Bias,
 }
 
-/// Where the parts of a program stand: bytes of its text. What is not written has no place.
+/// The places of a program's parts in its text. A part that is not written has no place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Places(Vec<(Place, Span)>);
 
 impl Places {
-    /// Notes a place.
+    /// Records the place of a part.
     pub fn set(&mut self, place: Place, span: Span) {
         self.0.push((place, span));
     }
 
-    /// Where a part stands; `None` if it is not written.
+    /// Returns the place of a part, or `None` if it is not written.
     pub fn get(&self, place: Place) -> Option<Span> {
         self.0.iter().find(|(known, _)| *known == place).map(|(_, span)| span.clone())
     }

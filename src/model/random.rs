@@ -1,10 +1,10 @@
-//! Numbers that look random and are the same on every machine: SplitMix64. Rows of vectors, noise of generated images and tests draw from
-//! it; there is no other generator.
+//! Pseudorandom numbers that are the same on every machine: SplitMix64. Rows of vectors, the noise of generated images
+//! and tests use it, and no other generator.
 
-/// 2^64 over the golden ratio: the step of SplitMix64.
+/// 2^64 divided by the golden ratio, the increment of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// 64 bits that depend on all of `z`: a step of SplitMix64.
+/// Mixes the bits of `z`: a step of SplitMix64, in which every bit depends on all of `z`.
 pub fn mix(mut z: u64) -> u64 {
     z = z.wrapping_add(GOLDEN);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -12,19 +12,19 @@ pub fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A seeded sequence.
+/// A sequence of pseudorandom numbers.
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// The sequence of a seed.
+    /// Creates the sequence of a seed.
     pub fn seeded(seed: u64) -> Random {
         Random { state: seed }
     }
 
-    /// The sequence of a seed and a name.
+    /// Creates the sequence of a seed and a name.
     pub fn new(seed: u64, name: &str) -> Random {
         let mut random = Random::seeded(seed);
         for byte in name.bytes() {
@@ -34,25 +34,25 @@ impl Random {
         random
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         let value = mix(self.state);
         self.state = self.state.wrapping_add(GOLDEN);
         value
     }
 
-    /// A number below `end`, which is not 0.
+    /// Returns a number below `end`, which must not be 0.
     pub fn below(&mut self, end: u128) -> u128 {
         let wide = u128::from(self.bits()) << 64 | u128::from(self.bits());
         wide % end.max(1)
     }
 
-    /// One of a list; `None` of an empty one.
+    /// Returns an element of a list, or `None` if the list is empty.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> Option<T> {
         values.get(self.below(values.len() as u128) as usize).copied()
     }
 
-    /// True once in so many times.
+    /// Returns `true` once in `times` calls on average.
     pub fn once_in(&mut self, times: u128) -> bool {
         self.below(times) == 0
     }
@@ -62,7 +62,7 @@ impl Random {
 mod tests {
     use super::*;
 
-    /// The first numbers that the generator's authors give for the seed 1234567.
+    /// The first numbers that the authors of the generator publish for the seed 1234567.
     #[test]
     fn the_sequence_is_that_of_splitmix64() {
         let mut random = Random::seeded(1_234_567);

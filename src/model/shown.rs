@@ -1,18 +1,19 @@
-//! Names and texts of others, as people and reports see them.
+//! Names and texts of others, made safe to print.
 //!
-//! Scenes, their files and what cards call themselves come from anywhere. What of them is printed or reported goes through here, so that no
-//! name moves a terminal's cursor, turns the order of letters around, ends its line, breaks a document, or gives orders to the program
-//! that reads the log: continuous integration services obey lines that begin with `::`, and `##[` or `##vso[` anywhere in a line.
+//! Scenes, their files and the names of cards come from anywhere. Everything that is printed or reported of them goes
+//! through here. A name can then not move a terminal's cursor, reverse the order of letters, end its line, break a
+//! document, or give orders to a program that reads the log: continuous integration services obey lines that begin with
+//! `::`, and `##[` or `##vso[` anywhere in a line.
 //!
-//! [`name`] is for one name in a line of our own, [`lines`] for a text of several lines, [`path`] for a file, [`json`] for a document,
-//! whose content it keeps. All but `path` leave alone what they made themselves.
+//! [`name`] is for a name within a line, [`lines`] for a text of several lines, [`path`] for a file, and [`json`] for a
+//! document, whose content it keeps. All but `path` leave their own results unchanged.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A character that is shown as its number: controls, those that order text of two directions, separators of lines, marks that nobody
-/// sees, and what XML 1.0 cannot hold.
+/// Returns whether a character is shown as its number: controls, marks of bidirectional text, line separators,
+/// invisible marks, and characters that XML 1.0 cannot hold.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c,
@@ -20,17 +21,18 @@ fn is_hidden(c: char) -> bool {
             | '\u{fff9}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// A number of things: `1 pixel`, `2 pixels`.
+/// Formats a number of things: `1 pixel`, `2 pixels`.
 pub fn count(number: u64, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
-/// A name, or another text of one line: `\n`, `\t`, `\u{1b}` for what must not be there.
+/// Escapes a name or another text of one line. Characters that must not be printed become `\n`, `\t`, `\u{1b}` and so
+/// on.
 pub fn name(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// A text of several lines, of which each is shown as a [`name`]; tabs stay.
+/// Escapes a text of several lines, each like a [`name`] except that tabs stay.
 pub fn lines(text: &str) -> Cow<'_, str> {
     let line = |line| escaped(line, |c| is_hidden(c) && c != '\t');
     if text.split('\n').all(|text| matches!(line(text), Cow::Borrowed(_))) {
@@ -60,12 +62,12 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// A file's path as a [`name`]; bytes that are no text as `\xff`.
+/// Escapes a file's path like a [`name`]. Bytes that are not UTF-8 become `\xff` and so on.
 pub fn path(path: &Path) -> String {
     name(&lossless(path)).into_owned()
 }
 
-/// A path as text that differs from that of every other path, but for paths that have `\xff` in their names.
+/// Converts a path to text. Different paths have different texts, unless their names contain `\xff`.
 pub fn lossless(path: &Path) -> String {
     let mut text = String::new();
     for chunk in path.as_os_str().as_encoded_bytes().utf8_chunks() {
@@ -78,13 +80,14 @@ pub fn lossless(path: &Path) -> String {
     text
 }
 
-/// A JSON document of the same content, in which what must not reach a terminal stands as `\u001b`.
+/// Escapes a JSON document without changing its content: characters that must not reach a terminal become `\u001b` and
+/// so on.
 pub fn json(document: &str) -> Cow<'_, str> {
     let bad = |c: char| is_hidden(c) && c != '\n';
     if !document.contains(bad) && !document.contains("##") {
         return Cow::Borrowed(document);
     }
-    // Only texts between quotes hold such characters.
+    // Only texts between quotes contain such characters.
     let mut out = String::with_capacity(document.len() + 16);
     let mut before = None;
     for c in document.chars() {
@@ -100,7 +103,8 @@ pub fn json(document: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// An excerpt of a text with as many bytes, for marks under it. What stands in for a character is not its number but a sign.
+/// Escapes an excerpt of a text without changing its length in bytes, so that marks under it stay in place. Each hidden
+/// character becomes one sign.
 pub fn excerpt(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) && !text.contains("##") {
         return Cow::Borrowed(text);
@@ -110,7 +114,7 @@ pub fn excerpt(text: &str) -> Cow<'_, str> {
         let doubled = c == '#' && before == Some('#');
         before = Some(c);
         match c.len_utf8() {
-            // Drawn as the sign for a substitute.
+            // Terminals draw it as the sign for a substitute.
             1 if doubled => '\u{1a}',
             2 if is_hidden(c) => '\u{b7}',
             3 if is_hidden(c) => '\u{fffd}',
@@ -134,7 +138,7 @@ mod tests {
         assert_eq!(name("##[error]b"), r"#\u{23}[error]b");
     }
 
-    /// Characters that names are made of, the hostile ones among them often.
+    /// Generates texts of characters that names contain, among them many hostile ones.
     fn hostile() -> impl Strategy<Value = String> {
         let c = prop_oneof![
             any::<char>(),

@@ -1,6 +1,6 @@
-//! Work on several threads. Without the feature `threads` everything happens on the caller's.
+//! Work on several threads. Without the feature `threads` everything runs on the caller's thread.
 
-/// Does work whose parallel iterators use so many threads, 0 being one a core.
+/// Runs `work`, whose parallel iterators use `threads` threads. 0 means one for each core.
 #[cfg(feature = "threads")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = (threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
@@ -10,19 +10,19 @@ pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T
     }
 }
 
-/// Does work on the caller's thread.
+/// Runs `work` on the caller's thread.
 #[cfg(not(feature = "threads"))]
 pub fn on_threads<T: Send>(_: usize, work: impl FnOnce() -> T + Send) -> T {
     work()
 }
 
-/// The number of threads that [`on_threads`] works with.
+/// Returns the number of threads that [`on_threads`] uses.
 #[cfg(feature = "threads")]
 pub fn count(threads: usize) -> usize {
     on_threads(threads, rayon::current_num_threads)
 }
 
-/// The caller's thread, and others that help it.
+/// The caller's thread, and other threads that help it.
 #[derive(Debug)]
 pub(crate) struct Team {
     #[cfg(feature = "threads")]
@@ -30,7 +30,8 @@ pub(crate) struct Team {
 }
 
 impl Team {
-    /// A team of so many threads, 0 being one a core; fewer where they cannot be had.
+    /// Creates a team of `threads` threads, where 0 means one for each core. The team is smaller if the threads are not
+    /// available.
     #[cfg(feature = "threads")]
     pub(crate) fn new(threads: usize) -> Team {
         let threads = match threads {
@@ -41,13 +42,13 @@ impl Team {
         Team { helpers: (threads > 1).then(|| pool(threads - 1)).flatten() }
     }
 
-    /// A team of the caller's thread.
+    /// Creates a team of the caller's thread alone.
     #[cfg(not(feature = "threads"))]
     pub(crate) fn new(_: usize) -> Team {
         Team {}
     }
 
-    /// How many they are.
+    /// Returns the number of threads.
     pub(crate) fn count(&self) -> usize {
         #[cfg(feature = "threads")]
         let helpers = self.helpers.as_ref().map_or(0, rayon::ThreadPool::current_num_threads);
@@ -56,7 +57,7 @@ impl Team {
         1 + helpers
     }
 
-    /// Every thread does the work once.
+    /// Runs `work` once on every thread.
     pub(crate) fn run(&self, work: impl Fn() + Sync) {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.helpers {

@@ -1,53 +1,55 @@
-//! What values are made of, and what is known of them: the order read for liveness and for folding.
+//! [`Trail`], the algebra that records what values depend on and what is known about them, for liveness and for
+//! folding.
 
 use super::{Algebra, Site};
 use crate::state::{Bias, InputMapping, MuxSelect, Policies, Scale};
 use crate::trace::Rule;
 
-/// A value: its node, and its number in steps of 1/255 where that is the same in every pixel, whatever the policies.
+/// A value: its node, and its number if that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Value {
     node: u32,
-    /// The number, where it is known.
+    /// The number in steps of 1/255, if it is the same in every pixel and under all policies.
     pub known: Option<i16>,
 }
 
-/// Keeps what each value is made of.
+/// Records the operands of each value.
 #[derive(Clone, Debug, Default)]
 pub struct Trail {
     /// Operands of each node, as a range of `operands`.
     nodes: Vec<(usize, usize)>,
     operands: Vec<u32>,
-    /// The places of the text since [`take_sites`](Self::take_sites), and the nodes of their values.
+    /// The sites that were passed since [`take_sites`](Self::take_sites), with their values.
     sites: Vec<(Site, Value)>,
-    /// A sum with nothing and a product with one are what they are made of, and not new values.
+    /// Whether operations without effect, such as adding zero or multiplying by one, return their operand instead of a
+    /// new value.
     folds: bool,
     policies: Policies,
 }
 
 impl Trail {
-    /// One whose values are what they are made of where an operation changes nothing.
+    /// Creates a trail in which operations without effect return their operand.
     pub fn folding() -> Trail {
         Trail { folds: true, ..Trail::default() }
     }
 
-    /// A value that comes from elsewhere.
+    /// Adds a value that does not come from the text.
     pub fn input(&mut self, known: Option<i16>) -> Value {
         self.made_of(&[], known)
     }
 
-    /// The places that the text has passed, with their values; from here on they are collected anew.
+    /// Takes the sites that the text has passed, with their values. Later sites are collected anew.
     pub fn take_sites(&mut self) -> Vec<(Site, Value)> {
         std::mem::take(&mut self.sites)
     }
 
-    /// What has to be known for these values: asks for any value whether it is among that.
+    /// Returns a predicate for whether a value is needed to compute the roots.
     pub fn needed(&self, roots: &[Value]) -> impl Fn(Value) -> bool + use<> {
         let mut needed = vec![false; self.nodes.len()];
         for root in roots {
             needed[root.node as usize] = true;
         }
-        // Values are made of earlier ones.
+        // Operands have lower numbers than the values made of them.
         for node in (0..self.nodes.len()).rev().filter(|node| needed[*node]).collect::<Vec<_>>() {
             self.need(node, &mut needed);
         }
@@ -105,7 +107,7 @@ impl Algebra for Trail {
         self.input(Some(value.into()))
     }
     fn map(&mut self, mapping: InputMapping, x: Value) -> Value {
-        // What a mapping makes of other numbers may be a policy's.
+        // Mappings of other numbers may depend on policies.
         self.one(x, |x| match (mapping, x) {
             (InputMapping::UnsignedIdentity | InputMapping::SignedIdentity | InputMapping::SignedNegate, 0) => Some(0),
             (InputMapping::UnsignedInvert, 0) => Some(255),
@@ -174,14 +176,14 @@ impl Algebra for Trail {
     }
     fn greatest(&mut self, a: Value, b: Value) -> Value {
         match (a.known, b.known) {
-            // Only bytes are compared so.
+            // Only bytes are compared, which are not negative.
             (Some(0), _) if self.folds => b,
             (_, Some(0)) if self.folds => a,
             _ => self.two(a, b, i16::max),
         }
     }
     fn clamped(&mut self, x: Value) -> Value {
-        // What folding looks for are bytes.
+        // Folding looks for bytes.
         if self.folds && x.known.is_none() { x } else { self.one(x, |x| Some(x.clamp(0, 255))) }
     }
     fn truncated(&mut self, bits: u32, x: Value) -> Value {

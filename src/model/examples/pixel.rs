@@ -1,4 +1,4 @@
-//! One pixel, drawn without a scene file.
+//! Draws one pixel, without a scene file.
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};

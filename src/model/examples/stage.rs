@@ -1,4 +1,5 @@
-//! One general stage over all of its inputs: how far is the product of two expanded bytes, as DOT3 bump mapping takes them, from the real one?
+//! Runs one general stage on all of its inputs: how far is the product of two expanded bytes, as DOT3 bump mapping
+//! computes it, from the real product?
 //!
 //! `cargo run -p ninebit --example stage`
 
@@ -18,7 +19,7 @@ fn main() {
         registers.load(Register::Texture0, [a; 4]);
         registers.load(Register::PrimaryColor, [b; 4]);
         let [red, ..] = program.run(registers, &Policies::DEFAULT);
-        // Real numbers are 2 a / 255 - 1: everything here in 65,025ths.
+        // The real numbers are 2 a / 255 - 1. All values here are in 65,025ths.
         let error = 255 * i32::from(red) - ((2 * a - 255) * (2 * b - 255)).max(0);
         (exact, worst) = (exact + i32::from(error.abs() <= 127), worst.max(error.abs()));
     }

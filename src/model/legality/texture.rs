@@ -1,24 +1,24 @@
-//! What the chips take of textures: formats, sides, layers, levels and border texels, by kind.
+//! What the chips allow for textures: formats, sides, layers, levels and border texels, by kind.
 
 use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
 use crate::place::Span;
 use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
 
-/// Checks textures for a chip. Each check gives the finding, if there is one, at the place that it is told.
+/// Checks textures for a chip. Each check returns the finding at the given place, or `None` if the texture is legal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureChecks {
-    /// The chip that is asked.
+    /// The chip that is checked for.
     pub profile: Profile,
-    /// Texels along a side that [`Limits`](crate::limits::Limits) allow, whatever the chip does.
+    /// Longest side that the [`Limits`](crate::limits::Limits) allow, in texels. The chip may allow less.
     pub largest_side: u32,
 }
 
-/// The bytes of a text that are to blame, if it has them.
+/// Returns a message that something cannot have these sides.
 fn cannot(what: &str, [width, height]: [u32; 2]) -> String {
     format!("{what} cannot be {width} x {height}")
 }
 
-/// The finding that a side has no texels.
+/// Returns the finding that a side has no texels.
 pub fn no_texels(what: &str, sides: [u32; 2], place: Option<Span>) -> Diagnostic {
     Diagnostic::error("NB0219", place, cannot(what, sides))
         .label("no texels")
@@ -27,13 +27,13 @@ pub fn no_texels(what: &str, sides: [u32; 2], place: Option<Span>) -> Diagnostic
 }
 
 impl TextureChecks {
-    /// The format exists on the chip.
+    /// Checks that the chip has the format.
     pub fn format(self, format: TextureFormat, place: Option<Span>) -> Option<Diagnostic> {
         let what = format!("texture format {}", format.name());
         needs_nv2a(self.profile, format.is_nv2a_only(), "NB0320", place, &what, "TEX-1")
     }
 
-    /// Sides that the chip and the limits allow: powers of two, or any of a rectangle; of a cube map square.
+    /// Checks the sides: within the limits, powers of two except for rectangles, and square for cube maps.
     pub fn sides(
         self,
         kind: TextureKind,
@@ -73,7 +73,7 @@ impl TextureChecks {
         })
     }
 
-    /// The finding that a side is too long.
+    /// Returns the finding that a side is too long.
     pub fn too_large(self, what: &str, [width, height]: [u32; 2], most: u32, place: Option<Span>) -> Diagnostic {
         let on = if self.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
         Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
@@ -82,7 +82,8 @@ impl TextureChecks {
             .help(format!("scale it down{on}"))
     }
 
-    /// Linear layouts have neither blocks nor indices; nv10 has four of them, of even width.
+    /// Checks a rectangle texture. Linear layouts have neither compressed blocks nor palettes; nv10 has four of them,
+    /// which need an even width.
     fn rectangle(self, format: TextureFormat, [width, height]: [u32; 2], place: Option<Span>) -> Option<Diagnostic> {
         let (message, help) = if !format.is_linear(Profile::Nv2a) {
             let message = format!("a rectangle texture cannot be {}", format.name());
@@ -99,7 +100,7 @@ impl TextureChecks {
         Some(Diagnostic::error("NB0330", place, message).label("not as a rectangle").rule("TEX-7").help(help))
     }
 
-    /// Layers of a volume, which nv2a has.
+    /// Checks the layers of a volume, which only nv2a has.
     pub fn layers(self, kind: TextureKind, layers: u32, place: Option<Span>) -> Option<Diagnostic> {
         if kind != TextureKind::ThreeDimensional {
             return None;
@@ -116,7 +117,7 @@ impl TextureChecks {
         })
     }
 
-    /// A rectangle has one level, and a volume.
+    /// Checks the levels. Rectangles and volumes have a single level.
     pub fn levels(self, kind: TextureKind, levels: u32, place: Option<Span>) -> Option<Diagnostic> {
         let (what, rule, help) = match kind {
             TextureKind::ThreeDimensional => {
@@ -131,12 +132,12 @@ impl TextureChecks {
         (levels > 1).then(|| Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help))
     }
 
-    /// A border colour is known of nv2a.
+    /// Checks the address mode. A border colour is known for nv2a only.
     pub fn address_mode(self, mode: AddressMode, place: Option<Span>) -> Option<Diagnostic> {
         needs_nv2a(self.profile, mode == AddressMode::ClampToBorder, "NB0317", place, "a border colour", "TEX-7")
     }
 
-    /// Border texels: of nv2a, two dimensions, no blocks.
+    /// Checks border texels, which are allowed for uncompressed textures of two dimensions on nv2a.
     pub fn border(self, kind: TextureKind, format: TextureFormat, place: Option<Span>) -> Option<Diagnostic> {
         if self.profile == Profile::Nv10 {
             return Some(only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));

@@ -1,8 +1,9 @@
-//! What a [`Scene`] must hold to, whoever made it: the one place that says so for all of the state.
+//! Checks that a [`Scene`] is valid, whoever made it. No other place checks all of the state.
 //!
-//! The front end finds most of this earlier, with its place in the text. A scene built in code comes here first, and nothing behind this
-//! looks again: indices are in range, sides and counts within the limits, combinations those that the chip has. What depends on
-//! where vertices end up (RAS-0) is found when triangles are formed.
+//! The front end finds most errors earlier, with their places in the text. A scene that is built in code is checked
+//! here first, and nothing after this checks again: indices are in range, sides and counts within the limits, and
+//! combinations are those that the chip has. Errors that depend on where vertices end up (RAS-0) are found when
+//! triangles are assembled.
 
 use super::PlanError;
 use crate::diagnostic::{Diagnostic, Severity, needs_nv2a};
@@ -14,10 +15,10 @@ use crate::raster::GUARD;
 use crate::rop::surface;
 use crate::state::*;
 
-/// At most this many errors of one kind of thing: the rest would say the same.
+/// Most errors that are reported, because more would repeat the same.
 const MAX_ERRORS: usize = 8;
 
-/// Everything that is wrong with a scene, but for where its vertices lie.
+/// Returns all errors of a scene, except for those of its vertices' positions.
 pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
     let mut check = Check { scene, limits, draw: None, errors: Vec::new() };
     check.counts();
@@ -39,7 +40,7 @@ mod unit;
 struct Check<'s> {
     scene: &'s Scene,
     limits: &'s Limits,
-    /// The draw that is looked at.
+    /// Index of the draw that is being checked.
     draw: Option<usize>,
     errors: Vec<PlanError>,
 }
@@ -59,7 +60,7 @@ impl Check<'_> {
         self.refuse(finding.code, finding.rule, finding.message, finding.help.unwrap_or_default());
     }
 
-    /// Refuses what only nv2a has.
+    /// Refuses a feature that only nv2a has.
     fn only_nv2a(&mut self, code: &'static str, rule: &'static str, has: bool, what: &str) {
         self.accept(needs_nv2a(self.scene.profile, has, code, None, what, rule));
     }
@@ -68,7 +69,7 @@ impl Check<'_> {
         finding.into_iter().for_each(|finding| self.found(finding));
     }
 
-    /// Whether nothing was found about a texture.
+    /// Returns whether there is no finding about a texture, and refuses it otherwise.
     fn accepts(&mut self, texture: &Texture, finding: Option<Diagnostic>) -> bool {
         let Some(mut finding) = finding else { return true };
         finding.message = format!("texture `{}`: {}", texture.name, finding.message);
@@ -108,7 +109,7 @@ impl Check<'_> {
             let message = format!("the targets take {bytes} bytes; {} are allowed", limits.surface_bytes);
             self.refuse("NB0607", None, message, "make the targets smaller, or fewer");
         }
-        // What textures share they decode apart.
+        // Textures that share their words are counted separately, because they are decoded separately.
         let bytes: u64 = self.scene.textures.iter().map(texel_bytes).fold(0, u64::saturating_add);
         if bytes > limits.texture_bytes {
             let message = format!("the textures take {bytes} bytes; {} are allowed", limits.texture_bytes);
@@ -148,7 +149,7 @@ impl Check<'_> {
         }
     }
 
-    /// One word a pixel, of the pixel's bits.
+    /// Checks that the contents have one word for each pixel, with no bits above the pixel's.
     fn contents(&mut self, target: &Target, words: &[u32]) {
         let Target { name, width, height, format, .. } = target;
         let pixels = u64::from(*width) * u64::from(*height);
@@ -201,7 +202,8 @@ impl Check<'_> {
                             let same = shown.depth.is_some_and(|depth| depth.format.bits() == format.bits());
                             (of_depths && same).then_some(shown.width)
                         }
-                        // How texels of another size would follow each other in a texture that is not a rectangle, nobody knows.
+                        // It is not known how texels of another size follow each other in a texture that is not a
+                        // rectangle.
                         None if pixel != texel && texture.kind != TextureKind::Rectangle => None,
                         None if of_depths || texture.format.is_compressed() || texture.format == TextureFormat::P8 => {
                             None
@@ -223,13 +225,13 @@ impl Check<'_> {
         }
     }
 
-    /// Whether the sides are such as the chip takes.
+    /// Returns whether the chip accepts the sides.
     fn sides(&mut self, texture: &Texture, width: u32, height: u32) -> bool {
         let finding = self.texture_checks().sides(texture.kind, texture.format, [width, height], None);
         self.accepts(texture, finding)
     }
 
-    /// Levels, border and words of a texture whose sides are legal.
+    /// Checks levels, border and words of a texture whose sides are legal.
     fn texels(&mut self, texture: &Texture, texels: &Texels) {
         let Texture { name, kind, format, .. } = texture;
         let Texels { width, height, levels, layers, border, words } = texels;
@@ -377,7 +379,7 @@ impl Check<'_> {
         }
     }
 
-    /// What a unit does with its coordinates.
+    /// Checks the stage of a unit.
     fn stage(&mut self, draw: &Draw, index: usize, stage: &ShaderStage) {
         let name = stage.operation.name();
         if stage.coordinate_set >= draw.texture_shader.len() {
@@ -411,7 +413,7 @@ impl Check<'_> {
         }
     }
 
-    /// A unit, and the texture that it samples.
+    /// Checks a unit, and the texture that it samples.
     fn unit(&mut self, draw: &Draw, index: usize, unit: &TextureUnit, stage: &ShaderStage) {
         let profile = self.scene.profile;
         let Some(texture) = self.scene.textures.get(unit.texture) else {
@@ -478,7 +480,7 @@ impl Check<'_> {
     }
 }
 
-/// Bytes of a texture's words.
+/// Returns the bytes of a texture's words.
 fn texel_bytes(texture: &Texture) -> u64 {
     match &texture.image {
         TextureImage::Texels(texels) => 4 * texels.words.len() as u64,
@@ -486,13 +488,13 @@ fn texel_bytes(texture: &Texture) -> u64 {
     }
 }
 
-/// What is said of an index past the end of its list, and what to do.
+/// Returns message and help for an index past the end of its list.
 fn missing(what: &str, index: usize, count: usize) -> (String, String) {
     let help = if count == 0 { format!("add a {what} first") } else { format!("take 0 to {}", count - 1) };
     (format!("{what} {index} of {count}"), help)
 }
 
-/// The words of the state.
+/// The notation of the state itself.
 struct Words;
 
 impl Notation for Words {}

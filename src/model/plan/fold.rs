@@ -1,4 +1,4 @@
-//! Constant folding: what the state alone settles for every pixel of a draw. Nothing here depends on a policy.
+//! Constant folding: facts that hold for every pixel of a draw, from the state alone. Nothing here depends on a policy.
 
 use crate::algebra::{Algebra, Trail};
 use crate::combiner::registers::{bit, bits, initially_undefined};
@@ -6,8 +6,8 @@ use crate::rop::{blend, surface};
 use crate::state::*;
 use crate::texture::format::expand;
 
-/// Whether the blend yields its source, and whether it yields its destination, in every one of the `written` channels. `zero` are channels of
-/// the source that are 0.
+/// Returns whether blending yields the source, and whether it yields the destination, in all of the `written` channels.
+/// `zero` are the channels of the source that are 0.
 pub(super) fn blend(blend: &Blend, blend_constant: [u8; 4], written: u8, zero: u8) -> (bool, bool) {
     let mut trail = Trail::folding();
     let source = [0, 1, 2, 3].map(|channel: u8| trail.input((zero >> channel & 1 != 0).then_some(0)));
@@ -18,13 +18,15 @@ pub(super) fn blend(blend: &Blend, blend_constant: [u8; 4], written: u8, zero: u
     (all(source), all(destination))
 }
 
-/// Whether a target begins with unused bits that a store would change: a draw that keeps every channel still writes those.
+/// Returns whether the contents of a target have unused bits that a store would change. Even a draw that keeps every
+/// channel writes those.
 pub(super) fn begins_with_stray_bits(target: &Target) -> bool {
     let stored = |word: u32| surface::pack(target.format, surface::read(target.format, word));
     target.contents.as_ref().is_some_and(|words| words.iter().any(|word| stored(*word) != *word))
 }
 
-/// Channels of a texture that are 0 in every texel, bits R, G, B, A. None of blocks, indices and halves of sixteen bits is looked into.
+/// Returns the channels of a texture that are 0 in every texel, as bits R, G, B, A. Compressed and palette textures,
+/// and those of 16-bit halves, are not examined.
 pub(super) fn black_channels(texture: &Texture) -> u8 {
     let TextureImage::Texels(texels) = &texture.image else { return 0 };
     let format = texture.format;
@@ -42,7 +44,7 @@ pub(super) fn black_channels(texture: &Texture) -> u8 {
     black
 }
 
-/// Registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
+/// Returns the registers that are 0 in every pixel before the first stage, as bits of registers and channels.
 pub(super) fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
     let mut zero = bits(Register::Zero) | initially_undefined();
     let colors = |color: fn(&Vertices, usize) -> VertexColor, channel: usize| {
@@ -58,10 +60,10 @@ pub(super) fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
         if colors(Vertices::specular, channel) {
             zero |= bit(Register::SecondaryColor, channel);
         }
-        // TEX-16, and what stages without a texture yield.
+        // TEX-16, and the results of stages without a texture.
         let units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (register, (unit, stage)) in units.into_iter().zip(draw.textures.iter().zip(&draw.texture_shader)) {
-            // A filter's mix of zeros is zero, whichever texels it takes.
+            // Filtering zeros yields zero, whichever texels are read.
             let sampled = |unit: &TextureUnit| {
                 let inside = [AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge];
                 let bordered = [unit.address_s, unit.address_t].iter().any(|mode| !inside.contains(mode));

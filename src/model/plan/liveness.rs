@@ -1,4 +1,5 @@
-//! Which values of a draw anybody reads, and which are the same in every pixel: the order of a pixel, run on a [`Trail`].
+//! Liveness: runs the order of a pixel on a [`Trail`], to find which values of a draw are read and which are the same
+//! in every pixel.
 
 use crate::algebra::{Algebra, Site, Trail, Value};
 use crate::combiner::final_combiner::{self, PlannedFinal};
@@ -10,13 +11,13 @@ use crate::state::*;
 const RGB: u8 = 7;
 const ALPHA: u8 = 8;
 
-/// What a draw's combiners compute, value by value.
+/// All values that a draw's combiners compute.
 pub(super) struct Computed<'d> {
     combiners: &'d Combiners,
     trail: Trail,
     /// The registers before the first stage.
     initial: Registers<Value>,
-    /// Stage by stage: the places of its text, and its constants.
+    /// The sites and constants of each stage.
     stages: Vec<Part>,
     last: Part,
     fragment: [Value; 4],
@@ -29,20 +30,20 @@ struct Part {
 }
 
 impl Part {
-    /// Closes a part whose text has just been run.
+    /// Collects the values of a part after its text has been run.
     fn close(registers: &Registers<Value>, trail: &mut Trail) -> Part {
         let constants = [Register::ConstantColor0, Register::ConstantColor1];
         Part { sites: trail.take_sites(), constants: constants.map(|register| registers.values[register as usize]) }
     }
 
-    /// The places whose values are needed, and whether one of the constants is.
+    /// Returns the sites whose values are needed, and whether one of the constants is.
     fn needed(&self, needed: &impl Fn(Value) -> bool) -> (u64, bool) {
         let sites = self.sites.iter().filter(|(_, value)| needed(*value)).fold(0, |all, (site, _)| all | site.0);
         (sites, self.constants.as_flattened().iter().any(|value| needed(*value)))
     }
 }
 
-/// What a draw's combiners need, and what of them is needed.
+/// What a draw's combiners read, and which of their values are needed.
 pub(super) struct Liveness {
     pub(super) stages: Vec<PlannedStage>,
     pub(super) final_combiner: PlannedFinal,
@@ -50,14 +51,15 @@ pub(super) struct Liveness {
     pub(super) secondary: u8,
     pub(super) fog: u8,
     pub(super) units: [u8; TEXTURE_UNITS],
-    /// Units whose dot products are needed.
+    /// Whether the dot product of each unit is needed.
     pub(super) dots: [bool; TEXTURE_UNITS],
     pub(super) spare0_alpha: bool,
     pub(super) undefined: u64,
 }
 
 impl<'d> Computed<'d> {
-    /// `zero`: registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
+    /// Runs the combiners. `zero` are the registers that are 0 in every pixel before the first stage, as bits of
+    /// registers and channels.
     pub(super) fn new(combiners: &'d Combiners, zero: u64) -> Computed<'d> {
         let mut trail = Trail::default();
         let mut initial = Registers::from_value(trail.input(Some(0)));
@@ -67,7 +69,7 @@ impl<'d> Computed<'d> {
                 initial.write(*register, channel, trail.input(known));
             }
         }
-        // CMB-13: SPARE0's alpha starts as texture 0's.
+        // CMB-13: SPARE0's alpha starts as that of texture 0.
         let alpha = trail.written(initial.read(Register::Texture0, 3));
         initial.write(Register::Spare0, 3, alpha);
         let mut registers = initial;
@@ -89,12 +91,13 @@ impl<'d> Computed<'d> {
         Computed { combiners, trail, initial, stages, last, fragment }
     }
 
-    /// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
+    /// Returns the channels of the fragment that are 0 in every pixel, as bits R, G, B, A.
     pub(super) fn zero_fragment(&self) -> u8 {
         (0..4).filter(|c| self.fragment[*c].known == Some(0)).map(|c| 1 << c).sum()
     }
 
-    /// `written` are the channels that the surface stores; without `prune` everything counts as read.
+    /// Finds what is needed. `written` are the channels that the surface stores. Without `prune` everything counts as
+    /// read.
     pub(super) fn liveness(
         mut self,
         draw: &Draw,
@@ -157,7 +160,7 @@ impl<'d> Computed<'d> {
     }
 }
 
-/// A portion of some channels, of which the values at these places are needed.
+/// Returns a portion of some channels, for which the values at `sites` are needed.
 fn planned(portion: &Portion, channels: u8, sites: u64) -> PlannedPortion {
     let sites = sites & Site::of_channels(channels);
     PlannedPortion {
@@ -168,8 +171,9 @@ fn planned(portion: &Portion, channels: u8, sites: u64) -> PlannedPortion {
     }
 }
 
-/// What the stages of a texture shader read of one another, backwards: adds the channels to `units`, and says whose dot products are needed.
-/// What a colour key compares counts as read, and one that drops fragments always compares (KEY-1).
+/// Finds what the stages of a texture shader read of one another, from the last stage to the first. Adds the channels
+/// to `units`, and returns whose dot products are needed. The channels that a colour key compares count as read; a key
+/// that drops fragments always compares (KEY-1).
 fn shader_liveness(draw: &Draw, units: &mut [u8; TEXTURE_UNITS]) -> [bool; TEXTURE_UNITS] {
     let shader = &draw.texture_shader;
     let mut dots = [false; TEXTURE_UNITS];

@@ -1,8 +1,7 @@
-//! The plan: what of a scene can reach its frames, decided once, before any pixel.
+//! The plan: a scene, reduced to what can reach its frames before any pixel is drawn.
 //!
-//! Everything that can fail has failed by the time a [`Plan`] exists; below it nothing returns an error. With
-//! [`PlanOptions::prune`] (the default) outputs, channels, units and reads that nothing can see are left out; the bytes are the same
-//! without.
+//! Once a [`Plan`] exists, nothing can fail any more. With [`PlanOptions::prune`] (the default), outputs, channels,
+//! units and reads whose results cannot be seen are left out; the frames have the same bytes without it.
 
 mod check;
 mod fold;
@@ -23,12 +22,12 @@ use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use liveness::{Computed, Liveness};
 use std::fmt;
 
-/// How a plan is made.
+/// Options of planning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanOptions {
-    /// Answers to what no capture decides.
+    /// The alternatives of rules that no capture decides.
     pub policies: Policies,
-    /// Leave out what cannot reach a frame.
+    /// Whether to leave out what cannot reach a frame.
     pub prune: bool,
 }
 
@@ -38,7 +37,7 @@ impl Default for PlanOptions {
     }
 }
 
-/// Why a scene cannot be planned.
+/// The reason why a scene cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanError {
     /// Index of the draw, if one is to blame.
@@ -47,18 +46,18 @@ pub struct PlanError {
     pub vertex: Option<usize>,
     /// Index of the texture unit of the draw, if one is to blame.
     pub unit: Option<usize>,
-    /// Stable code, as that of a [`Diagnostic`].
+    /// Stable code, like that of a [`Diagnostic`].
     pub code: &'static str,
-    /// Rule that sets the limit, if one does.
+    /// Rule that is violated, if there is one.
     pub rule: Option<&'static str>,
     /// What is wrong.
     pub message: String,
-    /// What to do.
+    /// Advice on what to do.
     pub help: String,
 }
 
 impl PlanError {
-    /// An error of the scene as a whole.
+    /// Creates an error of the scene as a whole.
     fn new(
         code: &'static str,
         rule: impl Into<Option<&'static str>>,
@@ -69,7 +68,7 @@ impl PlanError {
         PlanError { draw: None, vertex: None, unit: None, code, rule, message, help }
     }
 
-    /// The same as a finding, of the part of a text that is to blame.
+    /// Returns the error as a finding about the given part of a text.
     pub fn diagnostic(&self, place: impl Into<Option<Span>>) -> Diagnostic {
         let finding = Diagnostic::error(self.code, place, self.message.as_str()).help(self.help.as_str());
         Diagnostic { rule: self.rule, ..finding }
@@ -97,151 +96,152 @@ impl fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-/// A scene ready to be drawn.
+/// A scene that is ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The chip that draws.
     pub profile: Profile,
-    /// The policies in force. They do not change what is planned, so they may be set afterwards.
+    /// The policies in force. They may be changed afterwards, because planning does not depend on them.
     pub policies: Policies,
-    /// The scene's render targets, in its order.
+    /// Render targets, in the order of the scene.
     pub targets: Vec<Target>,
-    /// The scene's textures, in its order.
+    /// Textures, in the order of the scene.
     pub textures: Vec<Texture>,
     /// Draws in order.
     pub draws: Vec<PlannedDraw>,
 }
 
-/// A draw reduced to what can reach its target.
+/// A draw, reduced to what can reach its target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedDraw {
-    /// Name for messages and traces.
+    /// Name that messages and traces show.
     pub name: String,
-    /// Index of the target.
+    /// Index into [`Plan::targets`].
     pub target: usize,
     /// Format of the target.
     pub surface: SurfaceFormat,
-    /// Pixels that may be drawn: rectangles that do not overlap, none of them empty (CLP-1, CLP-2).
+    /// The pixels that may be drawn: rectangles that neither overlap nor are empty (CLP-1, CLP-2).
     pub windows: Vec<Rectangle>,
-    /// Vertices in window coordinates and triangles.
+    /// Vertices in window coordinates, and triangles.
     pub assembly: Assembly,
-    /// Smooth or flat.
+    /// Whether colours are interpolated or flat.
     pub shade_model: ShadeModel,
-    /// Attributes are interpolated with w (INT-1).
+    /// Whether attributes are interpolated in perspective, with w (INT-1).
     pub perspective: bool,
-    /// Which faces are dropped.
+    /// Which faces are culled.
     pub cull: Cull,
-    /// Which winding is the front.
+    /// Which winding makes a front face.
     pub front_face: FrontFace,
-    /// Channels of the primary colour that are read, bits R, G, B, A.
+    /// Channels of the primary colour that are read, as bits R, G, B, A.
     pub primary: u8,
-    /// Channels of the secondary colour that are read.
+    /// Channels of the secondary colour that are read, as bits R, G, B, A.
     pub secondary: u8,
-    /// Channels of the fog register that are read.
+    /// Channels of the fog register that are read, as bits R, G, B, A.
     pub fog_channels: u8,
-    /// How fog coordinates become factors.
+    /// Fog colour and function.
     pub fog: Fog,
-    /// Bound units that are read.
+    /// The bound units that are read.
     pub units: Vec<PlannedUnit>,
-    /// The texture shader, where there is one: units then run as its stages.
+    /// The texture shader, if there is one. The units then run as its stages.
     pub shader: Option<PlannedShader>,
-    /// Channels of each unit that does nothing that are read (TEX-16).
+    /// Channels that are read of each unit without an operation or a texture, as bits R, G, B, A (TEX-16).
     pub unbound: [u8; TEXTURE_UNITS],
-    /// SPARE0's initial alpha is read (CMB-13).
+    /// Whether SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
-    /// Registers that are read before anything wrote them (CMB-13): bits as [`registers::bit`](crate::combiner::registers::bit).
+    /// Registers that are read before anything writes them (CMB-13), as [`bits`](crate::combiner::registers::bit).
     pub undefined: u64,
-    /// General stages that are needed.
+    /// The general stages that are needed.
     pub stages: Vec<PlannedStage>,
-    /// What each general stage of the state was written as; may be empty.
+    /// The source text of each general stage of the scene. May be empty.
     pub program_origin: Vec<StageOrigin>,
-    /// The vertices were made by a vertex program.
+    /// Whether a vertex program made the vertices.
     pub vertex_program: bool,
-    /// Which bit of SPARE0's alpha a mux looks at (CMB-10).
+    /// The bit of SPARE0's alpha that selects the output of muxes (CMB-10).
     pub mux_select: MuxSelect,
-    /// What of the final combiner is needed.
+    /// The final combiner, with what is needed of it.
     pub final_combiner: PlannedFinal,
     /// Alpha test, unless it always passes.
     pub alpha_test: Option<AlphaTest>,
     /// Stencil test, unless it always passes and changes nothing.
     pub stencil_test: Option<StencilTest>,
-    /// Depth test, where the target has a depth buffer.
+    /// Depth test, if the target has a depth buffer.
     pub depth_test: Option<DepthTest>,
-    /// Format of the target's depth buffer; of a target without one it says nothing.
+    /// Format of the target's depth buffer. It has no meaning if there is none.
     pub depth_format: DepthFormat,
-    /// Blend, where the surface allows it.
+    /// Blending, if the surface allows it.
     pub blend: Option<Blend>,
-    /// Channels that are blended, bits R, G, B, A.
+    /// Channels that are blended, as bits R, G, B, A.
     pub blended: u8,
-    /// The constant that blend factors name, R, G, B, A.
+    /// Blend constant as R, G, B, A bytes.
     pub blend_constant: [u8; 4],
     /// Bits of the stored word that are written.
     pub write_mask: u32,
-    /// Channels that those bits keep, bits R, G, B, A.
+    /// Channels that the written bits keep, as bits R, G, B, A.
     pub written: u8,
-    /// What was folded away before the rest was planned.
+    /// What constant folding found before the rest was planned.
     pub folded: Folded,
 }
 
 impl PlannedDraw {
-    /// Whether texture units can drop fragments: the texture shader (TSH-10), or a colour key (KEY-1).
+    /// Returns whether texture units can drop fragments, by the texture shader (TSH-10) or a colour key (KEY-1).
     pub fn kills(&self) -> bool {
         self.shader.as_ref().is_some_and(PlannedShader::kills) || self.units.iter().any(|unit| unit.state.kills())
     }
 
-    /// Whether every pixel that it covers is stored: nothing kills fragments, and nothing tests them.
+    /// Returns whether every covered pixel is stored, because nothing drops or tests fragments.
     pub fn stores_all(&self) -> bool {
         !self.kills() && self.alpha_test.is_none() && self.stencil_test.is_none() && self.depth_test.is_none()
     }
 }
 
-/// Constants of a draw's state that settle something for every pixel.
+/// Facts about a draw that hold for every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Folded {
-    /// The blend stores the source as it is: no destination is read.
+    /// Whether blending stores the source unchanged, so that the destination is not read.
     pub replaces: bool,
-    /// Blending leaves every colour as it is: none is written.
+    /// Whether blending keeps every colour, so that none is written.
     pub keeps: bool,
-    /// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
+    /// Channels of the fragment that are 0 in every pixel, as bits R, G, B, A.
     pub zero: u8,
-    /// Nothing of the draw can be seen, and why.
+    /// The reason why nothing of the draw can be seen, if nothing can.
     pub invisible: Option<Invisible>,
 }
 
 named! {
-    /// Why nothing of a draw can be seen.
+    /// The reason why nothing of a draw can be seen.
     pub enum Invisible {
         /// It has no triangles.
         NoTriangles = "it has no triangles",
-        /// It has no window.
+        /// Its clips leave no pixels.
         NoPixels = "its clips leave no pixel",
-        /// Neither colour nor depth nor stencil is written.
+        /// It writes neither colour nor depth nor stencil.
         NothingWritten = "it writes neither colour nor depth nor stencil",
         /// Its fragments are 0 and are added.
         AddsZero = "its source is 0 in every channel and blending keeps what is there",
-        /// Its blend keeps the destination.
+        /// Its blending keeps the destination.
         KeepsDestination = "its blend keeps what is there, whatever the source",
     }
 }
 
 impl Plan {
-    /// Whether a draw reads what others have drawn: a texture that is a target.
+    /// Returns whether a draw reads a texture that is a render target.
     pub fn reads_target(&self, planned: &PlannedDraw) -> bool {
         planned.units.iter().any(|unit| self.textures[unit.state.texture].image.target().is_some())
     }
 
-    /// Plans a scene, whoever made it, within the default [`Limits`].
+    /// Plans a scene within the default [`Limits`], whoever made it.
     ///
     /// # Errors
-    /// What is not as [`Scene`] says it has to be, or else every vertex (eight at most a draw) outside the limits of RAS-0.
+    /// Returns everything in which the scene is not valid as [`Scene`] defines. If there is nothing, returns the
+    /// vertices (at most eight for each draw) that are outside the limits of RAS-0.
     pub fn compile(scene: &Scene, options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
         Plan::compile_within(scene, options, &Limits::default())
     }
 
-    /// Plans a scene within limits.
+    /// Plans a scene within the given limits.
     ///
     /// # Errors
-    /// As [`compile`](Plan::compile).
+    /// Returns the same errors as [`compile`](Plan::compile).
     pub fn compile_within(scene: &Scene, options: &PlanOptions, limits: &Limits) -> Result<Plan, Vec<PlanError>> {
         let mut errors = check::check(scene, limits);
         if !errors.is_empty() {
@@ -286,7 +286,7 @@ impl Plan {
     }
 }
 
-/// Columns and rows of a texture.
+/// Returns the columns and rows of a texture.
 pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     match &scene.textures[texture].image {
         TextureImage::Texels(texels) => (texels.width, texels.height),
@@ -299,7 +299,8 @@ pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     }
 }
 
-/// RAS-0 for texture coordinates: finite, and at most 65536 texels where q is 1 and they do not give a direction.
+/// RAS-0 for texture coordinates: checks that they are finite, and at most 65536 texels if q is 1 and they are not a
+/// direction.
 fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
     const MAX_ERRORS: usize = 8;
     let mut found = 0;
@@ -312,7 +313,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
         let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
         for vertex in 0..draw.vertices.len() {
             let set = draw.vertices.coordinates(vertex, stage.coordinate_set);
-            // TSH-7 has no use for q.
+            // TSH-7 ignores q.
             let plane = set[3] == 1.0 || moves(stage);
             let turns = sampled.is_some_and(|unit| unit.cylindrical_wrap != [false; 2]);
             let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
@@ -457,7 +458,7 @@ fn plan_draw(
     }
 }
 
-/// A unit with the image it samples.
+/// Plans a unit with the image that it samples.
 fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage, live: u8) -> PlannedUnit {
     let texture = &scene.textures[state.texture];
     let (width, height) = texture_size(scene, state.texture);
@@ -469,7 +470,7 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
         TextureImage::Texels(texels) => (texels.levels, texels.border),
         TextureImage::Target { .. } | TextureImage::Depth { .. } => (1, false),
     };
-    // Levels that no lod can reach are not planned.
+    // Levels that no lod can reach are left out.
     let reachable = if state.mip_filter == MipFilter::None { 1 } else { count };
     let (mut levels, face_words) = Level::chain(texture.format, width, height, count, border);
     levels.truncate(reachable as usize);
@@ -489,7 +490,7 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
     }
 }
 
-/// The texture shader of a draw, if its units do more than sample.
+/// Plans the texture shader of a draw. Returns `None` if its units only sample.
 fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Option<PlannedShader> {
     let conventional = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
     if draw.texture_shader.iter().all(conventional) {
@@ -504,7 +505,7 @@ fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Optio
     Some(PlannedShader { stages })
 }
 
-/// Channels R, G, B, A of the fragment that the written bits keep.
+/// Returns the channels R, G, B, A of the fragment that the written bits keep.
 fn written_channels(format: SurfaceFormat, write_mask: u32) -> u8 {
     let (bits, kept) = (surface::channel_bits(format), surface::kept_channels(format));
     (0..4).filter(|n| bits[*n] & write_mask != 0 && kept >> n & 1 != 0).map(|n| 1 << n).sum()

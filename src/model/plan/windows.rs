@@ -1,11 +1,13 @@
-//! CLP-1, CLP-2: the pixels that a draw may touch, as rectangles that do not overlap.
+//! CLP-1, CLP-2: the pixels that a draw may write, as rectangles that do not overlap.
 
 use crate::state::{Draw, Rectangle, Target};
 use std::ops::Range;
 
-/// The target's pixels that surface clip, scissor and window clip leave: rectangles none of which is empty, from the top down.
+/// Returns the pixels of the target that surface clip, scissor and window clip leave, as rectangles that are not empty,
+/// from the top down.
 ///
-/// A pixel is drawn alike whichever rectangle it lies in, so the engines draw one after the other and test nothing.
+/// The result for a pixel does not depend on the rectangle that contains it, so the engines draw one rectangle after
+/// the other without further tests.
 pub fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let bounds = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
@@ -14,7 +16,7 @@ pub fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
     }
     let Some(clip) = &draw.window_clip else { return vec![bounds] };
     let (columns, rows) = (columns(&bounds), rows(&bounds));
-    // Between two edges of rectangles all rows are alike.
+    // All rows between two edges of rectangles are equal.
     let mut edges: Vec<u32> = clip.rectangles.iter().map(self::rows).flat_map(|rows| [rows.start, rows.end]).collect();
     edges.retain(|edge| rows.contains(edge));
     edges.extend([rows.start, rows.end]);
@@ -28,7 +30,7 @@ pub fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
         let mut free = Vec::new();
         let mut at = columns.start;
         for span in &spans {
-            // What lies before a span, in no span; then the part of the span that no other had.
+            // First the part before the span, which is in no span; then the part of the span that no earlier span had.
             for (part, inside) in [(at..span.start, false), (at.max(span.start)..span.end, true)] {
                 let part = part.start.max(columns.start)..part.end.min(columns.end);
                 if inside != clip.exclusive && !part.is_empty() {
@@ -59,7 +61,7 @@ fn rows(rectangle: &Rectangle) -> Range<u32> {
     rectangle.y..rectangle.y.saturating_add(rectangle.height)
 }
 
-/// The pixels of two rectangles, of which the first ends within 32 bits.
+/// Returns the pixels that two rectangles have in common. The first must end within 32 bits.
 fn common(one: Rectangle, other: Rectangle) -> Rectangle {
     let axis = |a: Range<u32>, b: Range<u32>| {
         let start = b.start.clamp(a.start, a.end);
@@ -76,7 +78,8 @@ mod tests {
     use crate::random::Random;
     use crate::state::{SurfaceFormat, WindowClip};
 
-    /// Against the definition, pixel by pixel: every pixel that may be drawn lies in one window, no other in any.
+    /// Compares with the definition, pixel by pixel: every pixel that may be drawn is in exactly one window, and no
+    /// other is in any.
     #[test]
     fn windows_are_the_pixels_that_are_left() {
         let mut random = Random::seeded(11);

@@ -1,4 +1,4 @@
-//! ROP-5, ROP-6: what the surface formats store and what blending reads back.
+//! ROP-5, ROP-6: how surface formats store colours, and what blending reads back.
 
 use std::borrow::Cow;
 
@@ -6,7 +6,8 @@ use crate::number::Word;
 use crate::state::{SurfaceFormat, TextureFormat};
 use crate::texture::format;
 
-/// Low bits of R, G, B that the surface drops: from the source before blending, and in the store.
+/// Returns the number of low bits of R, G and B that the surface drops, both from the source before blending and in the
+/// store.
 #[inline]
 pub fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
     match format {
@@ -22,20 +23,20 @@ pub fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
     }
 }
 
-/// Whether the surface stores alpha.
+/// Returns whether the surface stores alpha.
 fn stores_alpha(format: SurfaceFormat) -> bool {
     matches!(format, SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O)
 }
 
-/// Channels that the surface keeps, bits R, G, B, A; unused bits are no channel.
+/// Returns the channels that the surface keeps, as bits R, G, B, A. Unused bits are not a channel.
 pub fn kept_channels(format: SurfaceFormat) -> u8 {
     let bits = channel_bits(format);
     let kept = |n: usize| if n == 3 { stores_alpha(format) } else { bits[n] != 0 };
     (0..4).filter(|n| kept(*n)).map(|n| 1 << n).sum()
 }
 
-/// Channels that the texture format of the same bits reads as they are kept, bits R, G, B, A: not the seven bits of alpha beside an
-/// unused one, and not what it makes of missing channels.
+/// Returns the channels that the texture format of the same bits reads exactly as they are kept, as bits R, G, B, A.
+/// Seven bits of alpha beside an unused bit, and values of missing channels, are not included.
 pub fn sampled_channels(format: SurfaceFormat) -> u8 {
     kept_channels(format) & if dropped_alpha_bits(format) == 0 { 15 } else { 7 }
 }
@@ -44,20 +45,23 @@ fn dropped_alpha_bits(format: SurfaceFormat) -> u32 {
     u32::from(matches!(format, SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O))
 }
 
-/// A surface's channels at the end: what a picture shows, but all of alpha's bits where it shows the unused one in their place.
+/// Returns the final channels of a pixel: those that a picture shows, except for an alpha of seven bits, which is read
+/// as blending does because a picture shows the unused bit with it.
 pub fn kept(format: SurfaceFormat, word: u32) -> [u8; 4] {
     let (shown, read) = (show(format, word), read(format, word));
     std::array::from_fn(|n| if sampled_channels(format) >> n & 1 != 0 { shown[n] } else { read[n] })
 }
 
-/// How many texels of `texel` bytes a row of so many pixels of `pixel` bytes is in memory; `None` where its end is no end of a texel.
+/// Returns the number of texels of `texel` bytes in a row of `width` pixels of `pixel` bytes, or `None` if the row does
+/// not end at the end of a texel.
 pub fn texel_columns(width: u32, pixel: u32, texel: u32) -> Option<u32> {
     let bytes = u64::from(width) * u64::from(pixel);
     let columns = u32::try_from(bytes / u64::from(texel)).ok()?;
     bytes.is_multiple_of(u64::from(texel)).then_some(columns)
 }
 
-/// Pixels of `pixel` bytes as texels of `texel` bytes: the same memory, lowest byte first. One, two or four bytes each.
+/// Converts pixels of `pixel` bytes to texels of `texel` bytes: the same memory, lowest byte first. Both sizes are one,
+/// two or four bytes.
 pub fn texels(words: &[u32], pixel: u32, texel: u32) -> Cow<'_, [u32]> {
     if pixel == texel {
         return Cow::Borrowed(words);
@@ -71,12 +75,13 @@ pub fn texels(words: &[u32], pixel: u32, texel: u32) -> Cow<'_, [u32]> {
     words.chunks((texel / pixel) as usize).map(whole).collect()
 }
 
-/// Whether blending is allowed.
+/// Returns whether the format can be blended.
 pub fn blends(format: SurfaceFormat) -> bool {
     !matches!(format, SurfaceFormat::B8 | SurfaceFormat::G8B8)
 }
 
-/// D and destination alpha, R, G, B, A, each 0 to 255, as blending reads them: zero low bits, 255 where no alpha is stored.
+/// Returns the destination's R, G, B, A, each 0 to 255, as blending reads them: low bits are zero, and alpha is 255 if
+/// none is stored.
 #[inline(always)]
 pub fn channels<W: Word>(format: SurfaceFormat, word: W) -> [W; 4] {
     let [none, all] = [0, 255].map(W::from);
@@ -97,13 +102,14 @@ pub fn channels<W: Word>(format: SurfaceFormat, word: W) -> [W; 4] {
     }
 }
 
-/// [`channels`] as bytes.
+/// Returns [`channels`] as bytes.
 #[inline]
 pub fn read(format: SurfaceFormat, word: u32) -> [u8; 4] {
     channels(format, word).map(|channel| channel as u8)
 }
 
-/// The bits of the stored word that belong to R, G, B and A. Unused bits are written together with alpha.
+/// Returns the bits of a stored word that belong to R, G, B and A. Unused bits belong to alpha, with which they are
+/// written.
 #[inline]
 pub fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
     match format {
@@ -119,13 +125,13 @@ pub fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
     }
 }
 
-/// R, G, B, A bytes as a stored word.
+/// Packs R, G, B, A bytes into a stored word.
 #[inline]
 pub fn pack(format: SurfaceFormat, rgba: [u8; 4]) -> u32 {
     packed(format, rgba.map(u32::from))
 }
 
-/// R, G, B, A, each 0 to 255, as a stored word.
+/// Packs R, G, B, A, each 0 to 255, into a stored word.
 #[inline(always)]
 pub fn packed<W: Word>(format: SurfaceFormat, [r, g, b, a]: [W; 4]) -> W {
     let rgb = r << 16 | g << 8 | b;
@@ -143,20 +149,20 @@ pub fn packed<W: Word>(format: SurfaceFormat, [r, g, b, a]: [W; 4]) -> W {
     }
 }
 
-/// What a surface holds after a store: the bits of the mask are the new word's (ROP-6).
+/// ROP-6: returns the stored word after a masked store, which replaces the bits of `write_mask`.
 #[inline(always)]
 pub fn masked<W: Word>(stored: W, word: W, write_mask: u32) -> W {
     stored & W::from(!write_mask) | word & W::from(write_mask)
 }
 
-/// ROP-6: the bits of the stored word that a colour mask (R, G, B, A) lets through.
+/// ROP-6: returns the bits of the stored word that a colour mask (R, G, B, A) lets through.
 #[inline]
 pub fn write_mask(format: SurfaceFormat, color_mask: [bool; 4]) -> u32 {
     let bits = channel_bits(format);
     (0..4).filter(|n| color_mask[*n]).map(|n| bits[n]).sum()
 }
 
-/// The word as a picture shows it: R, G, B, A by the texture format of the same bits (TEX-1).
+/// Returns the R, G, B, A that a picture shows, read by the texture format of the same bits (TEX-1).
 pub fn show(format: SurfaceFormat, word: u32) -> [u8; 4] {
     let texture: TextureFormat = format.texture_format();
     format::expand(texture, word)
@@ -167,7 +173,7 @@ mod tests {
     use super::*;
     use crate::state::Named;
 
-    /// What is stored comes back, as far as the format keeps it.
+    /// Stored colours come back with the bits that the format keeps.
     #[test]
     fn round_trips() {
         for format in SurfaceFormat::ALL {

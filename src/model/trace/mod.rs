@@ -1,7 +1,8 @@
-//! Observation: the pixel pipe reports each rule that it applies to whoever listens.
+//! Observation: the pixel pipe reports each rule that it applies to an observer.
 //!
-//! A trace is not another code path. The functions of the pipe take an [`Observer`]; [`Silent`] makes the reports vanish, a recorder keeps
-//! them. Each [`Step`] names the rule, what it computed from what, the integer, the real number that it stands for, and the ideal.
+//! A trace is not a separate code path. The functions of the pipe take an [`Observer`]; with [`Silent`] the reports are
+//! compiled away, and a recorder keeps them. Each [`Step`] names the rule, the operation and its inputs, the resulting
+//! integer, the real number that it stands for, and the ideal.
 
 mod rule;
 
@@ -10,43 +11,44 @@ pub use rule::{Decision, Rule, Work};
 
 use crate::number::Lane;
 
-/// Receives the steps of a pixel.
+/// Receives reports about a pixel.
 ///
-/// There are two kinds of reports: [`step`](Observer::step) in words, for traces, and the others in passing, for measurements of whole
-/// frames. What an observer does not want costs nothing.
+/// There are two kinds of reports: [`step`](Observer::step) describes a step in words, for traces, and the other
+/// methods are cheap, for measurements of whole frames. Reports that an observer does not want cost nothing.
 pub trait Observer {
-    /// Whether anybody listens; `false` lets the compiler drop the steps.
+    /// Whether steps are wanted. If `false`, the compiler drops them.
     const ON: bool;
-    /// Whether rules, decisions and work are wanted; `false` lets the compiler drop them.
+    /// Whether rules, decisions and work are wanted. If `false`, the compiler drops them.
     const MEASURES: bool = false;
-    /// Whether work is counted: then nothing is computed along that is not needed.
+    /// Whether work is counted. The pipe then computes nothing that is not needed.
     const COUNTS: bool = false;
-    /// One rule has been applied.
+    /// Receives the application of a rule.
     fn step(&mut self, step: Step);
-    /// The same; what it yielded, as an operand of later steps.
+    /// Like [`step`](Self::step), but returns the result as an operand of later steps.
     fn tell(&mut self, step: Step) -> Operand {
         let Step { name, value, per_one, .. } = &step;
         let operand = Operand { name: name.clone(), value: *value, per_one: *per_one };
         self.step(step);
         operand
     }
-    /// A rule has yielded a value; what is returned goes on in its place. It may differ in the ideal only.
+    /// Receives a value that a rule has yielded, and returns the value to continue with. It may only differ in the
+    /// ideal.
     fn observe<L: Lane>(&mut self, _rule: Rule, value: L) -> L {
         value
     }
-    /// A rule has yielded a factor.
+    /// Like [`observe`](Self::observe), for a factor.
     fn observe_factor<L: Lane>(&mut self, _rule: Rule, factor: L::Mapped) -> L::Mapped {
         factor
     }
-    /// A rule has yielded a weight.
+    /// Like [`observe`](Self::observe), for a weight.
     fn observe_weight<L: Lane>(&mut self, _rule: Rule, weight: L::Weight) -> L::Weight {
         weight
     }
-    /// A decision has been taken; `ideal` is what the ideal would have decided.
+    /// Receives a decision. `ideal` returns what the ideal would have decided.
     fn decided(&mut self, _decision: Decision, _outcome: i64, _ideal: impl FnOnce() -> i64) {}
-    /// A texel of a texture was looked up, at its place inside the image.
+    /// Receives the lookup of a texel, at its place inside the image.
     fn fetched(&mut self, _texture: usize, _at: (u32, u32)) {}
-    /// Work was done.
+    /// Receives an amount of work that was done.
     fn count(&mut self, _work: Work, _amount: u64) {}
 }
 
@@ -59,10 +61,10 @@ impl Observer for Silent {
     fn step(&mut self, _step: Step) {}
 }
 
-/// Keeps the steps.
+/// An observer that keeps all steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorder {
-    /// In the order in which the rules were applied.
+    /// The steps, in the order in which the rules were applied.
     pub steps: Vec<Step>,
 }
 
@@ -73,17 +75,18 @@ impl Observer for Recorder {
     }
 }
 
-/// The value of `per_one` for single-precision numbers, whose bit pattern the integer is (TSH-4).
+/// The value of `per_one` for single-precision numbers, whose integer is their bit pattern (TSH-4).
 pub const SINGLE: i64 = 0;
 
 /// A named operand of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {
-    /// The name of an earlier step, or of something given.
+    /// The name of an earlier step, or of a given value.
     pub name: String,
     /// The operand as an integer.
     pub value: i64,
-    /// How many make 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain integers, [`SINGLE`] for floats.
+    /// The integer that stands for 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain
+    /// integers, [`SINGLE`] for floats.
     pub per_one: i64,
 }
 
@@ -92,41 +95,41 @@ pub struct Operand {
 pub struct Step {
     /// The hardware block.
     pub block: String,
-    /// Rule id of `docs/numerics.md`; empty for what is merely given.
+    /// Rule id of `docs/numerics.md`. Empty for a value that is merely given.
     pub rule: &'static str,
-    /// What was computed. A later step of the same name supersedes it, as a register write does.
+    /// Name of the result. A later step of the same name supersedes it, as a register write does.
     pub name: String,
-    /// How: a fixed vocabulary, listed in `docs/trace-format.md`.
+    /// The operation, from a fixed vocabulary that `docs/trace-format.md` lists.
     pub operation: &'static str,
-    /// The operands, in the order of the operation.
+    /// The operands, in the order that the operation defines.
     pub inputs: Vec<Operand>,
     /// The result as an integer.
     pub value: i64,
-    /// How many make 1.0; [`SINGLE`]: the integer is the bit pattern of a single-precision number.
+    /// The integer that stands for 1.0, or [`SINGLE`] if the integer is the bit pattern of a single-precision number.
     pub per_one: i64,
-    /// The float64 ideal in the unit of the real value.
+    /// The float64 ideal, in the unit of [`real`](Self::real).
     pub ideal: Option<f64>,
-    /// A remark for the reader: a tie, a saturation, an undefined value.
+    /// A remark for the reader, such as a tie, a saturation, or an undefined value.
     pub note: Option<String>,
-    /// Of a word that was read from a texture: where it lies.
+    /// The address, if the value is a word that was read from a texture.
     pub texel: Option<TexelAddress>,
 }
 
-/// Where a texel lies.
+/// The address of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TexelAddress {
-    /// Number of the texture in the scene.
+    /// Index of the texture in the scene.
     pub texture: usize,
-    /// The face of a cube map, 0 to 5 for +X, -X, +Y, -Y, +Z, -Z; 0 of others.
+    /// Face of a cube map, 0 to 5 for +X, -X, +Y, -Y, +Z, -Z, or layer of a volume. 0 for other kinds.
     pub face: usize,
-    /// The level, 0 the largest.
+    /// The level. 0 is the largest.
     pub level: usize,
     /// Column and row on the level.
     pub at: [i64; 2],
 }
 
 impl Step {
-    /// A plain integer (per one: 1) without operands.
+    /// Creates a step whose value is a plain integer, with `per_one` 1 and without operands.
     pub fn given(block: &str, rule: &'static str, name: impl Into<String>, value: impl Into<i64>) -> Step {
         Step {
             block: block.to_string(),
@@ -142,7 +145,7 @@ impl Step {
         }
     }
 
-    /// Changes the operation and its operands.
+    /// Sets the operation and its operands.
     #[must_use]
     pub fn by(mut self, operation: &'static str, inputs: Vec<Operand>) -> Step {
         self.operation = operation;
@@ -150,14 +153,14 @@ impl Step {
         self
     }
 
-    /// Changes the unit.
+    /// Sets the integer that stands for 1.0.
     #[must_use]
     pub fn per(mut self, per_one: i64) -> Step {
         self.per_one = per_one;
         self
     }
 
-    /// Sets the ideal, a number in steps of this step's unit.
+    /// Sets the ideal, given in units of the step's integer.
     #[must_use]
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
     pub fn ideal(mut self, ideal: impl Into<Option<f64>>) -> Step {
@@ -172,14 +175,14 @@ impl Step {
         self
     }
 
-    /// Sets the place of the word.
+    /// Sets the address of the word.
     #[must_use]
     pub fn at(mut self, texel: Option<TexelAddress>) -> Step {
         self.texel = texel;
         self
     }
 
-    /// The real number that the integer stands for.
+    /// Returns the real number that the integer stands for.
     #[allow(clippy::float_arithmetic, reason = "display of the real value")]
     pub fn real(&self) -> f64 {
         if self.per_one == SINGLE {
@@ -189,72 +192,72 @@ impl Step {
     }
 }
 
-/// A step that yields a single-precision number.
+/// Returns a step that yields a single-precision number.
 pub fn float_step(block: &str, rule: &'static str, name: impl Into<String>, value: f32, ideal: f64) -> Step {
     let Operand { value, per_one, .. } = float("", value);
     Step { per_one, ideal: Some(ideal), ..Step::given(block, rule, name, value) }
 }
 
-/// A single-precision operand. All NaN count as one.
+/// Returns a single-precision operand. All NaNs become the same one.
 pub fn float(name: impl Into<String>, value: f32) -> Operand {
     let value = if value.is_nan() { f32::NAN } else { value };
     Operand { name: name.into(), value: i64::from(value.to_bits()), per_one: SINGLE }
 }
 
-/// A plain integer operand.
+/// Returns a plain integer operand.
 pub fn plain(name: impl Into<String>, value: impl Into<i64>) -> Operand {
     Operand { name: name.into(), value: value.into(), per_one: 1 }
 }
 
-/// An operand in steps of 1/255.
+/// Returns an operand in steps of 1/255.
 pub fn byte(name: impl Into<String>, value: impl Into<i64>) -> Operand {
     Operand { name: name.into(), value: value.into(), per_one: 255 }
 }
 
-/// An operand in 256ths.
+/// Returns an operand in 256ths.
 pub fn part(name: impl Into<String>, value: impl Into<i64>) -> Operand {
     Operand { name: name.into(), value: value.into(), per_one: 256 }
 }
 
-/// Reports for values of a lane: the integer and the ideal in the unit that shows no fraction.
+/// Reports of values of a lane: the integer and the ideal, in a unit in which the integer has no fraction.
 pub mod report {
     use super::{Operand, Step};
     use crate::number::Lane;
 
-    /// A register or byte as an operand.
+    /// Returns a register or byte as an operand.
     pub fn register<L: Lane>(name: impl Into<String>, value: L) -> Operand {
         super::byte(name, value.observe().0)
     }
 
-    /// A factor as an operand: in 255ths, or in 510ths where a half bit is kept.
+    /// Returns a factor as an operand, in 255ths, or in 510ths if it has a half bit.
     pub fn factor<L: Lane>(name: impl Into<String>, value: L::Mapped) -> Operand {
         let (value, per_one) = whole(L::observe_factor(value).0, 2, 255);
         Operand { name: name.into(), value, per_one }
     }
 
-    /// A sum as an operand: in 65025ths, or finer where half bits are kept.
+    /// Returns a sum as an operand, in 65025ths, or in a finer unit if half bits are kept.
     pub fn sum<L: Lane>(name: impl Into<String>, value: L::Full) -> Operand {
         let (value, per_one) = whole(L::observe_sum(value).0, 4, 65025);
         Operand { name: name.into(), value, per_one }
     }
 
-    /// A step that yields a register or byte.
+    /// Returns a step that yields a register or byte.
     pub fn register_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L) -> Step {
         let (value, ideal) = value.observe();
         Step::given(block, rule, name, value).per(255).ideal(ideal)
     }
 
-    /// A step that yields a factor.
+    /// Returns a step that yields a factor.
     pub fn factor_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Mapped) -> Step {
         let (fixed, ideal) = L::observe_factor(value);
         let (value, per_one) = whole(fixed, 2, 255);
-        // The ideal is counted in 255ths whatever the step's own unit.
+        // The ideal is in 255ths, whatever the unit of the step.
         let mut step = Step::given(block, rule, name, value).per(255).ideal(ideal);
         step.per_one = per_one;
         step
     }
 
-    /// A step that yields a sum.
+    /// Returns a step that yields a sum.
     pub fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
         let (fixed, ideal) = L::observe_sum(value);
         let (value, per_one) = whole(fixed, 4, 65025);
@@ -263,7 +266,7 @@ pub mod report {
         step
     }
 
-    /// Takes a fraction out of a value where it is whole.
+    /// Removes a fraction from the unit if the value is a multiple of it.
     fn whole(value: i64, fraction: i64, per_one: i64) -> (i64, i64) {
         if value % fraction == 0 { (value / fraction, per_one) } else { (value, per_one * fraction) }
     }

@@ -1,54 +1,55 @@
-//! What an observer is told without words: which rule yielded a value, which decision was taken, how much work was done.
+//! The cheap reports to an observer: the rule that yielded a value, the decision that was taken, the work that was
+//! done.
 
 use crate::number::Part;
 use crate::state::named;
 
 named! {
-    /// The rules that can move a value away from the ideal, by the ids of `docs/numerics.md`.
+    /// The rules by which a value can deviate from the ideal, with the ids of `docs/numerics.md`.
     pub enum Rule =>
-    /// The part that the rule's error counts in.
+    /// Returns the part of the pipeline that the rule's error is attributed to.
     part: Part {
         /// Vertex colours given as floats.
         Num4 = "NUM-4" => Part::Interpolation,
         /// Fog factors.
         Num6 = "NUM-6" => Part::Interpolation,
-        /// Linear fog: the light unit's part, the line, and the byte made of its factor.
+        /// Linear fog: the numbers of the light unit, the linear function, and the byte of its factor.
         Fog2 = "FOG-2" => Part::Interpolation,
-        /// Exponential fog: the light unit's part and the table.
+        /// Exponential fog: the numbers of the light unit, and the table.
         Fog4 = "FOG-4" => Part::Interpolation,
         /// Interpolated colours.
         Int2 = "INT-2" => Part::Interpolation,
-        /// Texture coordinates, as the weights of the filter.
+        /// Texture coordinates, as weights of the filter.
         Int4 = "INT-4" => Part::Interpolation,
         /// Texture coordinates that are divided by q.
         Tex15 = "TEX-15" => Part::Interpolation,
         /// Texture coordinates on a face of a cube map.
         Tex12 = "TEX-12" => Part::Interpolation,
-        /// Dependent coordinates of the dot unit, as the weights of the filter.
+        /// Dependent coordinates from the dot unit, as weights of the filter.
         Tsh4 = "TSH-4" => Part::Interpolation,
-        /// The same of dependent reads by bytes.
+        /// Dependent coordinates from bytes, as weights of the filter.
         Tsh6 = "TSH-6" => Part::Interpolation,
-        /// Texture coordinates moved by a bump environment map.
+        /// Texture coordinates displaced by a bump environment map.
         Tsh7 = "TSH-7" => Part::Interpolation,
-        /// Luminance.
+        /// Luminance of a bump environment map.
         Tsh8 = "TSH-8" => Part::Filtering,
-        /// Coordinates as colours.
+        /// Texture coordinates as colours.
         Tsh9 = "TSH-9" => Part::Interpolation,
         /// Texels of few bits, and bytes of 16-bit halves.
         Tex1 = "TEX-1" => Part::Filtering,
         /// Compressed texels.
         Tex2 = "TEX-2" => Part::Filtering,
-        /// DXT1, dithered.
+        /// DXT1 with dither.
         Tex3 = "TEX-3" => Part::Filtering,
-        /// DXT1 in few bits.
+        /// DXT1 mixed in few bits.
         Tex4 = "TEX-4" => Part::Filtering,
-        /// The weight of a level.
+        /// The weight of the second level.
         Tex9 = "TEX-9" => Part::Filtering,
         /// One linear step of the filter.
         Tex6 = "TEX-6" => Part::Filtering,
-        /// The weight of a tap.
+        /// The weight of an anisotropic tap.
         Tex17 = "TEX-17" => Part::Filtering,
-        /// Signed texels, filtered.
+        /// Signed texels after filtering.
         Tex18 = "TEX-18" => Part::Filtering,
         /// Unsigned mappings.
         Cmb2 = "CMB-2" => Part::Expansion,
@@ -68,41 +69,41 @@ named! {
         Cmb9 = "CMB-9" => Part::Product,
         /// Saturation.
         Num3 = "NUM-3" => Part::Product,
-        /// The final lerp.
+        /// The linear interpolation of the final combiner.
         Fin2 = "FIN-2" => Part::Product,
-        /// E times F.
+        /// E times F in the final combiner.
         Fin4 = "FIN-4" => Part::Product,
         /// Blend equations.
         Rop2 = "ROP-2" => Part::Store,
-        /// What a surface keeps.
+        /// The bits that a surface keeps.
         Rop5 = "ROP-5" => Part::Store,
     }
 }
 
 named! {
-    /// Something that is decided and not computed.
+    /// A value that is decided rather than computed.
     pub enum Decision {
         /// Which pixels a triangle covers.
         Coverage = "coverage",
-        /// Which face of a cube map.
+        /// Which face of a cube map is sampled.
         Face = "face",
-        /// Which filter and levels.
+        /// Which filter and levels are used.
         Level = "level",
-        /// Which layer of a volume.
+        /// Which layer of a volume is read.
         Layer = "layer",
         /// Which texels are read.
         Texel = "texel",
-        /// Which texel a dependent read is sent to.
+        /// Which texel a dependent read addresses.
         Dependent = "dependent texel",
-        /// What the texture shader drops.
+        /// Which fragments the texture shader drops.
         Kill = "texture shader",
-        /// What a mux takes.
+        /// Which product a mux selects.
         Mux = "mux",
-        /// What a depth texture's comparison yields.
+        /// The result of comparing with a depth texture.
         Shadow = "shadow comparison",
-        /// The alpha test.
+        /// The result of the alpha test.
         AlphaTest = "alpha test",
-        /// The depth test.
+        /// The result of the depth test.
         DepthTest = "depth test",
         /// The sign of a source byte (ROP-3).
         Sign = "sign of a source",
@@ -110,9 +111,9 @@ named! {
 }
 
 named! {
-    /// Work that is counted.
+    /// A kind of work that is counted.
     pub enum Work {
-        /// Texels looked up, border colours included.
+        /// Texels that are looked up, including border colours.
         Texels = "texels",
         /// Linear steps of filters.
         Lerps = "filter steps",

@@ -1,4 +1,5 @@
-//! Fog coordinates, the parameters of fog functions, and what a vertex passes on of them (FOG-1 to FOG-3, INT-5n).
+//! Fog coordinates, the parameters of fog functions, and the value that a vertex passes to the rasteriser (FOG-1 to
+//! FOG-3, INT-5n).
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 use super::EyeVertex;
@@ -7,17 +8,17 @@ use crate::number::light;
 use crate::state::{FogFunction, FogMode, Profile, named};
 
 named! {
-    /// Where the coordinate of a fog function comes from.
+    /// The source of a fog function's coordinate.
     pub enum FogSource {
-        /// The vertex gives it.
+        /// A coordinate that the vertex provides.
         Vertex,
-        /// z in eye space, with its sign: negative in front of an OpenGL viewer.
+        /// z in eye space with its sign, which is negative in front of an OpenGL viewer.
         EyePlane,
         /// The magnitude of z in eye space.
         EyePlaneAbsolute,
         /// The distance from the viewer.
         EyeRadial,
-        /// z as it leaves the vertex side, before any division; of window vertices their depth. Direct3D's z fog.
+        /// z as it leaves the vertex side, before any division, or the depth of window vertices. Direct3D's z fog.
         Depth,
         /// w as it leaves the vertex side. Direct3D's w fog.
         W,
@@ -28,12 +29,13 @@ named! {
     pub enum FogEvaluation {
         /// At each vertex, in all modes (INT-5n). Direct3D's vertex fog.
         PerVertex,
-        /// Those of linear fog at each pixel (FOG-2), on nv2a alone. Direct3D's table fog.
+        /// At each pixel for linear fog (FOG-2), on nv2a alone. Direct3D's table fog.
         PerPixel,
     }
 }
 
-/// The fog coordinate of a vertex that leaves the vertex side at `position`: in clip space, or of window vertices as given.
+/// Returns the fog coordinate of a vertex that leaves the vertex side at `position`, which is in clip space, or the
+/// given position of window vertices.
 pub fn coordinate(source: FogSource, vertex: &EyeVertex<'_>, position: [f32; 4]) -> f32 {
     match source {
         FogSource::Vertex => vertex.object.fog_coordinate,
@@ -45,16 +47,16 @@ pub fn coordinate(source: FogSource, vertex: &EyeVertex<'_>, position: [f32; 4])
     }
 }
 
-/// 2 ln 256: e^-x is 2^(-16 x / this).
+/// 2 ln 256: e^-x is 2^(-16 x / `EXPONENTIAL`).
 const EXPONENTIAL: f32 = 11.090_355;
 
-/// 2 sqrt(ln 256): e^(-x^2) is 2^(-32 (x / this)^2).
+/// 2 sqrt(ln 256): e^(-x^2) is 2^(-32 (x / `SQUARED`)^2).
 const SQUARED: f32 = 4.709_64;
 
-/// Fog that falls from 1 at `start` to 0 at `end` in a straight line. Without any distance between them it is, of pixels, 1 before `end`
-/// and 0 from there on; of vertices 0 everywhere. `None`: the parameters are not finite.
+/// Returns linear fog that falls from 1 at `start` to 0 at `end`. If they are equal, fog at the pixels is 1 before
+/// `end` and 0 from there on, and fog at the vertices is 0 everywhere. Returns `None` if the parameters are not finite.
 pub fn linear(mode: FogMode, start: f32, end: f32, evaluation: FogEvaluation) -> Option<FogFunction> {
-    // (end - d) 2^40 - 1: the step is less than 2^-39 wide.
+    // (end - d) 2^40 - 1, whose slope is narrower than 2^-39.
     const STEEP: f32 = 1_099_511_627_776.0;
     let distance = end - start;
     let (p0, p1) = match evaluation {
@@ -72,28 +74,28 @@ pub fn linear(mode: FogMode, start: f32, end: f32, evaluation: FogEvaluation) ->
     })
 }
 
-/// Fog of a density: e^(-density d), or its square in the exponent.
+/// Returns fog of a density: e^(-density d), or e^(-(density d)^2) in the squared modes.
 pub fn exponential(mode: FogMode, density: f32, evaluation: FogEvaluation) -> FogFunction {
     let scale = if matches!(mode, FogMode::Exp2 | FogMode::Exp2Abs) { SQUARED } else { EXPONENTIAL };
     let per_vertex = evaluation == FogEvaluation::PerVertex;
     FogFunction { mode, p0: 1.5, p1: -density / scale, p2: 0.0, per_vertex }
 }
 
-/// What the light unit makes of a fog coordinate at a vertex, word by word (FOG-3).
+/// The numbers that the light unit computes from a fog coordinate at a vertex (FOG-3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightFog {
-    /// FOG-1 of p0, p1 and p2.
+    /// The words of p0, p1 and p2 (FOG-1).
     pub parameters: [u32; 3],
-    /// FOG-1 of d and of d^2.
+    /// The words of d and d^2 (FOG-1).
     pub coordinates: [u32; 2],
-    /// p1 d and p2 d^2.
+    /// The products p1 d and p2 d^2.
     pub products: [u32; 2],
-    /// Their sum with p0.
+    /// The sum of p0 and the products.
     pub sum: u32,
 }
 
 impl LightFog {
-    /// p0 + p1 d + p2 d^2 in 14 significant bits.
+    /// Computes p0 + p1 d + p2 d^2 in 14 significant bits.
     pub fn new(function: &FogFunction, d: f32) -> LightFog {
         let parameters = [function.p0, function.p1, function.p2].map(|p| light::word(p.to_bits()));
         let coordinates = [d, square(d)].map(|d| light::word(d.to_bits()));
@@ -102,17 +104,17 @@ impl LightFog {
     }
 }
 
-/// d^2 as the light unit takes it: the single-precision product.
+/// Returns d^2 as the light unit uses it, which is the single-precision product.
 pub fn square(d: f32) -> f32 {
     d * d
 }
 
-/// INT-5n: e as the transform unit of nv10 passes it: bit 10 of a finite word is a copy of bit 11.
+/// INT-5n: returns e as the transform unit of nv10 passes it, where bit 10 of a finite word is a copy of bit 11.
 pub fn passed_by_nv10(e: u32) -> u32 {
     if f32::from_bits(e).is_finite() { e & !(1 << 10) | (e >> 11 & 1) << 10 } else { e }
 }
 
-/// What a vertex passes on for the coordinate d: d' (FOG-2) or e (FOG-3, INT-5n).
+/// Returns the value that a vertex passes for the coordinate d: d' (FOG-2) or e (FOG-3, INT-5n).
 pub fn passed(function: &FogFunction, profile: Profile, d: f32) -> f32 {
     if !function.takes_e() {
         return f32::from_bits(light::word(d.to_bits()));
@@ -140,7 +142,7 @@ mod tests {
         f.clamp(0.0, 1.0)
     }
 
-    /// The factor, 0 to 1, where all three vertices have the coordinate.
+    /// Returns the factor, 0 to 1, if all three vertices have the coordinate.
     fn factor(function: &FogFunction, d: f32) -> f64 {
         let triangle =
             Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a);
@@ -167,13 +169,13 @@ mod tests {
                 }
                 let exact = text(mode, d.into(), start.into(), (start + span).into(), density.into());
                 let factor = factor(&function, d);
-                // 14 bits of the three terms, which may be 2 + 50 - 50.
+                // 14 bits of each of the three terms, which may be 2 + 50 - 50.
                 let off = if mode.is_linear() { 2.0_f64.powi(-12) * (2.0 + f64::from(start + d.abs()) / f64::from(span)) } else { 0.0 };
                 prop_assert!((factor - exact).abs() < 2.0 / 255.0 + off, "{factor} {exact}");
             }
         }
 
-        /// Bit 10 is bit 11, whatever is below it is 0.
+        /// Bit 10 is a copy of bit 11, and everything below it is 0.
         #[test]
         fn nv10_passes_twelve_bits_and_a_copy(p0 in any::<f32>(), p1 in any::<f32>(), p2 in any::<f32>(), d in any::<f32>()) {
             let function = FogFunction { mode: FogMode::Exp, p0, p1, p2, per_vertex: true };
@@ -197,7 +199,7 @@ mod tests {
     fn no_distance_is_a_wall() {
         for end in [0.0, 0.1, 50.0, -3.0, 1e9] {
             let function = |evaluation| linear(FogMode::Linear, end, end, evaluation).expect("finite");
-            // Further than 14 bits of d tell apart.
+            // Values that differ by more than 14 bits of d resolve.
             let around = [end - 0.01 - end.abs() * 1e-3, end, end + 0.01 + end.abs() * 1e-3];
             let near = f64::from(f32::from_bits(light::word(end.to_bits()))) < f64::from(end);
             let factors = around.map(|d| factor(&function(FogEvaluation::PerPixel), d));
@@ -209,7 +211,7 @@ mod tests {
         assert_eq!(of_pixels(0.0, 1e-45), None);
         assert_eq!(of_pixels(3e38, -3e38), None);
         assert_eq!(of_pixels(1e30, 1e30), None);
-        // The other way round is fog that lifts.
+        // With the ends swapped the fog lifts.
         let lifting = of_pixels(24.0, 16.0).expect("finite");
         assert_eq!([0.0, 16.0, 20.0, 24.0, 30.0].map(|d| factor(&lifting, d)), [0.0, 0.0, 127.0 / 255.0, 1.0, 1.0]);
     }

@@ -1,8 +1,9 @@
-//! The vertex side of the fixed-function pipe, as far as texture coordinates and fog need it: eye space, generated coordinates,
-//! texture matrices, fog coordinates.
+//! The vertex side of the fixed-function pipe, as far as texture coordinates and fog need it: eye space, generated
+//! coordinates, texture matrices and fog coordinates.
 //!
-//! The chip's transform unit is not modelled bit by bit. Everything here is 32-bit floats in the order that is written, + - * / and
-//! square root only, so that every machine gets the same vertices. No vector without a length becomes NaN: its direction is zero.
+//! The chip's transform unit is not modelled bit by bit. Everything here is computed in 32-bit floats in the order in
+//! which it is written, with + - * / and square root only, so that every machine computes the same vertices. A vector
+//! without a length does not become NaN: its direction is zero.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 pub mod fog;
@@ -12,10 +13,10 @@ mod vector;
 
 use vector::{dot3, dot4, unit};
 
-/// Four rows of a matrix; a column vector stands to its right.
+/// The four rows of a matrix, which multiplies column vectors.
 pub type Rows = [[f32; 4]; 4];
 
-/// M p: each row times the vector, added from left to right.
+/// Returns M p, where each row's products are added from left to right.
 pub fn transform(matrix: &Rows, p: [f32; 4]) -> [f32; 4] {
     matrix.map(|row| dot4(row, p))
 }
@@ -23,31 +24,31 @@ pub fn transform(matrix: &Rows, p: [f32; 4]) -> [f32; 4] {
 /// A vertex as it was given, before any transform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectVertex {
-    /// Object space; of window vertices the window position.
+    /// Position in object space, or the window position of window vertices.
     pub position: [f32; 4],
-    /// Object space, of any length; zero where none is given (TSH-11).
+    /// Normal in object space, of any length. It is zero if none is given (TSH-11).
     pub normal: [f32; 3],
-    /// Given fog coordinate.
+    /// The fog coordinate that was given.
     pub fog_coordinate: f32,
-    /// How many components each coordinate set was given with, 1 to 4; 4 for one that was not given.
+    /// Number of components with which each coordinate set was given, 1 to 4. It is 4 for a set that was not given.
     pub dimensions: [usize; 4],
 }
 
-/// The point, or the direction, from which lines of sight start.
+/// The viewer, from which lines of sight start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewer {
-    /// At the origin of eye space: each vertex has its own.
+    /// A viewer at the origin of eye space. Each vertex has its own line of sight.
     Local,
-    /// Far away: all run in this direction, which need not be of unit length.
+    /// A viewer far away. All lines of sight have this direction, which need not be of unit length.
     Infinite([f32; 3]),
 }
 
 impl Viewer {
-    /// Far away, looking along -z as OpenGL's viewer does.
+    /// A viewer far away that looks along -z, as OpenGL's does.
     pub const FAR: Viewer = Viewer::Infinite([0.0, 0.0, -1.0]);
 }
 
-/// From object space to eye space: the viewer at the origin.
+/// The transform from object space to eye space, in which the viewer is at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelView {
     position: Rows,
@@ -55,8 +56,8 @@ pub struct ModelView {
 }
 
 impl ModelView {
-    /// Takes the matrix that brings positions there. Normals are transformed by its cofactors, which point where the inverse transpose points,
-    /// need no division, and are right for a singular matrix as well.
+    /// Creates the transform from the matrix of positions. Normals are transformed by its cofactors. They have the
+    /// direction of the inverse transpose, need no division, and are correct for a singular matrix as well.
     pub fn new(matrix: &Rows) -> ModelView {
         let m = |row: usize, column: usize| matrix[row % 3][column % 3];
         let mut cofactors = [[0.0; 3]; 3];
@@ -70,7 +71,7 @@ impl ModelView {
         ModelView { position: *matrix, normal }
     }
 
-    /// A direction, of unit length or zero, as normals are taken.
+    /// Transforms a direction like a normal. The result is of unit length or zero.
     fn direction(&self, v: [f32; 3]) -> [f32; 3] {
         unit(self.normal.map(|row| dot3(row, v)))
     }
@@ -81,18 +82,18 @@ impl ModelView {
 pub struct EyeVertex<'a> {
     /// The vertex as it was given, in object space.
     pub object: &'a ObjectVertex,
-    /// How it came here.
+    /// The transform to eye space.
     pub model_view: &'a ModelView,
-    /// x, y, z, w in eye space.
+    /// Position x, y, z, w in eye space.
     pub position: [f32; 4],
-    /// Normal, of unit length or zero.
+    /// Normal in eye space, of unit length or zero.
     pub normal: [f32; 3],
-    /// Who sees it.
+    /// The viewer of the vertex.
     pub viewer: Viewer,
 }
 
 impl<'a> EyeVertex<'a> {
-    /// Takes a vertex to eye space.
+    /// Transforms a vertex to eye space.
     pub fn new(object: &'a ObjectVertex, model_view: &'a ModelView, viewer: Viewer) -> Self {
         EyeVertex {
             object,
@@ -103,13 +104,13 @@ impl<'a> EyeVertex<'a> {
         }
     }
 
-    /// The position as a point: divided by its w, unless that is 0.
+    /// Returns the position as a point, divided by its w unless that is 0.
     pub fn point(&self) -> [f32; 3] {
         let [x, y, z, w] = self.position;
         if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] }
     }
 
-    /// The direction in which the viewer sees the vertex, of unit length or zero.
+    /// Returns the direction in which the viewer sees the vertex, of unit length or zero.
     fn line_of_sight(&self) -> [f32; 3] {
         match self.viewer {
             Viewer::Local => unit(self.point()),
@@ -117,8 +118,8 @@ impl<'a> EyeVertex<'a> {
         }
     }
 
-    /// The viewer's line of sight to the vertex mirrored at its normal, of unit length: u - 2 n (n u). Zero at the viewer's place; the
-    /// line of sight itself where the normal is zero.
+    /// Returns the line of sight mirrored at the normal: u - 2 n (n u), of unit length. It is zero if the vertex is at
+    /// the viewer's place, and the line of sight itself if the normal is zero.
     pub fn reflection(&self) -> [f32; 3] {
         let (u, n) = (self.line_of_sight(), self.normal);
         let along = 2.0 * dot3(n, u);
@@ -151,7 +152,7 @@ mod tests {
     }
 
     proptest! {
-        /// What makes a normal a normal: it stays perpendicular to the surface, on the side where it was.
+        /// A transformed normal stays perpendicular to the surface, on the same side of it.
         #[test]
         fn normals_stay_perpendicular(matrix in matrix(), n in vector(), v in vector()) {
             let view = ModelView::new(&matrix);
@@ -164,7 +165,7 @@ mod tests {
             let moved = transform(&matrix, [v[0], v[1], v[2], 0.0]);
             let normal = wide(view.direction(n));
             let product = dot(normal, wide([moved[0], moved[1], moved[2]]));
-            // n v has the sign and, with the length that normals lose, the ratio of (M^-T n)(M v).
+            // n v keeps its sign. Because normals are made of unit length, its magnitude changes.
             prop_assert!((dot(normal, normal) - 1.0).abs() < 1e-6);
             let given = dot(wide(n), wide(v));
             prop_assert!(product * given > -1e-4, "{product} {given}");
@@ -179,18 +180,19 @@ mod tests {
             let vertex = EyeVertex::new(&object, &view, Viewer::Local);
             let r = vertex.reflection();
             prop_assume!(dot(wide(p), wide(p)) > 1e-3 && dot(wide(n), wide(n)) > 1e-3);
-            // As long as the line of sight, in its plane with the normal, leaving the surface as steeply as it came.
+            // The reflection is as long as the line of sight, in its plane with the normal, and leaves the surface at
+            // the same angle.
             let (r, n, u) = (wide(r), wide(vertex.normal), wide(p).map(|c| c / dot(wide(p), wide(p)).sqrt()));
             prop_assert!((dot(r, r) - 1.0).abs() < 1e-5);
             prop_assert!((dot(r, n) + dot(u, n)).abs() < 1e-5);
             let sideways = |v: [f64; 3]| [0, 1, 2].map(|k| v[k] - n[k] * dot(v, n));
             prop_assert!((0..3).all(|k| (sideways(r)[k] - sideways(u)[k]).abs() < 1e-5));
-            // Mirrored once more it is the line of sight: the eye stands where the mirror image of the reflection goes.
+            // Mirroring it again yields the line of sight.
             let back = [0, 1, 2].map(|k| r[k] - 2.0 * n[k] * dot(r, n));
             prop_assert!((0..3).all(|k| (back[k] - u[k]).abs() < 1e-5));
         }
 
-        /// A viewer far away sees every vertex as a local one sees what lies straight ahead.
+        /// A viewer far away sees every vertex as a local viewer sees what is straight ahead.
         #[test]
         fn from_far_away_all_lines_of_sight_are_one(p in vector(), ahead in vector(), n in vector()) {
             prop_assume!(dot(wide(ahead), wide(ahead)) > 1e-3);

@@ -5,61 +5,61 @@ use super::vector::{cross, dot3, dot4, length};
 use super::{EyeVertex, Rows};
 use crate::state::Profile;
 
-/// Where a component of a coordinate set comes from.
+/// The source of a generated component of a coordinate set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Generator {
-    /// A plane's distance from the given position.
+    /// The distance of the given position from a plane in object space.
     ObjectLinear([f32; 4]),
-    /// A plane's distance from the position in eye space; the plane stands in eye space.
+    /// The distance of the position in eye space from a plane in eye space.
     EyeLinear([f32; 4]),
-    /// Where a mirroring sphere shows the reflection: s, t.
+    /// The coordinates s, t of the reflection on a mirroring sphere.
     SphereMap,
-    /// The normal in eye space: s, t, r.
+    /// The components s, t, r of the normal in eye space.
     NormalMap,
-    /// The reflected line of sight in eye space: s, t, r.
+    /// The components s, t, r of the reflected line of sight in eye space.
     ReflectionMap,
 }
 
-/// nv10: set 1 is set 0 moved toward a light, along the surface.
+/// Emboss bump mapping of nv10: coordinate set 1 is set 0 displaced along the surface toward a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emboss {
-    /// Toward the light, in eye space; its length counts.
+    /// Vector toward the light in eye space. Its length matters.
     pub light: [f32; 3],
-    /// How far s and t move.
+    /// Scale of the displacement of s and t.
     pub scale: [f32; 2],
 }
 
-/// How one coordinate set is made.
+/// How one coordinate set is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoordinateSet {
-    /// The given set that components without a generator come from.
+    /// Index of the given set that provides components without a generator.
     pub input: usize,
-    /// The generators of s, t, r and q; `None`: the component that was given.
+    /// Generators of s, t, r and q. `None` keeps the component that was given.
     pub generators: [Option<Generator>; 4],
-    /// Embossed coordinates, which take the place of the generators.
+    /// Emboss state, which replaces the generators.
     pub emboss: Option<Emboss>,
-    /// Applied at the end.
+    /// Texture matrix, which is applied last.
     pub matrix: Option<Rows>,
-    /// How the matrix is applied, by Direct3D's rules; `None`: to all four components.
+    /// How the matrix is applied by Direct3D's rules. `None` applies it to all four components.
     pub transform: Option<StageTransform>,
 }
 
-/// D3DTSS_TEXTURETRANSFORMFLAGS.
+/// Direct3D's D3DTSS_TEXTURETRANSFORMFLAGS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageTransform {
-    /// COUNT2 to COUNT4: the matrix is applied, and so many components count. 0 and 1 leave it out.
+    /// COUNT2 to COUNT4 apply the matrix and use this many components of the result. 0 and 1 do not apply it.
     pub count: usize,
-    /// PROJECTED: the coordinates are divided by the last component that counts.
+    /// Whether the coordinates are divided by the last component that counts (PROJECTED).
     pub projected: bool,
 }
 
 impl CoordinateSet {
-    /// Set number `index` as it was given.
+    /// Returns the state that passes set `index` as it was given.
     pub fn given(index: usize) -> CoordinateSet {
         CoordinateSet { input: index, generators: [None; 4], emboss: None, matrix: None, transform: None }
     }
 
-    /// The set of a vertex whose given sets are `given`.
+    /// Computes the set of a vertex whose given sets are `given`.
     pub fn at(&self, vertex: &EyeVertex<'_>, given: &[[f32; 4]; 4], profile: Profile) -> [f32; 4] {
         let coordinates = match &self.emboss {
             Some(emboss) => embossed(emboss, vertex, given[0], given[1]),
@@ -84,9 +84,9 @@ impl CoordinateSet {
 }
 
 impl StageTransform {
-    /// What becomes of coordinates of which `dimensions` components were given. Before a matrix the first that was not is 1; the others, and
-    /// all of them without a matrix, are 0. q becomes the divisor: 1 unless projected, and of coordinates without a matrix the last that
-    /// was given.
+    /// Transforms coordinates of which `dimensions` components were given. With a matrix, the first component that was
+    /// not given is 1. The other missing components, or all of them without a matrix, are 0. q becomes the divisor. It
+    /// is 1 unless projected, and without a matrix it is the last component that was given.
     fn of(&self, coordinates: [f32; 4], dimensions: usize, matrix: Option<&Rows>) -> [f32; 4] {
         let transformed = self.count >= 2;
         let input: [f32; 4] = std::array::from_fn(|n| match n {
@@ -115,13 +115,14 @@ fn generate(generator: Generator, component: usize, vertex: &EyeVertex<'_>) -> f
     }
 }
 
-/// (r + (0, 0, 1)) / (2 |r + (0, 0, 1)|) + 1/2; the middle for a reflection straight away from the viewer.
+/// Returns (r + (0, 0, 1)) / (2 |r + (0, 0, 1)|) + 1/2, or the middle for a reflection straight away from the viewer.
 fn sphere([x, y, z]: [f32; 3]) -> [f32; 3] {
     let m = 2.0 * length([x, y, z + 1.0]);
     if m == 0.0 { [0.5; 3] } else { [x / m + 0.5, y / m + 0.5, 0.0] }
 }
 
-/// s + q Ks (L . B), t - q Kt (L . T). The tangent is what set 1 gives, B = N x T and T = B x N, of unit length.
+/// Returns s + q Ks (L . B) and t - q Kt (L . T). The tangent is given by set 1; B = N x T and T = B x N are of unit
+/// length.
 fn embossed(emboss: &Emboss, vertex: &EyeVertex<'_>, [s, t, r, q]: [f32; 4], tangent: [f32; 4]) -> [f32; 4] {
     let tangent = vertex.model_view.direction([tangent[0], tangent[1], tangent[2]]);
     let binormal = super::unit(cross(vertex.normal, tangent));
@@ -130,7 +131,7 @@ fn embossed(emboss: &Emboss, vertex: &EyeVertex<'_>, [s, t, r, q]: [f32; 4], tan
     [s + q * (ks * dot3(emboss.light, binormal)), t - q * (kt * dot3(emboss.light, tangent)), r, q]
 }
 
-/// M t. On nv10 the row of q meets the s that the first row has made.
+/// Returns M t. On nv10 the row of q multiplies the s that the first row has computed.
 fn multiplied(matrix: &Rows, coordinates: [f32; 4], profile: Profile) -> [f32; 4] {
     let mut result = super::transform(matrix, coordinates);
     if profile == Profile::Nv10 {
@@ -185,7 +186,7 @@ mod tests {
     #[test]
     fn sphere_maps_in_the_middle() {
         let made = set([Some(Generator::SphereMap), Some(Generator::SphereMap), None, None]);
-        // Looking straight at a mirror; straight through where there is none; from the viewer's own place.
+        // Straight at a mirror, straight ahead without a normal, and at the viewer's own place.
         for (position, normal) in [
             ([0.0, 0.0, -5.0, 1.0], [0.0, 0.0, 1.0]),
             ([0.0, 0.0, -5.0, 1.0], [0.0; 3]),
@@ -193,7 +194,7 @@ mod tests {
         ] {
             assert_eq!(at(&made, &IDENTITY, position, normal, Profile::Nv2a), [0.5, 0.5, 5.0, 6.0]);
         }
-        // At grazing angle the reflection goes on: the rim.
+        // At a grazing angle the reflection continues to the rim.
         let rim = at(&made, &IDENTITY, [0.0, 0.0, -5.0, 1.0], [0.999_999, 0.001, 0.0], Profile::Nv2a);
         assert!(rim.iter().all(|c| c.is_finite()));
     }
@@ -202,12 +203,12 @@ mod tests {
     fn the_first_chip_mixes_up_its_last_row() {
         let matrix = [[2.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 1.0]];
         let made = CoordinateSet { matrix: Some(matrix), ..CoordinateSet::given(2) };
-        // s' = 2 * 3 + 6 = 12; q' = 3 + 6, or 12 + 6.
+        // s' = 2 * 3 + 6 = 12, and q' = 3 + 6 or 12 + 6.
         assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv2a), [12.0, 4.0, 5.0, 9.0]);
         assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv10), [12.0, 4.0, 5.0, 18.0]);
     }
 
-    /// The table of Direct3D's flags over one to four given components, with a matrix that turns their order round.
+    /// Direct3D's flags for one to four given components, with a matrix that reverses their order.
     #[test]
     fn flags_count_and_project() {
         let matrix = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
@@ -215,7 +216,7 @@ mod tests {
             let transform = StageTransform { count, projected };
             transform.of([0.8, 0.2, 0.4, 0.5], given, Some(&matrix))
         };
-        // Left out: 0 and 1 are alike, and the last that was given divides.
+        // 0 and 1 are alike: the matrix is not applied, and the last given component divides.
         for count in [0, 1] {
             assert_eq!(of(1, count, false), [0.8, 0.0, 0.0, 1.0]);
             assert_eq!(of(1, count, true), [0.8, 0.0, 0.0, 0.8]);
@@ -239,7 +240,7 @@ mod tests {
     fn embossing_moves_along_the_surface() {
         let emboss = Some(Emboss { light: [0.5, 0.25, 7.0], scale: [0.1, 0.2] });
         let made = CoordinateSet { emboss, ..CoordinateSet::given(1) };
-        // n = z, tangent = x: B = y, T = x. q is 2.
+        // n = z and tangent = x yield B = y and T = x. q is 2.
         let moved = at(&made, &IDENTITY, [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0], Profile::Nv10);
         let expected = [0.25 + 2.0 * 0.1 * 0.25, 0.5 - 2.0 * 0.2 * 0.5, 0.75, 2.0];
         assert!((0..4).all(|k| (moved[k] - expected[k] as f32).abs() < 1e-6), "{moved:?}");
@@ -248,7 +249,7 @@ mod tests {
     }
 
     proptest! {
-        /// The usual text in float64.
+        /// Compares with the usual formulas in float64.
         #[test]
         fn sphere_and_reflection_as_in_the_text(
             p in proptest::array::uniform3(-9.0_f64..9.0), n in proptest::array::uniform3(-1.0_f64..1.0),

@@ -1,37 +1,38 @@
-//! Sums of products in a fixed order, and directions.
+//! Vector operations with sums in a fixed order, and directions.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
-/// a . b from left to right.
+/// Returns a . b, adding from left to right.
 pub(super) fn dot3(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// a . b from left to right.
+/// Returns a . b, adding from left to right.
 pub(super) fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// a x b.
+/// Returns a x b.
 pub(super) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Largest magnitude of the components, and the vector divided by it, of length 1 to the root of 3. `None` where that is no vector: it
-/// is zero or not finite.
+/// Returns the largest magnitude of the components, and the vector divided by it, whose length is between 1 and the
+/// square root of 3. Returns `None` if the vector is zero or not finite.
 fn scaled(v: [f32; 3]) -> Option<(f32, [f32; 3])> {
     let largest = v[0].abs().max(v[1].abs()).max(v[2].abs());
     let usable = largest > 0.0 && v.iter().all(|c| c.is_finite());
     usable.then(|| (largest, v.map(|c| c / largest)))
 }
 
-/// The direction of a vector: of unit length, or zero where it has none. No square overflows or vanishes.
+/// Returns the direction of a vector, of unit length, or zero if it has none. No square overflows or underflows to
+/// zero.
 pub(super) fn unit(v: [f32; 3]) -> [f32; 3] {
     let Some((_, v)) = scaled(v) else { return [0.0; 3] };
     let length = dot3(v, v).sqrt();
     v.map(|c| c / length)
 }
 
-/// The length of a vector; 0 where it is not finite.
+/// Returns the length of a vector, or 0 if it is not finite.
 pub(super) fn length(v: [f32; 3]) -> f32 {
     scaled(v).map_or(0.0, |(largest, v)| largest * dot3(v, v).sqrt())
 }

@@ -1,10 +1,11 @@
-//! What a texture unit asks for beyond addressing and filtering: comparisons (SHD-1), anisotropy (TEX-17), cylindrical wrap (CYL-1), volumes (VOL-1).
+//! Checks of texture units beyond addressing and filtering: comparisons (SHD-1), anisotropy (TEX-17), cylindrical wrap
+//! (CYL-1) and volumes (VOL-1).
 
 use super::{Check, PlanError};
 use crate::state::*;
 
 impl Check<'_> {
-    /// Refuses what a unit does; `unknown`: for want of knowledge.
+    /// Refuses the state of a unit. `unknown` means that what the chip does is not known.
     fn refuse_unit(
         &mut self,
         unit: usize,
@@ -17,7 +18,7 @@ impl Check<'_> {
         self.errors.push(PlanError { draw: self.draw, unit: Some(unit), ..PlanError::new(code, rule, message, help) });
     }
 
-    /// How a unit samples a texture.
+    /// Checks how a unit samples a texture.
     pub(super) fn sampling(&mut self, draw: &Draw, index: usize, unit: &TextureUnit, texture: &Texture) {
         let plain = draw.texture_shader[index].operation == ShaderOperation::Sample;
         let nearest = unit.is_nearest() && unit.mip_filter == MipFilter::None;
@@ -57,7 +58,7 @@ impl Check<'_> {
         }
     }
 
-    /// SHD-1: depths are compared, and nothing else is.
+    /// SHD-1: checks that depths, and nothing else, are compared.
     fn comparison(&mut self, draw: &Draw, index: usize, unit: &TextureUnit, texture: &Texture) {
         let format = texture.format;
         let Some(shadow) = unit.shadow.filter(|_| format.depth().is_some()) else {

@@ -1,28 +1,28 @@
-//! VTX-1: a program on one vertex.
+//! VTX-1: runs a program on one vertex.
 #![allow(clippy::float_arithmetic, reason = "vertex programs are single precision by rule")]
 
 use super::function::{exponential, logarithm, parts, power};
 use super::*;
 
-/// Output registers. Components that nothing wrote are 0, 0, 0, 1.
+/// The output registers. Components that nothing writes are 0, 0, 0, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
-    /// oPos.
+    /// oPos, the position in clip space.
     pub position: [f32; 4],
-    /// oD0, oD1.
+    /// oD0 and oD1, the colours.
     pub colors: [[f32; 4]; 2],
-    /// oT0 to oT3.
+    /// oT0 to oT3, the texture coordinates.
     pub coordinates: [[f32; 4]; COORDINATES],
-    /// oFog.
+    /// oFog, whose x is the fog factor.
     pub fog: [f32; 4],
-    /// oPts.
+    /// oPts, whose x is the point size.
     pub point_size: [f32; 4],
 }
 
-/// What an output register holds before anything writes it.
+/// The value of an output register before anything writes it.
 const INITIAL: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// Runs the program. Constants are as they are given: [`definitions`](VertexShader::definitions) stand in them already.
+/// Runs a program. `constants` must already contain its [`definitions`](VertexShader::definitions).
 pub fn evaluate(shader: &VertexShader, constants: &Constants, inputs: &Inputs) -> Outputs {
     let mut machine = Machine { constants, inputs, temporaries: [[0.0; 4]; TEMPORARIES], address: 0.0 };
     let mut outputs = Outputs {
@@ -64,14 +64,14 @@ struct Machine<'a> {
 }
 
 impl Machine<'_> {
-    /// The value of a register, or of the one `row` places on.
+    /// Returns the value of a register, or of the register `row` places after it.
     fn register(&self, register: SourceRegister, row: usize) -> [f32; 4] {
         match register {
             SourceRegister::Input(index) => self.inputs.get(index + row).copied().unwrap_or_default(),
             SourceRegister::Temporary(index) => self.temporaries.get(index + row).copied().unwrap_or_default(),
             SourceRegister::Constant { index, relative } => {
                 let base = if relative { self.address } else { 0.0 };
-                // Whole numbers of this size are exact.
+                // Integers of this size are exact.
                 let at = base + (index + row) as f32;
                 let inside = (0.0..CONSTANTS as f32).contains(&at);
                 if inside { self.constants[at as usize] } else { [0.0; 4] }
@@ -129,25 +129,25 @@ impl Machine<'_> {
                 [exponent, mantissa, logarithm(w), 1.0]
             }
             Opcode::Lit => lit(source(0)),
-            // Taken care of above.
+            // These are computed above.
             Opcode::M3x2 | Opcode::M3x3 | Opcode::M3x4 | Opcode::M4x3 | Opcode::M4x4 => [0.0; 4],
         }
     }
 }
 
-/// A product is +0 if a factor is zero, whatever the other is.
+/// Multiplies two numbers. The product is +0 if a factor is zero, whatever the other is.
 fn product(a: f32, b: f32) -> f32 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-/// Products added from left to right, each operation rounded.
+/// Adds products from left to right, where each operation is rounded.
 fn dot(a: &[f32], b: &[f32; 4]) -> f32 {
     let mut terms = a.iter().zip(b).map(|(a, b)| product(*a, *b));
     let first = terms.next().unwrap_or(0.0);
     terms.fold(first, |sum, term| sum + term)
 }
 
-/// Largest magnitude of the power that `lit` raises to.
+/// Largest magnitude of the exponent that `lit` uses.
 const MAX_POWER: f32 = 128.0 - 1.0 / 256.0;
 
 fn lit([x, y, _, w]: [f32; 4]) -> [f32; 4] {

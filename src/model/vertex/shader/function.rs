@@ -1,23 +1,23 @@
-//! VTX-2: powers and logarithms of two, the same on every machine.
+//! VTX-2: powers and logarithms to base two, which are the same on every machine.
 //!
-//! They are computed in f64 with + - * / in a fixed order, from series whose error is below 2^-50 of the result, and rounded to f32
-//! once: at most 0.500001 of a unit in the last place from the exact value.
+//! They are computed in f64 with + - * / in a fixed order, from series whose relative error is below 2^-50, and are
+//! rounded to f32 once. They are at most 0.500001 of a unit in the last place from the exact value.
 #![allow(clippy::float_arithmetic, reason = "vertex programs are single precision by rule")]
 
 use std::f64::consts::{LN_2, SQRT_2};
 
-/// 2^x.
+/// Returns 2^x.
 pub fn exponential(x: f32) -> f32 {
     power_of_two(f64::from(x)) as f32
 }
 
-/// log2 |x|; minus infinity of zero.
+/// Returns log2 |x|, which is minus infinity for zero.
 pub fn logarithm(x: f32) -> f32 {
     let (exponent, mantissa) = parts(x);
     (f64::from(exponent) + of_mantissa(mantissa)) as f32
 }
 
-/// y^p of a positive y.
+/// Returns y^p of a positive y.
 pub fn power(y: f32, p: f32) -> f32 {
     if p == 0.0 {
         return 1.0;
@@ -26,7 +26,8 @@ pub fn power(y: f32, p: f32) -> f32 {
     power_of_two((f64::from(exponent) + of_mantissa(mantissa)) * f64::from(p)) as f32
 }
 
-/// Exponent and mantissa, 1 <= mantissa < 2, of |x|: both infinite for infinity, minus infinity and 1 for zero.
+/// Returns exponent and mantissa of |x|, with 1 <= mantissa < 2. The exponent of infinity is infinity, that of zero is
+/// minus infinity; their mantissa is 1.
 pub(super) fn parts(x: f32) -> (f32, f32) {
     let x = x.abs();
     if x == 0.0 {
@@ -35,21 +36,21 @@ pub(super) fn parts(x: f32) -> (f32, f32) {
     if !x.is_finite() {
         return (x, 1.0);
     }
-    // Denormal numbers become normal ones in f64.
+    // Denormal numbers of f32 are normal in f64.
     let bits = f64::from(x).to_bits();
     let exponent = (bits >> 52) as i32 - 1023;
     let mantissa = f64::from_bits(bits & ((1 << 52) - 1) | 1023 << 52);
     (exponent as f32, mantissa as f32)
 }
 
-/// 2^x. What f32 cannot hold is infinite or 0.
+/// Returns 2^x. Values beyond the range of f32 become infinite or 0 when they are rounded.
 fn power_of_two(x: f64) -> f64 {
     if x.is_nan() {
         return x;
     }
     let x = x.clamp(-1000.0, 1000.0);
     let whole = (x + 0.5).floor();
-    // |y| <= ln 2 / 2: the terms left out are below 2^-56.
+    // |y| <= ln 2 / 2, so the terms that are left out are below 2^-56.
     let y = (x - whole) * LN_2;
     let mut sum = 1.0;
     for k in (1..=14).rev() {
@@ -59,11 +60,11 @@ fn power_of_two(x: f64) -> f64 {
     sum * scale
 }
 
-/// log2 of a mantissa from 1 to 2.
+/// Returns log2 of a mantissa from 1 to 2.
 fn of_mantissa(mantissa: f32) -> f64 {
     let m = f64::from(mantissa);
     let (m, whole) = if m > SQRT_2 { (m / 2.0, 1.0) } else { (m, 0.0) };
-    // ln m = 2 (z + z^3 / 3 + z^5 / 5 ...), |z| < 0.172: the terms left out are below 2^-55.
+    // ln m = 2 (z + z^3 / 3 + z^5 / 5 ...) with |z| < 0.172, so the terms that are left out are below 2^-55.
     let z = (m - 1.0) / (m + 1.0);
     let square = z * z;
     let mut sum = 0.0;
@@ -78,7 +79,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Distance from an exact value in units of the last place of `found`.
+    /// Returns the distance from an exact value, in units of the last place of `found`.
     fn off(found: f32, exact: f64) -> f64 {
         let step = f64::from(f32::from_bits(found.abs().to_bits() + 1)) - f64::from(found.abs());
         ((f64::from(found) - exact) / step).abs()

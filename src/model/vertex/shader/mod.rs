@@ -1,6 +1,7 @@
-//! Vertex programs of the language vs.1.1, ready to run: what an instruction is, and what it does to a vertex.
+//! Vertex programs of the language vs.1.1 in executable form: the instructions, and how they run on a vertex.
 //!
-//! The text is read in `ninebit_program::vertex_shader`. [`evaluate()`] runs a program on one vertex. Rules VTX-1 to VTX-4.
+//! `ninebit_program::vertex_shader` parses the text, and [`evaluate()`] runs a program on one vertex. Rules VTX-1 to
+//! VTX-4.
 
 mod evaluate;
 mod function;
@@ -8,35 +9,35 @@ mod function;
 pub use evaluate::{Outputs, evaluate};
 pub use function::{exponential, logarithm, power};
 
-/// Constant registers c0 to c95.
+/// Number of constant registers, c0 to c95.
 pub const CONSTANTS: usize = 96;
-/// Input registers v0 to v15.
+/// Number of input registers, v0 to v15.
 pub const INPUTS: usize = 16;
-/// Temporary registers r0 to r11.
+/// Number of temporary registers, r0 to r11.
 pub const TEMPORARIES: usize = 12;
 /// Most instruction slots that a program may take.
 pub const SLOTS: usize = 128;
-/// Output registers of texture coordinates, oT0 to oT3.
+/// Number of output registers for texture coordinates, oT0 to oT3.
 pub const COORDINATES: usize = 4;
 
-/// Values of all constant registers.
+/// The values of all constant registers.
 pub type Constants = [[f32; 4]; CONSTANTS];
-/// Values of all input registers.
+/// The values of all input registers.
 pub type Inputs = [[f32; 4]; INPUTS];
 
 macro_rules! opcodes {
     ($($(#[$meta:meta])* $name:ident $word:literal $sources:literal $slots:literal,)+) => {
-        /// What an instruction computes; s, t and u are its sources.
+        /// The operation of an instruction. s, t and u are its sources.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Opcode { $($(#[$meta])* $name),+ }
         impl Opcode {
-            /// All of them.
+            /// All opcodes.
             pub const ALL: &'static [Opcode] = &[$(Opcode::$name),+];
-            /// The word of the language, in lower case.
+            /// Returns the word of the language, in lower case.
             pub fn word(self) -> &'static str { match self { $(Opcode::$name => $word),+ } }
-            /// How many sources it takes, 1 to 3.
+            /// Returns the number of sources, 1 to 3.
             pub fn sources(self) -> usize { match self { $(Opcode::$name => $sources),+ } }
-            /// How many of the [`SLOTS`] it takes.
+            /// Returns the number of [`SLOTS`] that an instruction takes.
             pub fn slots(self) -> usize { match self { $(Opcode::$name => $slots),+ } }
         }
     };
@@ -95,7 +96,7 @@ opcodes! {
 }
 
 impl Opcode {
-    /// Rows and columns of a matrix macro; `None` of other instructions.
+    /// Returns the rows and columns of a matrix macro, or `None` for other instructions.
     pub fn matrix(self) -> Option<(usize, usize)> {
         match self {
             Opcode::M3x2 => Some((2, 3)),
@@ -107,13 +108,13 @@ impl Opcode {
         }
     }
 
-    /// Takes only the last component of its (swizzled) source.
+    /// Returns whether the instruction uses only the last component of its swizzled source.
     pub fn is_scalar(self) -> bool {
         matches!(self, Opcode::Rcp | Opcode::Rsq | Opcode::Exp | Opcode::Expp | Opcode::Log | Opcode::Logp)
     }
 
-    /// Which components of source `source`, after its swizzle, the components `written` of the result depend on. Bits 0 to 3 are x
-    /// to w.
+    /// Returns the components of source `source`, after its swizzle, on which the components `written` of the result
+    /// depend. Bits 0 to 3 are x to w.
     pub fn reads(self, source: usize, written: u8) -> u8 {
         const W: u8 = 8;
         if written == 0 {
@@ -132,101 +133,101 @@ impl Opcode {
     }
 }
 
-/// A register that instructions read.
+/// A register that an instruction reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SourceRegister {
-    /// v0 to v15.
+    /// An input register, v0 to v15.
     Input(usize),
-    /// r0 to r11.
+    /// A temporary register, r0 to r11.
     Temporary(usize),
-    /// c0 to c95.
+    /// A constant register, c0 to c95.
     Constant {
-        /// Its number, or what is added to a0.x.
+        /// Number of the register, or the offset that is added to a0.x.
         index: usize,
-        /// `c[a0.x + index]`: outside c0 to c95 it reads as zero.
+        /// Whether the register is `c[a0.x + index]`. Outside c0 to c95 that reads as zero.
         relative: bool,
     },
 }
 
-/// A source of an instruction.
+/// A source operand of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Source {
-    /// The register; of a matrix macro's second source the first of the rows.
+    /// The register, or for the second source of a matrix macro the first row.
     pub register: SourceRegister,
-    /// Which component (0 to 3) each of x, y, z, w is taken from.
+    /// The component (0 to 3) that each of x, y, z, w is taken from.
     pub swizzle: [usize; 4],
-    /// The sign is changed.
+    /// Whether the sign is changed.
     pub negate: bool,
 }
 
 impl Source {
-    /// Bits of the register's components that the swizzled components `components` come from.
+    /// Returns the components of the register that the swizzled components `components` are taken from, as bits.
     pub fn components(&self, components: u8) -> u8 {
         (0..4).filter(|k| components >> k & 1 != 0).fold(0, |mask, k| mask | 1 << self.swizzle[k])
     }
 }
 
-/// A register that instructions write.
+/// A register that an instruction writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DestinationRegister {
-    /// r0 to r11.
+    /// A temporary register, r0 to r11.
     Temporary(usize),
-    /// a0, of which only x exists.
+    /// The address register a0, of which only x exists.
     Address,
-    /// oPos: position in clip space.
+    /// oPos, the position in clip space.
     Position,
-    /// oFog: fog factor, in x.
+    /// oFog, the fog factor in x.
     Fog,
-    /// oPts: size of points, in x.
+    /// oPts, the point size in x.
     PointSize,
-    /// oD0, oD1: primary and secondary colour.
+    /// oD0 and oD1, the primary and the secondary colour.
     Color(usize),
-    /// oT0 to oT3.
+    /// Texture coordinates, oT0 to oT3.
     Coordinates(usize),
 }
 
-/// What an instruction writes.
+/// The destination of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Destination {
     /// The register that is written.
     pub register: DestinationRegister,
-    /// Which components are written: bits 0 to 3 for x to w.
+    /// Mask of the components that are written. Bits 0 to 3 are x to w.
     pub mask: u8,
 }
 
-/// An operation with its destination and sources.
+/// An instruction of a program.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// What it computes.
+    /// The operation.
     pub opcode: Opcode,
     /// The register and the components that are written.
     pub destination: Destination,
-    /// From what: as many as the opcode takes.
+    /// The sources, as many as the opcode takes.
     pub sources: Vec<Source>,
 }
 
 /// A vertex program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexShader {
-    /// Constants that the program brings: number and value.
+    /// Constants that the program defines: number and value of each.
     pub definitions: Vec<(usize, [f32; 4])>,
     /// The instructions, in the order in which they run.
     pub instructions: Vec<Instruction>,
 }
 
 impl VertexShader {
-    /// Instruction slots, macros at what they expand to.
+    /// Returns the number of instruction slots, counting macros as they expand.
     pub fn slots(&self) -> usize {
         self.instructions.iter().map(|instruction| instruction.opcode.slots()).sum()
     }
 
-    /// Components of an output register that the program writes.
+    /// Returns the components of an output register that the program writes, as a mask.
     pub fn written(&self, register: DestinationRegister) -> u8 {
         let to = self.instructions.iter().filter(|instruction| instruction.destination.register == register);
         to.fold(0, |mask, instruction| mask | instruction.destination.mask)
     }
 
-    /// Input registers that it reads.
+    /// Returns which input registers the program reads.
     pub fn inputs(&self) -> [bool; INPUTS] {
         let mut read = [false; INPUTS];
         for source in self.instructions.iter().flat_map(|instruction| &instruction.sources) {
