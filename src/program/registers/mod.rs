@@ -14,7 +14,7 @@ use ninebit::state::{Named, Profile, named};
 
 pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
-use program::word_of;
+pub(crate) use program::word_of;
 pub use program::{decode, encode};
 pub use text::{Written, read};
 

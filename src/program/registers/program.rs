@@ -113,7 +113,7 @@ fn color_word([r, g, b, a]: [u8; 4]) -> u32 {
 }
 
 /// Returns the word and the index that hold a part of a program.
-pub(super) fn word_of(place: Place, chip: Profile) -> (Word, usize) {
+pub(crate) fn word_of(place: Place, chip: Profile) -> (Word, usize) {
     match place {
         Place::Stages | Place::Stage(_) => match chip {
             Profile::Nv10 => (Word::RcOutRgb, 1),
