@@ -37,11 +37,7 @@ fn run_both(rgb: Portion, alpha: Portion, select: MuxSelect, policies: &Policies
 
 #[test]
 fn examples_of_the_general_stage() {
-    let cmb1 = example(
-        "CMB-1",
-        "AB = SPARE0 to SPARE1 and CD = SPARE1 to SPARE0 in one stage exchanges them; its alpha portion reads the blue of \
-         SPARE0 as it was.",
-    );
+    let cmb1 = beside_rows("CMB-1");
     let mut exchange = products();
     exchange.inputs[0].register = Register::Spare0;
     exchange.inputs[2].register = Register::Spare1;

@@ -66,7 +66,7 @@ fn examples_of_interpolation() {
     int4t.gives("64 N_s", 64 * sample.sum(&numerator), sample.sum(&denominator));
     int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), Floored { value: 255, lowered: 1 });
 
-    let int6 = example("INT-6", "on `Nv10` w = 1 + 2^-20 counts as 1, w = 1 + 2^-15 as itself.");
+    let int6 = beside_rows("INT-6");
     let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;
     let (small, large) = (1.0 + 2_f32.powi(-20), 1.0 + 2_f32.powi(-15));
     int6.gives("1 + 2^-20 counts as 1 on Nv10", p(small, Profile::Nv10), p(1.0, Profile::Nv10));

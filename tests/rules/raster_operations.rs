@@ -10,7 +10,7 @@ fn examples_of_raster_operations() {
     beside_rows("ROP-2").gives("the sum", 200 * 128 + 51 * 127, 32_077);
     beside_rows("ROP-3").gives("s8(200)", 200_u8 as i8, -56);
 
-    let rop6 = example("ROP-6", "A8R8G8B8 with R and A let through has the mask 0xffff0000.");
+    let rop6 = beside_rows("ROP-6");
     let mask = surface::write_mask(SurfaceFormat::A8R8G8B8, [true, false, false, true]);
     rop6.gives("the mask", mask, 0xffff_0000);
 }

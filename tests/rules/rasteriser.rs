@@ -37,12 +37,12 @@ fn examples_of_the_rasteriser() {
     // Edge k lies opposite of corner k: 0 is slanted, 1 the left edge, 2 the top edge.
     beside_rows("RAS-3").gives("edges that own their samples", corners.owns, [false, true, true]);
 
-    let ras4 = example("RAS-4", "a strip of five vertices is (0, 1, 2) (2, 1, 3) (2, 3, 4).");
+    let ras4 = beside_rows("RAS-4");
     let strip: Vec<[u32; 3]> =
         split(Topology::TriangleStrip, 5, ProvokingVertex::First).into_iter().map(|t| t.0).collect();
     ras4.gives("a strip of five", strip, vec![[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
 
-    let ras5 = example("RAS-5", "fan of four, \"last\": the triangles (0, 1, 2) and (0, 2, 3) take vertices 2 and 3.");
+    let ras5 = beside_rows("RAS-5");
     let fan = split(Topology::TriangleFan, 4, ProvokingVertex::Last);
     ras5.gives("a fan of four", fan, vec![([0, 1, 2], 2), ([0, 2, 3], 3)]);
 

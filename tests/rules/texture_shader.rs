@@ -61,7 +61,7 @@ fn examples_of_dot_products() {
 
 #[test]
 fn examples_of_reflections() {
-    let tsh5 = example("TSH-5", "n = (0, 0, 2), e = (0.25, -0.5, 1): n.e = 2, n.n = 4, k = 4, r = (-1, 2, 4).");
+    let tsh5 = beside_rows("TSH-5");
     let stages = [
         SAMPLE,
         ShaderOperation::DotProduct,
@@ -103,10 +103,7 @@ fn examples_of_colors() {
     tsh8.shows("4096 f", 4096.0 * real, 2, "2740.12").gives("by hand", (2740 - 10) >> 4, 170);
     tsh8.shows("the real number", 255.0 * pixel.step("texture1.b").ideal.unwrap(), 2, "170.59");
 
-    let tsh9 = example(
-        "TSH-9",
-        "s = 0.3: v = floor(1228.8) = 1228, (1228 - 4) >> 4 = 76 (real: 76.50). s = 1.5 is 255, s = -1 is 0.",
-    );
+    let tsh9 = beside_rows("TSH-9");
     let passed = |s: f32| {
         let stages = [stage(ShaderOperation::PassThrough, DotMapping::ZeroToOne)];
         let second = white(TextureKind::TwoDimensional, 1);
@@ -118,7 +115,7 @@ fn examples_of_colors() {
     tsh9.shows("the real number", 255.0 * third.step("texture0.r").ideal.unwrap(), 2, "76.50");
     tsh9.gives("beyond", [1.5, -1.0].map(|s| passed(s).value("texture0.r")), [255, 0]);
 
-    let tsh10 = example("TSH-10", "t = -0.001 drops the fragment where negative ones are dropped; t = 0 does not.");
+    let tsh10 = beside_rows("TSH-10");
     let culled = |t: f32| {
         let stages = [stage(ShaderOperation::CullFragment { drops_not_negative: [false; 4] }, DotMapping::ZeroToOne)];
         let second = white(TextureKind::TwoDimensional, 1);

@@ -58,12 +58,12 @@ fn examples_of_texture_units() {
         tex15.gives("u", sample.ratio(&s, &q, 64).value, value);
     }
 
-    let tex16 = example("TEX-16", "TEXTURE1 of a draw without a second texture is (0, 0, 0, 255).");
+    let tex16 = beside_rows("TEX-16");
     let unbound = Draw { combiners: Combiners::showing(FinalRegister::Texture1), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![unbound]);
     tex16.gives("the word that shows it", Pixel::from_scene(&scene, Policies::DEFAULT).word, 0xff00_0000);
 
-    let tex18 = example("TEX-18", "bytes 0x7f and 0x80 enter as 254 and -256.");
+    let tex18 = beside_rows("TEX-18");
     let signed = sampled(TextureFormat::A8R8G8B8, &[0xff7f_8000], 0.0, 1.0, |unit| unit.signed = [true; 4]);
     tex18.gives("0x7f", signed.value("texture0.r"), 254).gives("0x80", signed.value("texture0.g"), -256);
 }

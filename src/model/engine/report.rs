@@ -10,6 +10,7 @@ use crate::raster::interpolate::{Floored, Sample};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
 use crate::state::*;
+use crate::texture::coordinates::edge_function;
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, part, plain, report};
 use crate::vertex::fog as vertex_fog;
 
@@ -19,20 +20,9 @@ const FOG: &str = "fog";
 const DEPTH: &str = "depth test";
 
 /// Edge functions, perspective weights, D.
-pub(super) fn setup<O: Observer>(
-    triangle: &setup::Triangle,
-    sample: &Sample<'_>,
-    (x, y): (i64, i64),
-    observer: &mut O,
-) {
+pub(super) fn setup<O: Observer>(triangle: &setup::Triangle, sample: &Sample<'_>, pixel: (i64, i64), observer: &mut O) {
     for (k, e) in sample.e.iter().enumerate() {
-        let inputs = vec![
-            plain(format!("a{k}"), triangle.a[k]),
-            plain(format!("b{k}"), triangle.b[k]),
-            plain(format!("c{k}"), triangle.c[k]),
-            plain("x", x),
-            plain("y", y),
-        ];
+        let inputs = edge_function(triangle, k, pixel);
         let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
         let on_edge = (*e == 0).then(|| format!("exactly on a {owns}"));
         observer.step(Step::given(RASTER, "RAS-3", format!("E{k}"), *e).by("edge_function", inputs).note(on_edge));

@@ -84,7 +84,7 @@ impl Triangle {
     /// Sets the fields that depend on the w of the vertices.
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
-        let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
+        let w = significant(w, profile);
         self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
         let equal = w[0] == w[1] && w[1] == w[2];
         self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
@@ -150,6 +150,12 @@ impl Triangle {
         let signed = |axis: usize, k: usize| if x[axis][k] < 0.0 { -g[3 * axis + k] } else { g[3 * axis + k] };
         std::array::from_fn(|axis| std::array::from_fn(|k| signed(axis, k)))
     }
+}
+
+/// INT-6: returns the three w as a chip takes them.
+#[inline(always)]
+pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
+    if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w }
 }
 
 /// Returns the half-open range of pixels whose centres lie between three positions in 1/16 pixel. Centres are at 16 n +

@@ -412,18 +412,11 @@ impl SampleCoordinates for Interpolated<'_> {
         let direction = self.tell_direction(report, observer);
         let samples = quad_samples(triangle, self.pixel);
         let sides = self.unit.scale(&self.unit.levels[0]);
-        for (n, (x, y)) in [(i, j), (i + 1, j), (i, j + 1)].into_iter().enumerate() {
+        for (n, pixel) in [(i, j), (i + 1, j), (i, j + 1)].into_iter().enumerate() {
             let edge = |k: usize| report.name(&format!("quad{n}.E{k}"));
             for k in 0..3 {
-                let inputs = vec![
-                    plain(format!("a{k}"), triangle.a[k]),
-                    plain(format!("b{k}"), triangle.b[k]),
-                    plain(format!("c{k}"), triangle.c[k]),
-                    plain("x", x),
-                    plain("y", y),
-                ];
                 let step = Step::given(&report.block(), "TEX-11", edge(k), samples[n].e[k]);
-                observer.step(step.by("edge_function", inputs));
+                observer.step(step.by("edge_function", edge_function(triangle, k, pixel)));
             }
             if let Coordinates::Direction(_) = self.coordinates
                 && n == 0
@@ -492,6 +485,13 @@ impl Interpolated<'_> {
         let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
         observer.step(step.by("cube_face", inputs).note(Named::name(face).to_string()));
     }
+}
+
+/// Returns the operands of edge function `k` of a triangle at a pixel.
+pub(crate) fn edge_function(triangle: &Triangle, k: usize, (x, y): (i64, i64)) -> Vec<Operand> {
+    let slopes = [("a", triangle.a), ("b", triangle.b), ("c", triangle.c)];
+    let slopes = slopes.map(|(letter, of)| plain(format!("{letter}{k}"), of[k]));
+    slopes.into_iter().chain([plain("x", x), plain("y", y)]).collect()
 }
 
 /// Returns the ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.

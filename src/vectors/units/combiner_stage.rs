@@ -1,7 +1,7 @@
 //! Whole general stages: everything is read before anything is written.
 
 use super::block::{self, Sixteen};
-use super::{Column, Conditions, Kind, Reach, Unit, channels, named, paired, put, scale_takes_bias};
+use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, channels, named, paired, put, scale_takes_bias};
 use ninebit::combiner::direct::Direct;
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage, StageOf};
 use ninebit::combiner::registers::Registers;
@@ -325,5 +325,71 @@ impl Unit for TwoStages {
             [after.rgb.outputs[2][0]]
         };
         (varying >= 4).then(|| block::registers(inputs, varying, out, rows))
+    }
+}
+
+/// A stage whose portions write registers that they also read.
+pub(super) struct BothPortions;
+
+const SPARES: [Register; 2] = [Register::Spare0, Register::Spare1];
+
+/// Returns SPARE0 and SPARE1 after the stage of a row. `at` gives the inputs as numbers of the lane.
+fn both_portions<L: Lane>(
+    inputs: &[i64],
+    at: impl Fn(usize) -> L,
+    conditions: &Conditions,
+    observer: &mut impl Observer,
+) -> [[L; 4]; 2] {
+    let register = |n: usize| SPARES[inputs[n] as usize & 1];
+    let copy = |register, component| {
+        let input = |register, mapping| CombinerInput { register, component, mapping };
+        [input(register, InputMapping::SignedIdentity), input(Register::Zero, InputMapping::UnsignedInvert)]
+    };
+    let (mut rgb, mut alpha) = (Portion::idle(Component::Rgb), Portion::idle(Component::Alpha));
+    rgb.inputs[..2].copy_from_slice(&copy(register(0), Component::Rgb));
+    rgb.inputs[2..].copy_from_slice(&copy(register(1), Component::Rgb));
+    (rgb.ab_output, rgb.cd_output) = (register(2), register(3));
+    let component = if inputs[5] == 0 { Component::Blue } else { Component::Alpha };
+    alpha.inputs[..2].copy_from_slice(&copy(register(4), component));
+    alpha.ab_output = register(6);
+    let mut file = Registers::new();
+    for (spare, first) in SPARES.into_iter().zip([7, 11]) {
+        file.load(spare, [at(first), at(first + 1), at(first + 2), at(first + 3)]);
+    }
+    general::run(&stage(rgb, alpha), MuxSelect::Msb, &conditions.policies, &mut file, observer);
+    SPARES.map(|spare| [0, 1, 2, 3].map(|channel| file.read(spare, channel)))
+}
+
+impl Unit for BothPortions {
+    known_as!(
+        "both-portions", &["CMB-1", "CMB-6", "NUM-2", "NUM-3"],
+        "spare0 and spare1 after a stage: its RGB portion copies one by AB and one by CD, its alpha portion copies the blue or alpha of one";
+        shows 7.. => ..;
+        takes [
+            ["cfg.ab", "cfg.cd", "cfg.ab_output", "cfg.cd_output", "cfg.alpha"]
+                .map(|name| Column::names(name, &["Spare0", "Spare1"])),
+            Column::names("cfg.alpha_component", &["Blue", "Alpha"]),
+            Column::names("cfg.alpha_output", &["Spare0", "Spare1"]),
+            channels("in.spare0", CHANNELS, Column::register),
+            channels("in.spare1", CHANNELS, Column::register),
+        ];
+        gives [["out.spare0", "out.spare1"].map(|spare| channels(spare, CHANNELS, |name| Column::result(name, Kind::Signed(9)))).concat()]
+    );
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        inputs[2] != inputs[3]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        inputs[3] = 1 - inputs[2];
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let spares = both_portions(inputs, |n| inputs[n] as i32, conditions, &mut Silent);
+        put(results, spares.into_iter().flatten());
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        both_portions(inputs, |n| paired(inputs[n]), conditions, recorder);
     }
 }

@@ -48,6 +48,7 @@ mod combiner_stage;
 mod depth;
 pub(super) mod final_combiner;
 mod fog;
+mod geometry;
 mod number;
 mod pixel_shader;
 mod program;
@@ -61,7 +62,7 @@ mod texture;
 mod texture_environment;
 mod texture_stage;
 
-pub use texture::{LinearAddress, NearestAddress, planned};
+pub use texture::{CubeDirection, FilteredChannel, LinearAddress, NearestAddress, one_channel};
 
 use super::column::{Column, Kind};
 use super::unit::{Conditions, Reach, Unit};
@@ -75,8 +76,10 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &number::ConstantColor,
         &number::VertexSnap,
         &number::Depth,
+        &geometry::PrimitiveSplit,
         &raster::Coverage,
         &clip::Clip,
+        &raster::PerspectiveWeights,
         &raster::ColorWeights,
         &raster::ColorInterpolation,
         &raster::TextureCoordinate,
@@ -92,6 +95,8 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &texture::LinearAddress,
         &texture::LinearStep,
         &texture::Bilinear,
+        &texture::FilteredChannel,
+        &texture::CubeDirection,
         &texture::CubeFace,
         &texture::LevelChoice,
         &sampling::AnisotropyTaps,
@@ -103,6 +108,8 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &sampling::ShadowComparison,
         &shader::Remap,
         &shader::DotProduct,
+        &shader::Reflection,
+        &shader::CoordinateStage,
         &shader::BumpOffset,
         &shader::Luminance,
         &shader::Dependent,
@@ -116,6 +123,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &combiner_stage::AlphaPortion,
         &combiner_stage::BlueToAlpha,
         &combiner_stage::TwoStages,
+        &combiner_stage::BothPortions,
         &final_combiner::FinalCombiner,
         &texture_stage::Stage,
         &texture_environment::Classic,
@@ -124,6 +132,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &rop::AlphaTest,
         &stencil::StencilTest,
         &rop::Blend,
+        &rop::WriteMask,
         &rop::SurfaceStore,
         &rop::SurfaceLoad,
     ]

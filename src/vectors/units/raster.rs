@@ -1,16 +1,27 @@
 //! Triangles: which pixels they cover, and what the pixels get from the vertices.
 
-use super::{Column, Conditions, Kind, Reach, Unit};
+use super::{Column, Conditions, Kind, Reach, Unit, float, put};
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
-use ninebit::raster::setup::Triangle;
-use ninebit::state::{DepthFormat, Profile};
+use ninebit::raster::setup::{Triangle, significant};
+use ninebit::state::{DepthFormat, Profile, TriangleVertices, Vertex, Vertices};
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
 
 /// The corners of a triangle, where any will do.
 pub(super) const LARGE: [[f32; 4]; 3] = [[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]];
+
+/// Calls `then` with a sample of a triangle whose vertices all have these coordinates, and with the vertices.
+pub(super) fn with_place<T>(
+    coordinates: [f32; 4],
+    then: impl FnOnce(&Sample<'_>, TriangleVertices<'_>) -> T,
+) -> Option<T> {
+    let triangle = Triangle::new(LARGE, true, Profile::Nv2a)?;
+    let vertex = |position| Vertex { position, texture_coordinates: [coordinates; 4], ..Vertex::default() };
+    let vertices: Vertices = LARGE.into_iter().map(vertex).collect();
+    Some(then(&Sample::new(&triangle, triangle.edges(8, 8)), vertices.triangle([0, 1, 2])))
+}
 
 /// The farthest position that is drawn, 1/16 pixel.
 const FARTHEST: i64 = 640 * 16;
@@ -212,6 +223,40 @@ const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
 fn w(name: &str) -> Column {
     let bits = [1.0_f32, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0].map(|w| i64::from(w.to_bits()));
     Column::listed(name, Kind::Hex(32), &bits)
+}
+
+/// Perspective weights of three vertices.
+pub(super) struct PerspectiveWeights;
+
+impl Unit for PerspectiveWeights {
+    known_as!(
+        "perspective-weights", &["INT-1", "INT-6"],
+        "the perspective weights of three vertices, from their w (floats) with as many bits as the chip uses", Geometry;
+        takes [W.map(|name| Column::float(name, false, 20))];
+        gives [
+            Column::results(["mid.w0", "mid.w1", "mid.w2"], Kind::Hex(32)),
+            Column::results(["out.p0", "out.p1", "out.p2"], Kind::Unsigned(28)),
+        ]
+    );
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        // RAS-0 has no smaller w.
+        inputs.iter().all(|w| *w >= 107 << 23)
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        for w in inputs {
+            *w = (*w).max(107 << 23);
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let w = [0, 1, 2].map(|n| float(inputs[n]));
+        let Some(mut triangle) = Triangle::new(LARGE, false, conditions.profile) else { return };
+        triangle.weigh(w, true, conditions.profile);
+        put(results, significant(w, conditions.profile).map(f32::to_bits));
+        results[3..].copy_from_slice(&triangle.p);
+    }
 }
 
 /// One colour channel of a pixel.

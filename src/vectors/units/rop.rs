@@ -89,6 +89,36 @@ impl Unit for Blend {
     }
 }
 
+/// A store under a colour mask.
+pub(super) struct WriteMask;
+
+impl Unit for WriteMask {
+    known_as!(
+        "write-mask", &["ROP-6"],
+        "the bits of a surface's word that a colour mask writes, and the word after a store", Geometry;
+        takes [
+            Column::choice::<SurfaceFormat>("cfg.format"),
+            CHANNELS.map(|channel| Column::flag(&format!("cfg.writes.{channel}"))),
+            ["in.stored", "in.word"].map(|name| Column::word(name, 32)),
+        ];
+        gives [Column::results(["mid.mask", "out.stored"], Kind::Hex(32))]
+    );
+
+    fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
+        inputs[5..].iter().all(|word| word >> (8 * named::<SurfaceFormat>(inputs[0]).bytes()) == 0)
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let all = (1 << (8 * named::<SurfaceFormat>(inputs[0]).bytes())) - 1;
+        inputs[5..].iter_mut().for_each(|word| *word &= all);
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let mask = surface::write_mask(named(inputs[0]), [1, 2, 3, 4].map(|n| inputs[n] != 0));
+        put(results, [mask, surface::masked(inputs[5] as u32, inputs[6] as u32, mask)]);
+    }
+}
+
 /// Bytes to a surface's word.
 pub(super) struct SurfaceStore;
 

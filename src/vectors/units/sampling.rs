@@ -1,15 +1,13 @@
 //! How a texture unit samples volumes and long footprints, and what keys and comparisons make of a texel.
 
-use super::raster::LARGE;
+use super::raster;
 use super::texel::formats;
 use super::texture::{footprint, planned};
 use super::{Column, Conditions, Kind, Reach, Unit, float, named};
 use ninebit::raster::depth::word;
-use ninebit::raster::interpolate::Sample;
-use ninebit::raster::setup::Triangle;
 use ninebit::state::{
     self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, Named, Profile, ShadowReference, TextureFormat,
-    TextureKind, TextureUnit, Vertex, Vertices, depth_stencil, largest_anisotropy,
+    TextureKind, TextureUnit, depth_stencil, largest_anisotropy,
 };
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, wrapped};
 use ninebit::texture::fetch::Texel;
@@ -18,16 +16,12 @@ use ninebit::texture::unit::layer;
 use ninebit::texture::{anisotropy, color_key, format, shadow};
 use ninebit::trace::Silent;
 
-/// Hands on a place inside a triangle whose vertices all have the coordinates (0, 0, r, q).
+/// Calls `then` with interpolated coordinates, where all vertices have the coordinates (0, 0, r, q).
 fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interpolated<'_>) -> T) -> Option<T> {
-    let triangle = Triangle::new(LARGE, true, Profile::Nv2a)?;
-    let texture_coordinates = [[0.0, 0.0, r, q]; 4];
-    let vertex = |position| Vertex { position, texture_coordinates, ..Vertex::default() };
-    let vertices: Vertices = LARGE.into_iter().map(vertex).collect();
-    let vertices = vertices.triangle([0, 1, 2]);
-    let coordinates = Coordinates::new(&triangle, vertices.coordinates(0), unit);
-    let at = Sample::new(&triangle, triangle.edges(8, 8));
-    Some(then(&Interpolated { unit, coordinates: &coordinates, at: &at, pixel: (8, 8), vertices, perspective: false }))
+    raster::with_place([0.0, 0.0, r, q], |at, vertices| {
+        let coordinates = &Coordinates::new(at.triangle, vertices.coordinates(0), unit);
+        then(&Interpolated { unit, coordinates, at, pixel: (8, 8), vertices, perspective: false })
+    })
 }
 
 /// A texel behind a colour key.

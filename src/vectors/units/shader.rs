@@ -1,9 +1,14 @@
 //! The texture shader's arithmetic.
 
-use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, bytes, channels, float, named, put};
+use super::raster::with_place;
+use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, bytes, channels, color_results, float, named, put};
 use ninebit::number::convert::split;
-use ninebit::state::{DotMapping, Profile};
+use ninebit::number::{Lane, Paired};
+use ninebit::state::{DotMapping, Profile, ShaderOperation, ShaderStage};
+use ninebit::texture::chain::Chain;
+use ninebit::texture::stage::{PlannedShader, PlannedShaderStage, ShaderSetup};
 use ninebit::texture::{dot, shader};
+use ninebit::trace::{Observer, Recorder, Silent};
 
 const NV2A: &[Profile] = &[Profile::Nv2a];
 
@@ -41,6 +46,82 @@ impl Unit for DotProduct {
         let color = dot::remap(named(inputs[0]), bytes(&inputs[1..]));
         let products = dot::products([5, 6, 7].map(|n| float(inputs[n])), color);
         put(results, products.into_iter().chain([dot::sum(products)]).map(f32::to_bits));
+    }
+}
+
+/// The reflection of an eye vector about a normal.
+pub(super) struct Reflection;
+
+impl Unit for Reflection {
+    known_as!(
+        "shader-reflection", &["TSH-5"], "the eye vector reflected about a normal of any length, in single precision"; on NV2A;
+        takes [["in.nx", "in.ny", "in.nz", "in.ex", "in.ey", "in.ez"].map(|name| Column::float(name, true, 8))];
+        gives [Column::results(
+            ["mid.toward", "mid.square", "mid.scale", "out.x", "out.y", "out.z"],
+            Kind::Hex(32),
+        )]
+    );
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let [nx, ny, nz, ex, ey, ez] = [0, 1, 2, 3, 4, 5].map(|n| float(inputs[n]));
+        let found = dot::reflect([nx, ny, nz], [ex, ey, ez]);
+        let parts = [found.toward, found.square, found.scale];
+        put(results, parts.into_iter().chain(found.vector).map(f32::to_bits));
+    }
+}
+
+/// A stage of the texture shader that reads coordinates, but no texture.
+pub(super) struct CoordinateStage;
+
+/// Returns the colour of the stage of a row, or `None` if it drops the fragment.
+fn coordinate_stage<L: Lane>(inputs: &[i64], conditions: &Conditions, observer: &mut impl Observer) -> Option<[L; 4]> {
+    let operation = match inputs[0] {
+        0 => ShaderOperation::None,
+        1 => ShaderOperation::PassThrough,
+        _ => ShaderOperation::CullFragment { drops_not_negative: [1, 2, 3, 4].map(|n| inputs[n] != 0) },
+    };
+    let idle = PlannedShaderStage { state: ShaderStage::conventional(0, false), unit: None, live: 0, dots: false };
+    let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
+    let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
+    let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {
+        let setup = &ShaderSetup::new(shader, &[], at.triangle, vertices);
+        let scale = conditions.policies.dependent_scale;
+        let chain = Chain { shader, units: &[], setup, textures: &[], vertices, perspective: false, scale };
+        chain.run(at, (8, 8), observer)
+    });
+    run?.map(|[color, ..]| color)
+}
+
+impl Unit for CoordinateStage {
+    known_as!(
+        "coordinate-stage", &["TEX-16", "TSH-9", "TSH-10"],
+        "a stage without a texture: None, coordinates (floats) passed through as a colour, or a fragment dropped by the signs of its coordinates", Geometry;
+        on NV2A;
+        takes [
+            Column::names("cfg.operation", &["None", "PassThrough", "CullFragment"]),
+            ["s", "t", "r", "q"].map(|name| Column::flag(&format!("cfg.drops_not_negative.{name}"))),
+            ["in.s", "in.t", "in.r", "in.q"].map(|name| Column::float(name, true, 8)),
+        ];
+        gives [Column::result("out.kept", Kind::Unsigned(1)), color_results(["out"])]
+    );
+
+    fn fit(&self, inputs: &mut [i64]) {
+        // Every other row keeps its fragment.
+        for n in 1..5 {
+            if inputs[5] & 1 == 0 {
+                inputs[n] = 1 - (inputs[n + 4] >> 31);
+            }
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let color = coordinate_stage::<i32>(inputs, conditions, &mut Silent);
+        results[0] = color.is_some().into();
+        put(&mut results[1..], color.unwrap_or_default());
+    }
+
+    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+        coordinate_stage::<Paired>(inputs, conditions, recorder);
     }
 }
 

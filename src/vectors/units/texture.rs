@@ -1,15 +1,22 @@
 //! Where a texture unit looks, and how it mixes what it finds.
 
-use super::{Column, Conditions, Kind, Reach, Unit, named};
+use super::raster::with_place;
+use super::{Column, Conditions, Kind, Reach, Unit, float, named, put};
+use ninebit::number::{Lane, Paired};
+use ninebit::raster::interpolate::Sample;
 use ninebit::state::*;
+use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, real_coordinate};
 use ninebit::texture::cube::Face;
+use ninebit::texture::dependent::{Dependent, Target};
 use ninebit::texture::planned::PlannedUnit;
-use ninebit::texture::{address, filter, lod, shader};
+use ninebit::texture::report::Report;
+use ninebit::texture::{address, filter, lod, unit};
+use ninebit::trace::{Observer, Recorder, Silent};
 
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
 
 /// Unit 0 with a texture of this format, of two dimensions and one texel.
-pub fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
+pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
     let (levels, face_words) = Level::chain(format, 1, 1, 1, false);
     PlannedUnit {
         index: 0,
@@ -128,6 +135,27 @@ impl Unit for LinearStep {
     }
 }
 
+/// Returns the columns of four texels, row by row, and of the weights of the right and the lower ones.
+fn footprint_of_one_channel() -> [Column; 6] {
+    let [t00, t10, t01, t11] = ["in.t00", "in.t10", "in.t01", "in.t11"].map(|name| Column::signed(name, 9, -128, 255));
+    [t00, t10, t01, t11, Column::byte("in.weight_u"), Column::byte("in.weight_v")]
+}
+
+/// Returns a unit of which one channel is read. Channels do not affect each other.
+pub fn one_channel(signed: bool) -> PlannedUnit {
+    let state = TextureUnit { signed: [signed; 4], ..TextureUnit::new(0) };
+    PlannedUnit { live: 1, ..planned(state, TextureFormat::A8R8G8B8) }
+}
+
+/// Filters the texels of a row: four texels and two weights.
+fn mixed<L: Lane, O: Observer>(unit: &PlannedUnit, row: &[i64], observer: &mut O) -> [L; 4] {
+    // As the unit expands texels: s/128 in the ideal of a signed channel.
+    let denominator = if unit.state.signed[0] { 128 } else { 255 };
+    let texel = |n: usize| [L::texel(row[n] as i32, row[n] as i32, denominator); 4];
+    let weights = [4, 5].map(|n| L::weight(row[n] as i32, || row[n] as f64));
+    unit::mix(&Report { unit, prefix: "" }, [texel(0), texel(1), texel(2), texel(3)], weights, observer)
+}
+
 /// The mix of four texels.
 pub(super) struct Bilinear;
 
@@ -136,10 +164,7 @@ impl Unit for Bilinear {
         "bilinear", &["TEX-6"],
         "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127";
         shows ..4 => 3..;
-        takes [
-            ["in.t00", "in.t10", "in.t01", "in.t11"].map(|name| Column::signed(name, 9, -128, 255)),
-            ["in.weight_u", "in.weight_v"].map(Column::byte),
-        ];
+        takes [footprint_of_one_channel()];
         gives [Column::results(["mid.row0", "mid.row1", "out.value"], Kind::Signed(9))]
     );
 
@@ -164,10 +189,133 @@ impl Unit for Bilinear {
             value
         });
     }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        // Texels of 0 to 127 mean the same in signed and unsigned channels.
+        let unit = one_channel(inputs[..4].iter().any(|t| *t < 0));
+        mixed::<Paired, _>(&unit, inputs, recorder);
+    }
 }
 
-/// A look-up in a cube map.
+/// A filtered channel, loaded into its register.
+#[derive(Debug)]
+pub struct FilteredChannel;
+
+/// Returns the filtered texels of a row, and the register that they become.
+fn filtered<L: Lane, O: Observer>(inputs: &[i64], observer: &mut O) -> [L; 2] {
+    let unit = one_channel(inputs[0] != 0);
+    let mixed = mixed::<L, O>(&unit, &inputs[1..], observer);
+    [mixed[0], unit::load(&unit, mixed, "", observer)[0]]
+}
+
+impl Unit for FilteredChannel {
+    known_as!(
+        "filtered-channel", &["TEX-6", "TEX-18"],
+        "one channel of four texels, filtered and loaded into its register; a signed one (-128..127) is doubled";
+        shows 1..5 => 1..;
+        takes [Column::flag("cfg.signed"), footprint_of_one_channel()];
+        gives [Column::results(["mid.value", "out.register"], Kind::Signed(9))]
+    );
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        let texels = if inputs[0] != 0 { -128..128 } else { 0..256 };
+        inputs[1..5].iter().all(|t| texels.contains(t))
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let least = -128 * inputs[0];
+        inputs[1..5].iter_mut().for_each(|t| *t = (*t & 255) + least);
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        put(results, filtered::<i32, _>(inputs, &mut Silent));
+    }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        filtered::<Paired, _>(inputs, recorder);
+    }
+}
+
+/// Returns a unit with a cube map of one level.
+fn cube(side: i64) -> PlannedUnit {
+    let side = side as u32;
+    let levels = vec![Level { offset: 0, width: side, height: side }];
+    let of = planned(TextureUnit::new(0), TextureFormat::R5G6B5);
+    PlannedUnit { kind: TextureKind::Cube, levels, face_words: side as usize * side as usize, ..of }
+}
+
+/// Returns the face of a look-up, and u and v on it in 1/256 texel.
+fn met<O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer: &mut O) -> [i64; 3] {
+    let (level, face) = (&unit.levels[0], place.face());
+    let floored = place.on(level);
+    if O::ON {
+        let ideal = place.real(Some(face)).st.map(|c| real_coordinate(c, level.width));
+        place.describe(&Report { unit, prefix: "" }, level, floored, ideal, observer);
+    }
+    [face as i64, floored[0].value, floored[1].value]
+}
+
+/// A look-up in a cube map by an interpolated direction.
+#[derive(Debug)]
+pub struct CubeDirection;
+
+fn toward<O: Observer>(inputs: &[i64], observer: &mut O) -> Option<[i64; 3]> {
+    let (unit, direction) = (cube(inputs[0]), [inputs[1], inputs[2], inputs[3]]);
+    let [x, y, z] = direction.map(|n| n as f32);
+    with_place([x, y, z, 1.0], |at, vertices| {
+        // At the first vertex the direction is the numbers themselves.
+        let at = &Sample::new(at.triangle, [1, 0, 0]);
+        let coordinates = &Coordinates::Direction(direction.map(|n| [n, 0, 0]));
+        let place = Interpolated { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
+        met(&unit, &place, observer)
+    })
+}
+
+impl Unit for CubeDirection {
+    known_as!(
+        "cube-direction", &["TEX-12", "TEX-13"],
+        "the face of a cube map in an interpolated direction (whole numbers), and u and v on it in 1/256 texel", Geometry;
+        takes [
+            Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512]),
+            ["in.x", "in.y", "in.z"].map(|name| Column::signed(name, 30, -(1 << 28), 1 << 28)),
+        ];
+        gives [
+            Column::result("out.face", Kind::Name(Face::NAMES)),
+            Column::results(["out.u", "out.v"], Kind::Unsigned(18)),
+        ]
+    );
+
+    fn fit(&self, inputs: &mut [i64]) {
+        // Small numbers, some of them equal and some nearly equal.
+        let small = inputs[1] & 3;
+        for n in 1..4 {
+            if small == 0 {
+                inputs[n] = inputs[n].rem_euclid(5) - 2;
+            } else if small == 1 && inputs[n] & 8 != 0 {
+                inputs[n] = inputs[1] + inputs[n] % 3;
+            }
+            inputs[n] = inputs[n].clamp(-(1 << 28), 1 << 28);
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        put(results, toward(inputs, &mut Silent).unwrap_or_default());
+    }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        toward(inputs, recorder);
+    }
+}
+
+/// A look-up in a cube map by a direction of the dot unit.
 pub(super) struct CubeFace;
+
+fn toward_floats<O: Observer>(inputs: &[i64], observer: &mut O) -> [i64; 3] {
+    let unit = cube(inputs[0]);
+    let target = Target::Vector([1, 2, 3].map(|n| float(inputs[n])));
+    let real = target.followed(|| [0.0; 2]);
+    met(&unit, &Dependent { unit: &unit, target, real, quad: None }, observer)
+}
 
 impl Unit for CubeFace {
     known_as!(
@@ -192,13 +340,11 @@ impl Unit for CubeFace {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let d = shader::direction([1, 2, 3].map(|n| f32::from_bits(inputs[n] as u32)));
-        let face = Face::from_direction(d, d.map(i64::abs), 0);
-        let [s, t, m] = face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
-        results[0] = face as i64;
-        for (result, minor) in results[1..].iter_mut().zip([s, t]) {
-            *result = shader::face_coordinate(minor, m, inputs[0] as u32, 8);
-        }
+        put(results, toward_floats(inputs, &mut Silent));
+    }
+
+    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
+        toward_floats(inputs, recorder);
     }
 }
 

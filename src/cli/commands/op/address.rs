@@ -1,13 +1,14 @@
 //! The operation `ninebit op address`: one texture coordinate to a texel index, in an address mode.
 
 use clap::Args;
-use ninebit::state::{AddressMode, Policies, Profile, TextureFormat, TextureKind};
+use ninebit::state::{AddressMode, TextureFormat, TextureKind};
 use ninebit::texture::report::address_step;
-use ninebit::trace::{Observer, plain};
-use ninebit_vectors::unit::{Conditions, Unit};
+use ninebit::trace::{Observer, Silent, plain};
+use ninebit_vectors::Unit;
 use ninebit_vectors::units::NearestAddress;
 use serde_json::json;
 
+use super::unit::plain_row;
 use super::{
     COORDINATES, Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, set,
     texture_checks, words,
@@ -30,16 +31,9 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// What a unit of addresses makes of a coordinate in 1/256 texel, in a mode and for a side, on any chip.
-pub(super) fn addressed<const N: usize>(
-    unit: &dyn Unit,
-    (mode, size): (AddressMode, u32),
-    coordinate: i64,
-) -> [i64; N] {
-    let mut results = [0; N];
-    let conditions = Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT };
-    unit.evaluate(&[mode as i64, 0, size.into(), coordinate], &conditions, &mut results);
-    results
+/// Returns the results of a unit of addresses for a coordinate in 1/256 texel, an address mode and a side in texels.
+pub(super) fn addressed(unit: &dyn Unit, (mode, size): (AddressMode, u32), coordinate: i64) -> Vec<i64> {
+    plain_row(unit, &[mode as i64, 0, size.into(), coordinate], &mut Silent)
 }
 
 /// A mode and a side.
@@ -67,8 +61,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 impl Operation for Address {
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         // A texel's first coordinate is 256 times its index.
-        let [_, inside, texel] = addressed(&NearestAddress, (self.mode, self.size), 256 * values[0]);
-        let texel = (inside != 0).then_some(texel);
+        let found = addressed(&NearestAddress, (self.mode, self.size), 256 * values[0]);
+        let texel = (found[1] != 0).then_some(found[2]);
         if O::ON {
             let inputs = vec![plain("index", values[0]), plain("size", i64::from(self.size))];
             let mut step = address_step("address", "texel", self.mode, false, inputs, texel.unwrap_or(values[0]));

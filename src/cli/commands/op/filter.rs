@@ -1,15 +1,14 @@
 //! The operation `ninebit op filter`: four texels mixed, or one chosen.
 
 use clap::Args;
-use ninebit::number::{Lane, Paired};
-use ninebit::state::{TextureFormat, TextureUnit};
-use ninebit::texture::planned::PlannedUnit;
+use ninebit::number::Paired;
 use ninebit::texture::report::Report;
 use ninebit::texture::unit;
 use ninebit::trace::{Observer, Rule};
-use ninebit_vectors::units;
+use ninebit_vectors::units::{FilteredChannel, one_channel};
 use serde_json::json;
 
+use super::unit::plain_row;
 use super::{COORDINATES, Column, Common, Failure, Operation, Results, Setup, set, words};
 
 #[derive(Debug, Args)]
@@ -30,9 +29,9 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// A unit whose texels and weights are given.
+/// The operation: filters four texels with weights, or at coordinates.
 struct Mix {
-    unit: PlannedUnit,
+    signed: bool,
     /// The last two columns are coordinates instead of weights.
     coordinates: bool,
 }
@@ -57,33 +56,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     set(&mut texels, arguments.texels.into_iter().flatten())?;
     let mut last = names.map(|names| Column::new(names, range.clone(), 256, "write `--weights U,V` or `--at U,V`"));
     set(&mut last, arguments.at.or(arguments.weights).into_iter().flatten())?;
-    // One channel stands for all: they do not touch each other.
-    let state = TextureUnit { signed: [arguments.signed; 4], ..TextureUnit::new(0) };
-    let unit = PlannedUnit { live: 1, ..units::planned(state, TextureFormat::A8R8G8B8) };
     let known = format!("t00, t10, t01, t11 (column, row), {known}");
     let columns = texels.into_iter().chain(last).collect();
-    Setup::new("filter", columns, known, Mix { unit, coordinates }).drive(&arguments.common)
+    Setup::new("filter", columns, known, Mix { signed: arguments.signed, coordinates }).drive(&arguments.common)
 }
 
 impl Operation for Mix {
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let report = Report { unit: &self.unit, prefix: "" };
-        let exact = |value: i64| value as f64;
-        let texel = |n: usize| {
-            // As the unit expands texels: s/128 in the ideal of a signed channel.
-            let denominator = if self.unit.state.signed[0] { 128 } else { 255 };
-            [Paired::texel(values[n] as i32, values[n] as i32, denominator); 4]
-        };
-        let coordinates = [values[4], values[5]];
-        let weights = if self.coordinates {
-            let ideal = coordinates.map(exact);
-            unit::footprint_weights::<Paired, O>(&report, coordinates, ideal, Rule::Int4, observer).1
-        } else {
-            coordinates.map(|weight| Paired::weight(weight as i32, || exact(weight)))
-        };
-        let mixed = unit::mix(&report, [texel(0), texel(1), texel(2), texel(3)], weights, observer);
-        let register = unit::load(&self.unit, mixed, "", observer);
-        vec![("mix".to_owned(), json!(mixed[0].fixed)), ("register".to_owned(), json!(register[0].fixed))]
+        let mut row = [&[self.signed.into()], values].concat();
+        if self.coordinates {
+            let (unit, at) = (one_channel(self.signed), [values[4], values[5]]);
+            let (report, ideal) = (Report { unit: &unit, prefix: "" }, at.map(|c| c as f64));
+            let (_, weights) = unit::footprint_weights::<Paired, O>(&report, at, ideal, Rule::Int4, observer);
+            row[5..].copy_from_slice(&weights.map(|weight| weight.fixed.into()));
+        }
+        let results = plain_row(&FilteredChannel, &row, observer);
+        vec![("mix".to_owned(), json!(results[0])), ("register".to_owned(), json!(results[1]))]
     }
 }
 

@@ -1,7 +1,7 @@
 //! `ninebit op unit`: any unit of the conformance vectors on given numbers.
 
 use clap::Args;
-use ninebit::state::Profile;
+use ninebit::state::{Policies, Profile};
 use ninebit::trace::{Observer, Recorder};
 use ninebit_vectors::Unit;
 use ninebit_vectors::column::{Column as UnitColumn, Kind};
@@ -62,6 +62,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     setup.drive(&arguments.common)
 }
 
+/// Returns the results of a unit for a row of inputs. The observer receives the steps.
+fn row<O: Observer>(unit: &dyn Unit, inputs: &[i64], conditions: &Conditions, observer: &mut O) -> Vec<i64> {
+    if O::ON {
+        let mut recorder = Recorder::default();
+        unit.trace(inputs, conditions, &mut recorder);
+        recorder.steps.into_iter().for_each(|step| observer.step(step));
+    }
+    let mut results = vec![0; unit.results().len()];
+    unit.evaluate(inputs, conditions, &mut results);
+    results
+}
+
+/// Like [`row`], for a unit that is the same on all chips.
+pub(super) fn plain_row<O: Observer>(unit: &dyn Unit, inputs: &[i64], observer: &mut O) -> Vec<i64> {
+    row(unit, inputs, &Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT }, observer)
+}
+
 impl Operation for (&'static dyn Unit, Conditions) {
     fn check(&self, values: &[i64]) -> Result<(), String> {
         let fits = self.0.accepts(values, self.1.profile);
@@ -69,14 +86,8 @@ impl Operation for (&'static dyn Unit, Conditions) {
     }
 
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        if O::ON {
-            let mut recorder = Recorder::default();
-            self.0.trace(values, &self.1, &mut recorder);
-            recorder.steps.into_iter().for_each(|step| observer.step(step));
-        }
         let columns = self.0.results();
-        let mut results = vec![0; columns.len()];
-        self.0.evaluate(values, &self.1, &mut results);
+        let results = row(self.0, values, &self.1, observer);
         let written = |column: &UnitColumn, value: i64| -> Value {
             match column.kind {
                 Kind::Unsigned(_) | Kind::Signed(_) => json!(value),
