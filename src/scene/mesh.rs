@@ -1,7 +1,7 @@
 //! Makes meshes with tangent bases, the same on every machine.
 //!
 //! All arithmetic is addition, subtraction, multiplication, division and rounding of IEEE numbers in a fixed order. Sine and
-//! cosine come from [`circle`], not from the system's library, whose last bits differ between systems.
+//! cosine come from `circle`, not from the system's library, whose last bits differ between systems.
 //!
 //! Conventions: object space is right-handed, with y up. Triangles are counter-clockwise seen from the side that the normal points to. Texture
 //! coordinate s grows to the right and t downward, like the rows of an image. The tangent points along s. The binormal points

@@ -1,6 +1,6 @@
 //! Examples of the section "Raster operations".
 
-use crate::handbook::{beside_rows, example};
+use crate::handbook::beside_rows;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::*;

@@ -1,6 +1,6 @@
 //! Examples of the section "Texture shader".
 
-use crate::handbook::{beside_rows, example};
+use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
 

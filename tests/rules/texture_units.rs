@@ -1,6 +1,6 @@
 //! Examples of the section "Texture units".
 
-use crate::handbook::{beside_rows, example};
+use crate::handbook::beside_rows;
 use crate::interpolation::{at, of_the_section};
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;

@@ -129,7 +129,7 @@ impl Scene {
     /// Measures the scene as a point of a curve.
     ///
     /// # Errors
-    /// The same as [`plan`](Self::plan).
+    /// The plan of the scene is refused.
     pub fn point(&self, counted: &str, effort: &Effort) -> Result<Point, Box<SceneError>> {
         let plan = self.plan()?;
         let options = RenderOptions { threads: 1, ..RenderOptions::default() };

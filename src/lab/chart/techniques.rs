@@ -43,7 +43,7 @@ pub struct Technique {
     pub truth: Truth,
     /// Accuracy, and cost on the chip.
     pub accuracy: Accuracy,
-    /// Time of drawing a [large picture](LARGE) with the fast engine on one thread, in nanoseconds per final pixel.
+    /// Time of drawing a large picture with the fast engine on one thread, in nanoseconds per final pixel.
     pub time: Spread,
 }
 

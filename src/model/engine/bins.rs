@@ -1,19 +1,19 @@
-//! Which triangles of a draw meet which bands of rows.
+//! Sorts the triangles of a draw by the bands of rows that they meet.
 
 use crate::raster::assemble::Assembly;
 use crate::raster::setup::centres;
 use std::ops::Range;
 
-/// The triangles of a draw by the bands that they may cover pixels of, in order.
+/// The triangles of a draw, in order, for each band in which they may cover pixels.
 #[derive(Debug)]
 pub(super) struct Bins {
-    /// Where each band's numbers begin, and where the last one's end.
+    /// Index of each band's first number, and the end of the last band's.
     starts: Vec<usize>,
     numbers: Vec<u32>,
 }
 
 impl Bins {
-    /// Sorts them into `bands` bands of `height` rows.
+    /// Sorts triangles into `bands` bands of `height` rows.
     pub(super) fn new(assembly: &Assembly, height: usize, bands: usize) -> Bins {
         let count = assembly.triangles.len();
         let mut starts = vec![0; bands + 1];
@@ -29,7 +29,7 @@ impl Bins {
         let mut ends = starts.clone();
         for number in 0..count {
             for band in met(assembly, number, height, bands) {
-                // A draw's indices have 32 bits, and three make a triangle.
+                // A draw has 32-bit indices, and three make a triangle.
                 numbers[ends[band]] = number as u32;
                 ends[band] += 1;
             }
@@ -37,13 +37,13 @@ impl Bins {
         Bins { starts, numbers }
     }
 
-    /// The numbers of the triangles of a band.
+    /// Returns the numbers of a band's triangles.
     pub(super) fn of(&self, band: usize) -> &[u32] {
         &self.numbers[self.starts[band]..self.starts[band + 1]]
     }
 }
 
-/// The bands that a triangle's rows lie in.
+/// Returns the bands that a triangle's rows lie in.
 fn met(assembly: &Assembly, number: usize, height: usize, bands: usize) -> Range<usize> {
     let y = assembly.triangles.vertices(number).map(|v| i64::from(assembly.corners[v as usize].position[1]));
     let (top, bottom) = centres(y);

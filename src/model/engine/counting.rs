@@ -1,4 +1,4 @@
-//! How much work a render does: counted while it is done, and the fragments of a draw without shading them.
+//! Counts the work of a render while it is done, and the fragments of a draw without shading them.
 
 use super::{TextureWords, cleared, walk};
 use crate::plan::{Plan, PlannedDraw};
@@ -8,11 +8,11 @@ use crate::trace::{Observer, Step, Work};
 /// The work of one draw.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
-    /// Covered pixels, once for each triangle that covers them.
+    /// Number of covered pixels, counted once for each triangle that covers them.
     pub fragments: u64,
-    /// Fragments that passed the tests.
+    /// Number of fragments that passed the tests.
     pub stored: u64,
-    /// By kind, in the order of `Work::ALL`.
+    /// Amount of each kind of work, in the order of `Work::ALL`.
     pub work: [u64; Work::ALL.len()],
 }
 
@@ -25,7 +25,7 @@ impl Observer for DrawCounts {
     }
 }
 
-/// Renders a plan on one thread and counts; one entry a draw.
+/// Renders a plan on one thread, and returns the counts of each draw.
 pub fn count(plan: &Plan) -> Vec<DrawCounts> {
     let mut frames = cleared(plan);
     let mut all = Vec::with_capacity(plan.draws.len());
@@ -45,7 +45,7 @@ pub fn count(plan: &Plan) -> Vec<DrawCounts> {
     all
 }
 
-/// Covered pixels of a draw, without shading them.
+/// Returns the number of covered pixels of a draw, without shading them.
 pub fn fragments(plan: &Plan, planned: &PlannedDraw) -> u64 {
     let mut count = 0;
     walk::covered(plan, planned, (0, i64::from(plan.targets[planned.target].height)), |_, _, _| count += 1);

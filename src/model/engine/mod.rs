@@ -1,9 +1,9 @@
-//! The engines: a plan in, frames or the trace of one pixel out.
+//! The engines, which draw the frames of a plan or trace one of its pixels.
 //!
-//! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; `walk.rs` walks triangles and
-//! quads: the scalar engine, which is the definition. `rows/` is the fast engine: the same bytes, a block of pixels at a time. `bins.rs` tells
-//! which triangles meet which bands of rows. This module runs draws and bands of rows on threads. A pixel's result is a pure function of the
-//! plan, whatever the engine, bands and threads.
+//! The scalar engine is the definition: `pixel.rs` has the order in which the blocks process one pixel, generic over the lane and the observer, and
+//! `walk.rs` walks triangles and quads. `rows/` is the fast engine, which computes the same bytes for a block of pixels at a time. `bins.rs` sorts
+//! triangles by bands of rows. This module runs draws and bands on threads. A pixel's result is a pure function of the plan, whatever the engine, the
+//! bands and the threads.
 
 mod bins;
 mod counting;
@@ -33,25 +33,25 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 named! {
-    /// Which engine draws. The bytes do not depend on it.
+    /// The engine that draws. The result does not depend on it.
     pub enum Engine {
-        /// The definition: one pixel at a time.
+        /// The scalar engine, which is the definition: one pixel at a time.
         Scalar = "scalar",
-        /// Blocks of pixels.
+        /// The fast engine: blocks of pixels.
         Fast = "fast",
     }
 }
 
-/// How to render.
+/// Options of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderOptions {
-    /// Threads; 0 takes one a core. The result does not depend on it.
+    /// Number of threads; 0 for one per core. The result does not depend on it.
     pub threads: usize,
-    /// The engine. The result does not depend on it.
+    /// The engine that draws.
     pub engine: Engine,
-    /// The instruction set of the fast engine; `None` takes the widest. One that the machine lacks is taken as the baseline.
+    /// Instruction set of the fast engine; `None` for the widest. The baseline is used if the machine lacks it.
     pub isa: Option<Isa>,
-    /// Rows of a band, the unit that threads share; `None` takes what suits. The result does not depend on it.
+    /// Number of rows of a band, which is the unit of work of a thread; `None` for a suitable number. The result does not depend on it.
     pub band: Option<usize>,
 }
 
@@ -61,34 +61,35 @@ impl Default for RenderOptions {
     }
 }
 
-/// What a render did.
+/// Statistics of a render.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Covered pixels of each draw, counted once for each triangle that covers them.
+    /// Number of covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
-    /// The pixels of which the definition computed something for the fast engine, by the reason; reasons without pixels are left out. A pixel
-    /// counts once for each such thing.
+    /// Number of pixels of which the definition computed something for the fast engine, by reason. Reasons without pixels are left out. A
+    /// pixel counts once for each computed value.
     pub defined_pixels: Vec<(Reason, u64)>,
 }
 
-/// Least rows of a band, unless asked for: the unit of work that threads share.
+/// Least number of rows of a band, if no number is asked for.
 const BAND: usize = 16;
 
-/// Below this many pixels draws stay on one thread.
+/// Draws with fewer pixels run on one thread.
 const SMALL: usize = 16_384;
 
-/// Pixels of a band that stays in cache while several draws pass over it.
+/// Number of pixels of a band that stays in the cache while several draws pass over it.
 const CACHED: usize = 32_768;
 
-/// Up to so many triangles a draw, setting each up for every band costs nothing to speak of.
+/// Up to so many triangles per draw, it costs hardly anything to set up each triangle for every band.
 const MAX_UNSORTED_TRIANGLES: usize = 16;
 
-/// Renders every draw.
+/// Renders every draw of a plan.
 pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
     render_counted(plan, options, &|_, _| {}).0
 }
 
-/// Renders every draw, counting; `progress` is told how many of how many bands of rows are done, from any thread.
+/// Renders every draw of a plan, and returns statistics. `progress` receives the number of finished bands and of all bands, from any
+/// thread.
 pub fn render_counted(
     plan: &Plan,
     options: &RenderOptions,
@@ -103,7 +104,7 @@ pub fn render_counted(
     (frames, statistics)
 }
 
-/// A plan ready to be drawn, any number of times.
+/// A plan that is ready to be drawn, any number of times.
 #[derive(Debug)]
 pub struct Renderer<'a> {
     plan: &'a Plan,
@@ -111,14 +112,14 @@ pub struct Renderer<'a> {
     isa: Isa,
     band: Option<usize>,
     team: Team,
-    /// Of each draw that the fast engine draws in several bands.
+    /// The sorted triangles of each draw that the fast engine draws in several bands.
     bins: Vec<Option<Bins>>,
 }
 
 impl<'a> Renderer<'a> {
-    /// Decodes textures and compiles draws, as far as the engine wants that, and starts the threads.
+    /// Decodes textures and compiles draws, as the engine needs it, and starts the threads.
     pub fn new(plan: &'a Plan, options: &RenderOptions) -> Renderer<'a> {
-        // The caller's thread draws too.
+        // The calling thread draws too.
         let team = Team::new(options.threads);
         let isa = options
             .isa
@@ -132,30 +133,30 @@ impl<'a> Renderer<'a> {
         renderer
     }
 
-    /// The bins of some draws that are drawn together.
+    /// Sorts the triangles of draws that are drawn together.
     fn bin(&self, draws: Range<usize>) -> impl Iterator<Item = Option<Bins>> {
         let (height, bands) = (self.band(&draws), self.bands(&draws));
         self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
     }
 
-    /// The engine that draws.
+    /// Returns the engine that draws.
     pub fn engine(&self) -> Engine {
         if self.rows.is_some() { Engine::Fast } else { Engine::Scalar }
     }
 
-    /// The instruction set that the fast engine uses.
+    /// Returns the instruction set of the fast engine.
     pub fn isa(&self) -> Isa {
         self.isa
     }
 
-    /// Clears the targets and draws everything.
+    /// Clears the targets and draws everything. Returns the frames and the statistics.
     pub fn render(&self) -> (Frames, Statistics) {
         let mut frames = cleared(self.plan);
         let statistics = self.draw_all(&mut frames, &|| {});
         (frames, statistics)
     }
 
-    /// Draws everything once more on frames that [`render`](Self::render) made; nothing is cleared.
+    /// Draws everything once more on frames of [`render`](Self::render), without clearing them.
     pub fn redraw(&self, frames: &mut Frames) -> Statistics {
         self.draw_all(frames, &|| {})
     }
@@ -168,8 +169,8 @@ impl<'a> Renderer<'a> {
         Statistics { shaded_pixels, defined_pixels: defined.filter(|(_, count)| *count > 0).collect() }
     }
 
-    /// Neighbouring draws on one target: they are drawn band by band, all of them on one before any on the next, so that the band stays in
-    /// cache. None reads what another has drawn except through the surface itself.
+    /// Returns groups of neighbouring draws on one target. They are drawn band by band: all draws of a group on one band, then on the next,
+    /// so that the band stays in the cache. No draw reads what another one of its group has drawn, except through the surface itself.
     fn groups(&self) -> impl Iterator<Item = Range<usize>> {
         let draws = &self.plan.draws;
         let mut first = 0;
@@ -181,17 +182,17 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// Rows of a band of some draws.
+    /// Returns the number of rows of a band for some draws.
     fn band(&self, draws: &Range<usize>) -> usize {
         let target = &self.plan.targets[self.plan.draws[draws.start].target];
         let (width, height) = (target.width as usize, target.height as usize);
         let triangles: usize = self.plan.draws[draws.clone()].iter().map(|draw| draw.assembly.triangles.len()).sum();
         let rows = match (&self.rows, self.team.count()) {
             (None, _) => BAND,
-            // What is set up for a triangle is set up for each band that it meets.
+            // A triangle is set up once for each band that it meets.
             (Some(_), 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
             (Some(_), 1) => CACHED / width,
-            // More would share the work more evenly; but triangles on a border are set up on both sides of it.
+            // More bands would share the work more evenly, but triangles on a border are set up on both sides of it.
             (Some(_), threads) => height.div_ceil(3 * threads),
         };
         // Even, so that quads stay whole.
@@ -203,7 +204,7 @@ impl<'a> Renderer<'a> {
         (target.height as usize).div_ceil(self.band(draws))
     }
 
-    /// Runs some draws on their target; covered pixels of each.
+    /// Runs some draws on their target. Returns the number of covered pixels of each.
     fn draw_group(
         &self,
         draws: Range<usize>,
@@ -248,7 +249,7 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// The surfaces as the clears leave them, or with their contents.
+/// Returns the surfaces after the clears, or with their initial contents.
 pub fn cleared(plan: &Plan) -> Frames {
     let clear = |target: &Target| {
         let pixels = target.width as usize * target.height as usize;
@@ -266,8 +267,8 @@ pub fn cleared(plan: &Plan) -> Frames {
     Frames { surfaces: plan.targets.iter().map(clear).collect() }
 }
 
-/// What the ideal's surface holds of pixel `at`, counted row by row, before the first draw, R, G, B, A in 255ths: what blending reads of the
-/// contents; or after the clear the colour as it was given, and what blending reads of channels that the format does not keep.
+/// Returns the ideal's colour of pixel `at`, counted row by row, before the first draw: R, G, B and A in 255ths. It is what blending reads
+/// of the initial contents. After a clear it is the given colour, or what blending reads of channels that the format does not store.
 pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     if let Some(words) = &target.contents {
         return surface::read(target.format, words[at]);
@@ -277,8 +278,8 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Runs draws on their target, in bands of so many rows, which threads take one after the other. `prepare` makes what draws in one band, of what
-/// textures hold.
+/// Runs draws on their target in bands of so many rows, which threads take one after the other. `prepare` returns what draws a band, from
+/// the words of textures.
 fn draw_bands<R>(
     plan: &Plan,
     draws: Range<usize>,
@@ -292,7 +293,7 @@ fn draw_bands<R>(
     let target = plan.draws[draws.start].target;
     let surface = &mut frames.surfaces[target];
     let width = surface.width as usize;
-    // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
+    // The surface leaves the frames during the draw, so that the other surfaces can be read as textures.
     let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
     let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
     let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
@@ -307,7 +308,7 @@ fn draw_bands<R>(
     let work = || {
         let mut block = rows::Block::default();
         loop {
-            // A panic elsewhere ends the render anyway.
+            // A panic in another thread ends the render anyway.
             let band = bands.lock().unwrap_or_else(PoisonError::into_inner).next();
             let Some(mut band) = band else { return };
             run_band(&textures, &mut band, &mut block);

@@ -1,4 +1,4 @@
-//! One pixel: the order in which the blocks of the chip run.
+//! One pixel: the order in which the blocks of the chip process it.
 
 use super::report as reports;
 use crate::combiner::direct::Direct;
@@ -25,22 +25,22 @@ use std::cell::OnceCell;
 #[derive(Debug)]
 pub struct TriangleContext<'a> {
     pub(super) plan: &'a Plan,
-    /// The draw that the triangle belongs to.
+    /// The draw of the triangle.
     pub draw: &'a PlannedDraw,
-    /// Its number in the draw.
+    /// Number of the triangle in the draw.
     pub number: usize,
-    /// The triangle, set up.
+    /// The set-up of the triangle.
     pub triangle: Triangle,
     pub(super) primary: [[u8; 4]; 3],
     pub(super) secondary: [[u8; 4]; 3],
     pub(super) coordinates: [Option<Coordinates>; 4],
-    /// Of the texture shader, where there is one; units have none of their own then.
+    /// Set-up of the texture shader, if there is one. Units have none of their own then.
     shader: Option<Box<ShaderSetup>>,
-    /// None where the fog register's alpha is not read, or fog is off.
+    /// Fog of the vertices; `None` if fog is off or the fog register's alpha is not read.
     pub fog: Option<FogPlane>,
-    /// Depths of the vertices, where there is a depth test.
+    /// Depths of the vertices, if there is a depth test.
     pub depth: DepthPlane,
-    /// Coordinates and fog are this triangle's.
+    /// Whether coordinates and fog are set up for this triangle.
     complete: bool,
 }
 
@@ -49,48 +49,48 @@ pub struct TriangleContext<'a> {
 pub struct Fragment {
     /// Column and row.
     pub pixel: (i64, i64),
-    /// The edge functions E_k at the pixel (RAS-2).
+    /// Edge functions E_k at the pixel (RAS-2).
     pub e: [i64; 3],
-    /// What the surface holds.
+    /// The word of the surface.
     pub stored: u32,
-    /// The ideal's weights of the vertices, where they are not those of the snapped triangle.
+    /// The ideal's weights of the vertices, if they differ from those of the snapped triangle.
     pub weights: Option<[f64; 3]>,
 }
 
-/// What the depth buffer holds of a pixel; shading changes it.
+/// Depth and stencil of a pixel. Shading changes them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DepthStencil {
-    /// The depth, as the lane keeps it.
+    /// The depth, in the lane's representation.
     pub depth: i64,
     /// The stencil, 0 to 255.
     pub stencil: u8,
 }
 
 impl DepthStencil {
-    /// An entry of [`Surface::depth`](crate::frame::Surface::depth).
+    /// Splits an entry of [`Surface::depth`](crate::frame::Surface::depth).
     #[inline]
     pub fn new(word: u32) -> Self {
         DepthStencil { depth: i64::from(depth_of(word)), stencil: stencil_of(word) }
     }
 
-    /// The entry, of a depth that is an integer.
+    /// Returns the entry, for a depth that is an integer.
     #[inline]
     pub fn word(self) -> u32 {
         depth_stencil(self.depth as u32, self.stencil)
     }
 }
 
-/// What a fragment leaves behind.
+/// The result of a fragment.
 #[derive(Clone, Copy, Debug)]
 pub struct Stored<L> {
-    /// The surface's new word.
+    /// The new word of the surface.
     pub word: u32,
-    /// The blended channels before the store, and which of them the mask lets through: what an ideal surface would hold.
+    /// The blended channels before the store, and which of them are written: the contents of an ideal surface.
     pub channels: [L; 4],
 }
 
 impl<'a> TriangleContext<'a> {
-    /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
+    /// Sets up triangle `number`. Returns `None` if it is culled, empty, or outside `rows`.
     pub fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
         let mut context = TriangleContext::vacant(plan, draw);
         if !context.set_up(number, rows) {
@@ -100,7 +100,7 @@ impl<'a> TriangleContext<'a> {
         Some(context)
     }
 
-    /// A place to [set up](Self::set_up) one triangle of a draw after the other.
+    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up).
     pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw) -> Self {
         TriangleContext {
             plan,
@@ -117,8 +117,8 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`. Texture coordinates and fog
-    /// are left for [`complete`](Self::complete).
+    /// Sets up triangle `number`. Returns `false` if it is culled, empty, or outside `rows`; then the context is not valid.
+    /// [`complete`](Self::complete) sets up texture coordinates and fog.
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
         let (plan, draw) = (self.plan, self.draw);
@@ -141,7 +141,7 @@ impl<'a> TriangleContext<'a> {
             Cull::Back if !front => return false,
             Cull::None | Cull::Front | Cull::Back => {}
         }
-        // Half of a closed mesh does not get here.
+        // Half of the triangles of a closed mesh end before this.
         self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
         (self.number, self.complete) = (number, false);
         let colored = match draw.shade_model {
@@ -160,7 +160,7 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up texture coordinates and fog, if they are not.
+    /// Sets up texture coordinates and fog, unless they are set up.
     #[inline(always)]
     pub(super) fn complete(&mut self) {
         if std::mem::replace(&mut self.complete, true) {
@@ -180,26 +180,26 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// The triangle's vertices.
+    /// Returns the triangle's vertices.
     #[inline(always)]
     pub fn vertices(&self) -> TriangleVertices<'a> {
         self.draw.assembly.triangle(self.number)
     }
 
-    /// s, t, r, q of its vertices.
+    /// Returns s, t, r and q of its vertices.
     #[inline(always)]
     pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
         self.vertices().coordinates(set)
     }
 
-    /// The same of what a unit of the draw samples at, by its index there (CYL-1).
+    /// Returns the coordinates at which a unit of the draw samples, by the unit's index in the draw (CYL-1).
     #[inline(always)]
     pub(super) fn sampled_coordinates(&self, unit: usize) -> [[f32; 4]; 3] {
         let unit = &self.draw.units[unit];
         coordinates::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
     }
 
-    /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.
+    /// Returns a colour of vertex `corner` as it was given: its own, or the provoking vertex's.
     fn source(&self, register: Register, corner: usize) -> VertexColor {
         let assembly = &self.draw.assembly;
         let vertex = match self.draw.shade_model {
@@ -213,10 +213,10 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader or a test.
+    /// Runs the whole pipe for one pixel. Returns `None` if the texture shader or a test drops the fragment.
     ///
-    /// `memory` is what the depth buffer holds; a dropped fragment can change its stencil.
-    /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
+    /// `memory` has the depth and the stencil of the pixel; a dropped fragment can change the stencil. `destination` is the ideal's stored colour,
+    /// if the lane has one; otherwise the stored word is used.
     #[inline]
     pub fn shade<L: Lane, O: Observer>(
         &self,
@@ -240,7 +240,7 @@ impl<'a> TriangleContext<'a> {
         for stage in &draw.stages {
             general::run(stage, draw.mux_select, &self.plan.policies, &mut registers, observer);
             if O::ON {
-                // The next stage's constants may differ.
+                // The next stage may have other constants.
                 reports::stage_constants(stage.index + 1, draw, observer);
             }
         }
@@ -250,7 +250,7 @@ impl<'a> TriangleContext<'a> {
         self.raster_operations(source, fragment, memory, destination, observer)
     }
 
-    /// INT-2: PRIMARY, SECONDARY and FOG.
+    /// INT-2: loads PRIMARY, SECONDARY and FOG.
     #[inline]
     fn interpolate_colors<L: Lane, O: Observer>(
         &self,
@@ -264,7 +264,7 @@ impl<'a> TriangleContext<'a> {
             (Register::PrimaryColor, draw.primary, &self.primary, "primary"),
             (Register::SecondaryColor, draw.secondary, &self.secondary, "secondary"),
         ];
-        // Equal bytes at all three vertices need no weights: C W0 + C W1 + C W2 is 256 C.
+        // Equal bytes at all three vertices need no weights, because C W0 + C W1 + C W2 is 256 C.
         let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
             let weights = sample.weights();
             if O::ON && sets.iter().any(|s| s.1 != 0) {
@@ -289,7 +289,7 @@ impl<'a> TriangleContext<'a> {
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
                     let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(&source(k), channel));
-                    // Bytes are as they were given.
+                    // Bytes are exact.
                     if O::MEASURES && matches!(source(k), VertexColor::Floats(_)) {
                         observer.observe(Rule::Num4, corner)
                     } else {
@@ -329,7 +329,7 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
+    /// Loads the fog register: its colour, and in alpha the fog factor (NUM-6), which is 255 with fog off (CMB-13).
     fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
@@ -364,7 +364,7 @@ impl<'a> TriangleContext<'a> {
         registers.load(Register::Fog, [r, g, b, factor]);
     }
 
-    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader or a colour key drops the fragment.
+    /// Loads TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). Returns `None` if the texture shader or a colour key drops the fragment.
     #[inline]
     pub(super) fn sample_textures<L: Lane, O: Observer>(
         &self,
@@ -423,7 +423,7 @@ impl<'a> TriangleContext<'a> {
         Some(())
     }
 
-    /// The coordinates of a unit, before anything moves them. `None`: it has none of its own.
+    /// Returns the coordinates of a unit before any stage moves them, or `None` if it has none of its own.
     #[inline]
     pub(super) fn coordinates_of(&self, unit: usize) -> Option<&Coordinates> {
         match &self.shader {
@@ -432,7 +432,7 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Where a unit samples at its own coordinates.
+    /// Returns where a unit samples at its own coordinates.
     #[inline]
     pub(super) fn sample_coordinates<'s>(
         &'s self,
@@ -445,7 +445,7 @@ impl<'a> TriangleContext<'a> {
         Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, perspective })
     }
 
-    /// ROP-1, STN-1, DEP-1, DEP-2: the tests, in their order. `None`: the fragment is dropped.
+    /// ROP-1, STN-1, DEP-1, DEP-2: runs the tests in their order. Returns `None` if the fragment is dropped.
     #[inline]
     fn depth_stencil_test<L: Lane, O: Observer>(
         &self,
@@ -499,7 +499,7 @@ impl<'a> TriangleContext<'a> {
         (stencil_passed && depth_passed).then_some(())
     }
 
-    /// DEP-1, DEP-3 to DEP-5: the depth of a pixel as the buffer holds it. `None`: it is outside the range, and dropped.
+    /// DEP-1, DEP-3 to DEP-5: returns the depth of a pixel as the buffer stores it, or `None` if it is outside the range, and dropped.
     #[inline]
     pub(super) fn depth_word(&self, sample: &Sample<'_>) -> Option<u32> {
         let range = self.draw.depth_test.as_ref().and_then(|test| test.range.as_ref());
@@ -507,7 +507,7 @@ impl<'a> TriangleContext<'a> {
         Some(depth::word(self.draw.depth_format, depth))
     }
 
-    /// ROP-2 to ROP-6.
+    /// ROP-2 to ROP-6: blends and stores.
     #[inline]
     fn raster_operations<L: Lane, O: Observer>(
         &self,
@@ -547,7 +547,7 @@ impl<'a> TriangleContext<'a> {
         Some(Stored { word, channels })
     }
 
-    /// The ideal's depth: words of the buffer, between them too.
+    /// Returns the ideal's depth in words of the buffer, with a fraction.
     pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
         let linear = sample.ideal.map_or_else(
             || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
@@ -559,7 +559,7 @@ impl<'a> TriangleContext<'a> {
         ideal::depth(linear, values, test, self.draw.depth_format, &self.triangle)
     }
 
-    /// The ideal's weights of the three vertices.
+    /// Returns the ideal's weights of the three vertices.
     fn barycentrics(&self, sample: &Sample<'_>) -> [f64; 3] {
         if let Some(weights) = sample.ideal {
             return weights;

@@ -1,4 +1,4 @@
-//! What a pixel tells an observer outside the blocks that report for themselves. Nothing here computes a value that is used.
+//! Reports of a pixel to an observer, outside the blocks that report for themselves. No value here is used elsewhere.
 
 use super::pixel::{DepthStencil, TriangleContext};
 use crate::combiner::registers::{self, channel_name};
@@ -19,7 +19,7 @@ const INTERPOLATION: &str = "interpolation";
 const FOG: &str = "fog";
 const DEPTH: &str = "depth test";
 
-/// Edge functions, perspective weights, D.
+/// Reports edge functions, perspective weights and D.
 pub(super) fn setup<O: Observer>(triangle: &setup::Triangle, sample: &Sample<'_>, pixel: (i64, i64), observer: &mut O) {
     for (k, e) in sample.e.iter().enumerate() {
         let inputs = edge_function(triangle, k, pixel);
@@ -35,7 +35,7 @@ pub(super) fn setup<O: Observer>(triangle: &setup::Triangle, sample: &Sample<'_>
     observer.step(Step::given(RASTER, "INT-1", "D", sample.d).by("sum_of_products", inputs));
 }
 
-/// DEP-1's sum, reciprocal and weights.
+/// Reports DEP-1's sum, reciprocal and weights.
 fn depth_weights<O: Observer>(e: [i64; 3], observer: &mut O) {
     let weights = DepthWeights::from_edges(e);
     let inputs = (0..3).map(|k| plain(format!("E{k}"), e[k])).collect();
@@ -45,13 +45,13 @@ fn depth_weights<O: Observer>(e: [i64; 3], observer: &mut O) {
     observer.step(step.note(format!("times 2^-{exponent}")));
     for k in (0..3).filter(|k| *k != largest_edge(e)) {
         let (mantissa, exponent) = weights.weight(k);
-        // Of a pixel on the edge it is 0 in any unit.
+        // On an edge it is 0, in any unit.
         let step = Step::given(DEPTH, "DEP-1", format!("depth.weight{k}"), mantissa).per(1 << (-exponent).min(62));
         observer.step(step.by("depth_weight", vec![plain(format!("E{k}"), e[k]), sum.clone()]));
     }
 }
 
-/// CMB-13: what is read before anything wrote it.
+/// CMB-13: reports registers that are read before they are written.
 pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
     for register in [Register::Spare0, Register::Spare1] {
         for channel in (0..4).filter(|c| read & registers::bit(register, *c) != 0) {
@@ -62,7 +62,7 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
     }
 }
 
-/// The 8-bit weights of the colours.
+/// Reports the 8-bit weights of the colours.
 pub(super) fn weights<O: Observer>(
     sample: &Sample<'_>,
     weights: [Floored; 2],
@@ -100,8 +100,8 @@ pub(super) fn weights<O: Observer>(
     );
 }
 
-/// One interpolated channel, and the vertices' bytes that it comes from. `output`: the register of the vertex program that they come
-/// from.
+/// Reports one interpolated channel, and the vertices' bytes that it comes from. `output` is the register of the vertex program that has
+/// them.
 pub(super) fn color<L: Lane, O: Observer>(
     register: &str,
     channel: usize,
@@ -129,7 +129,7 @@ pub(super) fn color<L: Lane, O: Observer>(
     observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
 }
 
-/// A number of the set-up that a step reads.
+/// Reports a number of the set-up that a step reads.
 fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: impl Into<i64>) -> Operand {
     observer.tell(Step::given(FOG, rule, name, value))
 }
@@ -144,7 +144,7 @@ fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O
 }
 
 impl TriangleContext<'_> {
-    /// FOG-1 to FOG-5, INT-5n: the fog factor, from factors of the vertices or by a function of their coordinates.
+    /// FOG-1 to FOG-5, INT-5n: reports the fog factor, from factors of the vertices or from a function of their coordinates.
     pub(super) fn report_fog<L: Lane, O: Observer>(
         &self,
         sample: &Sample<'_>,
@@ -153,7 +153,7 @@ impl TriangleContext<'_> {
         factor: L,
         observer: &mut O,
     ) {
-        // What the interpolated quotient is made of.
+        // Operands of the interpolated quotient.
         let quotient = |observer: &mut O, rule, g: [i64; 3]| -> Vec<Operand> {
             let planes: Vec<Operand> = (0..3).map(|k| given(observer, rule, &format!("fog.G{k}"), g[k])).collect();
             let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
@@ -211,7 +211,7 @@ impl TriangleContext<'_> {
         observer.step(report::register_step(FOG, rule, "fog.a", factor).by(operation, inputs));
     }
 
-    /// FOG-1 to FOG-3, INT-5n: what the vertices pass of their fog coordinates.
+    /// FOG-1 to FOG-3, INT-5n: reports the fog coordinates that the vertices pass on.
     fn report_passed_fog<O: Observer>(&self, function: &FogFunction, observer: &mut O) {
         let word = |observer: &mut O, rule, name: String, value: u32, operation, inputs| {
             let step = Step::given(FOG, rule, name, value).by(operation, inputs);
@@ -275,7 +275,7 @@ impl TriangleContext<'_> {
         }
     }
 
-    /// DEP-1, DEP-3 to DEP-5. `word`: what came out; `None`, the pixel is outside the range.
+    /// DEP-1, DEP-3 to DEP-5: reports the depth. `word` is the result, or `None` if the pixel is outside the range.
     pub(super) fn report_depth<O: Observer>(&self, sample: &Sample<'_>, word: Option<u32>, observer: &mut O) {
         let draw = self.draw;
         let Some(test) = &draw.depth_test else { return };
@@ -327,13 +327,13 @@ impl TriangleContext<'_> {
         observer.step(step.ideal(self.ideal_depth(sample)));
     }
 
-    /// What a depth word is a fraction of: the largest, or 1 where words are floats.
+    /// Returns the denominator of a depth word: the largest word, or 1 if words are floats.
     fn depth_unit(&self) -> i64 {
         let format = self.draw.depth_format;
         if format.is_float() { 1 } else { i64::from(format.largest()) }
     }
 
-    /// DEP-2: the depth test, as a step.
+    /// DEP-2: reports the depth test.
     pub(super) fn report_depth_test<O: Observer>(
         &self,
         test: &DepthTest,
@@ -435,7 +435,7 @@ impl TriangleContext<'_> {
 
 const STENCIL_BLOCK: &str = "stencil test";
 
-/// STN-1: what is compared, and whether it passes.
+/// STN-1: reports the comparison, and whether it passes.
 pub(super) fn stencil_test<O: Observer>(test: &StencilTest, stored: u8, passed: bool, observer: &mut O) {
     let mut masked = |name: &str, value: u8| {
         let given = Step::given(STENCIL_BLOCK, "", name, value);
@@ -452,7 +452,7 @@ pub(super) fn stencil_test<O: Observer>(test: &StencilTest, stored: u8, passed: 
     );
 }
 
-/// STN-1: what is stored.
+/// STN-1: reports the stored stencil.
 pub(super) fn stencil<O: Observer>(
     test: &StencilTest,
     operation: StencilOperation,
@@ -480,7 +480,7 @@ pub(super) fn stencil<O: Observer>(
     observer.step(step.by(name, inputs).note(format!("{written:#04x}")));
 }
 
-/// The constants of the stage that comes at or after number `next`, or of the final combiner.
+/// Reports the constants of the first stage whose number is at least `next`, or of the final combiner.
 pub(super) fn stage_constants<O: Observer>(next: usize, draw: &PlannedDraw, observer: &mut O) {
     match draw.stages.iter().find(|s| s.index >= next) {
         Some(stage) if !stage.reads_constants => {}

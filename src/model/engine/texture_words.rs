@@ -1,4 +1,4 @@
-//! The words of textures as a draw finds them: texels of their own, or what a target holds then.
+//! The words of textures at the time of a draw: texels of their own, or the contents of a target.
 
 use std::borrow::Cow;
 
@@ -9,18 +9,18 @@ use crate::texture::planned::Image;
 
 use super::Surface;
 
-/// The words of each texture of a plan at one moment, in the order of the scene.
+/// The words of each texture of a plan at one time, in the order of the scene.
 #[derive(Clone, Debug)]
 pub struct TextureWords<'a>(Vec<Cow<'a, [u32]>>);
 
 impl<'a> TextureWords<'a> {
-    /// Those of `surfaces`, as these draws find them: a target that one of them reads in texels of another size is written anew. Without
-    /// surfaces no draw may read those that are targets.
+    /// Returns the words of textures for some draws. A target that one of them reads in texels of another size is converted. Without
+    /// surfaces, no draw may read a target.
     pub fn new(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface]) -> TextureWords<'a> {
         TextureWords::from_surfaces(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
     }
 
-    /// Those of surfaces of whatever kind: `surface` gives the words of a target and of its depth buffer, if there are any.
+    /// Returns the words of textures. `surface` returns the words of a target and of its depth buffer, if there are any.
     pub fn from_surfaces(
         plan: &'a Plan,
         draws: &[PlannedDraw],
@@ -40,12 +40,12 @@ impl<'a> TextureWords<'a> {
         TextureWords(plan.textures.iter().enumerate().map(words).collect())
     }
 
-    /// The words of one texture.
+    /// Returns the words of one texture.
     pub fn words(&self, texture: usize) -> &[u32] {
         &self.0[texture]
     }
 
-    /// All of them as images without what a lane may hold.
+    /// Returns all words as images without the memory of a lane.
     pub fn images<L>(&self) -> Vec<Image<'_, L>> {
         self.0.iter().map(|words| Image { words, memory: None }).collect()
     }

@@ -1,4 +1,4 @@
-//! The trace of one pixel: the same walk, the lane that carries the ideal beside the definition, and a recorder.
+//! The trace of one pixel: the walk of the scalar engine, with a lane that carries the ideal, and a recorder.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -13,7 +13,7 @@ use crate::state::{Rectangle, StageOrigin, Target};
 use crate::texture::planned::Image;
 use crate::trace::{Observer, Recorder, Silent, Step};
 
-/// Everything that happened to one pixel of a render target.
+/// Everything that happens to one pixel of a render target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelTrace {
     /// Name of the target.
@@ -22,41 +22,41 @@ pub struct PixelTrace {
     pub x: u32,
     /// Row, 0 at the top.
     pub y: u32,
-    /// R, G, B, A as a picture shows them, after the clear.
+    /// R, G, B and A as a picture shows them, after the clear.
     pub cleared: [u8; 4],
-    /// R, G, B, A as a picture shows them, at the end.
+    /// R, G, B and A as a picture shows them, at the end.
     pub shown: [u8; 4],
     /// The stored word at the end.
     pub word: u32,
-    /// How many fragments come before those of `draws`.
+    /// Number of fragments before those of `draws`.
     pub left_out: u64,
     /// The triangles that cover the pixel, in order, without those left out.
     pub draws: Vec<DrawTrace>,
 }
 
-/// One triangle's fragment at the pixel.
+/// The fragment of one triangle at the pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawTrace {
     /// Number of the draw.
     pub draw: usize,
-    /// The draw's name in the scene.
+    /// Name of the draw in the scene.
     pub name: String,
     /// Number of the triangle in the draw.
     pub triangle: usize,
-    /// What it is a piece of, if it was cut off another (RAS-6).
+    /// The triangle that it was cut from, if it was clipped (RAS-6).
     pub piece: Option<Piece>,
-    /// Whether it was stored, or dropped by a test.
+    /// Whether it was stored, and not dropped by a test.
     pub stored: bool,
-    /// R, G, B, A as a picture shows them, after this fragment.
+    /// R, G, B and A as a picture shows them, after this fragment.
     pub shown: [u8; 4],
     /// Every rule that was applied, in order.
     pub steps: Vec<Step>,
-    /// What each general stage was written as in the language of an API; empty if the program was written for the combiners.
+    /// The text of each general stage in the language of an API; empty if the program was written for the combiners.
     pub program_origin: Vec<StageOrigin>,
 }
 
 impl DrawTrace {
-    /// The line of an API's program that a block of the steps comes from, if the block is a portion of a general stage.
+    /// Returns the line of an API's program that a block of steps comes from, if the block is a portion of a general stage.
     pub fn origin(&self, block: &str) -> Option<&str> {
         let (stage, portion) = block.strip_prefix("general stage ")?.split_once(' ')?;
         let origin = self.program_origin.get(stage.parse::<usize>().ok()?)?;
@@ -64,27 +64,27 @@ impl DrawTrace {
     }
 }
 
-/// A pixel or draw that does not exist.
+/// The pixel or the draw does not exist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TraceError {
-    /// Outside the target.
+    /// The pixel is outside the target.
     Pixel {
-        /// Column asked for.
+        /// Requested column.
         x: u32,
-        /// Row asked for.
+        /// Requested row.
         y: u32,
         /// Name of the target.
         target: String,
-        /// Columns that the target has.
+        /// Width of the target.
         width: u32,
-        /// Rows that the target has.
+        /// Height of the target.
         height: u32,
     },
-    /// No such draw.
+    /// The draw does not exist.
     Draw {
-        /// Draw asked for.
+        /// Number of the requested draw.
         draw: usize,
-        /// Draws of the scene.
+        /// Number of draws of the scene.
         count: usize,
     },
 }
@@ -104,10 +104,10 @@ impl fmt::Display for TraceError {
 
 impl std::error::Error for TraceError {}
 
-/// How many fragments a trace keeps unless more are asked for: the last ones.
+/// Largest number of fragments in a trace, unless more are asked for. They are the last ones.
 pub const FRAGMENTS: u64 = 256;
 
-/// Traces pixel (x, y) of target number `target`: its last [`FRAGMENTS`] fragments. `only` keeps those of a single draw.
+/// Traces pixel (x, y) of target number `target`, with its last [`FRAGMENTS`] fragments. `only` restricts it to a single draw.
 ///
 /// # Errors
 /// The pixel lies outside the target, or the draw does not exist.
@@ -115,10 +115,11 @@ pub fn trace(plan: &Plan, target: usize, pixel: (u32, u32), only: Option<usize>)
     trace_last(plan, target, pixel, only, FRAGMENTS)
 }
 
-/// [`trace`] of the last `fragments` fragments. They are all in memory, some 60 KB each; [`Tracer`] hands them over one by one.
+/// Does the same as [`trace`], with the last `fragments` fragments. They are all kept in memory, some 60 KB each; [`Tracer`] passes them on
+/// one by one.
 ///
 /// # Errors
-/// As [`trace`].
+/// Those of [`trace`].
 pub fn trace_last(
     plan: &Plan,
     target: usize,
@@ -137,7 +138,7 @@ pub fn trace_last(
     Ok(PixelTrace { target, x, y, cleared, shown, word, left_out, draws })
 }
 
-/// A trace about to be made: how many fragments there are is known, and each is handed over as soon as it is shaded.
+/// A prepared trace. The number of fragments is known, and each fragment is passed on as soon as it is shaded.
 #[derive(Debug)]
 pub struct Tracer<'a> {
     plan: &'a Plan,
@@ -147,18 +148,18 @@ pub struct Tracer<'a> {
     left_out: u64,
 }
 
-/// What the surface holds once everything is drawn.
+/// The contents of the surface after the last draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TraceEnd {
-    /// R, G, B, A as a picture shows them.
+    /// R, G, B and A as a picture shows them.
     pub shown: [u8; 4],
     /// The stored word.
     pub word: u32,
 }
 
 impl<'a> Tracer<'a> {
-    /// Prepares the trace of pixel (x, y) of target number `target`, of its last `fragments` fragments. `only` counts and keeps those of a single
-    /// draw. Covered pixels are counted here; nothing is shaded yet.
+    /// Prepares the trace of pixel (x, y) of target number `target`, with its last `fragments` fragments. `only` restricts it to a single
+    /// draw. Covered pixels are counted here, but nothing is shaded yet.
     ///
     /// # Errors
     /// The pixel lies outside the target, or the draw does not exist.
@@ -194,17 +195,17 @@ impl<'a> Tracer<'a> {
         Ok(tracer)
     }
 
-    /// The render target.
+    /// Returns the render target.
     pub fn target(&self) -> &'a Target {
         &self.plan.targets[self.target]
     }
 
-    /// Column and row.
+    /// Returns column and row.
     pub fn pixel(&self) -> (u32, u32) {
         self.pixel
     }
 
-    /// R, G, B, A as a picture shows them, before the first draw.
+    /// Returns R, G, B and A as a picture shows them, before the first draw.
     pub fn cleared(&self) -> [u8; 4] {
         let target = self.target();
         let word = match &target.contents {
@@ -214,12 +215,12 @@ impl<'a> Tracer<'a> {
         surface::show(target.format, word)
     }
 
-    /// The pixel's number, row by row from the top.
+    /// Returns the pixel's index, row by row from the top.
     fn at(&self) -> usize {
         self.pixel.1 as usize * self.target().width as usize + self.pixel.0 as usize
     }
 
-    /// How many fragments come before the first that is handed over.
+    /// Returns the number of fragments before the first that is passed on.
     pub fn left_out(&self) -> u64 {
         self.left_out
     }
@@ -228,7 +229,7 @@ impl<'a> Tracer<'a> {
         self.only.is_none_or(|only| only == index)
     }
 
-    /// The draws that may touch the pixel, with their numbers.
+    /// Returns the draws that may touch the pixel, with their numbers.
     fn draws(&self) -> impl Iterator<Item = (usize, &'a PlannedDraw)> {
         let (target, (x, y)) = (self.target, self.pixel);
         self.plan.draws.iter().enumerate().filter(move |(_, planned)| {
@@ -239,14 +240,14 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Draws the pixel, and hands each fragment that is kept to `each`, in order.
+    /// Draws the pixel, and passes each kept fragment to `each`, in order.
     ///
     /// # Errors
-    /// That of `each`, which ends the trace.
+    /// An error of `each`, which ends the trace.
     pub fn run<E>(&self, mut each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
         let (plan, description) = (self.plan, self.target());
         let mut frames = cleared(plan);
-        // Whole frames are needed only where a later draw reads one.
+        // Whole frames are needed only if a later draw reads one.
         let rendered = plan.textures.iter().any(|t| t.image.target().is_some());
         let at = self.at();
         let word = frames.surfaces[self.target].words[at];
@@ -289,7 +290,7 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// The edge functions of triangle `number` at a pixel that it covers. Texture coordinates and fog are not set up.
+/// Returns the edge functions of triangle `number` at a pixel that it covers. Texture coordinates and fog are not set up.
 fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> Option<[i64; 3]> {
     let (i, j) = (i64::from(x), i64::from(y));
     if !context.set_up(number, (j, j + 1)) {
@@ -299,16 +300,16 @@ fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32))
     context.triangle.covers(e).then_some(e)
 }
 
-/// The traced pixel's memory.
+/// The contents of the traced pixel.
 struct Pixel {
     word: u32,
     depth: DepthStencil,
-    /// What a surface of real numbers would hold, R, G, B, A in 255ths.
+    /// Contents of a surface of real numbers: R, G, B and A in 255ths.
     ideal: [f64; 4],
 }
 
 impl Pixel {
-    /// Shades one fragment; returns whether it was stored.
+    /// Shades one fragment. Returns whether it was stored.
     fn shade<O: Observer>(
         &mut self,
         planned: &PlannedDraw,

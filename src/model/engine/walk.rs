@@ -8,24 +8,24 @@ use crate::trace::Observer;
 /// Some rows of a surface.
 #[derive(Debug)]
 pub struct Band<'a> {
-    /// Row of the first word; even.
+    /// Row of the first word, which is even.
     pub first_row: usize,
-    /// Words a row.
+    /// Number of words of a row.
     pub width: usize,
-    /// The rows' words.
+    /// Words of the rows.
     pub words: &'a mut [u32],
-    /// The rows' depths and stencils, as [`Surface::depth`](crate::frame::Surface::depth); empty without a depth buffer.
+    /// Depths and stencils of the rows, as in [`Surface::depth`](crate::frame::Surface::depth); empty without a depth buffer.
     pub depth: &'a mut [u32],
 }
 
 impl Band<'_> {
-    /// First row and the row after the last.
+    /// Returns the first row, and the row after the last.
     pub fn rows(&self) -> (i64, i64) {
         (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
     }
 }
 
-/// Draws what of a draw falls into a band; covered pixels, and those that were stored.
+/// Draws the part of a draw that lies in a band. Returns the number of covered pixels and of stored ones.
 pub(super) fn draw<O: Observer>(
     plan: &Plan,
     planned: &PlannedDraw,
@@ -41,10 +41,10 @@ pub(super) fn draw<O: Observer>(
     (shaded, stored)
 }
 
-/// Some rows and columns, as half-open ranges.
+/// Rows and columns, as half-open ranges.
 pub type Window = ((i64, i64), (i64, i64));
 
-/// The parts of some rows that a draw may touch, in its windows; none if nothing of it can be seen.
+/// Returns the parts of some rows that a draw may touch, in its windows; none if nothing of it can be seen.
 pub fn windows(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = Window> {
     let visible = planned.folded.invisible.is_none();
     planned.windows.iter().filter(move |_| visible).filter_map(move |window| {
@@ -54,7 +54,7 @@ pub fn windows(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = 
     })
 }
 
-/// The numbers of a draw's triangles, in order, in each of the [windows] of some rows.
+/// Returns the numbers of a draw's triangles, in order, in each of the [windows] of some rows.
 pub fn triangles(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = (Window, usize)> {
     let count = planned.assembly.triangles.len();
     windows(planned, rows).flat_map(move |window| (0..count).map(move |number| (window, number)))
@@ -95,7 +95,7 @@ pub fn covered(
     }
 }
 
-/// Shades a pixel; whether it was stored.
+/// Shades a pixel. Returns whether it was stored.
 #[inline]
 pub fn pixel<O: Observer>(
     context: &TriangleContext<'_>,

@@ -11,11 +11,10 @@ pub const IDEAL_TRACKS: usize = 1 + Part::ALL.len();
 /// Real-number evaluations side by side, each in steps of 1/255.
 ///
 /// * Track 0 is the ideal.
-/// Track 1 + k receives the errors that the definition makes in the rules of the first k + 1 [`Part`]s and is ideal
-/// otherwise.
-///   The differences between neighbouring tracks add up to the whole error.
-/// The last track therefore starts from the definition's integers at each rule, so that its error is the error of that
-/// rule alone.
+/// * Track 1 + k receives the errors that the definition makes in the rules of the first k + 1 [`Part`]s and is ideal
+///   otherwise. The differences between neighbouring tracks add up to the whole error.
+/// * The last track therefore starts from the definition's integers at each rule, so that its error is the error of
+///   that rule alone.
 ///
 /// `IdealTracks<1>` consists of the last track alone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -79,7 +79,7 @@ impl Bank {
 pub struct ShaderRegister {
     /// The kind of register.
     pub bank: Bank,
-    /// Its number, below [`Bank::count`].
+    /// Its number, below the bank's count.
     pub index: u8,
 }
 

@@ -1,4 +1,4 @@
-//! Triangles to batches, batches to blocks, blocks to the surface.
+//! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
 use super::boxes::{BoxCoverage, SIDE, boxes, is_box, is_small};
 use super::depth::depths;
@@ -17,7 +17,7 @@ use crate::engine::walk::{self, Band, Window};
 use crate::raster::setup::Triangle;
 use crate::state::MipFilter;
 
-/// What a thread works in, draw after draw.
+/// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(super) rows: Vec<Lanes256>,
@@ -27,15 +27,15 @@ pub(crate) struct Block {
     coverage: BoxCoverage,
     planes: Vec<Planes>,
     pub(super) runs: Vec<Run>,
-    /// Lanes in use.
+    /// Number of lanes in use.
     used: usize,
-    /// A bit for each pixel of the band: the block has a lane for it. Only while what the surface holds is read.
+    /// A bit for each pixel of the band, set if the block has a lane for the pixel. Maintained only if the draw reads the surface.
     taken: Vec<u64>,
     words: [u32; LANES],
     stored: [u32; LANES],
     depth: [u32; BLOCK],
     alive: [bool; BLOCK],
-    /// Pixels that the definition computed something of.
+    /// Number of pixels, by reason, of which the definition computed something.
     pub(crate) defined: Reasons,
 }
 
@@ -60,7 +60,7 @@ impl Default for Block {
     }
 }
 
-/// Draws what of a draw falls into a band; covered pixels.
+/// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
 #[inline(always)]
 pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let Job { plan, draw, compiled, .. } = job;
@@ -72,15 +72,15 @@ pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Blo
     for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
         row.fill(*constant);
     }
-    // Earlier draws have dropped fragments.
+    // Earlier draws may have dropped fragments.
     block.alive.fill(true);
     block.varying.alive.fill(true);
-    // Nor do entries of another table mean anything.
+    // Entries of another draw's table mean nothing in this draw's.
     block.varying.reads.clear();
     if compiled.samplers.iter().any(|sampler| sampler.mixes) {
         block.varying.reads.resize(compiled.samplers.len(), MipFetches::default());
     }
-    // Lanes without a pixel are fetched too: the layers of an earlier volume may lie beyond the images of another texture.
+    // Lanes without a pixel are fetched too. Layers that an earlier volume left in them may lie beyond the images of this texture.
     for (faces, sampler) in block.varying.faces.iter_mut().zip(&compiled.samplers) {
         if sampler.has_images() {
             faces.fill(0);
@@ -107,7 +107,7 @@ pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Blo
     shaded
 }
 
-/// Draws what of a draw falls into some rows and columns of a band; covered pixels.
+/// Draws the part of a draw that lies in some rows and columns of a band. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_window<T: Kernels>(
     job: Job<'_>,
@@ -142,7 +142,7 @@ fn draw_window<T: Kernels>(
                     if i == end {
                         continue;
                     }
-                    // Where rows of lanes begin, so that no step lies across two cache lines.
+                    // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
                     block.used = whole_steps(block.used);
                     interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
                     while i < end {
@@ -175,7 +175,7 @@ fn draw_window<T: Kernels>(
     shaded
 }
 
-/// Computes and stores a block.
+/// Computes a block and stores it.
 #[inline(always)]
 fn finish<T: Kernels>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     if job.compiled.shader.is_some() && block.used > 0 {
@@ -184,7 +184,7 @@ fn finish<T: Kernels>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the pixels that the coverage has, one at least; how many they are.
+/// Draws the pixels of the block's coverage, of which there is at least one. Returns their number.
 #[inline(always)]
 fn draw_box<T: Kernels>(
     job: Job<'_>,
@@ -214,20 +214,20 @@ fn draw_box<T: Kernels>(
     count as u64
 }
 
-/// What of a triangle is to be drawn.
+/// How a triangle is drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// The pixels that the coverage has.
+    /// As one box: the pixels of the coverage.
     Box,
-    /// It is cut into boxes.
+    /// As several boxes.
     Boxes,
-    /// It is walked row by row.
+    /// Row by row.
     Large,
 }
 
-/// The rows and columns of a triangle's box among some.
+/// Returns the rows and columns that a window shares with the triangle's bounding box.
 #[inline(always)]
 pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     (
@@ -236,7 +236,7 @@ pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     )
 }
 
-/// Sets up a triangle, as far as it lies in some rows and columns.
+/// Sets up a triangle for the given rows and columns, and finds its coverage if it is a single box.
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
@@ -263,13 +263,14 @@ pub(super) fn enter<const WIDE: bool>(
     if coverage.count > 0 { Entered::Box } else { Entered::Nothing }
 }
 
-/// The pixels of a box of a triangle that is cut into boxes.
+/// Finds the covered pixels of one box of a triangle that is cut into boxes.
 #[inline(always)]
 pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
     coverage.cover(triangle, window);
 }
 
-/// What varies across the small triangle whose box the block has, if it is of a plain draw. `false`: not all could be estimated.
+/// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if an attribute could not be
+/// estimated; then nothing that was written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -280,7 +281,7 @@ pub(super) fn plain<const FMA: bool>(
     small::interpolate::<FMA>(context, compiled, few(coverage, *used), varying, rows, planes)
 }
 
-/// The same for any draw.
+/// Interpolates all attributes in the block's box, for any draw.
 #[inline(always)]
 pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
     let Block { varying, rows, coverage, used, planes, defined, .. } = block;
@@ -289,7 +290,7 @@ pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<
     *planes = interpolators.given_back(defined);
 }
 
-/// The pixels of a box.
+/// Returns the pixels of a box as a batch.
 #[inline(always)]
 pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let lanes = whole_steps(coverage.count);
@@ -298,7 +299,7 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs }
 }
 
-/// The same, of fewer than a whole step where those suffice.
+/// Returns the pixels of a box as a batch, with fewer lanes than a step if those suffice.
 #[inline(always)]
 pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let all = batch(coverage, lane);
@@ -310,7 +311,7 @@ pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     }
 }
 
-/// What varies along a batch of a row.
+/// Interpolates all attributes along a batch of a row.
 #[inline(always)]
 pub(super) fn row<const FMA: bool>(
     interpolators: &Interpolators<'_>,
@@ -322,7 +323,7 @@ pub(super) fn row<const FMA: bool>(
     interpolators.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
 }
 
-/// What the vertices give a texture shader along a batch of a row.
+/// Interpolates the inputs of the texture shader along a batch of a row.
 #[inline(always)]
 pub(super) fn row_attributes<const FMA: bool>(
     context: &TriangleContext<'_>,
@@ -335,7 +336,7 @@ pub(super) fn row_attributes<const FMA: bool>(
     }
 }
 
-/// The same in the box that the block has.
+/// Interpolates the inputs of the texture shader in the block's box.
 #[inline(always)]
 pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
@@ -343,19 +344,19 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
     }
 }
 
-/// Depths along a batch of a row.
+/// Computes the depths along a batch of a row.
 #[inline(always)]
 pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block) {
     depths::<FMA, true>(context, batch, block.varying.depths());
 }
 
-/// The same in the box that the block has.
+/// Computes the depths in the block's box.
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block) {
     depths::<FMA, false>(context, few(&block.coverage, block.used), block.varying.depths());
 }
 
-/// The stages of a texture shader.
+/// Runs the stages of the texture shader for a block.
 #[inline(always)]
 pub(super) fn shade<const FMA: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Block { rows, varying, work, workshop, runs, defined, .. } = block;
@@ -364,7 +365,7 @@ pub(super) fn shade<const FMA: bool>(job: Job<'_>, block: &mut Block, band: &mut
 }
 
 impl Block {
-    /// Lanes for pixels that lie side by side; `marks` them as taken.
+    /// Appends a run of pixels to the block. `marks` says whether they are marked as taken.
     #[inline(always)]
     fn append(&mut self, band: &Band<'_>, pixel: (i64, i64), count: usize, marks: bool) {
         let at = index(band, pixel);
@@ -375,7 +376,7 @@ impl Block {
         }
     }
 
-    /// Whether the block has lanes for some of the pixels already.
+    /// Returns whether the block has lanes for some of these pixels already.
     #[inline(always)]
     fn is_taken(&self, band: &Band<'_>, pixel: (i64, i64), count: usize) -> bool {
         let at = index(band, pixel);
@@ -389,13 +390,13 @@ impl Block {
     }
 }
 
-/// The index of a pixel in a band.
+/// Returns the index of a pixel in a band.
 #[inline(always)]
 fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
     (j as usize - band.first_row) * band.width + i as usize
 }
 
-/// The bits of a word that stand for some pixels, of which it has at least one.
+/// Returns the bits of a 64-bit word that belong to the given pixels, at least one of which lies in the word.
 #[inline(always)]
 fn bits(word: usize, at: usize, count: usize) -> u64 {
     let (first, last) = (word * 64, word * 64 + 63);
@@ -404,7 +405,7 @@ fn bits(word: usize, at: usize, count: usize) -> u64 {
     if end < last { low & (u64::MAX >> (last - end)) } else { low }
 }
 
-/// Changes the bits of some pixels.
+/// Flips the bits of the given pixels.
 #[inline(always)]
 fn mark(taken: &mut [u64], at: usize, count: usize) {
     for word in at / 64..=(at + count - 1) / 64 {
@@ -412,14 +413,14 @@ fn mark(taken: &mut [u64], at: usize, count: usize) {
     }
 }
 
-/// Pixels that are copied at once, where a run is shorter and there is room.
+/// Number of pixels that are copied at once if a run is shorter and the slices have room.
 const SHORT_RUN: usize = 16;
 
-/// Runs that are as long, more or less, are not copied: their words are made where they belong.
+/// From this average length of runs on, words are packed directly into the surface instead of being copied.
 const LONG_RUN: usize = 48;
 
-/// Copies a run from one slice to another. Most are short: copied without a call. `MASKS`: lanes can be stored one by one, and what lies
-/// around a run need not be read, which would have to wait until its neighbours are written.
+/// Copies a run from one slice to another. Most runs are short and are copied without a call. With `MASKS`, lanes can be stored one by one,
+/// so that pixels around the run need not be read; reading them would have to wait for earlier stores.
 #[inline(always)]
 fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
     if count <= SHORT_RUN
@@ -439,7 +440,7 @@ fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
     }
 }
 
-/// Computes and stores a block whose stages have run.
+/// Computes and stores a block whose texture shader stages have run.
 #[inline(always)]
 pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
@@ -453,7 +454,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     if compiled.drops {
         *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
     }
-    // The sampler whose coordinates' entries are found already, and the pitch of its table: axes are the same where coordinates are.
+    // The sampler whose entries are in `work`, and the pitch of its table. Samplers that share coordinates also have the same axes.
     let mut found = None;
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
     for (n, sampler) in samplers.iter().enumerate() {
@@ -463,7 +464,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
             fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
-            // Its entries took the place of the others.
+            // The entries in `work` have been overwritten.
             found = None;
             continue;
         }
@@ -536,7 +537,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     *used = 0;
 }
 
-/// What the surface or its depth buffer holds of some runs.
+/// Reads the words of some runs from the surface or its depth buffer.
 #[inline(always)]
 fn read<const MASKS: bool>(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
     for run in runs {
@@ -544,7 +545,7 @@ fn read<const MASKS: bool>(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) 
     }
 }
 
-/// Whether all are true. Without branches: most are.
+/// Returns whether all lanes are true. It has no branches, because they usually are.
 #[inline(always)]
 fn all(alive: &[bool]) -> bool {
     alive.iter().fold(true, |all, alive| all & alive)

@@ -5,19 +5,20 @@ use super::kernels::STEP;
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
 
-/// Most columns and rows of a box whose pixels are found, and interpolated, at once.
+/// Largest number of columns and of rows of a box, whose pixels are found and interpolated together.
 pub(super) const SIDE: i64 = 16;
 
-/// Most columns and rows of the box of a triangle that is cut into boxes.
+/// Largest number of columns and of rows of the bounding box of a triangle that is cut into boxes.
 const WIDEST: i64 = 8 * SIDE;
 
-/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be corrected.
+/// The same for triangles with a single w. Their quotients are often exact: along rows the DDA handles that, in boxes each one has to be
+/// corrected.
 const WIDEST_FLAT: i64 = 2 * SIDE;
 
-/// Most pixels of a box, and what whole steps write past them.
+/// Number of lanes of a box, with room for the whole steps that are written past its end.
 const MAX_LANES: usize = (SIDE * SIDE) as usize + 2 * STEP;
 
-/// Whether a triangle is handled as boxes, or as one, instead of row by row.
+/// Returns whether a triangle is drawn as boxes instead of row by row.
 #[inline(always)]
 pub(super) fn is_small(triangle: &Triangle) -> bool {
     let p = &triangle.p;
@@ -25,13 +26,13 @@ pub(super) fn is_small(triangle: &Triangle) -> bool {
     triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
 }
 
-/// Whether some rows and columns are one box.
+/// Returns whether these rows and columns fit into one box.
 #[inline(always)]
 pub(super) fn is_box((rows, columns): Window) -> bool {
     rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE
 }
 
-/// The boxes that some rows and columns are cut into, from left to right and then downwards.
+/// Cuts rows and columns into boxes, from left to right, then from top to bottom.
 #[inline(always)]
 pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
     let cut = |(first, end): (i64, i64)| {
@@ -40,16 +41,16 @@ pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
     cut(rows).flat_map(move |rows| cut(columns).map(move |columns| (rows, columns)))
 }
 
-/// The pixels of a small triangle in a box.
+/// The pixels of a small triangle that lie in a box.
 #[derive(Debug)]
 pub(super) struct BoxCoverage {
-    /// Column and row of the first pixel.
+    /// Column and row of the first covered pixel.
     pub(super) first: (i64, i64),
-    /// Where the others lie from it; past the end the last one again.
+    /// Columns and rows of the pixels relative to the first. Lanes past the end repeat the last pixel.
     pub(super) x: [i32; MAX_LANES],
     pub(super) y: [i32; MAX_LANES],
     pub(super) count: usize,
-    /// Row, first column and number of the pixels of each row.
+    /// For each row: its number, the first column and the number of pixels.
     pub(super) runs: [(i64, i64, usize); SIDE as usize],
     pub(super) filled: usize,
 }
@@ -68,7 +69,7 @@ impl Default for BoxCoverage {
 }
 
 impl BoxCoverage {
-    /// RAS-3 for [a box](is_box) of pixels of a [small](is_small) triangle, all rows at once.
+    /// RAS-3: finds the covered pixels of a [box](is_box) of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, window: Window) {
         let (rows, _) = window;
@@ -79,7 +80,7 @@ impl BoxCoverage {
         }
     }
 
-    /// The same for so many rows at most.
+    /// Does the same for at most `ROWS` rows.
     #[inline(always)]
     fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, (rows, columns): Window) {
         (self.count, self.filled) = (0, 0);
@@ -87,7 +88,7 @@ impl BoxCoverage {
         let (mut low, mut high) = ([0; ROWS], [(columns.1 - left) as i32; ROWS]);
         let e = triangle.edges(left, rows.0);
         for k in 0..3 {
-            // Not negative inside: one less where a sample on the edge is another triangle's.
+            // Not negative inside the triangle. On an edge that belongs to the other triangle, the value is one less.
             let owed = i64::from(!triangle.owns[k]);
             limit((e[k] - owed) as i32, triangle.a[k] as i32, triangle.b[k] as i32, &mut low, &mut high);
         }
@@ -116,22 +117,23 @@ impl BoxCoverage {
     }
 }
 
-/// 1.5 2^23: added to a small number, it leaves the nearest whole number in the low bits.
+/// 1.5 2^23: adding it to a small number leaves the nearest integer in the low bits.
 const MAGIC: f32 = 12_582_912.0;
 
-/// More than any floor.
+/// A limit beyond all columns.
 const BEYOND: i32 = 1 << 23;
 
-/// Clips each row of a box to the columns i where a i + b j + e is not negative.
+/// Clips each row of a box to the columns i in which a i + b j + e is not negative.
 ///
-/// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^22. (r + 1/2) / a is half an a-th from
-/// the next whole number at least, and in single precision off by less than that where it is below 32, as a is below 2^15; beyond that the
-/// whole box lies on one side.
+/// These are the columns from -floor(r / a) on, or up to floor(r / -a), with r = b j + e below 2^22. The distance of (r + 1/2) / a from an
+/// integer is at least half of 1/a. For quotients below 32 single precision is more exact than that, because a is below 2^15; larger
+/// quotients put the whole box on one side.
 #[inline(always)]
 fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high: &mut [i32; ROWS]) {
-    // A horizontal edge: all columns of a row or none. What is not a whole number any more is as large.
+    // A horizontal edge covers all columns of a row or none. The chosen factor moves the limit out of the box.
     let inverse = if a == 0 { 40.0 } else { 1.0 / a.unsigned_abs() as f32 };
-    // Which limit an edge is hangs on the triangle: both are computed, and the other one moved out of the way, instead of a branch.
+    // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the
+    // way, which avoids a branch.
     let (from, to) = if a > 0 { (0, BEYOND) } else { (-BEYOND, 0) };
     for ((j, low), high) in low.iter_mut().enumerate().zip(high) {
         let r = (b * j as i32 + e) as f32 + 0.5;

@@ -1,4 +1,4 @@
-//! From a planned draw to the graph of its pixels: what they start from, then the order of the rules. The arithmetic itself is the kernels'.
+//! Builds the graph of a planned draw: the inputs of a pixel, then the order of the rules. The kernels do the arithmetic.
 
 use super::Sampler;
 use super::graph::Graph;
@@ -14,17 +14,17 @@ use crate::rop::{blend, surface};
 use crate::state::{AddressMode, Policies, Register, TextureFormat, TextureKind};
 use crate::texture::planned::PlannedUnit;
 
-/// What a draw's pixels come to.
+/// The graph of a draw's pixels.
 pub(super) struct Built {
-    /// Everything that is computed.
+    /// All values that are computed.
     pub(super) graph: Graph,
-    /// The fragment's alpha before blending, for the alpha test.
+    /// Alpha of the fragment before blending, for the alpha test.
     pub(super) alpha: Value,
-    /// What is stored: R, G, B, A, each 0..=255.
+    /// Stored R, G, B and A, each 0..=255.
     pub(super) stored: [Value; 4],
 }
 
-/// Builds the graph of a draw. Its units are sampled by `samplers`, or pixel by pixel.
+/// Builds the graph of a draw. `samplers` are `None` if the units are sampled pixel by pixel.
 pub(super) fn build(draw: &PlannedDraw, policies: Policies, samplers: Option<&[Sampler]>) -> Built {
     let mut graph = Graph::new(policies);
     let mut registers = inputs(draw, samplers, &mut graph);
@@ -47,7 +47,7 @@ pub(super) fn build(draw: &PlannedDraw, policies: Policies, samplers: Option<&[S
     Built { graph, alpha: fragment[3], stored }
 }
 
-/// What the surface holds, as blending reads it: 255 where no alpha is stored.
+/// Returns the destination colour as blending reads it: alpha is 255 if the surface stores none.
 fn destination(draw: &PlannedDraw, graph: &mut Graph) -> [Value; 4] {
     [0, 1, 2, 3].map(|channel: usize| {
         if channel == 3 && surface::kept_channels(draw.surface) & 8 == 0 {
@@ -58,7 +58,7 @@ fn destination(draw: &PlannedDraw, graph: &mut Graph) -> [Value; 4] {
     })
 }
 
-/// The registers as a pixel brings them (CMB-13).
+/// Returns the registers before the first stage (CMB-13).
 fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -> Registers<Value> {
     let zero = graph.constant(0);
     let mut file = Registers::from_value(zero);
@@ -92,7 +92,7 @@ fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -
     file
 }
 
-/// An interpolated colour: channels that are equal at every vertex are one value, those that never differ a constant.
+/// Returns an interpolated colour. Channels that are equal at all vertices share a value, and channels that do not vary are constants.
 fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Input, graph: &mut Graph) -> [Value; 4] {
     let bytes: Vec<[u8; 4]> = draw.assembly.corners.iter().map(of).collect();
     let first = bytes.first().copied().unwrap_or_default();
@@ -105,7 +105,7 @@ fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Inp
     })
 }
 
-/// What a unit yields: channels that its format or its texels make equal are one value, constant ones a constant.
+/// Returns the texel of a unit. Channels that are equal in all texels share a value, and channels that do not vary are constants.
 fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 4] {
     let signed = sampler.signed;
     let range = |channel: usize| if signed[channel] { (-256, 254) } else { (0, 255) };
@@ -129,15 +129,15 @@ fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 
     })
 }
 
-/// Where a channel of a texel comes from.
+/// The source of a channel of a texel.
 enum Source {
-    /// The first channel that always equals it.
+    /// The first channel that always has the same value.
     Channel(usize),
-    /// It is 255.
+    /// Always 255.
     One,
 }
 
-/// TEX-1: channels that a format makes of one another, or of nothing.
+/// TEX-1: returns the source of a channel, as far as the format determines it.
 fn source(format: TextureFormat, channel: usize) -> Source {
     match (format, channel) {
         (TextureFormat::L8 | TextureFormat::A8L8, 1 | 2) | (TextureFormat::I8, _) => Source::Channel(0),

@@ -1,4 +1,4 @@
-//! INT-2 on rows: weights in 16 bits, and the colours that they make.
+//! INT-2 on rows: 16-bit weights, and the colours that they yield.
 
 use super::CompiledDraw;
 use super::kernels::{Lanes256, PerLane};
@@ -7,7 +7,8 @@ use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
 
-/// Weights in 16 bits. [`SMALL_BATCH`] lanes apart, of which the compiler knows the number: one vector, and no loop around it.
+/// Narrows weights to 16 bits. A batch of [`SMALL_BATCH`] lanes is handled apart: since the compiler knows its length, it is one vector
+/// without a loop.
 #[inline(always)]
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     if let (Ok(wide), Ok(out)) = (<&[i32; SMALL_BATCH]>::try_from(wide), <&mut [u16; SMALL_BATCH]>::try_from(&mut *out))
@@ -22,19 +23,19 @@ pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     }
 }
 
-/// Exact weights in 16 bits, 0..=256.
+/// Narrows the exact weights of a batch, 0..=256, to 16 bits.
 #[inline(always)]
 pub(super) fn narrow_weights(
     batch: PixelBatch<'_>,
     [w0, w2]: &[PerLane<i32>; 2],
     [narrow0, narrow2]: &mut [PerLane<u16>; 2],
 ) {
-    // Not a loop over both: it is not always taken apart.
+    // Not a loop over both, because compilers do not always unroll it.
     narrow(&w0[batch.lanes()], &mut narrow0[batch.lanes()]);
     narrow(&w2[batch.lanes()], &mut narrow2[batch.lanes()]);
 }
 
-/// INT-2 of all channels that are read.
+/// INT-2: interpolates all channels that are read.
 #[inline(always)]
 pub(super) fn colors(
     context: &TriangleContext<'_>,
@@ -57,7 +58,7 @@ pub(super) fn colors(
     }
 }
 
-/// INT-2 of a channel; [`SMALL_BATCH`] lanes apart, as in [`narrow`].
+/// INT-2 of one channel. [`SMALL_BATCH`] lanes are handled apart, as in [`narrow`].
 #[inline(always)]
 fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
     if let (Ok(w0), Ok(w2), Ok(out)) = (

@@ -1,4 +1,4 @@
-//! A draw compiled to rows, and what its pixels are counted by.
+//! A draw compiled to rows, and the statistics of its pixels.
 
 use super::kernels::Lanes256;
 use super::node::Node;
@@ -12,119 +12,120 @@ use crate::texture::planned::Image;
 use std::sync::Arc;
 
 named! {
-    /// Why the definition computed something of a pixel in the fast engine.
+    /// The reason why the definition computed something of a pixel for the fast engine.
     pub enum Reason {
-        /// Rows lack what its draw's textures ask for, or decoding them would not pay.
+        /// Rows do not support the draw's textures, or decoding them would not pay.
         Textures = "textures that rows do not sample",
-        /// Something in its texture shader was a tie, or too close to one.
+        /// A value of the texture shader was a tie, or too close to one.
         Shader = "texture shader not proved",
-        /// A level or a place on one was.
+        /// A level, or a coordinate on a level, was a tie or too close to one.
         Levels = "levels not proved",
-        /// A coordinate of a cube map or divided by q was, or a plane's quotients were too coarse.
+        /// A coordinate of a cube map, or one divided by q, was a tie or too close to one, or a plane's quotients were too coarse.
         Coordinates = "coordinates not proved",
         /// Weights of colours were too coarse.
         Weights = "weights not proved",
-        /// A depth to compare with was.
+        /// A depth to compare with was a tie or too close to one.
         References = "depths to compare with not proved",
-        /// A fog factor was.
+        /// A fog factor was a tie or too close to one.
         Fog = "fog not proved",
     }
 }
 
-/// Pixels of each [`Reason`].
+/// Number of pixels for each [`Reason`].
 pub(crate) type Reasons = [u64; Reason::ALL.len()];
 
-/// A unit that rows sample.
+/// A texture unit that rows can sample.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler {
-    /// Its index among the draw's units.
+    /// Index among the draw's units.
     pub(super) index: usize,
-    /// The number of its texture unit, 0 to 3.
+    /// Number of the texture unit, 0 to 3.
     pub(super) unit: usize,
-    /// It reads footprints of four texels.
+    /// Whether it reads footprints of four texels.
     pub(super) filters: bool,
     pub(super) cube: bool,
-    /// Texels of its sides; 1 where coordinates are texels.
+    /// Sides of the image in texels; 1 if coordinates are given in texels.
     pub(super) sides: [u32; 2],
     pub(super) signed: [bool; 4],
-    /// The lod counts.
+    /// Whether it needs a level of detail.
     pub(super) mixes: bool,
-    /// Texels that drop the fragment (KEY-1): what entries of its table are compared with, and in which bits.
+    /// Value and mask that entries of the table are compared with, if such texels drop the fragment (KEY-1).
     pub(super) key: Option<(u32, u32)>,
-    /// A stage of the texture shader makes its coordinates.
+    /// Whether a stage of the texture shader computes its coordinates.
     pub(super) depends: bool,
-    /// Most taps of a pixel (TEX-17), two and two; 0: there is one.
+    /// Largest number of pairs of taps of a pixel (TEX-17); 0 if there is one tap.
     pub(super) pairs: usize,
-    /// What r is for.
+    /// The use of the coordinate r.
     pub(super) third: Option<Third>,
-    /// An earlier sampler whose coordinates are this one's.
+    /// Index of an earlier sampler that has the same coordinates.
     pub(super) shares: Option<usize>,
-    /// `None`: of an image that is drawn by this scene, made anew for each draw.
+    /// The decoded texture; `None` if the scene draws the image, so that it is decoded for each draw.
     pub(super) table: Option<Arc<Table>>,
 }
 
 impl Sampler {
-    /// What is taken off coordinates, 1/256 texel: half a texel where it filters.
+    /// Returns what is subtracted from coordinates, in 1/256 texel: half a texel if the sampler filters.
     pub(super) fn bias(&self) -> i32 {
         if self.filters { 128 } else { 0 }
     }
 
-    /// Faces or layers.
+    /// Returns whether it has faces or layers.
     pub(super) fn has_images(&self) -> bool {
         self.cube || matches!(self.third, Some(Third::Layer(..)))
     }
 }
 
-/// What a sampler takes r for.
+/// The use of the coordinate r.
 #[derive(Clone, Debug)]
 pub(crate) enum Third {
-    /// The layer of a volume: a sampler whose coordinates are both r, and where its layers lie.
+    /// Selects the layer of a volume: a sampler both of whose coordinates are r, and the axis of the layers.
     Layer(Box<Sampler>, Axis),
-    /// Of that sampler: it counts layers.
+    /// Counts layers: the use in that sampler.
     Counts,
-    /// What depths in this format are compared with.
+    /// Is compared with depths of this format.
     Reference(DepthFormat),
 }
 
 /// A draw compiled to rows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CompiledDraw {
-    /// What is computed, and into which row.
+    /// Operations in order, each with the row of its result.
     pub(super) operations: Vec<(Node, usize)>,
-    /// Each row's constant; 0 where it is computed.
+    /// Constant of each row; 0 if the row is computed.
     pub(super) rows: Vec<i16>,
     pub(super) primary: [Option<u16>; 4],
     pub(super) secondary: [Option<u16>; 4],
     pub(super) fog: Option<u16>,
     pub(super) textures: [[Option<u16>; 4]; TEXTURE_UNITS],
     pub(super) destination: [Option<u16>; 4],
-    /// Rows of R, G, B, A as they are stored.
+    /// Rows of the stored R, G, B and A.
     pub(super) stored: [u16; 4],
     /// Row of the alpha that is tested.
     pub(super) alpha: u16,
-    /// Channels of the primary and the secondary colour that are read: all bits of their bytes.
+    /// Channels of the primary and of the secondary colour that are read, as masks of bytes.
     pub(super) read: [u32; 2],
     pub(super) samplers: Vec<Sampler>,
     /// The texture shader, if rows run it.
     pub(super) shader: Option<Arc<Shader>>,
-    /// Something is estimated at every pixel besides coordinates: taps, layers, depths to compare with.
+    /// Whether each pixel needs estimates besides coordinates: taps, layers or depths to compare with.
     pub(super) estimates: bool,
-    /// Nothing varies but colours, depth, what a texture shader's stages take, and coordinates of textures on planes, of one level.
+    /// Whether nothing is interpolated but colours, depth, inputs of the texture shader, and coordinates on planes of textures with one
+    /// level.
     pub(super) plain: bool,
-    /// Texture units are the definition's, pixel by pixel.
+    /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,
-    /// What the surface holds is read: by the blend, because not all bits are written, or because fragments can be dropped.
+    /// Whether the surface is read: for blending, because some bits are not written, or because fragments can be dropped.
     pub(super) reads_surface: bool,
-    /// Fragments can be dropped.
+    /// Whether fragments can be dropped.
     pub(super) drops: bool,
-    /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
+    /// Whether parts of the surface's words may stay: bits that are not written, or dropped fragments.
     pub(super) merges: bool,
-    /// All bits of a pixel are written.
+    /// Whether all bits of a pixel are written.
     pub(super) writes_whole: bool,
 }
 
 impl CompiledDraw {
-    /// Whether a colour that is read varies on a triangle.
+    /// Returns whether a colour that is read varies across a triangle.
     #[inline(always)]
     pub(super) fn varies(&self, context: &TriangleContext<'_>) -> bool {
         let [primary, secondary] = [&context.primary, &context.secondary].map(|colors| {
@@ -134,7 +135,7 @@ impl CompiledDraw {
         (primary & self.read[0]) | (secondary & self.read[1]) != 0
     }
 
-    /// Puts the texture registers of a pixel into the rows that want them.
+    /// Puts the texture registers of a pixel into the rows that read them.
     pub(super) fn put_textures(&self, registers: &Registers<i32>, lane: usize, rows: &mut [Lanes256]) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
@@ -148,13 +149,13 @@ impl CompiledDraw {
     }
 }
 
-/// Everything of a draw that is the same for all of its blocks.
+/// The parts of a draw that are the same for all of its blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct Job<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) draw: &'a PlannedDraw,
     pub(crate) compiled: &'a CompiledDraw,
     pub(crate) textures: &'a [Image<'a, i32>],
-    /// The numbers of the triangles to look at, in order; `None`: all.
+    /// Numbers of the triangles to draw, in order; `None` for all.
     pub(crate) triangles: Option<&'a [u32]>,
 }

@@ -1,5 +1,5 @@
-//! Quotients along a row on which the denominator does not vary (one w, or a w that depends on y only): exact, by steps of quotients and
-//! remainders. `docs/exactness.md` has the argument.
+//! Exact quotients along a row on which the denominator does not vary: the triangle has one w, or a w that depends on y only. They advance
+//! by steps of quotient and remainder. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
 
 use super::BLOCK;
@@ -12,15 +12,15 @@ use super::setup::{PixelBatch, Setup};
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
-/// Magnitudes that quotients stay below.
+/// Bound of the magnitudes of quotients.
 const MAX_QUOTIENT: f64 = (1_u32 << 29) as f64;
 
-/// Bits that a divisor has where lanes compare remainders.
+/// Number of bits of the divisor in the remainders that lanes compare.
 const BITS: u32 = 29;
 
-/// A number that quotients are written as.
+/// A type that quotients are written as.
 pub(super) trait FromQuotient: Copy {
-    /// Of a quotient that it holds.
+    /// Converts a quotient that fits.
     fn from_quotient(quotient: i32) -> Self;
 }
 
@@ -38,7 +38,7 @@ impl FromQuotient for u16 {
     }
 }
 
-/// A quotient of whole numbers: the floor, and a remainder that is not negative.
+/// The floor of an integer quotient, with a remainder that is not negative.
 #[derive(Clone, Copy, Debug, Default)]
 struct Divided {
     quotient: i32,
@@ -46,10 +46,10 @@ struct Divided {
 }
 
 impl Divided {
-    /// Of a numerator modulo 2^64, given the quotient more or less, whose magnitude is below [`MAX_QUOTIENT`]. The divisor is positive.
+    /// Divides a numerator modulo 2^64. `real` is about the quotient, whose magnitude is below [`MAX_QUOTIENT`]. The divisor is positive.
     #[inline(always)]
     fn new(numerator: i64, real: f64, divisor: i64) -> Divided {
-        // The nearest, or as near as makes no difference: what remains lies within half a divisor and a little more.
+        // The nearest integer, or one so close to it that the remainder is hardly more than half a divisor.
         let quotient = nearest(real);
         let remainder = numerator.wrapping_sub(i64::from(quotient).wrapping_mul(divisor));
         let negative = remainder >> 63;
@@ -58,37 +58,37 @@ impl Divided {
 
     #[inline(always)]
     fn plus(self, other: Divided, divisor: i64) -> Divided {
-        // Without branches: nobody can tell which way they would go.
+        // Without branches, which would be unpredictable.
         let left = self.remainder + other.remainder - divisor;
         let none = left >> 63;
         Divided { quotient: self.quotient + other.quotient + 1 + none as i32, remainder: left + (divisor & none) }
     }
 }
 
-/// A quotient along a row: that of a pixel, and what the next pixels add to it.
+/// A quotient along a row: that of a pixel, and its increments.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dda {
-    /// Of the next batch's first pixel.
+    /// The quotient of the next batch's first pixel.
     here: Divided,
     divisor: i64,
     slope: i64,
-    /// Of a whole step of lanes.
+    /// Increment for a whole step of lanes.
     step: Divided,
-    /// Bits of remainders that lanes do not look at.
+    /// Number of low bits of the remainders that lanes leave out.
     shift: u32,
-    /// So many slopes as the lane says: the floors, and what lanes look at of the remainders.
+    /// Increments for each lane of a step: floors, and the compared bits of the remainders.
     quotients: [i32; STEP],
     remainders: [i32; STEP],
-    /// The same of the first lanes of a batch's steps.
+    /// Floor and remainder at the first lane of each step of a batch.
     starts: [[i32; 2]; STEPS],
 }
 
-/// Steps of a batch.
+/// Number of steps of a batch.
 const STEPS: usize = BLOCK / STEP;
 
 impl Dda {
-    /// Becomes that of a plane over D, less a bias, from a pixel with edge functions `e` on, of which as many columns follow as are said.
-    /// `false`: it has too many bits.
+    /// Sets up the quotients of a plane by D, less a bias, for `columns` pixels from one with the edge functions `e` on. Returns `false` if
+    /// the numbers have too many bits.
     #[inline(always)]
     pub(super) fn begin(
         &mut self,
@@ -103,13 +103,13 @@ impl Dda {
         self.set(numerator, slope, denominator >> plane.shared, columns, bias)
     }
 
-    /// Becomes that of a numerator, and a slope, over a divisor.
+    /// Sets up the quotients of a numerator, which has a slope, by a divisor.
     #[inline(always)]
     fn set(&mut self, numerator: i64, slope: i64, divisor: i64, columns: i64, bias: i32) -> bool {
         let reciprocal = 1.0 / divisor as f64;
         let all = (columns + 2 * STEP as i64) as f64;
         let real = numerator as f64 * reciprocal;
-        // Also refuses what is no number.
+        // NaN does not fit either.
         let fits = divisor > 0 && real.abs() + (slope as f64 * reciprocal).abs() * all + all < MAX_QUOTIENT;
         if !fits {
             return false;
@@ -126,7 +126,7 @@ impl Dda {
         true
     }
 
-    /// Makes the tables of a slope.
+    /// Fills the tables of a slope.
     #[inline(always)]
     fn tabulate(&mut self, slope: i64, reciprocal: f64) {
         let (real, divisor, shift) = (slope as f64 * reciprocal, self.divisor, self.shift);
@@ -138,8 +138,8 @@ impl Dda {
         self.step = Divided::new(slope.wrapping_mul(STEP as i64), STEP as f64 * real, divisor);
     }
 
-    /// Floors of `count` lanes; whole steps are written, whose later lanes repeat the last. Says whether a lane may be exact or, unless all
-    /// are [right](Self::is_exact), one too large. Pieces begin at whole steps.
+    /// Writes the floors of `count` lanes and fills the last step with the last floor. Returns whether a quotient may be exact or, unless
+    /// all floors [are right](Self::is_exact), whether one may be one too large. Batches begin at whole steps.
     #[inline(always)]
     pub(super) fn run<T: FromQuotient + Default>(&mut self, count: usize, out: &mut [T]) -> bool {
         if self.slope == 0 {
@@ -154,7 +154,7 @@ impl Dda {
         let (out, _) = out.as_chunks_mut::<STEP>();
         let (mut at, step, shift) = (self.here, self.step, self.shift);
         for start in &mut self.starts[..out.len().min(STEPS)] {
-            // Less a divisor, so that the sign is the carry.
+            // Less the divisor, so that the sign is the carry.
             *start = [at.quotient + 1, (at.remainder >> shift) as i32 - looked + slack];
             at = at.plus(step, divisor);
         }
@@ -168,7 +168,7 @@ impl Dda {
         found
     }
 
-    /// Where nothing remains in a step of the batch that [`run`](Self::run) went over.
+    /// Returns 1 for each lane of a step, as [`run`](Self::run) computed it, whose remainder is 0.
     #[inline(always)]
     pub(super) fn whole(&self, step: usize) -> [i32; STEP] {
         let mut whole = [i32::from(self.here.remainder == 0); STEP];
@@ -182,19 +182,20 @@ impl Dda {
         whole
     }
 
-    /// Where bits are not looked at, a sum of two remainders is too small by less than two, and the divisor by less than one.
+    /// Returns the possible error of the compared bits. With bits left out, a sum of two remainders is too small by less than two, and the
+    /// divisor by less than one.
     #[inline(always)]
     fn slack(&self) -> i32 {
         i32::from(self.shift > 0)
     }
 
-    /// All floors are right.
+    /// Returns whether all floors are right.
     pub(super) fn is_exact(&self) -> bool {
         self.shift == 0
     }
 }
 
-/// Floors of steps of lanes, and the least of what remains, for each place in a step.
+/// Writes the floors of steps of lanes. Returns the least remainder of each lane of a step.
 #[inline(always)]
 fn floors<T: FromQuotient + Default>(
     starts: &[[i32; 2]; STEPS],
@@ -203,7 +204,7 @@ fn floors<T: FromQuotient + Default>(
     divisor: i32,
     out: &mut [[T; STEP]],
 ) -> [u32; STEP] {
-    // Copies, and a step of its own: whatever becomes of the functions around, nothing here can overlap the result.
+    // Copies, and a step of its own, which cannot overlap the result wherever this function is inlined.
     let (quotients, remainders) = (*quotients, *remainders);
     let mut least = [u32::MAX; STEP];
     for ([quotient, remainder], out) in starts.iter().zip(out) {
@@ -222,7 +223,7 @@ fn floors<T: FromQuotient + Default>(
     least
 }
 
-/// Lanes past the end of a batch become what its last one is.
+/// Fills the lanes past the end of a batch with the last one.
 #[inline(always)]
 pub(super) fn repeat<T: Copy>(count: usize, steps: &mut [[T; STEP]]) {
     if let (Some(step), left @ 1..) = (steps.last_mut(), count % STEP) {
@@ -233,21 +234,21 @@ pub(super) fn repeat<T: Copy>(count: usize, steps: &mut [[T; STEP]]) {
     }
 }
 
-/// What of a row is known before its batches.
+/// The DDAs of a row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DdaRow {
-    /// u and v of each sampler, and whether its quotients are these.
+    /// u and v of each sampler, and whether they are in use.
     pub(super) samplers: [([Dda; 2], bool); TEXTURE_UNITS],
-    /// Weights 0 and 2, and whether they are these.
+    /// Weights 0 and 2, and whether they are in use.
     pub(super) weights: ([Dda; 2], bool),
-    /// Nothing else varies.
+    /// Whether nothing else is interpolated.
     pub(super) complete: bool,
-    /// Nothing else is divided by D.
+    /// Whether nothing else is divided by D.
     pub(super) undivided: bool,
 }
 
 impl Setup<'_> {
-    /// INT-4, INT-4t of coordinates on a row of which they are known, where some may be exact.
+    /// INT-4, INT-4t: corrects the coordinates of a row where some may be exact.
     #[allow(
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
@@ -270,7 +271,7 @@ impl Setup<'_> {
     }
 }
 
-/// INT-3 of weights that are exact where something is tied.
+/// INT-3: corrects the weights of a row where some are exact.
 #[inline(always)]
 pub(super) fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
     let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
@@ -293,7 +294,7 @@ pub(super) fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [
     repeat(count, w2);
 }
 
-/// The same in 32 bits.
+/// Widens numbers to 32 bits.
 #[inline(always)]
 pub(super) fn widen(narrow: &[u16], out: &mut [i32]) {
     for (out, narrow) in out.iter_mut().zip(narrow) {

@@ -1,4 +1,4 @@
-//! What the definition computes of a batch where estimates prove nothing, or where rows lack what textures ask for.
+//! Values that the definition computes for a batch: those that estimates do not prove, and those of textures that rows do not support.
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::kernels::{Lanes256, PerLane};
@@ -9,7 +9,7 @@ use crate::texture::planned::Image;
 use crate::trace::Silent;
 
 impl Setup<'_> {
-    /// Coordinates by the definition, pixel by pixel.
+    /// Computes coordinates by the definition, pixel by pixel.
     pub(super) fn defined(
         &self,
         batch: PixelBatch<'_>,
@@ -22,7 +22,7 @@ impl Setup<'_> {
         }
     }
 
-    /// The same of one of them.
+    /// Computes the coordinates of one pixel by the definition.
     pub(super) fn defined_lane(
         &self,
         batch: PixelBatch<'_>,
@@ -31,7 +31,7 @@ impl Setup<'_> {
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) {
-        self.tell(Reason::Coordinates, 1);
+        self.count_defined(Reason::Coordinates, 1);
         let unit = &self.context.draw.units[sampler.index];
         let sample = self.sample(batch, n);
         let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
@@ -44,7 +44,7 @@ impl Setup<'_> {
         faces[lane] = place.face() as u32;
     }
 
-    /// Texture units that rows do not sample.
+    /// Samples all texture units of a batch by the definition.
     pub(super) fn pixel_by_pixel(
         &self,
         batch: PixelBatch<'_>,
@@ -53,7 +53,7 @@ impl Setup<'_> {
         alive: &mut PerLane<bool>,
         rows: &mut [Lanes256],
     ) {
-        self.tell(Reason::Textures, batch.count);
+        self.count_defined(Reason::Textures, batch.count);
         for n in 0..batch.count {
             let (sample, lane) = (self.sample(batch, n), batch.lane + n);
             let mut registers = Registers::<i32>::new();

@@ -1,4 +1,4 @@
-//! Depths on rows: the definition's integers as doubles, which hold them exactly; docs/exactness.md says why.
+//! Depths on rows. The definition's integers are held as doubles, exactly; docs/exactness.md has the argument.
 #![allow(
     clippy::float_arithmetic,
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
@@ -12,44 +12,44 @@ use crate::raster::depth::{difference, largest_edge, reciprocal, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
-/// Bits of a double below the 24 that count.
+/// Bits of a double below its first 24.
 const BELOW_24_BITS: u64 = (1 << 29) - 1;
 
-/// Sign and exponent of a double.
+/// Bits of the sign and the exponent of a double.
 const EXPONENT: u64 = 0xfff << 52;
 
 /// 2^-28.
 const STEP: f64 = 1.0 / (1_u64 << 28) as f64;
 
-/// The exponent of 1.
+/// Bits of the exponent of 1.
 const ONE: u64 = 1023 << 52;
 
-/// A depth that no buffer has: the definition computes it.
+/// Marks a depth that the definition has to compute. No buffer has it.
 pub(super) const UNKNOWN: u32 = u32::MAX;
 
-/// A depth that no buffer has: the pixel is outside the draw's range, and dropped (DEP-4).
+/// Marks a pixel outside the draw's depth range, which is dropped (DEP-4). No buffer has it.
 pub(super) const OUTSIDE: u32 = u32::MAX - 1;
 
-/// Lanes of which one step is computed before the next: what a lane waits for is long, and processors find other lanes' work beside it only
-/// where a step is short.
+/// Number of lanes that run one step before the next step begins. A step has a long latency, which processors hide by the other lanes only
+/// if the step is short.
 const CHUNK: usize = 64;
 
-/// What the steps of a chunk leave for the next. Aligned: vectors are stored and loaded.
+/// Intermediate results of a chunk. Aligned, because vectors are stored and loaded.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Steps {
-    /// Edge numbers as multiples of 2^(X-28), X being the exponent of the largest: those of the two vertices that are not the reference. In a
-    /// w buffer those of vertices 0 and 2, and then of 1.
+    /// Edge numbers of the two vertices that are not the reference, in multiples of 2^(X-28), where X is the exponent of the largest. In a
+    /// w buffer those of vertices 0 and 2, then of 1.
     edges: [[f64; CHUNK]; 3],
-    /// The sum of all three, each floored.
+    /// Sum of all three, each floored.
     sums: [f64; CHUNK],
-    /// The depth of the reference.
+    /// Depth of the reference vertex.
     references: [f64; CHUNK],
-    /// What the two others' depths differ from it by; then those differences times their weights.
+    /// Differences of the two other depths from it; later these differences times their weights.
     terms: [[f64; CHUNK]; 2],
-    /// 1 where the definition has to decide.
+    /// 1 if the definition has to decide.
     close: [u64; CHUNK],
-    /// Of the triangle whose batches come.
+    /// Reciprocals of the current triangle.
     series: ReciprocalSeries,
 }
 
@@ -67,16 +67,17 @@ impl Default for Steps {
     }
 }
 
-/// DEP-1's reciprocals of a triangle as a series. The three edge numbers add up to its doubled area, less what each loses where it is cut to 24 bits: a
-/// few of its last bits. So the reciprocal is a function of one small number, and three terms tell it.
+/// DEP-1's reciprocals of a triangle as a series. The three edge numbers add up to the doubled area, less the few last bits that each loses
+/// when it is cut to 24 bits. So the reciprocal is a function of that small loss, and three terms of the series suffice.
 #[derive(Clone, Copy, Debug, Default)]
 struct ReciprocalSeries {
     area: i64,
-    /// Every reciprocal is what the series tells.
+    /// Whether the series yields every reciprocal of the triangle.
     tells: bool,
-    /// Coefficients, less 3/16 and one half, so that the nearest whole number is the reciprocal; the reciprocal itself where nothing is lost.
+    /// Coefficients. The first is less by 3/16 and one half, so that the nearest integer is the reciprocal; if nothing is lost, it is the
+    /// reciprocal itself.
     terms: [f64; 3],
-    /// What makes weights of edge numbers times reciprocals.
+    /// Factor that turns edge numbers times reciprocals into weights.
     unit: f64,
 }
 
@@ -84,13 +85,13 @@ impl ReciprocalSeries {
     fn new<const FMA: bool>(area: i64) -> ReciprocalSeries {
         let bits = 64 - area.leading_zeros();
         let mut series = ReciprocalSeries { area, ..ReciprocalSeries::default() };
-        // Of more bits, edge numbers would be cut again where they are aligned.
+        // Edge numbers with more bits would be cut again when they are aligned.
         if bits > 29 {
             return series;
         }
         series.unit = power_of_two(-28 - bits as i32);
         let of = |sum: i64| {
-            // As many bits as those that are not exact.
+            // With as many bits as reciprocals that are not exact.
             if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal(sum).0 as f64 }
         };
         let (largest_loss, real) = (3 * ((1_i64 << bits.saturating_sub(24)) - 1), area as f64);
@@ -100,7 +101,7 @@ impl ReciprocalSeries {
         } else {
             [first - 0.6875, first / real, first / (real * real)]
         };
-        // Each is compared with the definition's.
+        // Compares each value with the definition's.
         let tells = |lost: i64| {
             let sum = area - lost;
             64 - sum.leading_zeros() == bits && series.at::<FMA>(lost as f64) == of(sum)
@@ -109,7 +110,7 @@ impl ReciprocalSeries {
         series
     }
 
-    /// The reciprocal where so much is lost.
+    /// Returns the reciprocal for a loss.
     #[inline(always)]
     fn at<const FMA: bool>(&self, lost: f64) -> f64 {
         let [first, second, third] = self.terms;
@@ -117,25 +118,25 @@ impl ReciprocalSeries {
     }
 }
 
-/// The vertices that are not the reference.
+/// The two vertices that are not the reference, for each reference.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
-/// Depths at the vertices of a triangle, the largest depth, and what happens to depths that are not just floored.
+/// Depths at the vertices of a triangle, the largest depth of the buffer, and the steps besides flooring.
 #[derive(Clone, Copy, Debug)]
 struct Depths<'a> {
     z: [f64; 3],
-    /// Of the [two others](OTHERS) from each vertex.
+    /// Differences of the depths of the [two other vertices](OTHERS) from each vertex.
     differences: [[f64; 2]; 3],
-    /// In a w buffer, what edge numbers are multiplied by (DEP-6); `z` holds w there.
+    /// Factors of edge numbers in a w buffer (DEP-6). There `z` holds w.
     ratios: [f64; 3],
     full: f64,
-    /// Two numbers whose sum it is.
+    /// Polygon offset as the sum of two numbers.
     offset: [f64; 2],
     range: Option<&'a DepthRange>,
     format: DepthFormat,
 }
 
-/// Depth of the pixels of a batch.
+/// Computes the depths of a batch's pixels.
 #[inline(always)]
 pub(super) fn depths<const FMA: bool, const ROW: bool>(
     context: &TriangleContext<'_>,
@@ -157,13 +158,13 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let differences = [0, 1, 2].map(|reference| OTHERS[reference].map(|k| f64::from(difference(z[k], z[reference]))));
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
     let edges = [edge(0), edge(1), edge(2)];
-    // What nobody reads yet may follow a row's lanes.
+    // The lanes after those of a row are not in use yet, so they may be overwritten.
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
     let along_row = (e, triangle.a, batch.count);
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
-    // Zero, or far from where binary32 or the steps between are at their ends.
+    // Zero, or far from the limits of binary32 and of the intermediate results.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
-    // Floored, and nothing else.
+    // Whether depths are floored and nothing else.
     let is_plain = range.is_none() && plane.offset.mantissa == 0 && !format.is_float();
     let moderate_offset = offset[0] == 0.0 || (1e-250..1e250).contains(&offset[0].abs());
     let unknown = if let Some(w) = plane.w {
@@ -195,7 +196,7 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// The reference of a pixel of a row, and up to which pixel all have it, with an edge number of the same exponent.
+/// Returns the reference of a pixel of a row, and up to which pixel all have that reference and an edge number of the same exponent.
 fn same_reference((e, slopes, count): ([i64; 3], [i64; 3], usize), first: usize) -> (usize, usize) {
     let key = |x: usize| {
         let e = [0, 1, 2].map(|k| e[k] + slopes[k] * x as i64);
@@ -203,7 +204,7 @@ fn same_reference((e, slopes, count): ([i64; 3], [i64; 3], usize), first: usize)
         (reference, e[reference].leading_zeros())
     };
     let wanted = key(first);
-    // Edge numbers are linear: where both ends have the same, all between have it.
+    // Edge numbers are linear. If both ends agree, so do all pixels between them.
     if key(count - 1) == wanted {
         return (wanted.0, count);
     }
@@ -215,7 +216,7 @@ fn same_reference((e, slopes, count): ([i64; 3], [i64; 3], usize), first: usize)
     (wanted.0, outside)
 }
 
-/// 2^exponent; 0 or infinite where a double has no such power.
+/// Returns 2^exponent, or 0 or infinity if no double has that value.
 fn power_of_two(exponent: i32) -> f64 {
     match exponent {
         -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
@@ -225,8 +226,8 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 impl Depths<'_> {
-    /// Whether some are unknown. `GENERAL`: depths are not just floored. `W`: in a w buffer. `row`: of a row, the edge functions at its first pixel, how
-    /// they change, and its pixels.
+    /// Returns whether some depths are unknown. `GENERAL` means that depths are not just floored, `W` that the buffer is a w buffer. `row`
+    /// has the edge functions at the first pixel of a row, their slopes and the number of pixels.
     #[inline(always)]
     fn along<const FMA: bool, const ROW: bool, const GENERAL: bool, const W: bool>(
         &self,
@@ -238,7 +239,7 @@ impl Depths<'_> {
     ) -> bool {
         let mut unknown = false;
         let is_plain_row = ROW && !GENERAL && !W;
-        // No edge function is left out: their sum is the doubled area.
+        // The sum of all three edge functions is the doubled area.
         let area = row.0.iter().sum();
         if is_plain_row && steps.series.area != area {
             steps.series = ReciprocalSeries::new::<FMA>(area);
@@ -267,7 +268,7 @@ impl Depths<'_> {
                 self.words::<FMA, GENERAL>(steps, out);
                 if close {
                     for (out, close) in out.iter_mut().zip(&steps.close) {
-                        // All bits of UNKNOWN are set.
+                        // `UNKNOWN` has all bits set.
                         *out |= (*close as u32).wrapping_neg();
                     }
                 }
@@ -278,7 +279,7 @@ impl Depths<'_> {
         unknown
     }
 
-    /// Terms of pixels of a row that have one reference.
+    /// Computes the terms of pixels of a row that share a reference.
     #[inline(always)]
     fn segment<const FMA: bool>(
         &self,
@@ -290,7 +291,7 @@ impl Depths<'_> {
         let lanes = iota.len();
         let [one, other] = OTHERS[reference];
         let Steps { references, terms: [of_one, of_other], series, .. } = steps;
-        // A copy: what is stored is known not to overlap it.
+        // A copy, which cannot overlap what is stored.
         let series = *series;
         let by = self.differences[reference].map(|difference| difference * series.unit);
         let (one, other, largest) = (edges[one], edges[other], edges[reference]);
@@ -308,7 +309,8 @@ impl Depths<'_> {
         }
     }
 
-    /// The words of a segment, depths floored and nothing else, if the largest terms of all its pixels have one exponent. `false`: they have not.
+    /// Writes the words of a segment whose depths are floored and nothing else. Returns `false`, and writes nothing valid, unless the
+    /// largest terms of all its pixels have the same exponent.
     #[inline(always)]
     fn floored_words<const FMA: bool>(&self, steps: &Steps, out: &mut [u32]) -> bool {
         let lanes = out.len();
@@ -316,7 +318,7 @@ impl Depths<'_> {
         let (z, one, other) = (references[0], &one[..lanes], &other[..lanes]);
         let larger = |a: f64, b: f64| if a > b { a } else { b };
         let top = power(larger(larger(one[0].abs(), other[0].abs()), z.abs()));
-        // Above, a sum has no fraction. Terms that are smaller make no depth.
+        // Above this limit, sums have no fraction. Below it, terms are too small to yield a depth.
         let has_fraction = top < (1 << 27) as f64 && top > 1e-200;
         if !has_fraction {
             return false;
@@ -324,7 +326,7 @@ impl Depths<'_> {
         let (scale, step) = ((1 << 28) as f64 / top, top * STEP);
         let (z, full) = (z * scale, self.full as i32);
         let (least, cut_z) = (z.abs(), cut::<FMA>(z));
-        // Half of one less half a step: no sum lies half way between two numbers then.
+        // Half a unit less half a step, so that no sum lies half-way between two integers.
         let start = 0.5 * step - 0.5;
         let mut differing = 0;
         for n in 0..lanes {
@@ -337,7 +339,7 @@ impl Depths<'_> {
         differing & EXPONENT == 0
     }
 
-    /// Edge numbers, their sum, and what depends on the reference.
+    /// Computes edge numbers, their sum, and the values that depend on the reference.
     #[inline(always)]
     fn sums<const FMA: bool, const ROW: bool, const W: bool>(
         &self,
@@ -366,7 +368,7 @@ impl Depths<'_> {
             let top = if x1 > top { x1 } else { top };
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let (e0, e1, e2) = (cut24(e0) * scale, cut24(e1) * scale, cut24(e2) * scale);
-            // The definition has 61 bits of the largest.
+            // The definition keeps 61 bits of the largest.
             let (e0, e1, e2) = if W { (kept(e0, 32), kept(e1, 32), kept(e2, 32)) } else { (e0, e1, e2) };
             sums[n] = floor::<FMA>(e0) + floor::<FMA>(e1) + floor::<FMA>(e2);
             if W {
@@ -374,7 +376,7 @@ impl Depths<'_> {
                 (references[n], of_one[n], of_other[n]) = (z1, a1, b1);
                 continue;
             }
-            // One choice at a time: nested ones would become branches.
+            // One choice at a time, because compilers turn nested ones into branches.
             let second = (x1 >= x0) & (x1 >= x2);
             let first = x0 >= x2;
             let (e_one, e_other) = (if first { e1 } else { e0 }, if first { e2 } else { e1 });
@@ -388,7 +390,7 @@ impl Depths<'_> {
         }
     }
 
-    /// Differences times their weights. Whether some are too close to call.
+    /// Multiplies differences by their weights. Returns whether some are too close to a border.
     #[inline(always)]
     fn terms<const FMA: bool, const W: bool>(&self, lanes: usize, steps: &mut Steps) -> bool {
         let Steps { edges: [one, other, middle], sums, terms: [of_one, of_other], close, .. } = steps;
@@ -402,10 +404,10 @@ impl Depths<'_> {
             let low = quotient - 0.1875;
             let reciprocal = floor::<FMA>(low);
             let exact = length == sum;
-            // A quotient that was rounded to the border of two reciprocals.
+            // The quotient was rounded to the border between two reciprocals.
             let close = (reciprocal == low) & !exact;
             let reciprocal = if exact { (1_i64 << 29) as f64 } else { reciprocal };
-            // What makes weights of them.
+            // Factor that turns products into weights.
             let unit = f64::from_bits((2 * ONE - (29 << 52)).wrapping_sub(length.to_bits()));
             let (a, b) = (cut24(one[n] * reciprocal) * unit, cut24(other[n] * reciprocal) * unit);
             let (a, b, close) =
@@ -418,7 +420,7 @@ impl Depths<'_> {
         some != 0
     }
 
-    /// The sum of the terms and of the reference's depth as a word.
+    /// Adds the terms to the depth of the reference, and returns the words.
     #[inline(always)]
     fn words<const FMA: bool, const GENERAL: bool>(&self, steps: &mut Steps, out: &mut [u32]) {
         let lanes = out.len();
@@ -429,7 +431,7 @@ impl Depths<'_> {
             let (a, b, z) = (one[n], other[n], references[n]);
             let largest = if a.abs() > b.abs() { a.abs() } else { b.abs() };
             let largest = if z.abs() > largest { z.abs() } else { largest };
-            // Terms that small make no depth.
+            // Smaller terms yield no depth.
             let top = power(if largest > 1e-200 { largest } else { 1e-200 });
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
@@ -444,7 +446,7 @@ impl Depths<'_> {
         }
         if GENERAL && self.offset != [0.0; 2] {
             for (sum, lost) in sums.iter_mut().zip(&mut *lost) {
-                // The definition has more bits than a double: what the sum loses counts.
+                // The definition has more bits than a double, so the rounding error of the sum counts.
                 let (high, rest) = two_sum(*sum, self.offset[0]);
                 let (rest, least) = two_sum(rest, self.offset[1]);
                 let (high, rest) = two_sum(high, rest);
@@ -458,7 +460,7 @@ impl Depths<'_> {
         }
     }
 
-    /// DEP-3 to DEP-5 of a depth, the sum of a double and less than its last bit.
+    /// DEP-3 to DEP-5: returns the word of a depth that is the sum of a double and a number below its last bit.
     #[inline(always)]
     fn word(&self, sum: f64, lost: f64) -> u32 {
         if let Some(range) = self.range {
@@ -469,13 +471,14 @@ impl Depths<'_> {
                 return if range.clamps { word(self.format, if below { lowest } else { highest }) } else { OUTSIDE };
             }
         }
-        // What lies between a double and the one before is as good as the latter: words begin at doubles. Only what is positive is a depth.
+        // A number between a double and the one before it yields the same word as the latter, because words begin at doubles. Only positive
+        // numbers are depths.
         let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
         word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
 }
 
-/// A sum, and what it lost, exactly.
+/// Returns a sum and its exact rounding error.
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -483,7 +486,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - other)) + (b - other))
 }
 
-/// DEP-3 of a depth.
+/// DEP-3: returns the word of a depth.
 #[inline(always)]
 pub(super) fn word(format: DepthFormat, depth: f64) -> u32 {
     if depth <= 0.0 {
@@ -502,19 +505,19 @@ pub(super) fn word(format: DepthFormat, depth: f64) -> u32 {
     }
 }
 
-/// DEP-6: the first weight and the third, of which the dominant one is what the others leave of 1; and whether that is too close to call, or was.
+/// DEP-6: returns the first and the third weight, of which the dominant one is 1 less the others, and whether the choice was too close to a
+/// border.
 #[inline(always)]
 fn with_rest([b0, b1, b2]: [f64; 3], close: bool) -> (f64, f64, bool) {
     let [first, third] = most_dominant([power(b0), power(b1), power(b2)]);
-    // Where the second dominates, nobody reads it.
-    // One choice at a time: nested ones would become branches.
+    // Nobody reads it if the second weight dominates. One choice at a time, because compilers turn nested ones into branches.
     let other = if first { b2 } else { b0 };
     let (one, other) = (kept(b1, 60), kept(other, 60));
     let large = if one > other { one } else { other };
     let small = if one > other { other } else { one };
     let most = 1.0 - large;
     let rest = most - small;
-    // What the differences lost, exactly.
+    // Exact rounding errors of the differences.
     let lost = ((1.0 - most) - large != 0.0) | ((most - rest) - small != 0.0);
     let same = cut24(rest * (1.0 - ROUNDINGS)) == cut24(rest * (1.0 + ROUNDINGS));
     let rest = cut24(rest);
@@ -523,31 +526,31 @@ fn with_rest([b0, b1, b2]: [f64; 3], close: bool) -> (f64, f64, bool) {
     (b0, b2, close | (lost & !same & (first | third)))
 }
 
-/// More than two roundings.
+/// An upper bound of two relative rounding errors.
 const ROUNDINGS: f64 = 1.0 / (1_u64 << 50) as f64;
 
-/// A number of at most 24 bits that is not negative, floored at 2^-`bits`.
+/// Floors a number of at most 24 bits, which is not negative, to a multiple of 2^-`bits`.
 #[inline(always)]
 fn kept(n: f64, bits: u32) -> f64 {
     let steps = n * (1_u64 << bits) as f64;
-    // All others are whole; not all of them could be floored.
+    // All larger numbers are whole already; some of them are too large for `floor`.
     let floored = floor::<false>(steps) * (1.0 / (1_u64 << bits) as f64);
     if steps < (1_u64 << 40) as f64 { floored } else { n }
 }
 
-/// The largest power of two that is not above a positive number.
+/// Returns the largest power of two that is not above a positive number.
 #[inline(always)]
 fn power(n: f64) -> f64 {
     f64::from_bits(n.to_bits() & EXPONENT)
 }
 
-/// The first 24 bits.
+/// Keeps the first 24 significant bits.
 #[inline(always)]
 fn cut24(n: f64) -> f64 {
     f64::from_bits(n.to_bits() & !BELOW_24_BITS)
 }
 
-/// The largest whole number that is not above another number of less than 51 bits. `WIDE`: the instruction set has it as an instruction.
+/// Returns the floor of a number of less than 51 bits. With `WIDE`, the instruction set has an instruction for it.
 #[inline(always)]
 pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
     if WIDE {
@@ -557,7 +560,7 @@ pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
     if near > n { near - 1.0 } else { near }
 }
 
-/// Cut toward zero.
+/// Rounds toward zero.
 #[inline(always)]
 pub(super) fn cut<const WIDE: bool>(n: f64) -> f64 {
     if WIDE {

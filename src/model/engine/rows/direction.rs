@@ -1,4 +1,4 @@
-//! TEX-12 on rows: the face that a direction meets, and where; TEX-15, which divides by q what that divides by a component.
+//! TEX-12 on rows: the face that a direction meets, and the coordinates on it. TEX-15 divides by q instead of by the major component.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::Sampler;
@@ -10,10 +10,11 @@ use super::short::{Short, floors};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
-/// What an estimate of a coordinate divided by q may be off by, 1/256 texel.
+/// Largest error of an estimated coordinate that is divided by q, 1/256 texel.
 const COARSEST: f64 = 0.125;
 
-/// The face that all three vertices look at, none of them along its edge: so does everything between them.
+/// Returns the face that the directions of all three vertices meet, if none of them lies on an edge of it. Then all directions between them
+/// meet it too.
 pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     let look = |k: usize| {
         let direction = [g[0][k], g[1][k], g[2][k]];
@@ -26,8 +27,8 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     (look(1)? == face && look(2)? == face).then_some(face)
 }
 
-/// TEX-12 of a component that is the same multiple of the major one at all vertices, and so everywhere: nor does a tie lose anything (INT-4t).
-/// `None`: it varies.
+/// TEX-12: returns the coordinate of a component that is the same multiple of the major one at all vertices, and so everywhere. Such ties
+/// lose nothing either (INT-4t). Returns `None` if the coordinate varies.
 #[inline(always)]
 fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option<f64> {
     let ([s, s1, s2], [m, m1, m2]) = (planes[of.axis].g, planes[major.axis].g);
@@ -57,16 +58,16 @@ pub(super) fn positive(mut g: [[i64; 3]; 3]) -> Option<([[i64; 3]; 3], f64)> {
     Some((g, reach))
 }
 
-/// Whether coordinates of that magnitude, in images, may be limited (TEX-15).
+/// Returns whether coordinates of that magnitude, in images, may reach their limit (TEX-15).
 pub(super) fn reaches_limit(reach: f64, sides: [u32; 2]) -> bool {
     512.0 * f64::from(sides[0].max(sides[1])) * reach >= COORDINATE_LIMIT as f64
 }
 
-/// A direction across a batch, or s, t and q.
+/// A direction across a batch; also s, t and q.
 pub(super) struct CubeDirection {
-    /// x, y, z.
+    /// The components x, y and z as linear functions.
     pub(super) lines: [Line; 3],
-    /// What each can be off by.
+    /// Largest error of a component.
     error: f64,
 }
 
@@ -76,7 +77,7 @@ impl CubeDirection {
         CubeDirection::around(planes, &local.real, local.columns, local.rows)
     }
 
-    /// That of so many columns and rows.
+    /// Returns the direction across so many columns and rows.
     #[inline(always)]
     pub(super) fn around(planes: &[Plane; 3], e: &[f64; 3], columns: f64, rows: f64) -> CubeDirection {
         let lines = [planes[0].line(e), planes[1].line(e), planes[2].line(e)];
@@ -85,14 +86,15 @@ impl CubeDirection {
         CubeDirection { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
     }
 
-    /// More than a quotient of two of these times `scale` is off by, and more than its magnitude. `widest` is the reciprocal of the least divisor.
+    /// Returns bounds of the error and of the magnitude of a quotient of two components times `scale`. `widest` is the reciprocal of the
+    /// least divisor.
     #[inline(always)]
     pub(super) fn off(&self, widest: f64, scale: f64) -> (f64, f64) {
         let range = scale * (1.0 + self.error / SLACK * widest);
         (8.0 * self.error * widest * range, range)
     }
 
-    /// Whether all directions look at a face, of which `least` tells what a linear function is not below.
+    /// Returns whether all directions meet a face. `least` gives a lower bound of a linear function in the batch.
     #[inline(always)]
     pub(super) fn stays(&self, face: Face, least: impl Fn(Line) -> f64) -> bool {
         let [s, t, m] = face.components();
@@ -110,8 +112,8 @@ impl CubeDirection {
         if of.negative { line.times(-1.0) } else { line }
     }
 
-    /// The face that all of a row looks at: the directions that look at a face are a cone, so its ends tell. `None`: not one, or too close
-    /// to call.
+    /// Returns the face that all pixels of a row meet. The directions of a face form a cone, so the ends of the row decide. Returns `None`
+    /// if they meet several faces, or are too close to an edge.
     #[inline(always)]
     pub(super) fn face<const FMA: bool>(&self, columns: f64) -> Option<Face> {
         let (first, last) = (self.look::<FMA>(0.0)?, self.look::<FMA>(columns)?);
@@ -129,8 +131,8 @@ impl CubeDirection {
         (magnitudes[s.axis] < least && magnitudes[t.axis] < least).then_some(face)
     }
 
-    /// TEX-12 of a batch whose pixels look at several faces. No denominator: the perspective divide cancels. `false`: some pixel is too
-    /// close to call, and nothing is known.
+    /// TEX-12 of a batch whose pixels meet several faces. It needs no denominator, because the perspective division cancels. Returns
+    /// `false` if a pixel is too close to an edge; then no result counts.
     #[inline(always)]
     pub(super) fn directions<const FMA: bool, const ROW: bool>(
         &self,
@@ -149,7 +151,7 @@ impl CubeDirection {
 }
 
 impl Setup<'_> {
-    /// Coordinates of a batch, by whatever functions its sampler has; those that are not proved are the definition's.
+    /// Computes the coordinates of a batch by the functions of its sampler. The definition computes those that estimates do not prove.
     #[inline(always)]
     pub(super) fn coordinates<const FMA: bool, const ROW: bool>(
         &self,
@@ -167,13 +169,13 @@ impl Setup<'_> {
                 true
             }
             Planes::Direction(planes, face) => {
-                let looking = CubeDirection::new(planes, local);
-                let face = if ROW && face.is_none() { looking.face::<FMA>(local.columns) } else { *face };
+                let direction = CubeDirection::new(planes, local);
+                let face = if ROW && face.is_none() { direction.face::<FMA>(local.columns) } else { *face };
                 match face {
                     Some(face) => {
-                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &looking, local, numbers, faces)
+                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, numbers, faces)
                     }
-                    None => looking.directions::<FMA, ROW>(batch, sampler, numbers, faces),
+                    None => direction.directions::<FMA, ROW>(batch, sampler, numbers, faces),
                 }
             }
             Planes::Ratio(planes, reach) => {
@@ -186,7 +188,7 @@ impl Setup<'_> {
         }
     }
 
-    /// TEX-12 of a batch that looks at one face: two quotients like any others. `false`: nothing would be proved.
+    /// TEX-12 of a batch that meets one face: two ordinary quotients. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn on_face<const FMA: bool, const ROW: bool>(
@@ -195,30 +197,30 @@ impl Setup<'_> {
         sampler: &Sampler,
         planes: &[Plane; 3],
         face: Face,
-        looking: &CubeDirection,
+        direction: &CubeDirection,
         local: &BatchSetup,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
         let [s, t, major] = face.components();
-        let m = looking.component(major);
+        let m = direction.component(major);
         let least = self.least::<FMA, ROW>(m, &planes[major.axis], local);
         let widest = 1.0 / least;
         let size = f64::from(sampler.sides[0]) * 128.0;
-        // Twice the error of either component, once what is taken off, and as much again.
-        let margin = 8.0 * looking.error * size * widest;
+        // The error of both components, again for what is subtracted, and twice that.
+        let margin = 8.0 * direction.error * size * widest;
         let line = |of: Signed| match constant(planes, of, major, sampler.sides[0]) {
-            // Far from where a floor changes.
+            // The middle of the step, far from where the floor changes.
             Some(floor) => m.times(floor + 0.5),
-            None => looking.component(of).plus(m).times(size),
+            None => direction.component(of).plus(m).times(size),
         };
         let (along, down) = (line(s), line(t));
         faces[batch.lanes()].fill(face as u32);
         self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, numbers, faces)
     }
 
-    /// TEX-15 of a batch, s, t and a positive q: two more quotients, of what weights that fall short leave. `reach` is more than their magnitudes, in images. `false`: nothing would
-    /// be proved.
+    /// TEX-15 of a batch for s, t and a positive q: two quotients of numbers that lose something where weights fall short. `reach` bounds
+    /// their magnitudes, in images. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn projected<const FMA: bool, const ROW: bool>(
@@ -232,18 +234,18 @@ impl Setup<'_> {
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
-        let looking = CubeDirection::new(planes, local);
-        let [s, t, q] = looking.lines;
+        let direction = CubeDirection::new(planes, local);
+        let [s, t, q] = direction.lines;
         let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
         let most = if width > height { width } else { height };
-        // The error of s or t, that of q as often as it is in the quotient, once more what is taken off, and as much again.
-        let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
+        // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.
+        let margin = 8.0 * direction.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
         if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
             return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
         }
-        // Also refuses what is no number.
+        // NaN proves nothing either.
         let proves = margin < COARSEST;
         if !proves {
             return false;
@@ -260,7 +262,7 @@ impl Setup<'_> {
         true
     }
 
-    /// What a linear function that is positive at all vertices is not below in a batch.
+    /// Returns a lower bound in the batch of a linear function that is positive at all vertices.
     #[inline(always)]
     pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, local: &BatchSetup) -> f64 {
         if ROW {
@@ -272,8 +274,8 @@ impl Setup<'_> {
         least as f64 * self.context.triangle.doubled_area as f64
     }
 
-    /// Two quotients by a line that is not below 1 / `widest`, where estimates are off by `margin`; lanes that are not proved are the
-    /// definition's. `false`: nothing would be proved.
+    /// Estimates two quotients by a line that is at least 1 / `widest`. `margin` is the largest error. The definition computes lanes that
+    /// are not proved. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn quotients<const FMA: bool, const ROW: bool>(
@@ -308,7 +310,8 @@ impl Setup<'_> {
     }
 }
 
-/// The loop of [`CubeDirection::directions`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
+/// The loop of [`CubeDirection::directions`]. It takes the largest error of a component, half the face's size in 1/256 texel, and what is
+/// subtracted from coordinates.
 #[inline(always)]
 fn directions<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
@@ -330,9 +333,9 @@ fn directions<const FMA: bool, const ROW: bool>(
         let (more, less) = (if ax > ay { ax } else { ay }, if ax > ay { ay } else { ax });
         let (magnitude, rest) = (if more > az { more } else { az }, if more > az { az } else { more });
         let second = if rest > less { rest } else { less };
-        // Of two that are equal nothing is proved.
+        // A tie between two components proves nothing.
         let (on_x, on_y) = (ax >= magnitude, ay >= magnitude);
-        // One choice at a time: nested ones would become branches.
+        // One choice at a time, because compilers turn nested ones into branches.
         let major = if on_y { y } else { z };
         let major = if on_x { x } else { major };
         let negative = major < 0.0;
@@ -341,7 +344,7 @@ fn directions<const FMA: bool, const ROW: bool>(
         let s = if on_y { other } else { turned };
         let upright = if negative { -z } else { z };
         let t = if on_y { upright } else { -y };
-        // The face's number, as a float among floats.
+        // Number of the face, as a float.
         let axis = if on_y { 2.0 } else { 4.0 };
         let axis = if on_x { 0.0 } else { axis };
         let face = if negative { axis + 1.0 } else { axis };

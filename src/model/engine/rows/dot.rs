@@ -1,5 +1,5 @@
-//! TSH-4, TSH-5 and TSH-7 on rows: the dot unit in the single precision of the machine. Every operation is rounded on its own, in the order in
-//! which [`crate::texture::dot`] writes it; Rust fuses nothing by itself, so each lane has the bits of the definition.
+//! TSH-4, TSH-5 and TSH-7 on rows: the dot unit in the machine's single precision. Every operation is rounded on its own, in the order of
+//! [`crate::texture::dot`]. Since Rust never fuses operations by itself, each lane has the bits of the definition.
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
 
 use super::BLOCK;
@@ -11,12 +11,12 @@ use crate::texture::dot;
 /// A float for each pixel of a block.
 pub(super) type Floats = [f32; BLOCK];
 
-/// TSH-1 to TSH-3: what makes three fractions of a register.
+/// TSH-1 to TSH-3: how a register becomes three fractions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Remap {
-    /// Each of a byte.
+    /// One fraction of each byte.
     Bytes(Linear),
-    /// Of two halves of 16 bits: the mappings of TSH-3.
+    /// Fractions of two 16-bit halves, by a mapping of TSH-3.
     Halves(DotMapping),
 }
 
@@ -25,7 +25,7 @@ impl Remap {
         Linear::new(mapping).map_or(Remap::Halves(mapping), Remap::Bytes)
     }
 
-    /// The fractions of registers, R, G, B, A, of which some may hold twice the byte.
+    /// Computes the fractions of the registers R, G, B and A. `doubled` tells which of them hold twice the byte.
     #[inline(always)]
     pub(super) fn run<const FMA: bool>(
         self,
@@ -45,7 +45,7 @@ impl Remap {
                 let [Some(r), Some(g), Some(b), Some(a)] = registers else { return };
                 let down = doubled.map(u32::from);
                 let [x, y, z] = out;
-                // Two loops, each of which knows its mapping.
+                // Two loops, so that each has a constant mapping.
                 macro_rules! each {
                     ($mapping:expr) => {
                         for n in 0..BLOCK {
@@ -71,7 +71,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// `None`: the mapping is another one.
+    /// Returns `None` if the mapping is not linear.
     fn new(mapping: DotMapping) -> Option<Linear> {
         let of = |byte: u8| dot::fractions(mapping, [byte; 4]);
         let (plus, whole) = of(0)[0];
@@ -88,7 +88,7 @@ impl Linear {
         byte.wrapping_mul(self.times).wrapping_add(self.plus)
     }
 
-    /// The fractions of a channel, which may hold twice the byte.
+    /// Computes the fractions of a channel. `doubled` tells whether it holds twice the byte.
     #[inline(always)]
     fn run<const FMA: bool>(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
         let whole = f32::from(self.whole);
@@ -96,7 +96,8 @@ impl Linear {
         for n in 0..BLOCK {
             let numerator = f32::from(self.numerator(register[n] >> u32::from(doubled)));
             out[n] = if FMA {
-                // The quotient: what remains of a product by the reciprocal corrects it. Tested for all bytes.
+                // The correctly rounded quotient: the remainder of a product by the reciprocal corrects the product. A test covers all
+                // bytes.
                 let near = numerator * reciprocal;
                 near.mul_add(-whole, numerator).mul_add(reciprocal, near)
             } else {
@@ -106,7 +107,7 @@ impl Linear {
     }
 }
 
-/// TSH-4 of numbers and a remapped colour.
+/// TSH-4: dot products of three numbers and a remapped colour.
 #[inline(always)]
 pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: &[Floats; 3], out: &mut Floats) {
     for n in 0..BLOCK {
@@ -114,7 +115,7 @@ pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: &[Floats; 3], out: &m
     }
 }
 
-/// TSH-5.
+/// TSH-5: reflects vectors.
 #[inline(always)]
 pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mut [Floats; 3]) {
     let [out_x, out_y, out_z] = out;
@@ -124,7 +125,7 @@ pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mu
     }
 }
 
-/// TSH-7: computes by what blue and green, whose registers may hold twice the byte, move both coordinates, in 1/128 image.
+/// TSH-7: computes how far blue and green move both coordinates, in 1/128 image. Their registers may hold twice the byte.
 #[inline(always)]
 pub(super) fn moved(
     [m0, m1, m2, m3]: [f32; 4],
@@ -140,12 +141,12 @@ pub(super) fn moved(
     }
 }
 
-/// Coordinates of two numbers on an image, floors in 1/256 texel less `bias`, limited. NaN is 0.
+/// Writes coordinates on an image as floors in 1/256 texel less `bias`, limited to `limit`. NaN counts as 0.
 #[inline(always)]
 pub(super) fn coordinate(f: &Floats, side: u32, limit: i32, bias: i32, out: &mut [i32; BLOCK]) {
     let (scale, limit) = (256.0 * f64::from(side), f64::from(limit));
     for n in 0..BLOCK {
-        // Exact: 24 bits by at most 12.
+        // Exact, because 24 bits are multiplied by at most 12.
         let t = f64::from(f[n]) * scale;
         let t = if t > -limit { t } else { -limit };
         let t = if t < limit { t } else { limit };
@@ -154,16 +155,16 @@ pub(super) fn coordinate(f: &Floats, side: u32, limit: i32, bias: i32, out: &mut
     }
 }
 
-/// The floor of a number far below 2^31.
+/// Returns the floor of a number far below 2^31.
 #[inline(always)]
 fn floor(t: f64) -> i32 {
     nearest(t) - i32::from(whole(t) > t)
 }
 
-/// TEX-12 and TEX-13 of vectors: the face, and u and v on it, floors in 1/256 texel less `bias`.
+/// TEX-12 and TEX-13 of vectors: writes the face, and u and v on it as floors in 1/256 texel less `bias`.
 ///
-/// With the major component m, K = 128 `size`, a power of two, and n the whole number nearest to K s / m, however roughly that is computed, the floor
-/// is K + n, or one less if s is [below](is_below) m n / K. The fourth argument is a place to work in.
+/// With the major component m, K = 128 `size`, which is a power of two, and n the integer nearest to K s / m, computed roughly, the floor
+/// is K + n, or one less if s is [below](is_below) m n / K. The fourth argument is scratch space.
 #[inline(always)]
 pub(super) fn on_faces<const FMA: bool>(
     [x, y, z]: [&Floats; 3],
@@ -179,7 +180,8 @@ pub(super) fn on_faces<const FMA: bool>(
         let (x, y, z) = (x[n], y[n], z[n]);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let finite = (ax <= f32::MAX) & (ay <= f32::MAX) & (az <= f32::MAX);
-        // X over Y over Z, as `Face::from_direction` has it; one choice at a time: nested ones would become branches.
+        // X goes before Y, Y before Z, as in `Face::from_direction`. One choice at a time, because compilers turn nested ones into
+        // branches.
         let on_x = (ax >= ay) & (ax >= az);
         let on_y = ay >= az;
         let major = if on_y { y } else { z };
@@ -192,11 +194,11 @@ pub(super) fn on_faces<const FMA: bool>(
         let s = if on_x { turned } else { s };
         let t = if on_y { upright } else { -y };
         let t = if on_x { -y } else { t };
-        // The face's number, as a float among floats.
+        // Number of the face, as a float.
         let axis = if on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
         let axis = if on_x { Face::PositiveX as u32 as f32 } else { axis };
         let face = if negative { axis + 1.0 } else { axis };
-        // By bits: compilers make masked stores of choices, which are slow.
+        // By bits, because compilers turn a choice into masked stores, which are slow.
         let kept = if finite { u32::MAX } else { 0 };
         let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
         faces[n] = nearest_32(kept(face)) as u32;
@@ -206,7 +208,7 @@ pub(super) fn on_faces<const FMA: bool>(
     }
     for n in 0..BLOCK {
         let (s, t, m) = (along[n], down[n], majors[n]);
-        // The zero vector lies at 0.
+        // The zero vector has the coordinates 0.
         let center = if m > 0.0 { k } else { 0.0 };
         let r = center / (if m > 0.0 { m } else { 1.0 });
         let (near_u, near_v) = (whole_32(s * r), whole_32(t * r));
@@ -216,10 +218,10 @@ pub(super) fn on_faces<const FMA: bool>(
     }
 }
 
-/// Vectors whose components are all smaller are multiplied by its reciprocal, so that no difference of [`is_below`] is lost.
+/// Vectors with smaller components are scaled by its reciprocal, so that no difference in [`is_below`] underflows.
 const TINY: f32 = f32::from_bits((127 - 100) << 23);
 
-/// Whether s < m f: exactly, since the fused difference keeps its sign, and since the product has fewer than 53 bits.
+/// Returns whether s < m f, exactly: the fused difference has the right sign, and the product of doubles is exact.
 #[inline(always)]
 fn is_below<const FMA: bool>(s: f32, m: f32, f: f32) -> bool {
     if FMA { f.mul_add(m, -s) > 0.0 } else { f64::from(s) < f64::from(f) * f64::from(m) }

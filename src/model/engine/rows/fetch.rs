@@ -1,4 +1,4 @@
-//! TEX-5 to TEX-8 on rows: entries of a table, texels, the filter.
+//! TEX-5 to TEX-8 on rows: addresses of table entries, fetches of texels, and the filter.
 
 use super::BLOCK;
 use super::kernels::{LANES, Lanes256, PerLane};
@@ -9,16 +9,16 @@ use super::taps::Pair;
 use crate::number::{Lane, Swar2};
 use crate::texture::filter::{bilinear, lerp};
 
-/// What a fetch works in.
+/// Scratch space of a fetch.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     entries: [u32; BLOCK],
     texels: [u32; BLOCK],
     upper: [[u32; 2]; BLOCK],
     lower: [[u32; 2]; BLOCK],
-    /// Channels of the next level.
+    /// Channels of the second level.
     next: [[i16; BLOCK]; 4],
-    /// Halves of 16 bits: of a level and of the next one.
+    /// 16-bit halves of the first and of the second level.
     halves: [[i32; BLOCK]; 2],
 }
 
@@ -35,7 +35,8 @@ impl Default for Workspace {
     }
 }
 
-/// Finds the entries of a unit at `u`, `v` (1/256 texel; less half a texel where it is filtered) on `faces`. Coordinates are limited on the way.
+/// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
+/// limited to the axes.
 #[inline(always)]
 pub(super) fn locate(
     table: &Table,
@@ -55,8 +56,8 @@ pub(super) fn locate(
     }
 }
 
-/// Samples a unit at the entries that are [located](locate), and leaves the channels in `rows`, each in its own where that is wanted. What depths
-/// are compared with is in `references`.
+/// Samples a unit at the [located](locate) entries and writes its channels to the `wanted` rows. `references` are the depths to compare
+/// with.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
@@ -73,7 +74,7 @@ pub(super) fn sample(
     }
 }
 
-/// The same, but that signed channels still have 128 added where it says `true`.
+/// Samples without subtracting the 128 of signed channels. Returns whether it still has to be subtracted.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn texels(
@@ -88,7 +89,7 @@ fn texels(
     let Workspace { entries, texels: found, upper, lower, halves: [half, _], .. } = work;
     let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
-    // What nobody wants goes to the first rows.
+    // Channels that are not wanted go to the spare rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else {
         return false;
@@ -103,7 +104,7 @@ fn texels(
                 _ => unpack::<4>(found, red, green, blue, alpha),
             }
         }
-        // `sample_levels`.
+        // Done by `sample_levels`.
         Texels::Levels(_) | Texels::WideLevels(_) => {}
         Texels::Wide(texels, linear) => {
             fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
@@ -147,7 +148,7 @@ fn texels(
     true
 }
 
-/// TEX-17: the taps of a unit's pixels, each sampled, weighed and added.
+/// TEX-17: samples all taps of the pixels, and adds them with their weights.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample_taps(
@@ -189,10 +190,10 @@ pub(super) fn sample_taps(
     load(signed, wanted, rows);
 }
 
-/// Nothing is compared.
+/// References for units that do not compare.
 static NO_REFERENCES: PerLane<u32> = [0; LANES];
 
-/// KEY-1: drops lanes whose single texel, just sampled, is the key in the bits that are compared.
+/// KEY-1: drops lanes whose single texel equals the key in the compared bits.
 #[inline(always)]
 pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut [bool; BLOCK]) {
     for (alive, texel) in alive.iter_mut().zip(&work.texels) {
@@ -200,7 +201,7 @@ pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut 
     }
 }
 
-/// TEX-9 of what lanes read of levels; `both`: of two.
+/// TEX-9: samples one level, or mixes two if `both` is set.
 #[inline(always)]
 pub(super) fn sample_levels(
     table: &Table,
@@ -259,7 +260,7 @@ pub(super) fn sample_levels(
 }
 
 impl MipFetches {
-    /// The entries of what is read of one of two levels, and the coordinates that weights come from.
+    /// Writes the entries of one of two levels. Returns the coordinates for its weights.
     #[inline(always)]
     fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> Option<(&[i32; BLOCK], &[i32; BLOCK])> {
         for (entry, found) in entries.iter_mut().zip(&self.entries[which]) {
@@ -270,7 +271,7 @@ impl MipFetches {
     }
 }
 
-/// TEX-9: two levels of a channel.
+/// TEX-9: mixes two levels of a channel.
 #[inline(always)]
 fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[i32; BLOCK]) {
     for ((channel, next), weight) in channel.iter_mut().zip(next).zip(weights) {
@@ -278,7 +279,7 @@ fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[i32; BLOCK]) 
     }
 }
 
-/// TEX-18: the 128 that the table added is taken off again.
+/// TEX-18: subtracts the 128 that the table adds to signed channels, and doubles them.
 #[inline(always)]
 fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
     for (signed, wanted) in signed.into_iter().zip(wanted) {
@@ -290,13 +291,13 @@ fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
     }
 }
 
-/// The weight of the next entry.
+/// Returns the weight of the next entry.
 #[inline(always)]
 fn weight(coordinate: i32) -> u32 {
     (coordinate & 255) as u32
 }
 
-/// `LIMITS`: an axis has limits.
+/// Computes entries. `LIMITS` says whether an axis has limits.
 #[inline(always)]
 fn address<const LIMITS: bool>(
     table: &Table,
@@ -308,7 +309,7 @@ fn address<const LIMITS: bool>(
     let ([columns, rows], pitch) = (table.axes, table.pitch);
     for n in 0..BLOCK {
         if LIMITS {
-            // Not `clamp`: what can panic is not a loop of lanes.
+            // Not `clamp`, because a function that can panic keeps the loop from being vectorised.
             u[n] = u[n].max(columns.low).min(columns.high);
             v[n] = v[n].max(rows.low).min(rows.high);
         }
@@ -316,7 +317,7 @@ fn address<const LIMITS: bool>(
     }
 }
 
-/// Not inlined: nothing here is wider than a texel, and a loop of its own keeps its addresses in registers.
+/// Not inlined. A loop of its own keeps its addresses in registers, and texels need no wide vectors.
 #[inline(never)]
 fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
     for (entry, found) in entries.iter().zip(found) {
@@ -324,10 +325,10 @@ fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
     }
 }
 
-/// Footprints that are fetched at a time: of a loop over one or two it depends on where in memory it lies how fast it is.
+/// Number of footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
 const GROUP: usize = 4;
 
-/// The texels of both rows of the footprint. One length serves all four, so that one comparison does.
+/// Fetches both rows of each footprint. The four slices have the same length, so that one bounds check serves all.
 #[inline(never)]
 fn fetch_footprints(
     texels: &[u32],
@@ -342,7 +343,7 @@ fn fetch_footprints(
     let entries = entries.as_chunks::<GROUP>().0.iter();
     let (upper, lower) = (upper.as_chunks_mut::<GROUP>().0, lower.as_chunks_mut::<GROUP>().0);
     for ((entries, upper), lower) in entries.zip(upper).zip(lower) {
-        // One row after the other: neighbours are stored together.
+        // One row after the other, so that neighbours are stored together.
         for n in 0..GROUP {
             let at = entries[n] as usize;
             upper[n] = [a[at], b[at]];
@@ -354,7 +355,7 @@ fn fetch_footprints(
     }
 }
 
-/// TEX-6 of the first `COUNT` channels, two at a time.
+/// TEX-6 of the first `COUNT` channels, two channels at a time.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn filter<const COUNT: usize>(
@@ -383,7 +384,7 @@ fn filter<const COUNT: usize>(
     }
 }
 
-/// TEX-6 of the only channel: both rows at once along u, then along v.
+/// TEX-6 of a single channel: both rows together along u, then along v.
 #[inline(always)]
 fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
     for n in 0..BLOCK {
@@ -392,7 +393,7 @@ fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &m
     }
 }
 
-/// TEX-6 of a half, which begins at bit `SHIFT`; `kept` are the bits of weights that count.
+/// TEX-6 of a 16-bit half that begins at bit `SHIFT`. `kept` masks the weights.
 #[inline(always)]
 fn filter_half<const SHIFT: u32>(
     upper: &[[u32; 2]; BLOCK],
@@ -409,7 +410,7 @@ fn filter_half<const SHIFT: u32>(
     }
 }
 
-/// TEX-1, TEX-18: the bytes of a half.
+/// TEX-1, TEX-18: splits halves into bytes.
 #[inline(always)]
 fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [i16; BLOCK]) {
     for n in 0..BLOCK {
@@ -419,13 +420,13 @@ fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [
     }
 }
 
-/// R and B of a texel, of one shifted by 8, G and A; likewise the left and the right texels of a footprint.
+/// Returns R and B of a texel, or G and A if it is shifted by 8; also the left and right texels of a single-channel footprint.
 #[inline(always)]
 fn first(texel: u32) -> Swar2 {
     Swar2(texel & 0x00ff_00ff)
 }
 
-/// The first `COUNT` channels.
+/// Writes the first `COUNT` channels of texels.
 #[inline(always)]
 fn unpack<const COUNT: usize>(
     texels: &[u32; BLOCK],

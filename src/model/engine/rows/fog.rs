@@ -14,39 +14,39 @@ use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;
 use crate::state::FogMode;
 
-/// What a triangle's pixels have in the fog register's alpha.
+/// The fog factor of a triangle's pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fog {
-    /// The same everywhere.
+    /// It is the same everywhere.
     Same(i16),
-    /// Factors in 4096ths, over D.
+    /// A factor in 4096ths, divided by D.
     Factor(Plane),
-    /// A function of a coordinate.
+    /// A function of the fog coordinate.
     Function(Curve),
 }
 
-/// A fog function of d' or e over D.
+/// A fog function of d' or e, which is divided by D.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
     coordinate: Plane,
-    /// What makes it 4096ths: of p1 d', or of e.
+    /// Factor that turns p1 d' or e into 4096ths.
     scale: f64,
     kind: Kind,
 }
 
-/// What becomes of the 4096ths.
+/// The function of the 4096ths.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// They are added to this number of 4096ths and limited; where there is a sign, their magnitude is, with it (FOG-2).
+    /// Adds `start`, and limits the sum. With a sign, the magnitude of the 4096ths is used (FOG-2).
     Linear { start: f64, sign: Option<f64> },
-    /// They are looked up (FOG-4).
+    /// Looks them up (FOG-4).
     Table(&'static Bytes),
 }
 
-/// Bytes of FOG-4 from [`FIRST`] on, and the last one as often as makes the length a power of two: an index needs no comparison then.
+/// Bytes of FOG-4 from [`FIRST`] on. The last byte is repeated up to a power of two, so that an index needs no comparison.
 type Bytes = [u8; (4 * TABLE_END) as usize];
 
-/// The least q that is looked up: all below it have this one's byte, as all above the table's last have that one's.
+/// The least q in the table. Smaller ones have the byte of this one, and larger ones that of the last.
 const FIRST: i64 = -TABLE_END;
 
 static EXP: LazyLock<Bytes> = LazyLock::new(|| bytes(FogMode::Exp));
@@ -57,19 +57,19 @@ fn bytes(mode: FogMode) -> Bytes {
     std::array::from_fn(|n| exponential(mode, FIRST + n as i64))
 }
 
-/// That of an index.
+/// Returns the byte of an index.
 #[inline(always)]
 fn byte(table: &Bytes, index: i32) -> u8 {
     table[index as usize & (table.len() - 1)]
 }
 
-/// How far linear arguments are off, relative to themselves: a coordinate keeps 24 bits, toward zero.
+/// Relative error of linear arguments: a coordinate keeps 24 bits and is rounded toward zero.
 const TRUNCATED: f64 = 1.0 / (1 << 22) as f64;
 
-/// What an estimate of 4096ths may be off by besides.
+/// Largest error of an estimate of 4096ths that is accepted.
 const COARSEST: f64 = 4.0;
 
-/// More than roundings of double precision, relative to a sum's terms.
+/// Upper bound of the rounding errors, relative to the terms of a sum.
 const ROUNDED: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Fog {
@@ -96,18 +96,18 @@ impl Fog {
         };
         let [a, b, c] = context.vertices().fog();
         if a == b && b == c {
-            // Any sample that the triangle covers.
+            // Any sample of the triangle will do.
             return Some(Fog::Same(i16::from(fog.at(&Sample::new(triangle, [1; 3])).byte)));
         }
         let (g, exponent) = attribute.numbers();
-        // A power of two of a single-precision number and less: far from the ends of double precision.
+        // A power of two close to a single-precision number, and so far from the limits of double precision.
         let unit = f64::from_bits(((exponent + FACTOR_BITS + 1023).max(0) as u64) << 52);
         Some(Fog::Function(Curve { coordinate: plane(g), scale: scale * unit, kind }))
     }
 }
 
 impl Setup<'_> {
-    /// The fog factor of the pixels of a batch. `values` and `spare` are places to work in.
+    /// Computes the fog factors of a batch. `values` and `spare` are scratch space.
     #[inline(always)]
     pub(super) fn fog_factors<const FMA: bool, const ROW: bool>(
         &self,
@@ -138,13 +138,13 @@ impl Setup<'_> {
             Fog::Function(curve) => {
                 let line = curve.coordinate.line(&local.real).times(curve.scale);
                 let off = self.margin::<ROW>(&curve.coordinate, local) * curve.scale.abs();
-                // Also refuses what is no number.
+                // NaN proves nothing either.
                 let proves = off < COARSEST;
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
                 let is_same = ROW && line.x == 0.0 && local.denominator.x == 0.0;
-                // Of a coordinate that does not vary along the row, one step suffices.
+                // If the coordinate does not vary along the row, one step suffices.
                 let lanes = if is_same { STEP } else { out.len() };
                 let (first, values, spare) = (&mut out[..lanes], &mut values[..lanes], &mut spare[..lanes]);
                 let (at, lines) = (batch.at, (line, local.denominator));
@@ -160,19 +160,20 @@ impl Setup<'_> {
         }
     }
 
-    /// Some of the factors by the definition.
+    /// Computes the lanes that are not proved by the definition.
     #[inline(never)]
     fn defined_factors(&self, batch: PixelBatch<'_>, wanted: impl Fn(usize) -> bool, out: &mut [i16]) {
         let Some(fog) = &self.context.fog else { return };
         for n in (0..batch.count).filter(|n| wanted(*n)) {
-            self.tell(Reason::Fog, 1);
+            self.count_defined(Reason::Fog, 1);
             out[n] = i16::from(fog.at(&self.sample(batch, n)).byte);
         }
     }
 }
 
 impl Curve {
-    /// Bytes, and as numbers other than 0 which are not proved. Says whether some are not. `lines` make up the 4096ths, which are off by `off`.
+    /// FOG-2 at the vertices: writes bytes, and numbers other than 0 for lanes that are not proved. Returns whether there are such lanes.
+    /// `lines` give the 4096ths, whose error is at most `off`.
     #[inline(always)]
     fn look_up<const FMA: bool, const ROW: bool>(
         &self,
@@ -197,7 +198,7 @@ impl Curve {
                     *out = i16::from(byte(table, *value));
                 }
                 if close {
-                    // Where its neighbours' bytes are its own, a step need not be known.
+                    // A lane is proved after all if the neighbouring steps have the same byte.
                     for (value, unknown) in values.iter().zip(unknown) {
                         let bytes = [byte(table, *value - 1), byte(table, *value), byte(table, *value + 1)];
                         *unknown = i32::from(*unknown < 0 && bytes != [bytes[1]; 3]);
@@ -209,9 +210,8 @@ impl Curve {
     }
 }
 
-/// FOG-2 as bytes of the least factor that a lane can have, and as numbers other than 0 which are not proved. Says whether some are not.
-///
-/// `lines` make up p1 d', which is off by `off` and what its 24 bits lose.
+/// FOG-2: writes the bytes of the least possible factors, and numbers other than 0 for lanes that are not proved. Returns whether there are
+/// such lanes. `lines` give p1 d', whose error is at most `off`, plus what 24 bits lose.
 #[inline(always)]
 fn linear<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
@@ -238,9 +238,8 @@ fn linear<const FMA: bool, const ROW: bool>(
     close != 0
 }
 
-/// FOG-4: indices into the table, and as negative numbers which are not proved. Says whether some are not.
-///
-/// `lines` make up e in 4096ths, which is off by `off`. A tie may be one step lower (INT-4t): it is not proved, for `off` is not 0.
+/// FOG-4: writes indices into the table, and negative numbers for lanes that are not proved. Returns whether there are such lanes. `lines`
+/// give e in 4096ths, whose error is at most `off`. A tie may be one step lower (INT-4t); it is not proved, because `off` is not 0.
 #[inline(always)]
 fn steps<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
@@ -253,7 +252,7 @@ fn steps<const FMA: bool, const ROW: bool>(
     let lanes = steps.len();
     let last = f64::from(at.last);
     let (unknown, xs, ys, iota) = (&mut unknown[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    // The index of q is q - FIRST; the floor is the nearest number to what lies half a step below.
+    // The index of q is q - FIRST. The floor is the integer nearest to half a step below.
     let ends = (-(CENTRE + FIRST) as f64 - 0.5, (2 * TABLE_END) as f64);
     let limit = 0.5 - (off + ROUNDED * 8192.0);
     for n in 0..lanes {

@@ -1,6 +1,7 @@
-//! What a draw computes for every pixel, as values that depend on values: constants folded, identities dropped, equal values shared.
+//! The values that a draw computes for every pixel, each made of earlier ones. Constants are folded, identities are dropped, and equal
+//! values are shared.
 //!
-//! Each value has a range, found when it is made. A clamp that cannot clamp and a maximum that is never taken disappear by it.
+//! Each value has a range from the beginning, by which clamps that cannot clamp and maxima that are never taken disappear.
 
 use super::kernels;
 use super::node::{Input, MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
@@ -9,38 +10,38 @@ use crate::state::{Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegati
 use crate::trace::Rule;
 use std::collections::HashMap;
 
-/// A factor: a value, in halves of a step if told so (CMB-4=127.5).
+/// A factor, in halves of a step if `halves` is set (CMB-4=127.5).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Factor {
     value: Value,
     halves: bool,
 }
 
-/// A sum that has not been rounded.
+/// A sum before it is rounded.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Total {
     /// A sum of products.
     Products(Products),
-    /// The first less the second.
+    /// The first product less the second.
     Difference([Factor; 4]),
-    /// CMB-10: CD, then AB.
+    /// CMB-10: selects CD or AB.
     Select(Choice, Products, Products),
 }
 
-/// Products that are added; as many as are told.
+/// Products that are added.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Products(usize, [(Factor, Factor); MAX_PRODUCTS]);
 
-/// What a mux takes, by a value.
+/// The value that steers a mux, and the mux.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice(Mux, Value);
 
 impl Total {
-    /// Its products; nothing else is added to or selected from.
+    /// Returns the products. Only sums of products are added or selected.
     fn products(self) -> Products {
         match self {
             Total::Products(products) => products,
-            // The order of the rules forms neither.
+            // The order of the rules never asks for these.
             Total::Difference([a, b, ..]) => Products::one(a, b),
             Total::Select(_, cd, _) => cd,
         }
@@ -65,14 +66,14 @@ impl Products {
     }
 }
 
-/// What [`Node::UnsignedDot`] does to its factors.
+/// The mapping that [`Node::UnsignedDot`] applies to its factors.
 const EXPANDED: Mapping =
     Mapping { of: InputMapping::ExpandNormal, centre: ExpandCentre::Centred, half: HalfBiasConstant::Half128 };
 
-/// Least and largest.
+/// Least and largest value.
 type Range = (i16, i16);
 
-/// Values, each made of earlier ones.
+/// The graph: values, each made of earlier ones.
 #[derive(Debug)]
 pub(super) struct Graph {
     nodes: Vec<(Node, Range)>,
@@ -85,7 +86,7 @@ impl Graph {
         Graph { nodes: Vec::new(), known: HashMap::new(), policies }
     }
 
-    /// How a value comes about.
+    /// Returns how a value is computed.
     pub(super) fn node(&self, value: Value) -> Node {
         self.nodes[usize::from(value.0)].0
     }
@@ -94,13 +95,13 @@ impl Graph {
         self.nodes[usize::from(value.0)].1
     }
 
-    /// The value, if it is the same in every pixel.
+    /// Returns the value if it is the same in every pixel.
     fn known_constant(&self, value: Value) -> Option<i16> {
         let (low, high) = self.range(value);
         (low == high).then_some(low)
     }
 
-    /// Whether a value is this constant.
+    /// Returns whether a value is this constant.
     fn is(&self, value: Value, constant: i16) -> bool {
         self.known_constant(value) == Some(constant)
     }
@@ -109,7 +110,7 @@ impl Graph {
         self.add(Node::Constant(value), (value, value))
     }
 
-    /// A given value of this range.
+    /// Adds an input with a given range.
     pub(super) fn input(&mut self, input: Input, range: Range) -> Value {
         self.add(Node::Input(input), range)
     }
@@ -125,7 +126,7 @@ impl Graph {
         value
     }
 
-    /// A mapping of a value.
+    /// Adds a mapping of a value.
     fn mapped(&mut self, mapping: Mapping, v: Value) -> Value {
         let (low, high) = self.range(v);
         match mapping.of {
@@ -138,12 +139,12 @@ impl Graph {
             }
             _ => {}
         }
-        // Every mapping is monotone.
+        // Every mapping is monotone, so the ends of the range suffice.
         let ends = [kernels::mapped(mapping, low), kernels::mapped(mapping, high)];
         self.add(Node::Map(mapping, v), (ends[0].min(ends[1]), ends[0].max(ends[1])))
     }
 
-    /// A dot product of expanded vectors, of which only what is not negative is read.
+    /// Returns a dot product of expanded vectors that is only read as unsigned, or `None` if `v` is no such product.
     fn unsigned_dot(&mut self, v: Value) -> Option<Value> {
         let Node::Output(Bias::None, Scale::One, _, sum) = self.node(v) else { return None };
         let Node::Sum(pairs) = self.node(sum) else { return None };
@@ -155,7 +156,7 @@ impl Graph {
         (pairs.count == 3).then(|| self.add(Node::UnsignedDot(vectors), (0, 255)))
     }
 
-    /// NUM-2 of the sum of products.
+    /// Adds a sum of products, rounded by NUM-2.
     fn rounded_sum(&mut self, pairs: &[(Value, Value)]) -> Value {
         let mut left: Vec<(Value, Value)> = Vec::with_capacity(pairs.len());
         left.extend(pairs.iter().filter(|(a, b)| !self.is(*a, 0) && !self.is(*b, 0)));
@@ -187,7 +188,8 @@ impl Graph {
         self.add(Node::Sum(Pairs::new(&left)), (kernels::rounded(low), kernels::rounded(high)))
     }
 
-    /// The factors of products, in halves if one of them is, and the range of their sum, in quarters then.
+    /// Returns whether the factors are in halves, the factors, and the range of their sum, which is in quarters if the factors are in
+    /// halves.
     fn pairs(&mut self, products: &Products) -> (bool, Vec<(Value, Value)>, (i32, i32)) {
         let halves = products.all().iter().any(|(a, b)| a.halves || b.halves);
         let mut whole = |factor: Factor| {
@@ -210,7 +212,7 @@ impl Graph {
 
     fn products_after(&mut self, bias: Bias, scale: Scale, products: &Products) -> Value {
         if scale == Scale::One {
-            // A bias of whole steps goes through the rounding.
+            // A bias of whole steps commutes with the rounding.
             let rounded = self.rounded_products(products);
             return self.scaled(bias, scale, rounded);
         }
@@ -219,7 +221,7 @@ impl Graph {
         self.add(Node::After(bias, scale, halves, Pairs::new(&pairs)), (end(low), end(high)))
     }
 
-    /// The other factor where one is 1.0: 255 a, divided by 255, loses nothing.
+    /// Returns the other factor of a product by 1.0, since 255 a divided by 255 is exact.
     fn times_one(&self, (a, b): (Value, Value)) -> Option<Value> {
         if self.is(a, 255) { Some(b) } else { self.is(b, 255).then_some(a) }
     }
@@ -231,7 +233,7 @@ impl Graph {
         (all.into_iter().fold(i32::MAX, i32::min), all.into_iter().fold(i32::MIN, i32::max))
     }
 
-    /// NUM-2 of a b - c d.
+    /// Adds a b - c d, rounded by NUM-2.
     fn difference(&mut self, [a, b, c, d]: [Value; 4]) -> Value {
         if self.is(c, 0) || self.is(d, 0) {
             return self.rounded_sum(&[(a, b)]);
@@ -325,7 +327,7 @@ impl Algebra for Graph {
     fn rounded(&mut self, sum: Total) -> Value {
         match sum {
             Total::Products(products) => self.rounded_products(&products),
-            // Of the blend, whose factors are whole.
+            // A difference of the blend, whose factors are whole.
             Total::Difference(factors) => self.difference(factors.map(|factor| factor.value)),
             Total::Select(choice, cd, ab) => {
                 let (cd, ab) = (self.rounded_products(&cd), self.rounded_products(&ab));
@@ -348,7 +350,7 @@ impl Algebra for Graph {
         }
         let (low, high) = self.range(x);
         let range = (kernels::scaled(low, bias, scale), kernels::scaled(high, bias, scale));
-        self.add(Node::QuotientEstimate(bias, scale, x), range)
+        self.add(Node::Scaled(bias, scale, x), range)
     }
 
     fn saturated(&mut self, x: Value) -> Value {
@@ -356,9 +358,9 @@ impl Algebra for Graph {
         let saturated = |v: i16| kernels::finished(v, Bias::None, Scale::One, floor);
         let (low, high) = self.range(x);
         let range = (saturated(low), saturated(high));
-        // In one step with what it saturates.
+        // Computed in one step with its saturation.
         match self.node(x) {
-            Node::QuotientEstimate(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
+            Node::Scaled(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
             _ if range == (low, high) => x,
             _ => self.add(Node::Output(Bias::None, Scale::One, floor, x), range),
         }

@@ -1,4 +1,4 @@
-//! One text, compiled for several instruction sets, and the choice among them.
+//! Compiles the engine for several instruction sets, and chooses one at run time.
 
 use super::band::{self, Block, Entered};
 use super::boxes::BoxCoverage;
@@ -15,7 +15,7 @@ use multiversion::target::match_target;
 named! {
     /// Instruction sets that the fast engine is compiled for.
     pub enum Isa {
-        /// What the program was compiled for.
+        /// The instruction set that the program was compiled for.
         Baseline = "baseline",
         /// x86-64 with SSE4.2.
         V2 = "x86-64-v2",
@@ -27,7 +27,7 @@ named! {
 }
 
 impl Isa {
-    /// Whether this machine has it.
+    /// Returns whether this machine has the instruction set.
     pub fn is_available(self) -> bool {
         match self {
             Isa::Baseline => true,
@@ -37,17 +37,17 @@ impl Isa {
         }
     }
 
-    /// The widest that this machine has.
+    /// Returns the widest instruction set of this machine.
     pub fn best() -> Isa {
         Isa::ALL.iter().rev().copied().find(|isa| isa.is_available()).unwrap_or(Isa::Baseline)
     }
 }
 
-/// The text for an instruction set: parts of their own, because what compilers do to one loop should not hang on how many others stand in the
-/// same function.
+/// Defines the engine's parts for an instruction set. They are separate functions, so that the code of one loop does not depend on the
+/// number of loops in the same function.
 ///
-/// Where the machine lacks a set, its parts do nothing and its `run` says so. Each part is told whether the set fuses multiplications with
-/// additions and, as all that do so, stores lanes one by one.
+/// If the machine lacks the set, parts do nothing and `run` returns `None`. The constant tells each part whether the set has fused
+/// multiply-add. All such sets can also store single lanes.
 macro_rules! text {
     ({ $($version:ident: $target:literal, $wide:literal;)* } $parts:tt) => {
         text!(@parts $parts);
@@ -58,7 +58,7 @@ macro_rules! text {
             $($(#[$meta])* fn $part($($name: $type),*) $(-> $out)?;)*
         }
 
-        /// What the program was compiled for.
+        /// The instruction set that the program was compiled for.
         struct Baseline;
 
         impl Kernels for Baseline {
@@ -134,7 +134,7 @@ fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     band::run::<Baseline>(job, band, block)
 }
 
-/// Draws what of a draw falls into a band, by an instruction set that the machine has; covered pixels.
+/// Draws the part of a draw that lies in a band, with an instruction set of this machine. Returns the number of covered pixels.
 pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let shaded = match isa {
         Isa::Baseline => None,

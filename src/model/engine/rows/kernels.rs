@@ -1,4 +1,4 @@
-//! The rules on rows: each kernel is a rule's text in a loop over the pixels of a block.
+//! The rules on rows. Each kernel runs the text of a rule in a loop over the pixels of a block.
 
 use super::node::{MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
@@ -9,16 +9,16 @@ use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
 
-/// Pixels of a block.
+/// Number of pixels of a block.
 pub(crate) const BLOCK: usize = 256;
 
 /// One number for each pixel of a block.
 pub(super) type PerLane<T> = [T; LANES];
 
-/// Lanes that a batch may write past its end: batches are handled in whole steps.
+/// Number of lanes of a step. Batches are handled in whole steps, so that lanes past their end may be written.
 pub(super) const STEP: usize = 16;
 
-/// Lanes of a row: a block's, and what batches write past its end; whole cache lines.
+/// Number of lanes of a row: a block, and room for steps past its end. A multiple of a cache line.
 pub(super) const LANES: usize = BLOCK + 2 * STEP;
 
 /// One number for each pixel of a block.
@@ -35,23 +35,23 @@ impl Lanes256 {
         self.0.fill(value);
     }
 
-    /// The lanes of the block.
+    /// Returns the lanes of the block.
     #[inline(always)]
     pub(super) fn block(&self) -> &[i16; BLOCK] {
         let Some((block, _)) = self.0.split_first_chunk() else { return &[0; BLOCK] };
         block
     }
 
-    /// The same, to be written.
+    /// Returns the lanes of the block, mutable.
     #[inline(always)]
     pub(super) fn block_mut(&mut self) -> &mut [i16; BLOCK] {
         let (block, _) = self.0.split_at_mut(BLOCK);
-        // As long as it says.
+        // The length is right.
         block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
     }
 }
 
-/// A mapping of one register; in halves with CMB-4=127.5.
+/// Maps one register. With CMB-4=127.5 the result is in halves.
 #[inline(always)]
 pub(super) fn mapped(mapping: Mapping, x: i16) -> i16 {
     let policies = Policies { expand_centre: mapping.centre, half_bias: mapping.half, ..Policies::DEFAULT };
@@ -59,43 +59,43 @@ pub(super) fn mapped(mapping: Mapping, x: i16) -> i16 {
     (if mapping.half == HalfBiasConstant::Half127And5 { halves } else { halves >> 1 }) as i16
 }
 
-/// NUM-2.
+/// NUM-2: rounds a sum of products.
 #[inline(always)]
 pub(super) fn rounded(sum: i32) -> i16 {
     sum.rounded()
 }
 
-/// NUM-2 of products of halves.
+/// NUM-2: rounds a sum of products of halves.
 #[inline(always)]
 pub(super) fn rounded_quarters(sum: i32) -> i16 {
     Quarters(sum).rounded() as i16
 }
 
-/// CMB-9=after, of a sum that is in quarters if its factors are in halves.
+/// CMB-9=after: scales and rounds a sum, which is in quarters if its factors are in halves.
 #[inline(always)]
 pub(super) fn rounded_after(sum: i32, halves: bool, bias: Bias, scale: Scale) -> i16 {
     output::rounded_after::<i32>(Quarters(if halves { sum } else { 4 * sum }), bias, scale) as i16
 }
 
-/// CMB-9 of what has been rounded.
+/// CMB-9: adds the bias to a rounded number and scales it.
 #[inline(always)]
 pub(super) fn scaled(v: i16, bias: Bias, scale: Scale) -> i16 {
     output::scaled(output::biased(v, bias), scale)
 }
 
-/// CMB-9 and NUM-3 of what has been rounded.
+/// CMB-9 and NUM-3: adds the bias to a rounded number, scales and saturates it.
 #[inline(always)]
 pub(super) fn finished(v: i16, bias: Bias, scale: Scale, floor: RegisterFloor) -> i16 {
     output::finished(v, bias, scale, floor)
 }
 
-/// CMB-10.
+/// CMB-10: returns whether the mux takes CD.
 #[inline(always)]
 pub(super) fn takes_cd(spare0_alpha: i16, Mux(select, negative): Mux) -> bool {
     output::takes_cd(i32::from(spare0_alpha), select, negative)
 }
 
-/// The sum of products.
+/// Adds the products of a lane.
 #[inline(always)]
 fn total<const N: usize>(rows: [&[i16; BLOCK]; N], n: usize) -> i32 {
     let mut total = rows[0][n].product(rows[1][n]);
@@ -107,7 +107,7 @@ fn total<const N: usize>(rows: [&[i16; BLOCK]; N], n: usize) -> i32 {
     total
 }
 
-/// ROP-2 of one channel, not yet clamped.
+/// ROP-2: the difference of two products, not clamped yet.
 #[inline(always)]
 fn difference([a, b, c, d]: [i16; 4]) -> i16 {
     (a.product(b) - c.product(d)).rounded()
@@ -115,13 +115,13 @@ fn difference([a, b, c, d]: [i16; 4]) -> i16 {
 
 #[inline(always)]
 fn unsigned_dot(a: [i16; 3], b: [i16; 3]) -> i16 {
-    // Written out: `map` on arrays is not always inlined, and what is not inlined lacks the caller's instruction set.
+    // Written out, because `map` on arrays is not always inlined, and a function that is not inlined lacks the caller's instruction set.
     let a = [expand_normal(Narrow(a[0])), expand_normal(Narrow(a[1])), expand_normal(Narrow(a[2]))];
     let b = [expand_normal(Narrow(b[0])), expand_normal(Narrow(b[1])), expand_normal(Narrow(b[2]))];
     unsigned_identity(dot_product(a, b).rounded()).0
 }
 
-/// A loop over the block. As a parameter of its own the result is known not to overlap the operands.
+/// Runs a loop over the block. `out` is a parameter of its own, so that the compiler knows that it does not overlap the operands.
 #[inline(always)]
 fn each(out: &mut [i16; BLOCK], f: impl Fn(usize) -> i16) {
     for n in 0..BLOCK {
@@ -129,13 +129,13 @@ fn each(out: &mut [i16; BLOCK], f: impl Fn(usize) -> i16) {
     }
 }
 
-/// A mapping of a row; `mapping` is a constant where this is called, so that the loop holds one text.
+/// Maps a row. `mapping` is constant at each call, so that each loop has one mapping.
 #[inline(always)]
 fn map_row(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
     each(out, |n| mapped(mapping, v[n]))
 }
 
-/// The same of one whose policies are to be told apart.
+/// Maps a row whose mapping depends on policies.
 #[inline(always)]
 fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
     use ExpandCentre::{Centred, Literal};
@@ -148,10 +148,10 @@ fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK])
     }
 }
 
-/// What becomes of the sums of the products of rows.
+/// Computes sums of products of rows, and applies a function to them.
 #[inline(always)]
 fn sum_row(pairs: &Pairs, before: &[Lanes256], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
-    // Past the last pair nothing is added, whatever the rows hold that nobody reads.
+    // Zeros past the last pair, whatever unused rows hold.
     let mut all: [&[i16; BLOCK]; 2 * MAX_PRODUCTS] = [&ZEROS; 2 * MAX_PRODUCTS];
     for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
         *factor = before[usize::from(value.0)].block();
@@ -166,13 +166,13 @@ fn sum_row(pairs: &Pairs, before: &[Lanes256], out: &mut [i16; BLOCK], of: impl 
     }
 }
 
-/// CMB-9 and NUM-3 of a row; `bias` and `scale` likewise constants.
+/// CMB-9 and NUM-3 of a row. `bias` and `scale` are constant at each call.
 #[inline(always)]
 fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
     each(out, |n| finished(v[n], bias, scale, floor))
 }
 
-/// Computes the row of a node from rows before it.
+/// Computes the row of a node from earlier rows.
 #[inline(always)]
 pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
     let (before, after) = rows.split_at_mut(at);
@@ -180,7 +180,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
     let out = out.block_mut();
     let row = |v: Value| before[usize::from(v.0)].block();
     match *node {
-        // Filled before.
+        // Filled beforehand.
         Node::Constant(_) | Node::Input(_) => {}
         Node::Map(mapping, v) => {
             let v = row(v);
@@ -226,7 +226,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
             let [a, b, c, d, e, f] = [row(v[0]), row(v[1]), row(v[2]), row(v[3]), row(v[4]), row(v[5])];
             each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
-        Node::QuotientEstimate(bias, scale, v) => {
+        Node::Scaled(bias, scale, v) => {
             let v = row(v);
             each(out, |n| scaled(v[n], bias, scale));
         }
@@ -239,13 +239,13 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
                 (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, floor, v, out),
                 (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, floor, v, out),
                 (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, floor, v, out),
-                // Not legal (CMB-9), and so never asked for.
+                // Not legal (CMB-9), so it never occurs.
                 (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, floor, v, out),
             }
         }
         Node::Select(mux, v) => {
             let [by, cd, ab] = [row(v[0]), row(v[1]), row(v[2])];
-            // Both are read, whichever is taken.
+            // Both are read, so that there is no branch.
             let choose = |takes_cd: bool, cd: i16, ab: i16| if takes_cd { cd } else { ab };
             let mut select = |mux: Mux| each(out, |n| choose(takes_cd(by[n], mux), cd[n], ab[n]));
             match mux {

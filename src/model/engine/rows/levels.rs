@@ -1,4 +1,4 @@
-//! TEX-9 to TEX-11 on rows: the lod of each pixel, and where it is read on which levels.
+//! TEX-9 to TEX-11 on rows: the level of detail of each pixel, and the entries on its levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;
@@ -14,16 +14,16 @@ use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::lod::{self, Quad};
 use crate::texture::planned::PlannedUnit;
 
-/// What the lanes of a block read of a texture whose levels count.
+/// Fetches of a block from a texture with levels.
 #[derive(Clone, Debug)]
 pub(super) struct MipFetches {
-    /// Entries of the table: of the nearer level, and of the next one.
+    /// Table entries on the nearer level, and on the next one.
     pub(super) entries: [PerLane<i32>; 2],
-    /// u and v on that level; only the fraction of a texel is used.
+    /// u and v on those levels, of which only the fraction of a texel is used.
     pub(super) coordinates: [[PerLane<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
     pub(super) weights: PerLane<i32>,
-    /// Lods of quads.
+    /// Levels of detail of the quads.
     pub(super) known: Known<i32>,
 }
 
@@ -38,18 +38,18 @@ impl Default for MipFetches {
     }
 }
 
-/// What lanes are placed on levels in.
+/// Scratch space for placing lanes on levels.
 #[derive(Clone, Debug)]
 pub(super) struct Placing {
-    /// u and v of the lanes on level 0, 1/256 texel, with their fractions.
+    /// u and v on level 0 in 1/256 texel, with fractions.
     at: [PerLane<f64>; 2],
     lods: PerLane<i32>,
     levels: [PerLane<i32>; 2],
-    /// What is read of one level.
+    /// Entries and coordinates on one level.
     read: [PerLane<i32>; 3],
-    /// Negative, as the bits of doubles: a coordinate of the lane is not proved on some level.
+    /// Doubles as bits, negative if a coordinate is not proved on some level.
     close: [PerLane<u64>; 2],
-    /// The lane is the definition's.
+    /// Whether the definition computes the lane.
     open: PerLane<bool>,
 }
 
@@ -66,14 +66,14 @@ impl Default for Placing {
     }
 }
 
-/// Coordinates of a quad that are further apart than this have their lod from the definition, 1/65536 texel.
+/// If coordinates of a quad are further apart, in 1/65536 texel, the definition computes its level of detail.
 const FARTHEST: f64 = (1 << 26) as f64;
 
-/// Mantissas closer to a power of two than this are too close to call: seven squarings multiply roundings by 128.
+/// Distance of a mantissa from a power of two below which nothing is proved. Seven squarings multiply rounding errors by 128.
 const LOG_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Setup<'_> {
-    /// Everything that a unit whose levels count reads in a batch.
+    /// Computes all fetches of a batch for a unit with levels.
     #[inline(always)]
     pub(super) fn levels<const FMA: bool, const ROW: bool>(
         &self,
@@ -110,7 +110,7 @@ impl Setup<'_> {
         let mut raised = [0.0; 2];
         for axis in 0..2 {
             let (gap, shared) = base.gaps[axis];
-            // In steps of level 0: what is whole on a smaller level is whole there.
+            // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
             let floors = read_levels.clone().map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
             let off = base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift));
             let (up, off) = parted(gap, off);
@@ -165,7 +165,7 @@ impl Setup<'_> {
         }
     }
 
-    /// The floor that an estimate less than one off stands for, by INT-4 and INT-4t.
+    /// Returns the floor by INT-4 and INT-4t of a coordinate whose estimate is less than one off.
     fn corrected(&self, batch: PixelBatch<'_>, n: usize, g: &[i64; 3], value: i32) -> i32 {
         let sample = self.sample(batch, n.min(batch.count - 1));
         let top = (0..3).fold(0_i64, |top, k| top.wrapping_add(g[k].wrapping_mul(sample.e[k])));
@@ -173,7 +173,7 @@ impl Setup<'_> {
         floor as i32 - i32::from(sample.lowers_tie(exact, || sample.shortfall(g)))
     }
 
-    /// What a lane reads, by the definition.
+    /// Computes the fetches of a lane by the definition.
     #[inline(never)]
     pub(super) fn defined_reads(
         &self,
@@ -184,7 +184,7 @@ impl Setup<'_> {
         reads: &mut MipFetches,
     ) {
         let unit = &self.context.draw.units[sampler.index];
-        self.tell(Reason::Levels, 1);
+        self.count_defined(Reason::Levels, 1);
         let (sample, lane) = (self.sample(batch, n), batch.lane + n);
         let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
@@ -218,7 +218,7 @@ impl Measure for i32 {
     }
 }
 
-/// TEX-11, TEX-10 of the three pixels of quads, and as sign bits which are not known.
+/// TEX-11, TEX-10: computes the levels of detail of quads. Sets the sign bits of those that are not known.
 #[inline(always)]
 fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64]) {
     let [[u, v], [right_u, right_v], [lower_u, lower_v]] = at;
@@ -227,11 +227,11 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
         let (a, b, c, d) = (right_u[n] - u[n], right_v[n] - v[n], lower_u[n] - u[n], lower_v[n] - v[n]);
         let far = |d: f64| (FARTHEST - d.abs()).to_bits();
         let mut open = far(a) | far(b) | far(c) | far(d);
-        // Whole numbers below 2^53.
+        // Integers below 2^53, so they are exact.
         let (right, lower) = (a * a + b * b, c * c + d * d);
         let largest = if right > lower { right } else { lower };
         let bits = largest.to_bits();
-        // Its 128th power, whose exponent is the logarithm. What is hardly above 1 is moved away from it; the exponent is 0 all the same.
+        // The exponent of its 128th power is the logarithm. A mantissa hardly above 1 is moved away from it, which leaves the exponent 0.
         let mut power = f64::from_bits(bits & ((1 << 52) - 1) | 1.0_f64.to_bits());
         for _ in 0..7 {
             power *= power;
@@ -245,7 +245,7 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
     }
 }
 
-/// Two quotients with their fractions.
+/// Computes two quotients with their fractions.
 #[inline(always)]
 pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
@@ -263,7 +263,8 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// As sign bits: which coordinates of level 0 are so close to a whole number that their floors are not proved, on it or on smaller levels.
+/// Sets the sign bits of lanes whose coordinate on level 0 is so close to an integer that its floor is not proved, on that level or on
+/// smaller ones.
 #[inline(always)]
 fn mark_unproved(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
     let close = &mut close[..at.len()];
@@ -273,7 +274,7 @@ fn mark_unproved(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
     }
 }
 
-/// Floors of coordinates on a level.
+/// Computes the floors of coordinates on a level.
 #[inline(always)]
 fn on_level(at: &[f64], scale: f64, up: f64, out: &mut PerLane<i32>) {
     let out = &mut out[..at.len()];
@@ -283,8 +284,8 @@ fn on_level(at: &[f64], scale: f64, up: f64, out: &mut PerLane<i32>) {
     }
 }
 
-/// TEX-9: levels and weight of each lane; `lods` become biased. The least and the largest level that is read, and likewise of those that are
-/// mixed in.
+/// TEX-9: computes the levels and the weight of each lane. `lods` become biased. Returns the least and the largest first level, and the
+/// least and the largest second level.
 #[inline(always)]
 fn choose(
     unit: &PlannedUnit,
@@ -303,12 +304,12 @@ fn choose(
         lods[n] = lod;
         ends = [ends[0].min(lod), ends[1].max(lod)];
     }
-    // Levels never fall where lods rise.
+    // The levels never decrease with the level of detail.
     let [(low, next_low, _), (high, next_high, _)] = ends.map(|lod| selection.levels(lod.max(0)));
     [[low, high], [next_low, next_high]]
 }
 
-/// What a filter takes of a coordinate: what is subtracted, and the bits that are kept.
+/// How a filter changes a coordinate: what it subtracts, and the mask of the bits that it keeps.
 #[derive(Clone, Copy)]
 struct Taken {
     less: i32,
@@ -325,8 +326,8 @@ impl Taken {
     }
 }
 
-/// Where coordinates lie on a level, by the filter for magnification or for minification: the entry of the texel, or of the upper left one of
-/// the footprint. Coordinates become what the weights come from.
+/// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
+/// texel of the footprint. Coordinates become those for the weights.
 #[inline(always)]
 fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [i32]) {
     let Placed { axes: [columns, rows], first, pitch } = *placed;
@@ -349,7 +350,8 @@ fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], 
     }
 }
 
-/// What is read of a level, for the lanes that read it. By bits: compilers make masked loads and stores of a choice, which are slow.
+/// Copies entries and coordinates of a level to the lanes that read it. By bits, because compilers turn a choice into masked loads and
+/// stores, which are slow.
 #[inline(always)]
 fn put(level: i32, levels: &[i32], from: &[i32], to: &mut [i32]) {
     let (from, to) = (&from[..levels.len()], &mut to[..levels.len()]);

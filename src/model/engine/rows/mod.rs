@@ -74,13 +74,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use table::{Key, Table};
 
-/// Rows that take what nobody reads: one for each channel of a texel.
+/// Number of spare rows, for channels that nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
 
-/// Decoding so many texels costs no more than sampling a pixel by the definition.
+/// Decoding this many texels costs no more than sampling one pixel by the definition.
 const TEXELS_PER_PIXEL: u64 = 16;
 
-/// Most entries of all tables, of four bytes each.
+/// Largest number of entries of all tables, each of four bytes.
 const MAX_ENTRIES: u64 = 1 << 25;
 
 /// A plan compiled to rows.
@@ -99,7 +99,7 @@ impl Rows {
         Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() }
     }
 
-    /// Some draws with the tables of images that were drawn before them, which are in `words`.
+    /// Returns some draws, with the tables of images that earlier draws made. Their words are in `words`.
     pub(crate) fn draws(
         &self,
         plan: &Plan,
@@ -130,28 +130,28 @@ impl Rows {
     }
 }
 
-/// Pixels that a draw covers, more or less: not more than its window for each triangle.
+/// Estimates the number of pixels that a draw covers: at most its window for each triangle.
 fn pixels(draw: &PlannedDraw) -> u64 {
     let window = draw.windows.iter().map(|window| u64::from(window.width) * u64::from(window.height)).sum::<u64>();
     let all = &draw.assembly.corners;
     let area = |t: Assembled| {
         let [a, b, c] = t.vertices.map(|v| all[v as usize].position.map(i64::from));
-        // Twice the area, 1/256 square pixel.
+        // Twice the area in 1/256 square pixel.
         ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
     };
     draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
 }
 
-/// Tables of textures, which draws share.
+/// Tables of textures, shared by draws.
 #[derive(Default)]
 struct Tables {
-    /// Pixels of the draws that want one, more or less.
+    /// Estimated number of pixels of the draws that read each table.
     wanted: Vec<(Key, u64)>,
     made: Vec<(Key, Arc<Table>)>,
 }
 
 impl Tables {
-    /// Counts the pixels of a draw.
+    /// Adds the pixels of a draw.
     fn want(&mut self, draw: &PlannedDraw) {
         let pixels = pixels(draw);
         for unit in &draw.units {
@@ -163,7 +163,7 @@ impl Tables {
         }
     }
 
-    /// Whether one that is yet to be made costs less than sampling by the definition, and fits in.
+    /// Returns whether a new table costs less than sampling by the definition, and fits into memory.
     fn pays(&self, key: &Key, size: u64) -> bool {
         let pixels = self.wanted.iter().find(|(other, _)| other == key).map_or(0, |(_, pixels)| *pixels);
         let held: u64 = self.made.iter().map(|(_, table)| table.entries()).sum();
@@ -173,7 +173,7 @@ impl Tables {
 
 fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw {
     let samplers = samplers(plan, draw, tables);
-    // What stages of a shader read of one another is not known of the texels alone.
+    // In a texture shader, texels alone do not tell what a later stage reads of an earlier one.
     let built = build::build(draw, plan.policies, samplers.as_deref().filter(|_| draw.shader.is_none()));
     let mut samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
@@ -203,7 +203,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         }
         compiled.shader = shader.map(Arc::new);
     }
-    // Stages of a texture shader each find their own.
+    // Each stage of a texture shader has its own coordinates.
     let sharing = if draw.shader.is_none() { compiled.samplers.len() } else { 0 };
     for n in 1..sharing {
         let (earlier, later) = compiled.samplers.split_at_mut(n);
@@ -226,7 +226,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     compiled
 }
 
-/// Whether two samplers have the same coordinates at all vertices, and so everywhere.
+/// Returns whether two samplers have the same coordinates at all vertices, and so everywhere.
 fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
@@ -235,12 +235,12 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
         && one.pairs + other.pairs == 0
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         && a.state.cylindrical_wrap == b.state.cylindrical_wrap
-        // Coordinates are limited where they stand.
+        // Coordinates are limited in place, so the axes have to be equal.
         && table::axes(a) == table::axes(b)
         && draw.assembly.vertices.same_coordinates(first, second)
 }
 
-/// The draw's units, if rows can sample all of them and their tables pay.
+/// Returns the samplers of a draw, or `None` if rows cannot sample all of its units or the tables do not pay.
 fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<Sampler>> {
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
@@ -282,7 +282,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             table,
         };
         sampler.third = third::purpose(unit, &sampler);
-        // Nobody gives it an r.
+        // Dependent reads have no r.
         if sampler.depends && sampler.third.is_some() || draw.shader.is_some() && sampler.pairs > 0 {
             return None;
         }
@@ -291,7 +291,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
     Some(samplers)
 }
 
-/// The rows of what reaches the surface, in order; nothing else of the graph.
+/// Emits the rows that the surface depends on, in order, and no others.
 fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     let wanted = |channel: usize| draw.written >> channel & 1 != 0;
     let mut outputs: Vec<Value> = (0..4).filter(|c| wanted(*c)).map(|c| built.stored[c]).collect();
@@ -306,7 +306,7 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     for n in (0..count).rev().filter(|n| reached[*n]).collect::<Vec<_>>() {
         mark(n, built, &mut reached);
     }
-    // The first rows are there for what nobody reads.
+    // The first rows are the spare ones.
     compiled.rows.resize(SPARE, 0);
     let mut row_of = vec![0_u16; count];
     for n in (0..count).filter(|n| reached[*n]) {
@@ -335,7 +335,7 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     }
 }
 
-/// Marks what a value is made of, and what that is made of.
+/// Marks the values that a value depends on.
 fn mark(value: usize, built: &build::Built, reached: &mut [bool]) {
     let mut open = vec![Value(value as u16)];
     while let Some(value) = open.pop() {

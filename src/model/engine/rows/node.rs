@@ -1,37 +1,37 @@
-//! The values of a graph: numbers that name them, and how each comes about.
+//! The values of a graph, and how each of them is computed.
 
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
 
-/// A value of every pixel: its number in the graph.
+/// Number of a value in the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Value(pub(super) u16);
 
-/// What the operations start from.
+/// An input of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Input {
-    /// A channel of the interpolated diffuse.
+    /// A channel of the interpolated diffuse colour.
     Primary(usize),
-    /// A channel of the interpolated specular.
+    /// A channel of the interpolated specular colour.
     Secondary(usize),
     /// The fog factor.
     Fog,
-    /// A channel of what a texture unit yields.
+    /// A channel of a texture unit's result.
     Texture(usize, usize),
-    /// A channel of what the surface holds.
+    /// A channel of the destination colour.
     Destination(usize),
 }
 
-/// Most products in one sum: two dot products.
+/// Largest number of products in a sum: two dot products.
 pub(super) const MAX_PRODUCTS: usize = 6;
 
-/// Pairs whose products are added.
+/// Pairs of factors whose products are added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Pairs {
-    /// How many pairs there are.
+    /// Number of pairs.
     pub(super) count: usize,
-    /// The pairs, first and second factor in turn; zeros past the end.
+    /// First and second factor of each pair in turn; zeros past the end.
     pub(super) values: [Value; 2 * MAX_PRODUCTS],
 }
 
@@ -52,7 +52,7 @@ impl Pairs {
     }
 }
 
-/// A mapping with the policies that it has; the defaults of those that it has not.
+/// A mapping with the policies that concern it. Other policies have their defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Mapping {
     /// CMB-2 to CMB-5.
@@ -64,7 +64,7 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// A mapping that no policy concerns.
+    /// Returns a mapping that no policy concerns.
     pub(super) fn plain(of: InputMapping) -> Mapping {
         Mapping { of, centre: ExpandCentre::Centred, half: HalfBiasConstant::Half128 }
     }
@@ -83,16 +83,16 @@ impl Mapping {
     }
 }
 
-/// What a mux is steered by, with its policy.
+/// The mux, with its policy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Mux(pub(super) MuxSelect, pub(super) MuxNegative);
 
-/// How a value comes about.
+/// How a value is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Node {
-    /// The same in every pixel.
+    /// The same value in every pixel.
     Constant(i16),
-    /// What the pixel brings.
+    /// An input of the pixel.
     Input(Input),
     /// CMB-2 to CMB-5.
     Map(Mapping, Value),
@@ -100,19 +100,19 @@ pub(super) enum Node {
     Sum(Pairs),
     /// NUM-2 of a sum of products of halves (CMB-4=127.5).
     HalfSum(Pairs),
-    /// CMB-9=after of a sum of products, which are of halves if told so; not saturated.
+    /// CMB-9=after of a sum of products, not saturated. The flag tells whether factors are in halves.
     After(Bias, Scale, bool, Pairs),
     /// NUM-2 of a product of two bytes.
     Bytes(Value, Value),
     /// NUM-2 of a difference of two products.
     Difference([Value; 4]),
-    /// CMB-8 of two vectors that are still to be expanded (CMB-3), read as unsigned.
+    /// CMB-8 of two vectors that are expanded first (CMB-3), read as unsigned.
     UnsignedDot([Value; 6]),
     /// CMB-9, not saturated.
-    QuotientEstimate(Bias, Scale, Value),
+    Scaled(Bias, Scale, Value),
     /// CMB-9 and NUM-3.
     Output(Bias, Scale, RegisterFloor, Value),
-    /// CMB-10: by the first; the second where it takes CD, otherwise the third.
+    /// CMB-10: the first value decides between CD, the second, and AB, the third.
     Select(Mux, [Value; 3]),
     /// a + b.
     Add(Value, Value),
@@ -124,19 +124,19 @@ pub(super) enum Node {
     Greatest(Value, Value),
     /// Limited to 0..=255.
     Clamp(Value),
-    /// ROP-5: without so many low bits.
+    /// ROP-5: clears so many low bits.
     Truncate(u32, Value),
     /// A byte as two's complement (ROP-3).
     Signed(Value),
 }
 
 impl Node {
-    /// The values that it is made of.
+    /// Returns the values that it is computed from.
     pub(super) fn operands(&self) -> Vec<Value> {
         match self {
             Node::Constant(_) | Node::Input(_) => Vec::new(),
             Node::Map(_, v)
-            | Node::QuotientEstimate(_, _, v)
+            | Node::Scaled(_, _, v)
             | Node::Output(_, _, _, v)
             | Node::Clamp(v)
             | Node::Truncate(_, v)
@@ -153,7 +153,7 @@ impl Node {
         }
     }
 
-    /// The same of other values.
+    /// Returns the node with its values renamed.
     pub(super) fn renamed(self, name: impl Fn(Value) -> Value) -> Node {
         match self {
             Node::Constant(_) | Node::Input(_) => self,
@@ -163,7 +163,7 @@ impl Node {
             Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
             Node::Difference(v) => Node::Difference(v.map(name)),
             Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
-            Node::QuotientEstimate(bias, scale, v) => Node::QuotientEstimate(bias, scale, name(v)),
+            Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
             Node::Output(bias, scale, floor, v) => Node::Output(bias, scale, floor, name(v)),
             Node::Select(mux, v) => Node::Select(mux, v.map(name)),
             Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),

@@ -1,26 +1,26 @@
-//! Linear functions across a triangle, as estimates and modulo 2^64.
+//! Linear functions across a triangle, as estimates in double precision and as integers modulo 2^64.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::quotient::{Exact, Line};
 use crate::raster::setup::Triangle;
 
-/// sum G_k E_k.
+/// The function sum G_k E_k.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Plane {
-    /// G_k.
+    /// The values G_k at the vertices.
     pub(super) g: [i64; 3],
     real: [f64; 3],
-    /// How it changes along x and y.
+    /// Slopes along x and y.
     slope: [f64; 2],
     whole: [i64; 2],
-    /// Powers of two that all G_k and P_k share.
+    /// Number of factors of two that all G_k and P_k share.
     pub(super) shared: u32,
-    /// The largest magnitude of its quotient by D, and somewhat more.
+    /// Upper bound of the magnitude of its quotient by D.
     pub(super) reach: f64,
 }
 
 impl Plane {
-    /// `inverse`: that of the triangle.
+    /// Sets up a plane. `inverse` has the triangle's [`inverse`]s.
     #[inline(always)]
     pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [i64; 3]) -> Plane {
         let (x, y) = (slope(&g, &triangle.a), slope(&g, &triangle.b));
@@ -37,31 +37,31 @@ impl Plane {
             slope: [x.0, y.0],
             whole: [x.1, y.1],
             shared: (g[0] | g[1] | g[2] | p[0] | p[1] | p[2]).trailing_zeros(),
-            // Half a denominator, half a texel, and the rounding of this very number.
+            // Adds half a denominator, half a texel, and the rounding error of this number.
             reach: reach + 260.0,
         }
     }
 
-    /// Those of a direction's components.
+    /// Sets up the planes of a direction's components.
     #[inline(always)]
     pub(super) fn three(triangle: &Triangle, inverse: &[f64; 3], g: &[[i64; 3]; 3]) -> [Plane; 3] {
-        // Not a closure: one that is called thrice is not inlined.
+        // Not a closure, because one that is called three times is not inlined.
         [Plane::new(triangle, inverse, g[0]), Plane::new(triangle, inverse, g[1]), Plane::new(triangle, inverse, g[2])]
     }
 
-    /// A number of the vertices: so many times a quotient by D.
+    /// Sets up a plane of floating-point numbers at the vertices. Returns the plane, and the factor of its quotient by D.
     pub(super) fn number(triangle: &Triangle, inverse: &[f64; 3], values: [f32; 3]) -> (Plane, f64) {
         let (g, exponent) = triangle.attribute(values).numbers();
-        // Far from the ends of double precision.
+        // Far from the limits of double precision.
         (Plane::new(triangle, inverse, g), f64::from_bits(((exponent + 1023).max(0) as u64) << 52))
     }
 
-    /// 256 b_k.
+    /// Sets up the plane of 256 b_k.
     #[inline(always)]
     pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {
         let p = &triangle.p;
         let mut plane = Plane { reach: 516.0, shared: (p[0] | p[1] | p[2]).trailing_zeros(), ..Plane::default() };
-        // Below 2^36, and slopes below 2^24.
+        // Below 2^36; slopes are below 2^24.
         let g = 256 * p[k];
         (plane.g[k], plane.real[k]) = (g, g as f64);
         plane.whole = [g * triangle.a[k], g * triangle.b[k]];
@@ -69,15 +69,15 @@ impl Plane {
         plane
     }
 
-    /// Whether INT-4t can lower its ties.
+    /// Returns whether INT-4t can lower its ties.
     pub(super) fn lowers(&self, triangle: &Triangle) -> bool {
         let (g, p) = (&self.g, &triangle.p);
         let falls = |k: usize| i128::from(g[k]) * i128::from(p[1]) > i128::from(p[k]) * i128::from(g[1]);
         !triangle.exact_reciprocal && (falls(0) || falls(2))
     }
 
-    /// What all quotients by D are multiples of, if no tie is lowered and the P_k are one power of two, and by which power of two the G_k can be
-    /// divided. 0: nothing is known.
+    /// Returns the number of which all quotients by D are multiples, if no tie is lowered and the P_k are the same power of two, and the
+    /// power of two that divides the G_k. Returns 0 if there is no such number.
     pub(super) fn gap(&self, triangle: &Triangle) -> (f64, u32) {
         let p = triangle.p[0] as u64;
         if !triangle.exact_reciprocal || !p.is_power_of_two() {
@@ -87,26 +87,26 @@ impl Plane {
         ((1_u64 << shared) as f64 / (p as f64 * triangle.doubled_area as f64), shared)
     }
 
-    /// How it changes along x, modulo 2^64.
+    /// Returns the slope along x modulo 2^64.
     pub(super) fn x(&self) -> i64 {
         self.whole[0]
     }
 
-    /// From a pixel with edge functions `e`.
+    /// Returns the function relative to a pixel with edge functions `e`.
     #[inline(always)]
     pub(super) fn line(&self, e: &[f64; 3]) -> Line {
         let c = self.real[0] * e[0] + self.real[1] * e[1] + self.real[2] * e[2];
         Line { c, x: self.slope[0], y: self.slope[1] }
     }
 
-    /// The largest term of [`line`](Self::line), so many columns and rows around the pixel.
+    /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
     #[inline(always)]
     pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
         let at = self.real[0].abs() * e[0] + self.real[1].abs() * e[1] + self.real[2].abs() * e[2];
         at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
     }
 
-    /// The same modulo 2^64.
+    /// Returns the function modulo 2^64.
     #[inline(always)]
     pub(super) fn exact(&self, e: &[i64; 3]) -> Exact {
         let [g0, g1, g2] = self.g;
@@ -114,8 +114,8 @@ impl Plane {
         Exact { c, x: self.whole[0], y: self.whole[1] }
     }
 
-    /// The same at a pixel of the triangle, and its slope along x, divided by the power of two that all G_k and P_k share. `None`: they have
-    /// too many bits.
+    /// Returns the value at a pixel of the triangle and the slope along x, divided by the power of two that all G_k and P_k share, or
+    /// `None` if they have too many bits.
     #[inline(always)]
     pub(super) fn divided(&self, triangle: &Triangle, e: &[i64; 3]) -> Option<(i64, i64)> {
         let [g0, g1, g2] = [self.g[0] >> self.shared, self.g[1] >> self.shared, self.g[2] >> self.shared];
@@ -131,20 +131,20 @@ impl Plane {
     }
 }
 
-/// sum g_k E_k in double precision, of g_k that are not floored.
+/// The function sum g_k E_k in double precision, where the g_k are not floored.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RealPlane {
     g: [f64; 3],
-    /// How it changes along x and y.
+    /// Slopes along x and y.
     slope: [f64; 2],
-    /// The magnitudes of what slopes are the sums of.
+    /// Sums of the magnitudes of the terms of the slopes.
     sizes: [f64; 2],
-    /// The largest magnitude of its quotient by D, and somewhat more.
+    /// Upper bound of the magnitude of its quotient by D.
     pub(super) reach: f64,
 }
 
 impl RealPlane {
-    /// `inverse`: that of the triangle. `more`: what quotients are set off by, at most.
+    /// Sets up a plane. `inverse` has the triangle's [`inverse`]s, and `more` bounds what is added to quotients.
     #[inline(always)]
     pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [f64; 3], more: f64) -> RealPlane {
         let mut plane = RealPlane { g, reach: more, ..RealPlane::default() };
@@ -160,35 +160,35 @@ impl RealPlane {
         plane
     }
 
-    /// From a pixel with edge functions `e`.
+    /// Returns the function relative to a pixel with edge functions `e`.
     #[inline(always)]
     pub(super) fn line(&self, e: &[f64; 3]) -> Line {
         let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
         Line { c, x: self.slope[0], y: self.slope[1] }
     }
 
-    /// The magnitudes of all that [`line`](Self::line) is the sum of, so many columns and rows around the pixel.
+    /// Returns the sum of the magnitudes of all terms of [`line`](Self::line), so many columns and rows around the pixel.
     #[inline(always)]
     pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
         let at = self.g[0].abs() * e[0] + self.g[1].abs() * e[1] + self.g[2].abs() * e[2];
         at + self.sizes[0] * columns + self.sizes[1] * rows
     }
 
-    /// g_k.
+    /// Returns the values g_k at the vertices.
     #[inline(always)]
     pub(super) fn g(&self) -> &[f64; 3] {
         &self.g
     }
 }
 
-/// 1/P_k, more or less.
+/// Returns 1 / P_k, rounded.
 #[inline(always)]
 pub(super) fn inverse(triangle: &Triangle) -> [f64; 3] {
     let p = &triangle.p;
     [1.0 / p[0] as f64, 1.0 / p[1] as f64, 1.0 / p[2] as f64]
 }
 
-/// How a sum of G_k changes with the edge functions: as an estimate, and modulo 2^64.
+/// Returns the slope of a sum of G_k E_k along an axis, as an estimate and modulo 2^64.
 #[inline(always)]
 fn slope(g: &[i64; 3], edge: &[i64; 3]) -> (f64, i64) {
     let bits = |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();

@@ -1,4 +1,5 @@
-//! TEX-11 on rows: coordinates at the quads of a batch, exact, and what units take of them: a lod, or the taps of a footprint.
+//! TEX-11 on rows: the exact coordinates of the quads of a batch, and what units derive from them: a level of detail, or the taps of a
+//! footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::{CubeDirection, reaches_limit};
@@ -15,30 +16,31 @@ use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
 use std::ops::Range;
 
-/// Coordinates of the three pixels of quads: u and v of each, 1/65536 texel, whole numbers.
+/// Coordinates of three pixels of each quad: u and v in 1/65536 texel, whole numbers.
 pub(super) type AtQuads = [[PerLane<f64>; 2]; 3];
 
-/// What a unit takes of a quad.
+/// What a unit derives from a quad.
 pub(super) trait Measure: Copy {
-    /// Where a pixel of the quad lies behind the viewer.
+    /// Returns the result for a quad that is behind the viewer in part.
     fn behind(unit: &PlannedUnit) -> Self;
 
-    /// That of the first `count` quads. Sign bits of `unknown` say of which coordinates do not tell it; more can be set.
+    /// Computes the results of the first `count` quads. Sign bits of `unknown` mark quads whose coordinates are not known; more of them can
+    /// be set.
     fn measure<const WIDE: bool>(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], unknown: &mut [u64]);
 
-    /// That of one quad, by the definition.
+    /// Computes the result of one quad by the definition.
     fn defined(unit: &PlannedUnit, quad: Option<Quad>) -> Self;
 }
 
-/// What coordinates at quads are computed in.
+/// Scratch space for the coordinates of quads.
 #[derive(Clone, Debug)]
 pub(super) struct Quads {
-    /// Where the upper left pixels of the quads lie, from the batch's first.
+    /// Columns and rows of the upper left pixels of the quads, relative to the batch's first pixel.
     origins: [PerLane<f64>; 2],
     coordinates: AtQuads,
-    /// Of quads: negative, as the bits of doubles, where nothing is known.
+    /// Doubles as bits, negative for quads whose coordinates are not known.
     unknown: PerLane<u64>,
-    /// Of a box: how many quads it has, and which of them each lane belongs to.
+    /// Number of quads of a box, and the quad of each of its lanes.
     count: usize,
     of_lanes: PerLane<u8>,
 }
@@ -56,7 +58,7 @@ impl Default for Quads {
 }
 
 impl Quads {
-    /// Finds the quads of a box.
+    /// Finds the quads of a box and the quad of each lane.
     #[inline(always)]
     pub(super) fn begin_box(&mut self, batch: PixelBatch<'_>) {
         let ((i, j), [xs, ys]) = (batch.first, &mut self.origins);
@@ -92,14 +94,14 @@ impl Quads {
     }
 }
 
-/// What was taken of quads that lie side by side, for the rows that share them.
+/// Results of quads side by side, for the two rows that share them.
 #[derive(Clone, Debug)]
 pub(super) struct Known<T> {
-    /// Number of the triangle, and row.
+    /// Number of the triangle, and of the pair of rows.
     of: Option<(usize, i64)>,
-    /// The quads' columns.
+    /// Columns of the quads.
     columns: Range<i64>,
-    /// Of each, from the first column on.
+    /// Result of each quad, from the first column on.
     pub(super) each: Vec<T>,
 }
 
@@ -109,19 +111,20 @@ impl<T> Default for Known<T> {
     }
 }
 
-/// Which of the [known](Known) quads the lanes of a batch belong to.
+/// How the lanes of a batch map to the [known](Known) quads.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spread {
-    /// All to the first.
+    /// All lanes belong to the first quad.
     First,
-    /// Pixels side by side: two to a quad, but the first one alone to its quad where `odd` is 1. Number of the first quad, and how many come after it.
+    /// Two neighbouring pixels belong to a quad; if `odd` is 1, the first pixel has a quad of its own. `first` is the index of the first
+    /// quad, `last` that of the last one after it.
     Row { first: usize, odd: usize, last: usize },
-    /// A box: as [`Quads`] say.
+    /// Lanes of a box, as [`Quads`] map them.
     Box,
 }
 
 impl Spread {
-    /// The quad of a lane.
+    /// Returns the index of a lane's quad.
     #[inline(always)]
     pub(super) fn quad(&self, quads: &Quads, lane: usize) -> usize {
         match self {
@@ -131,7 +134,7 @@ impl Spread {
         }
     }
 
-    /// What is known of the quads of all lanes, of which the first `count` have pixels; the others repeat the last one's.
+    /// Copies the results of quads to their lanes. Only the first `count` lanes have pixels; the others repeat the last one.
     #[inline(always)]
     pub(super) fn hand_out<T: Copy>(&self, quads: &Quads, known: &[T], count: usize, out: &mut [T]) {
         let Spread::Row { first, odd, last } = *self else {
@@ -153,34 +156,35 @@ impl Spread {
     }
 }
 
-/// Coordinates, 1/256 texel, whose multiples are far from the ends of what doubles hold exactly.
+/// Bound of coordinates in 1/256 texel, so that their multiples are exact in double precision.
 const MAX_COORDINATE: f64 = (1_u64 << 36) as f64;
 
-/// What an estimate of a coordinate may be off by, its own steps.
+/// Largest error of an estimated coordinate that is accepted, in its own steps.
 const COARSEST: f64 = 0.125;
 
-/// Coordinates of level 0 around a batch: two quotients.
+/// Coordinates of level 0 around a batch, as two quotients.
 pub(super) struct BaseLevel<'p> {
     pub(super) along: Line,
     pub(super) down: Line,
     pub(super) denominator: Line,
-    /// More than an estimate is off by, 1/256 texel.
+    /// Upper bound of the error of an estimate, 1/256 texel.
     pub(super) off: f64,
-    /// More than what the floors of a smaller level's numerators make (INT-4).
+    /// Upper bound of the change of a smaller level's coordinates by the floors of its numerators (INT-4).
     pub(super) floors: f64,
     pub(super) face: Face,
-    /// All of it lies behind the viewer, where no lod is known.
+    /// Whether all of the batch lies behind the viewer, where no level of detail is known.
     pub(super) behind: bool,
-    /// Where exact remainders decide what is not proved.
+    /// Planes whose exact remainders decide what estimates do not prove.
     pub(super) planes: Option<&'p [Plane; 2]>,
-    /// What the three functions lose where weights fall short (TEX-15).
+    /// Losses of the three functions where weights fall short (TEX-15).
     pub(super) losses: Option<[Losses; 3]>,
-    /// Of planes on which no tie is lowered: what all values of u and of v are multiples of, and by which powers of two G_k can be divided.
+    /// For planes on which no tie is lowered: the numbers of which all values of u and of v are multiples, and the powers of two that
+    /// divide the G_k.
     pub(super) gaps: [(f64, u32); 2],
 }
 
 impl Setup<'_> {
-    /// The coordinates of level 0 around a batch. `None`: nothing would be proved.
+    /// Returns the coordinates of level 0 around a batch, or `None` if nothing would be proved.
     #[inline(always)]
     pub(super) fn base_level<'p, const FMA: bool, const ROW: bool>(
         &self,
@@ -188,9 +192,9 @@ impl Setup<'_> {
         planes: &'p Planes,
         local: &BatchSetup,
     ) -> Option<BaseLevel<'p>> {
-        // Pixels of a quad lie up to one outside of the batch.
+        // Pixels of a quad lie at most one pixel outside of the batch.
         let (columns, rows) = (local.columns + 1.0, local.rows + 1.0);
-        // None of them lies further to the left of a row's first pixel, or above a batch's.
+        // No pixel lies further to the left of a row's first pixel, or above that of a box.
         let left = if ROW { 1.0 } else { columns };
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
@@ -199,7 +203,7 @@ impl Setup<'_> {
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
                 let ratio = self.denominator.terms(&local.real, columns, rows) * widest;
-                // What lies outside of the triangle may be larger than at the vertices.
+                // Outside of the triangle, numbers can be larger than at the vertices.
                 let most = |plane: &Plane| plane.terms(&local.real, columns, rows) * widest + 2.0 * plane.reach * ratio;
                 let (one, other) = (most(&planes[0]), most(&planes[1]));
                 let range = (if one > other { one } else { other }) * (1.0 + ratio);
@@ -220,14 +224,14 @@ impl Setup<'_> {
             }
             Planes::Ratio(_, reach) if reaches_limit(*reach, sampler.sides) => return None,
             Planes::Ratio(planes, _) => {
-                let looking = CubeDirection::around(planes, &local.real, columns, rows);
-                let [s, t, q] = looking.lines;
+                let direction = CubeDirection::around(planes, &local.real, columns, rows);
+                let [s, t, q] = direction.lines;
                 let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
                 let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
-                let (off, range) = looking.off(1.0 / least(q), most);
+                let (off, range) = direction.off(1.0 / least(q), most);
                 let lines = [s.times(sides[0]), t.times(sides[1])];
                 let [along, down] = lines;
-                // Signs have been changed where q is negative.
+                // The signs of all three were changed if q was negative.
                 let behind = match self.context.coordinates_of(sampler.unit) {
                     Some(Coordinates::Ratio(g)) => g[2][0] < 0,
                     _ => false,
@@ -238,21 +242,21 @@ impl Setup<'_> {
                 (BaseLevel { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Direction(planes, face) => {
-                let looking = CubeDirection::around(planes, &local.real, columns, rows);
+                let direction = CubeDirection::around(planes, &local.real, columns, rows);
                 let face = match face {
                     Some(face) => *face,
-                    None if ROW => looking.face::<FMA>(local.columns)?,
+                    None if ROW => direction.face::<FMA>(local.columns)?,
                     None => return None,
                 };
                 let [s, t, m] = face.components();
-                let m = looking.component(m);
-                // The first pixel of a quad may look at another face.
-                if !looking.stays(face, least) {
+                let m = direction.component(m);
+                // The first pixel of a quad could meet another face.
+                if !direction.stays(face, least) {
                     return None;
                 }
                 let size = 128.0 * f64::from(sampler.sides[0]);
-                let (off, range) = looking.off(1.0 / least(m), size);
-                let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
+                let (off, range) = direction.off(1.0 / least(m), size);
+                let lines = [direction.component(s), direction.component(t)].map(|line| line.plus(m).times(size));
                 let [along, down] = lines;
                 let behind = false;
                 let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
@@ -260,7 +264,7 @@ impl Setup<'_> {
             }
             Planes::Other | Planes::Shared => return None,
         };
-        // Also refuses what is no number.
+        // NaN proves nothing either.
         let proves = lowest > 0.0
             && least(base.denominator) > 0.0
             && range < MAX_COORDINATE
@@ -269,7 +273,7 @@ impl Setup<'_> {
         proves.then_some(base)
     }
 
-    /// What a unit takes of the quads of a batch, and which lanes belong to which.
+    /// Computes the results of the quads of a batch. Returns how lanes map to them.
     #[inline(always)]
     pub(super) fn of_quads<const FMA: bool, const ROW: bool, T: Measure>(
         &self,
@@ -318,7 +322,7 @@ impl Setup<'_> {
         Spread::Row { first, odd, last: (batch.count - 1 + odd) >> 1 }
     }
 
-    /// That of some quads, whose first pixels are [known](Quads::origins).
+    /// Computes the results of quads at the given [origins](Quads::origins).
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
@@ -361,23 +365,24 @@ impl Setup<'_> {
         }
     }
 
-    /// That of a quad of which estimates do not tell it.
+    /// Computes the result of a quad by the definition.
     #[inline(never)]
     pub(super) fn defined_quad<T: Measure>(&self, batch: PixelBatch<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> T {
-        self.tell(Reason::Levels, 1);
+        self.count_defined(Reason::Levels, 1);
         let sample = self.sample(batch, 0);
         T::defined(unit, self.context.sample_coordinates(unit, &sample, pixel).and_then(|place| place.quad()))
     }
 }
 
-/// What is added to estimates that are off by less than `off`, and how close to a whole number they then prove nothing. Where values are multiples of a
-/// `gap` that is wide enough, what is added parts those that are whole from those below, and all are proved.
+/// Returns what is added to estimates whose error is less than `off`, and the distance from an integer below which they prove nothing. If
+/// all values are multiples of a sufficiently wide `gap`, the addition separates integers from the values below them, and everything is
+/// proved.
 #[inline(always)]
 pub(super) fn parted(gap: f64, off: f64) -> (f64, f64) {
     if gap >= 4.0 * off { (off, -1.0) } else { (0.0, off) }
 }
 
-/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
+/// Computes u and v of one of the three pixels of quads, as floors in 1/65536 texel. Sets the sign bits of those that are not proved.
 #[inline(always)]
 fn corners<const FMA: bool>(
     base: &BaseLevel<'_>,
@@ -403,7 +408,7 @@ fn corners<const FMA: bool>(
     }
 }
 
-/// The floor of a quotient of numbers modulo 2^64, given one that is off by one at most, and whether nothing remains.
+/// Returns the floor of a quotient of numbers modulo 2^64, from one that is at most one off, and whether the remainder is 0.
 #[inline(always)]
 pub(super) fn floor(top: i64, bottom: i64, value: i64) -> (i64, bool) {
     let rest = top.wrapping_sub(value.wrapping_mul(bottom));

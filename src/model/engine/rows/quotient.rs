@@ -1,23 +1,23 @@
-//! Quotients of linear functions for many pixels at once: estimated in floating point, proved by their distance from the next whole
-//! number, corrected by exact remainders where that does not suffice. `docs/exactness.md` has the argument.
+//! Quotients of linear functions for many pixels at once. They are estimated in floating point, proved by their distance from the nearest
+//! integer, and otherwise corrected by exact remainders. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;
 use crate::raster::interpolate::most_dominant;
 
-/// 1.5 2^52: added to a small number, it leaves the nearest whole number in the low bits.
+/// 1.5 2^52: adding it to a small number leaves the nearest integer in the low bits.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// 32 roundings of double precision: what an estimate can be off by, relative to the largest term that was added.
+/// 32 rounding errors of double precision: the largest error of an estimate, relative to the largest term of its sum.
 pub(super) const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// 1.5 2^23: [`MAGIC`] in single precision.
 const MAGIC_32: f32 = 12_582_912.0;
 
-/// Fraction bits of an estimate, where its whole part leaves room for them.
+/// Number of fraction bits of an estimate, if its integer part leaves room for them.
 const FRACTION: i32 = 20;
 
-/// Lane numbers.
+/// Lane numbers as integers.
 pub(super) static IOTA: [i32; LANES] = {
     let mut all = [0; LANES];
     let mut n = 0;
@@ -28,7 +28,7 @@ pub(super) static IOTA: [i32; LANES] = {
     all
 };
 
-/// The same as floats.
+/// Lane numbers as floats.
 pub(super) static IOTA_REAL: [f64; LANES] = {
     let mut all = [0.0; LANES];
     let mut n = 0;
@@ -39,21 +39,21 @@ pub(super) static IOTA_REAL: [f64; LANES] = {
     all
 };
 
-/// Lanes of a batch of few pixels: fewer than a whole step. Code of its own for them has no loops.
+/// Number of lanes of a small batch, which is less than a step. Code for small batches has no loops.
 pub(super) const SMALL_BATCH: usize = 8;
 
-/// Where the pixels of a batch lie, relative to its first: columns and, unless all are on one row, rows.
+/// Columns and rows of a batch's pixels, relative to its first.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
     /// Columns.
     pub(super) x: &'a [i32],
-    /// Rows; not looked at on a single row.
+    /// Rows; unused if all pixels are on one row.
     pub(super) y: &'a [i32],
-    /// The largest column; lanes past the end repeat it.
+    /// The largest column, which lanes past the end repeat.
     pub(super) last: i32,
 }
 
-/// c + x X + y Y.
+/// The linear function c + x X + y Y.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Line {
     pub(super) c: f64,
@@ -61,32 +61,32 @@ pub(super) struct Line {
     pub(super) y: f64,
 }
 
-/// Only estimates use this, so no result depends on whether it is fused.
+/// Multiplies and adds. Only estimates use it, so no result depends on whether it is fused.
 #[inline(always)]
 pub(super) fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
 
 impl Line {
-    /// Minus so many times another.
+    /// Returns the function less `times` another.
     #[inline(always)]
     pub(super) fn less(self, times: f64, other: Line) -> Line {
         Line { c: self.c - times * other.c, x: self.x - times * other.x, y: self.y - times * other.y }
     }
 
-    /// Plus another.
+    /// Returns the sum with another function.
     #[inline(always)]
     pub(super) fn plus(self, other: Line) -> Line {
         Line { c: self.c + other.c, x: self.x + other.x, y: self.y + other.y }
     }
 
-    /// The least value so many columns to both sides and so many rows below.
+    /// Returns the least value so many columns to both sides and so many rows below.
     #[inline(always)]
     pub(super) fn least(self, columns: f64, rows: f64) -> f64 {
         self.c - self.x.abs() * columns + if self.y < 0.0 { self.y * rows } else { 0.0 }
     }
 
-    /// So many times as much.
+    /// Returns the function multiplied by a number.
     #[inline(always)]
     pub(super) fn times(self, by: f64) -> Line {
         Line { c: self.c * by, x: self.x * by, y: self.y * by }
@@ -99,28 +99,29 @@ impl Line {
     }
 }
 
-/// How a quotient is estimated: what is computed for a lane is the quotient less `base`, in steps of 2^-`shift`, and less what it can be
-/// off by, so that a lane whose fraction is not above `limit` is proved.
+/// How a quotient is estimated. The value of a lane is the quotient less `base` and less the largest error, in steps of 2^-`shift`. A lane
+/// is proved if its fraction is not above `limit`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct QuotientEstimate {
-    /// The numerator, over the denominator that all share.
+    /// The numerator. All quotients share the denominator.
     pub(super) line: Line,
     pub(super) base: i32,
     pub(super) shift: u32,
     pub(super) limit: i32,
-    /// The step that a quotient of 0 has, where none is smaller.
+    /// Value of a quotient of 0, if none is smaller.
     pub(super) least: i32,
 }
 
-/// 2^n of a small n.
+/// Returns 2^n for a small n.
 #[inline(always)]
 fn power(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
 impl QuotientEstimate {
-    /// A quotient less `bias`. `margin` is what an estimate of it can be off by, and the pixels lie within so many columns and rows of the
-    /// first, whose denominator has this reciprocal; `widest` is that of the smallest one. `None`: too coarse to prove anything.
+    /// Sets up a quotient less `bias`. `margin` is the largest error of an estimate. `extent` has the columns and rows around the first
+    /// pixel, whose denominator has the first of the `reciprocals`; the second is that of the least denominator. Returns `None` if the
+    /// estimate is too coarse to prove anything.
     #[inline(always)]
     pub(super) fn new<const ROW: bool>(
         numerator: Line,
@@ -135,8 +136,8 @@ impl QuotientEstimate {
         proves.then_some(estimate)
     }
 
-    /// The same, and whether it can prove anything. `gap`: quotients are multiples of this, which may tell that one so close to a whole number is
-    /// that number; 0 if nothing is known. Without branches: compilers set up several at once.
+    /// Sets up a quotient, and returns whether it can prove anything. If quotients are multiples of `gap`, one that is close to an integer
+    /// may be known to be that integer; 0 means that nothing is known. Without branches, so that compilers set up several at once.
     #[inline(always)]
     pub(super) fn with_proof<const ROW: bool>(
         numerator: Line,
@@ -151,50 +152,50 @@ impl QuotientEstimate {
         let rest = numerator.less(base, denominator);
         let range = rest.c.abs() + rest.x.abs() * columns;
         let range = if ROW { range } else { range + rest.y.abs() * rows } * widest + 4.0;
-        // Bits of the whole part.
+        // Number of bits of the integer part.
         let bits = (range.to_bits() >> 52) as i32 - 1022;
         let shift = (30 - bits).clamp(0, FRACTION);
         let scale = power(shift);
-        // A whole number of steps above half of one and the error.
+        // A whole number of steps above the error and half a step.
         let off = whole(margin * scale + 2.0);
-        // What is exact falls above its whole number then, and the next below remains below.
+        // Then exact quotients come out above their integer, and the next smaller quotients below it.
         let parted = gap * scale >= 4.0 * off;
         let down = if parted { -off } else { off };
         let line = rest.less(down * power(-shift), denominator).times(scale);
         let limit = nearest(if parted { scale } else { scale - 2.0 * off });
-        // Also refuses what is no number.
+        // NaN proves nothing either.
         let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
         let shift = shift as u32;
         (QuotientEstimate { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
     }
 
-    /// The floor that a step stands for, and as its sign bit whether it is not proved.
+    /// Returns the floor of a lane's value. The sign bit of the second number is set if the floor is not proved.
     #[inline(always)]
     fn floor(&self, step: i32) -> (i32, i32) {
         ((step >> self.shift) + self.base, self.limit - (step & ((1 << self.shift) - 1)))
     }
 
-    /// Of a quotient that is not negative: one that seems to be is 0, proved.
+    /// Declares that the quotient is not negative: an estimate below 0 is then a proved 0.
     #[inline(always)]
     pub(super) fn not_negative(mut self) -> QuotientEstimate {
         self.least = self.base.wrapping_neg().wrapping_shl(self.shift);
         self
     }
 
-    /// The step of a lane.
+    /// Returns the value of a lane.
     #[inline(always)]
     fn step<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> i32 {
         ((self.line.at::<FMA, ROW>(x, y) * r + MAGIC).to_bits() as i32).max(self.least)
     }
 
-    /// The [floor](Self::floor) of a lane, given the reciprocal of its denominator.
+    /// Returns the [floor](Self::floor) of a lane from the reciprocal of its denominator.
     #[inline(always)]
     fn at<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> (i32, i32) {
         self.floor(self.step::<FMA, ROW>(x, y, r))
     }
 }
 
-/// [`estimate_two`] of one lane. `None`: it is not proved.
+/// Computes [`estimate_two`] for one lane. Returns `None` if it is not proved.
 pub(super) fn prove<const ROW: bool>(
     at: Positions<'_>,
     n: usize,
@@ -210,38 +211,38 @@ pub(super) fn prove<const ROW: bool>(
     Some([floor(&numerators[0])?, floor(&numerators[1])?])
 }
 
-/// The nearest whole number, as a float.
+/// Rounds to the nearest integer, as a float.
 #[inline(always)]
 pub(super) fn whole(q: f64) -> f64 {
     (q + MAGIC) - MAGIC
 }
 
-/// The same in single precision.
+/// Rounds to the nearest integer in single precision, as a float.
 #[inline(always)]
 pub(super) fn whole_32(q: f32) -> f32 {
     (q + MAGIC_32) - MAGIC_32
 }
 
-/// The nearest whole number.
+/// Rounds to the nearest integer.
 #[inline(always)]
 pub(super) fn nearest(q: f64) -> i32 {
     (q + MAGIC).to_bits() as i32
 }
 
-/// The floor of a factor in 4096ths, limited to 0..=4096. One less where it is a whole number, perhaps.
+/// Returns the floor of a factor in 4096ths, limited to 0..=4096. If the factor is a whole number, the result may be one less.
 #[inline(always)]
 pub(super) fn floor_of_factor(v: f64) -> i32 {
     let v = if v > 0.0 { v } else { 0.0 };
     nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
 }
 
-/// The nearest whole number, in single precision.
+/// Rounds to the nearest integer in single precision.
 #[inline(always)]
 pub(super) fn nearest_32(q: f32) -> i32 {
     ((q + MAGIC_32).to_bits() as i32).wrapping_sub(MAGIC_32.to_bits() as i32)
 }
 
-/// Floors of two quotients. Says of which of them some lane is not proved.
+/// Writes the floors of two quotients. Returns for each whether a lane is not proved.
 #[inline(always)]
 pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
@@ -266,7 +267,7 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     [close[0] < 0, close[1] < 0]
 }
 
-/// Positions of a batch, and the reciprocals of its denominators. Aligned: what is stored as a vector is loaded as one soon.
+/// Positions of a batch and the reciprocals of its denominators. Aligned, because vectors are stored and soon loaded again.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Reciprocals {
@@ -282,7 +283,7 @@ impl Default for Reciprocals {
 }
 
 impl Reciprocals {
-    /// Those of some pixels.
+    /// Sets the positions and reciprocals of a batch.
     #[inline(always)]
     pub(super) fn set<const FMA: bool, const ROW: bool>(&mut self, at: Positions<'_>, denominator: Line) {
         if ROW {
@@ -322,13 +323,13 @@ impl Reciprocals {
         }
     }
 
-    /// Columns, rows (of no meaning on a single row) and reciprocals of the first lanes.
+    /// Returns columns, rows (unused on a single row) and reciprocals of the first lanes.
     #[inline(always)]
     pub(super) fn lanes(&self, count: usize) -> [&[f64]; 3] {
         [&self.x[..count], &self.y[..count], &self.r[..count]]
     }
 
-    /// [`estimate_two`] of them.
+    /// Computes [`estimate_two`] from the reciprocals.
     #[inline(always)]
     pub(super) fn estimate<const FMA: bool>(
         &self,
@@ -357,7 +358,7 @@ impl Reciprocals {
     #[inline(always)]
     fn few<const FMA: bool>(&self, numerator: QuotientEstimate, out: &mut [i32; SMALL_BATCH]) -> bool {
         let (mut steps, mut close) = ([0; SMALL_BATCH], 0);
-        // Loops of their own: compilers take one apart that does both.
+        // Separate loops, because compilers split one that does both.
         for n in 0..SMALL_BATCH {
             steps[n] = numerator.step::<FMA, false>(self.x[n], self.y[n], self.r[n]);
         }
@@ -370,13 +371,13 @@ impl Reciprocals {
     }
 }
 
-/// Where a lane lies.
+/// Returns the position of a lane.
 #[inline(always)]
 pub(super) fn position<const ROW: bool>(n: usize, last: f64, xs: &[i32], ys: &[i32], iota: &[f64]) -> (f64, f64) {
     if ROW { (if iota[n] < last { iota[n] } else { last }, 0.0) } else { (f64::from(xs[n]), f64::from(ys[n])) }
 }
 
-/// An integer linear function, modulo 2^64.
+/// An integer linear function modulo 2^64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exact {
     pub(super) c: i64,
@@ -385,7 +386,7 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// Minus so many times another.
+    /// Returns the function less `times` another.
     #[inline(always)]
     pub(super) fn less(self, times: i64, other: Exact) -> Exact {
         Exact {
@@ -395,13 +396,13 @@ impl Exact {
         }
     }
 
-    /// So many times as much.
+    /// Returns the function multiplied by a number.
     #[inline(always)]
     pub(super) fn times(self, by: i64) -> Exact {
         Exact { c: self.c.wrapping_mul(by), x: self.x.wrapping_mul(by), y: self.y.wrapping_mul(by) }
     }
 
-    /// Its value so many columns and rows further.
+    /// Returns the value so many columns and rows further.
     #[inline(always)]
     pub(super) fn at(self, x: i64, y: i64) -> i64 {
         self.c.wrapping_add(self.x.wrapping_mul(x)).wrapping_add(self.y.wrapping_mul(y))
@@ -410,7 +411,7 @@ impl Exact {
 
 /// Corrects estimates that are at most one off, and marks lanes whose division is exact.
 ///
-/// The remainder lies within 1.25 denominators of 0, so it is known although numerators are known modulo 2^64 only.
+/// A remainder lies within 1.25 denominators of 0. So it is known although numerators are only known modulo 2^64.
 #[inline(always)]
 pub(super) fn correct<const ROW: bool>(
     at: Positions<'_>,
@@ -433,14 +434,14 @@ pub(super) fn correct<const ROW: bool>(
     }
 }
 
-/// INT-3 on floors of 256 b0 and 256 b2 and what [`correct`] said of them.
+/// INT-3: lowers tied weights. It takes the floors of 256 b0 and 256 b2, and the lanes that [`correct`] found to be exact.
 ///
-/// A tied weight is a multiple of 1/256 above 0, so the class of each weight is told by its ceiling in 256ths: the next power of two.
+/// A tied weight is a positive multiple of 1/256. So the class of each weight follows from its ceiling in 256ths: the next power of two.
 #[inline(always)]
 pub(super) fn break_ties(w0: &mut [i32], w2: &mut [i32], whole0: &[i32], whole2: &[i32]) {
     for (((w0, w2), whole0), whole2) in w0.iter_mut().zip(w2).zip(whole0).zip(whole2) {
         let (a, c) = (*w0, *w2);
-        // All bits below the power of two. Where something is tied, the second weight is 256 less two floors, rounded up.
+        // Sets all bits below the power of two. If a weight is tied, the second weight is 256 less two floors, rounded up.
         let class = |ceiling: i32| {
             let m = ceiling - 1;
             let m = m | m >> 1;
@@ -454,7 +455,7 @@ pub(super) fn break_ties(w0: &mut [i32], w2: &mut [i32], whole0: &[i32], whole2:
     }
 }
 
-/// Whether the sign bit of some is set. Most often of none, and one lane after the other is a slow way to find that out.
+/// Returns whether a sign bit is set. Usually none is, and a loop without an early exit finds that out faster.
 #[inline(always)]
 pub(super) fn any_negative(lanes: &[u64]) -> bool {
     let mut all = 0;

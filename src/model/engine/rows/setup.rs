@@ -1,4 +1,4 @@
-//! What all interpolators share: a triangle, a batch of its pixels, and quotients of plane functions by D.
+//! What all interpolators share: a triangle, a batch of its pixels, and quotients of planes by D.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{Reason, Reasons};
@@ -12,83 +12,83 @@ use crate::state::Named;
 use crate::texture::cube::Face;
 use std::cell::Cell;
 
-/// A unit's linear functions.
+/// Linear functions of a unit's coordinates.
 #[derive(Debug)]
 pub(super) enum Planes {
-    /// u and v over D.
+    /// u and v, divided by D.
     Plane([Plane; 2]),
-    /// A direction, and the face that all of the triangle looks at, if that is one.
+    /// A direction, and the face that all of the triangle meets, if there is one.
     Direction([Plane; 3], Option<Face>),
-    /// s, t and q, which is positive, and more than the magnitudes of s/q and t/q.
+    /// s, t and a positive q, and an upper bound of the magnitudes of s/q and t/q.
     Ratio([Plane; 3], f64),
-    /// Anything else: the definition, pixel by pixel.
+    /// Other coordinates, which the definition computes pixel by pixel.
     Other,
-    /// None: an earlier sampler's coordinates are used, or those that a stage of the texture shader makes.
+    /// None, because the unit uses the coordinates of an earlier sampler or those of a texture shader stage.
     Shared,
 }
 
-/// Some pixels of a triangle that become lanes of a block.
+/// Pixels of a triangle that become neighbouring lanes of a block.
 #[derive(Clone, Copy)]
 pub(super) struct PixelBatch<'a> {
-    /// Column and row of its first pixel.
+    /// Column and row of the first pixel.
     pub(super) first: (i64, i64),
-    /// Where the others lie; whole steps of lanes.
+    /// Positions of the pixels, in whole steps of lanes.
     pub(super) at: Positions<'a>,
-    /// How many there are.
+    /// Number of pixels.
     pub(super) count: usize,
-    /// The lane of the first.
+    /// Lane of the first pixel.
     pub(super) lane: usize,
-    /// Columns and rows that none of them is further away from it.
+    /// Largest distance of a pixel from the first, in columns and in rows.
     pub(super) extent: (i32, i32),
-    /// Of a box: row, first column and number of the pixels of each of its rows.
+    /// For a box: row, first column and number of pixels of each of its rows.
     pub(super) runs: &'a [(i64, i64, usize)],
 }
 
 impl PixelBatch<'_> {
-    /// Column and row of one of its pixels.
+    /// Returns column and row of a pixel.
     pub(super) fn pixel(&self, n: usize) -> (i64, i64) {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
     }
 
-    /// One of its pixels as a sample of the triangle.
+    /// Returns a pixel as a sample of the triangle.
     pub(super) fn sample<'t>(&self, n: usize, triangle: &'t Triangle) -> Sample<'t> {
         let (i, j) = self.pixel(n);
         Sample::new(triangle, triangle.edges(i, j))
     }
 
-    /// The lanes that whole steps take.
+    /// Returns the lanes of the batch's whole steps.
     pub(super) fn lanes(&self) -> std::ops::Range<usize> {
         self.lane..self.lane + self.at.x.len()
     }
 }
 
-/// Some lanes of a block that lie side by side on the surface.
+/// Lanes of a block whose pixels lie side by side on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
-    /// First lane.
+    /// The first lane.
     pub(super) lane: usize,
     /// Index of the first pixel in the band.
     pub(super) at: usize,
     pub(super) count: usize,
 }
 
-/// Rounded up to whole steps.
+/// Rounds up to whole steps.
 pub(super) fn whole_steps(count: usize) -> usize {
     count.next_multiple_of(STEP)
 }
 
-/// A triangle with what quotients by D need.
+/// A triangle, set up for quotients by D.
 pub(super) struct Setup<'a> {
     pub(super) context: &'a TriangleContext<'a>,
     pub(super) denominator: Plane,
-    /// The reciprocal of a D that none is smaller than.
+    /// Reciprocal of a lower bound of D.
     widest: f64,
-    /// Pixels that the definition computed something of.
+    /// Number of pixels, by reason, of which the definition computed something.
     defined: [Cell<u64>; Reason::ALL.len()],
 }
 
 impl<'a> Setup<'a> {
-    /// `inverse`: that of the triangle.
+    /// Sets up a triangle. `inverse` has its [inverses](super::planes::inverse).
     #[inline(always)]
     pub(super) fn new(context: &'a TriangleContext<'a>, inverse: &[f64; 3]) -> Setup<'a> {
         let triangle = &context.triangle;
@@ -102,25 +102,25 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Adds what the definition computed.
+    /// Adds the numbers of pixels to those of the draw.
     pub(super) fn count(&self, reasons: &mut Reasons) {
         for (all, own) in reasons.iter_mut().zip(&self.defined) {
             *all += own.get();
         }
     }
 
-    /// The definition computes something of some pixels.
-    pub(super) fn tell(&self, reason: Reason, pixels: usize) {
+    /// Counts pixels of which the definition computes something.
+    pub(super) fn count_defined(&self, reason: Reason, pixels: usize) {
         let count = &self.defined[reason as usize];
         count.set(count.get() + pixels as u64);
     }
 
-    /// One of the batch's pixels as a sample of the triangle.
+    /// Returns a pixel of the batch as a sample of the triangle.
     pub(super) fn sample(&self, batch: PixelBatch<'_>, n: usize) -> Sample<'_> {
         batch.sample(n, &self.context.triangle)
     }
 
-    /// What is known of a batch of the triangle.
+    /// Sets up a batch.
     #[inline(always)]
     pub(super) fn local<const FMA: bool, const ROW: bool>(&self, batch: PixelBatch<'_>, divides: bool) -> BatchSetup {
         let e = self.context.triangle.edges(batch.first.0, batch.first.1);
@@ -133,13 +133,13 @@ impl<'a> Setup<'a> {
         BatchSetup::new::<FMA, ROW>(batch, (e, real, denominator), self.widest, terms)
     }
 
-    /// How far the estimate of a plane's quotient can be off.
+    /// Returns the largest error of the estimate of a plane's quotient.
     #[inline(always)]
     pub(super) fn margin<const ROW: bool>(&self, plane: &Plane, local: &BatchSetup) -> f64 {
         local.margin::<ROW>(plane.reach, |columns, rows| plane.terms(&local.real, columns, rows))
     }
 
-    /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
+    /// Sets up two quotients less a bias. Returns `None` if one of them would prove nothing.
     #[inline(always)]
     pub(super) fn estimates<const ROW: bool>(
         &self,
@@ -147,7 +147,7 @@ impl<'a> Setup<'a> {
         bias: i32,
         local: &BatchSetup,
     ) -> Option<[QuotientEstimate; 2]> {
-        // Not a closure: one that is called twice is not inlined.
+        // Not a closure, because one that is called twice is not inlined.
         Some([self.estimate_of::<ROW>(&planes[0], bias, local)?, self.estimate_of::<ROW>(&planes[1], bias, local)?])
     }
 
@@ -158,7 +158,7 @@ impl<'a> Setup<'a> {
         QuotientEstimate::new::<ROW>(plane.line(&local.real), local.denominator, extent, reciprocals, margin, bias)
     }
 
-    /// INT-4, INT-4t, less a bias.
+    /// INT-4, INT-4t: computes coordinates less a bias.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn on_planes<const FMA: bool, const ROW: bool>(
@@ -177,7 +177,7 @@ impl<'a> Setup<'a> {
                 self.correct_coordinates::<ROW>(batch, bias, planes, close, &local.e, u, v, whole);
             }
         } else {
-            self.tell(Reason::Coordinates, batch.count);
+            self.count_defined(Reason::Coordinates, batch.count);
             for k in 0..batch.count {
                 let sample = self.sample(batch, k);
                 (u[k], v[k]) =
@@ -186,7 +186,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// INT-4, INT-4t of estimates of which some lane is not proved.
+    /// INT-4, INT-4t: corrects estimates of which some are not proved.
     #[inline(always)]
     #[allow(
         clippy::too_many_arguments,
@@ -220,7 +220,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// INT-2, INT-3 likewise.
+    /// INT-2, INT-3: corrects weights of which some are not proved.
     #[inline(always)]
     pub(super) fn correct_weights<const ROW: bool>(
         &self,
@@ -242,32 +242,33 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// INT-4 of a plane, less a bias.
+/// INT-4 of a plane, less a bias, by the definition.
 fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
     sample.coordinate(&plane.g).value as i32 - bias
 }
 
-/// A batch's edge functions and denominators.
+/// Edge functions and denominators of a batch.
 #[derive(Default)]
 pub(super) struct BatchSetup {
-    /// Edge functions at its first pixel.
+    /// Edge functions at the first pixel.
     pub(super) e: [i64; 3],
-    /// The same in double precision.
+    /// Edge functions in double precision.
     pub(super) real: [f64; 3],
     pub(super) denominator: Line,
-    /// No term that goes into a denominator is larger than this many of the smallest.
+    /// Upper bound of the quotient of any term of a denominator by the least denominator.
     pub(super) ratio: f64,
-    /// The reciprocal of the first pixel's denominator.
+    /// Reciprocal of the first pixel's denominator.
     pub(super) reciprocal: f64,
-    /// Of the smallest.
+    /// Reciprocal of the least denominator.
     pub(super) widest: f64,
-    /// How far its pixels lie from the first.
+    /// Largest distance of a pixel from the first, in columns and in rows.
     pub(super) columns: f64,
     pub(super) rows: f64,
 }
 
 impl BatchSetup {
-    /// `widest`: the reciprocal of a D that none is smaller than. `terms`: the sum of the magnitudes that go into a D so many columns and rows around.
+    /// Sets up a batch. `widest` is the reciprocal of a lower bound of D; `terms` returns the sum of the magnitudes of D's terms, so many
+    /// columns and rows around.
     #[inline(always)]
     pub(super) fn new<const FMA: bool, const ROW: bool>(
         batch: PixelBatch<'_>,
@@ -284,19 +285,19 @@ impl BatchSetup {
             return BatchSetup { e, real, denominator, ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
         }
         let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
-        // No sample lies outside of the triangle, but the box does.
+        // The box may reach beyond the triangle, but no sample does.
         let here = 1.0 / denominator.least(columns, rows);
         let widest = if here > 0.0 && here < widest { here } else { widest };
         BatchSetup { e, real, denominator, ratio: terms(columns, rows) * widest, reciprocal, widest, columns, rows }
     }
 
-    /// How far the estimate of a quotient can be off, of which `reach` is the largest magnitude and what is taken off, and `terms` the sum of the
-    /// magnitudes that go into its numerator.
+    /// Returns the largest error of the estimate of a quotient. `reach` bounds its magnitude, with what is subtracted; `terms` returns the
+    /// sum of the magnitudes of its numerator's terms.
     #[inline(always)]
     pub(super) fn margin<const ROW: bool>(&self, reach: f64, terms: impl FnOnce(f64, f64) -> f64) -> f64 {
-        // What is taken off is at most `reach` denominators.
+        // What is subtracted is at most `reach` denominators.
         if ROW {
-            // So is every other term: no term of the denominator is negative.
+            // All other terms are, too, because no term of the denominator is negative.
             return 2.0 * reach * self.ratio * SLACK;
         }
         (terms(self.columns, self.rows) * self.widest + 2.0 * reach * self.ratio) * SLACK

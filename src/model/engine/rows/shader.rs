@@ -1,4 +1,4 @@
-//! TSH-1 to TSH-10 on rows: what a draw's texture shader comes to, stage by stage. `stages.rs` runs it.
+//! TSH-1 to TSH-10 on rows: the texture shader of a draw, compiled stage by stage. `stages.rs` runs it.
 #![allow(clippy::float_arithmetic, reason = "tables of which no result depends on how they are rounded")]
 
 use super::Sampler;
@@ -9,25 +9,25 @@ use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 use crate::texture::shader;
 use crate::texture::stage::PlannedShaderStage;
 
-/// What an interpolated number is wanted for.
+/// The use of an interpolated number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// The dot unit: the nearest single-precision number.
+    /// Input of the dot unit: the nearest single-precision number.
     Float,
-    /// A colour (TSH-9): a byte.
+    /// Colour channel (TSH-9): a byte.
     Byte,
-    /// Its sign (TSH-10).
+    /// Only its sign counts (TSH-10).
     Sign,
 }
 
-/// Where a number of a stage lies.
+/// Where a number of a stage is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Number {
-    /// Nobody reads it.
+    /// It is not read.
     Unread,
-    /// The same at all vertices of the draw: among the draw's.
+    /// Among the draw's constant numbers: it is the same at all vertices.
     Same(usize),
-    /// Among those that vary.
+    /// Among the numbers that vary.
     Varying(usize),
 }
 
@@ -39,17 +39,17 @@ pub(super) struct Stage {
     pub(super) dots: bool,
     /// Index among the draw's samplers.
     pub(super) sampler: Option<usize>,
-    /// s, t, r, q.
+    /// The numbers s, t, r and q.
     pub(super) numbers: [Number; 4],
-    /// Which of the remapped colours enters its dot product.
+    /// Index of the remapped colour in its dot product.
     pub(super) vector: usize,
     /// Channels whose register holds twice the byte.
     pub(super) doubled: [bool; 4],
-    /// Of bump stages, which of the moved coordinates are its own.
+    /// Index among the moved coordinates, for bump stages.
     pub(super) moved: usize,
-    /// TSH-8: what a channel is multiplied by for each red of the earlier unit, so that the product is in 2^-20.
+    /// TSH-8: factor of a channel for each red of the earlier unit, in units of 2^-20.
     pub(super) luminance: Vec<f32>,
-    /// TSH-6: u and v of each byte, less what is taken off coordinates.
+    /// TSH-6: u and v of each byte, less the sampler's bias.
     pub(super) dependent: [Vec<i32>; 2],
 }
 
@@ -57,9 +57,9 @@ pub(super) struct Stage {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bump {
     pub(super) stage: usize,
-    /// Sides of its image.
+    /// Sides of its image in texels.
     pub(super) sides: [u32; 2],
-    /// The furthest that it moves u and v, 1/256 texel.
+    /// Largest distance by which it moves u and v, 1/256 texel.
     pub(super) most: [f64; 2],
 }
 
@@ -67,24 +67,24 @@ pub(super) struct Bump {
 #[derive(Clone, Debug)]
 pub(super) struct Shader {
     pub(super) stages: Vec<Stage>,
-    /// Stage, component and purpose of each number that varies.
+    /// Stage, component and use of each number that varies.
     pub(super) varying: Vec<(usize, usize, Purpose)>,
-    /// Numbers that do not.
+    /// Numbers that are the same at all vertices.
     pub(super) same: Vec<f32>,
     /// The bump stages.
     pub(super) moved: Vec<Bump>,
-    /// Earlier unit, channels whose registers hold twice the byte, and mapping of each remapped colour.
+    /// For each remapped colour: the earlier unit, the channels whose registers hold twice the byte, and the mapping.
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
     pub(super) kills: bool,
 }
 
-/// The furthest that a stage may move coordinates, 1/256 texel: no coordinate comes that far before it reaches its limit.
+/// Largest distance by which rows move coordinates, 1/256 texel. It is beyond the limit of coordinates.
 const FARTHEST_MOVE: f64 = (1_u32 << 30) as f64;
 
-/// The largest scale and offset whose sums are known to within what a `luminance` of the stages may be off by.
+/// Largest scale and offset for which the factors in `luminance` are exact enough.
 const LARGEST_LUMINANCE: f32 = (1 << 20) as f32;
 
-/// Whether a stage samples where an earlier one sends it.
+/// Returns whether a stage samples at coordinates that an earlier stage determines.
 pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
     use ShaderOperation as O;
     match operation {
@@ -101,7 +101,8 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
 }
 
 impl Shader {
-    /// The shader of a draw whose units rows sample. `None`: a dependent read has levels, or coordinates are moved or luminance is scaled too far.
+    /// Compiles the shader of a draw whose units rows can sample. Returns `None` if a dependent read has levels, or if coordinates are
+    /// moved or luminance is scaled too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -179,18 +180,18 @@ impl Shader {
                 let sides = samplers[sampler?].sides;
                 let [width, height] = sides.map(|side| 256.0 * f64::from(side));
                 let most = [(m0 + m3) * width, (m1 + m2) * height];
-                // Also refuses what is no number.
+                // NaN is refused too.
                 if !(most[0] < FARTHEST_MOVE && most[1] < FARTHEST_MOVE) {
                     return None;
                 }
                 stage.moved = self.moved.len();
                 self.moved.push(Bump { stage: index, sides, most });
                 if let Some([scale, offset]) = luminance {
-                    // Sums of larger ones lose too many bits.
+                    // Sums of larger numbers lose too many bits.
                     if scale.abs().max(offset.abs()) > LARGEST_LUMINANCE {
                         return None;
                     }
-                    // Nearest to 2^20 (R / 255 scale + offset) / 255.
+                    // Rounded to nearest: 2^20 (R / 255 scale + offset) / 255.
                     let of = |red: u8| {
                         let factor = f64::from(red) * f64::from(scale) + 255.0 * f64::from(offset);
                         (factor * (f64::from(1 << 20) / 65025.0)).clamp(-1e30, 1e30) as f32
@@ -209,7 +210,7 @@ impl Shader {
         Some(stage)
     }
 
-    /// A component of a stage's coordinate set.
+    /// Adds a component of a stage's coordinate set to the numbers of the shader.
     fn number(
         &mut self,
         draw: &PlannedDraw,
@@ -230,7 +231,7 @@ impl Shader {
         Number::Varying(self.varying.len() - 1)
     }
 
-    /// The remapped colour that a stage reads.
+    /// Adds the remapped colour that a stage reads. Returns its index.
     fn vector(
         &mut self,
         all: &[PlannedShaderStage; TEXTURE_UNITS],
@@ -251,13 +252,13 @@ impl Shader {
     }
 }
 
-/// What the channels of a stage's register hold that anybody reads, where nothing computes them (TEX-16, TSH-4).
+/// Returns the constant channels of a stage's register that are read but not computed (TEX-16, TSH-4).
 pub(super) fn initial(stage: &PlannedShaderStage) -> [Option<i16>; 4] {
     let dot = stage.runs() && stage.state.operation == ShaderOperation::DotProduct;
     [0, 1, 2, 3].map(|n: usize| (stage.live >> n & 1 != 0).then_some(if n == 3 && !dot { 255 } else { 0 }))
 }
 
-/// TSH-9 of a number that is the same everywhere.
+/// TSH-9 of a number that is the same at all vertices.
 pub(super) fn byte_of(value: f64) -> f32 {
     let v = (value * 4096.0).floor().clamp(0.0, 4096.0) as i64;
     f32::from(factor_byte(v))

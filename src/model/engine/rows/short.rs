@@ -1,4 +1,5 @@
-//! INT-4t on rows: quotients of numbers that lose something because weights fall short (TEX-15, TSH-7). `docs/exactness.md` has the argument.
+//! INT-4t on rows: quotients of functions that lose something because weights fall short (TEX-15, TSH-7). `docs/exactness.md` has the
+//! argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::BLOCK;
@@ -11,19 +12,19 @@ use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
 
-/// How much of a weight is missing.
+/// The missing part of a weight.
 const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 
-/// What a linear function loses of each unit of N_0 and of N_2, where those fall short.
+/// Losses of a linear function for each unit of N_0 and of N_2, if those weights fall short.
 pub(super) type Losses = [f64; 2];
 
-/// Which weights fall short at the pixels of a batch, and two quotients of them.
+/// The weights that fall short in a batch, and two quotients of functions with losses.
 #[derive(Clone, Debug)]
 pub(super) struct Short {
     pub(super) dominance: Dominance,
-    /// As sign bits: what is not proved of something.
+    /// Sign bits of lanes that are not proved.
     pub(super) close: PerLane<u64>,
-    /// Room for two quotients with their fractions.
+    /// Scratch space for two quotients with their fractions.
     pub(super) at: [PerLane<f64>; 2],
 }
 
@@ -33,18 +34,19 @@ impl Default for Short {
     }
 }
 
-/// INT-3's dominance at the pixels of a batch. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
-/// never below a third.
+/// INT-3's dominance in a batch. Weights are classified by whether they are above a half, above a quarter, or neither, because the largest
+/// is at least a third.
 #[derive(Clone, Debug)]
 pub(super) struct Dominance {
     /// N_0 and N_2 as functions.
     functions: [Line; 2],
-    /// Of steps of a row: whether weights 0 and 2 fall short in all of its lanes. `None`: lanes differ, or one is too close to call.
+    /// For each step of a row: whether weights 0 and 2 fall short in all of its lanes. `None` if lanes differ, or if one is too close to a
+    /// border.
     steps: [Option<[bool; 2]>; BLOCK / STEP],
-    /// N_0 and N_2 of all other lanes, 0 where they do not fall short.
+    /// N_0 and N_2 of all other lanes, or 0 where the weights do not fall short.
     first: PerLane<f64>,
     third: PerLane<f64>,
-    /// As sign bits: which weight dominates is too close to call, for an estimate.
+    /// Sign bits of lanes that are too close to a border for an estimate.
     close: PerLane<u64>,
 }
 
@@ -60,7 +62,8 @@ impl Default for Dominance {
     }
 }
 
-/// 2^-24 (u_i - u_1) of weights 0 and 2, with u_k = G_k / P_k: what a function with these G_k loses of each unit of N_i.
+/// Returns 2^-24 (u_i - u_1) for the weights 0 and 2, with u_k = G_k / P_k. This is what a function with these G_k loses for each unit of
+/// N_i.
 #[inline(always)]
 pub(super) fn losses(triangle: &Triangle, inverse: &[f64; 3], g: &[f64; 3]) -> Losses {
     if triangle.exact_reciprocal {
@@ -71,7 +74,7 @@ pub(super) fn losses(triangle: &Triangle, inverse: &[f64; 3], g: &[f64; 3]) -> L
 }
 
 impl Setup<'_> {
-    /// [`losses`] of s, t and q, s and t that many times.
+    /// Returns the [`losses`] of s, t and q, where s and t are multiplied by the sides.
     #[inline(always)]
     pub(super) fn losses_by_q(&self, planes: &[Plane; 3], [width, height]: [f64; 2]) -> [Losses; 3] {
         let triangle = &self.context.triangle;
@@ -83,7 +86,7 @@ impl Setup<'_> {
 }
 
 impl Dominance {
-    /// Becomes that of a batch.
+    /// Sets the dominance of a batch.
     #[inline(always)]
     pub(super) fn set<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -110,7 +113,7 @@ impl Dominance {
             self.lanes::<FMA, false>(triangle, batch, functions, error, 0..lanes);
             return;
         }
-        // Everything is linear along a row: what lies between two pixels is classed as both are.
+        // Everything is linear along a row, so all pixels between two of the same class have that class.
         let ends = classes_at_ends::<FMA>(functions, f64::from(batch.at.last), error);
         for step in 0..lanes / STEP {
             let (before, after) = (ends[step], ends[step + 1]);
@@ -122,7 +125,7 @@ impl Dominance {
         }
     }
 
-    /// Becomes that of some lanes, one by one. `error`: what four times a weight's numerator less D can be off by.
+    /// Sets the dominance of some lanes, one by one. `error` bounds the error of four times a weight's numerator less D.
     #[inline(always)]
     fn lanes<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -150,7 +153,7 @@ impl Dominance {
         }
     }
 
-    /// Lanes that are too close to call: whole numbers tell.
+    /// Decides the lanes that are too close to a border, by integers.
     #[inline(never)]
     fn correct(&mut self, triangle: &Triangle, batch: PixelBatch<'_>, lanes: Range<usize>) {
         for n in lanes.filter(|n| self.close[*n] >> 63 != 0) {
@@ -161,7 +164,7 @@ impl Dominance {
         }
     }
 
-    /// Two quotients with their fractions, of functions over another of the same pixels, all of which lose something.
+    /// Computes two quotients with their fractions. Both numerators and the denominator have losses.
     #[inline(always)]
     pub(super) fn divide<const FMA: bool, const ROW: bool>(
         &self,
@@ -187,7 +190,7 @@ impl Dominance {
                 continue;
             };
             if known.0 != Some(short) {
-                // What they lose is linear as well.
+                // The losses are linear as well.
                 let mut lines = functions;
                 for (line, losses) in lines.iter_mut().zip(losses) {
                     for i in 0..2 {
@@ -202,7 +205,7 @@ impl Dominance {
 }
 
 impl Short {
-    /// [`Dominance::divide`], kept [here](Self::at).
+    /// Computes [`Dominance::divide`] and keeps the results in [`at`](Self::at).
     #[inline(always)]
     pub(super) fn keep<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -215,15 +218,15 @@ impl Short {
     }
 }
 
-/// Ends of a batch's steps, rounded up to whole vectors.
+/// Number of ends of a batch's steps, rounded up to whole vectors.
 const ENDS: usize = BLOCK / STEP + 8;
 
-/// Bits of what [`classes_at_ends`] returns.
+/// Bits in the results of [`classes_at_ends`].
 const FIRST_DOMINATES: i64 = 1 << 6;
 const THIRD_DOMINATES: i64 = 1 << 7;
 
-/// Computes the classes of the three weights at the first pixel of each step of a row, packed into one number with the bits that tell which weight
-/// dominates. Negative where a weight is too close to the border of a class.
+/// Computes the classes of the three weights at the first pixel of each step of a row, packed into a number with the bits that tell which
+/// weight dominates. The number is negative if a weight is too close to a border.
 #[inline(always)]
 fn classes_at_ends<const FMA: bool>([first, third, denominator]: [Line; 3], last: f64, error: f64) -> [i64; ENDS] {
     let mut out = [0; ENDS];
@@ -243,20 +246,20 @@ fn classes_at_ends<const FMA: bool>([first, third, denominator]: [Line; 3], last
     out
 }
 
-/// 2 above half of d, 1 above a quarter.
+/// Returns 2 above a half of d, 1 above a quarter, and otherwise 0.
 #[inline(always)]
 fn class(n: f64, d: f64) -> f64 {
     let quarter = if 4.0 * n > d { 1.0 } else { 0.0 };
     if 2.0 * n > d { 2.0 } else { quarter }
 }
 
-/// As its sign bit: whether a half or a quarter of d is closer.
+/// Returns a number whose sign bit is set if n is too close to a half or a quarter of d.
 #[inline(always)]
 fn near(n: f64, d: f64, error: f64) -> u64 {
     ((4.0 * n - d).abs() - error).to_bits() | ((2.0 * n - d).abs() - error).to_bits()
 }
 
-/// Two quotients with their fractions, of functions with weights that fall short.
+/// Computes two quotients with their fractions, of functions with losses.
 #[inline(always)]
 fn quotients<const FMA: bool, const ROW: bool>(
     last: f64,
@@ -279,7 +282,7 @@ fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it.
+/// Returns two quotients of lines by a third one, for a step of a row. Lanes past the last pixel repeat it.
 #[inline(always)]
 fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, last: f64) -> [[f64; STEP]; 2] {
     let (mut u, mut v, mut x) = ([0.0; STEP], [0.0; STEP], [0.0; STEP]);
@@ -301,14 +304,14 @@ fn lost(losses: Losses, weights: [f64; 2]) -> f64 {
     losses[0] * weights[0] + losses[1] * weights[1]
 }
 
-/// Floors, less a bias, of numbers that are off by less than `off`, limited as TEX-15 says, and as sign bits which are not proved, besides those that were
-/// not.
+/// Writes the floors, less a bias, of numbers whose error is less than `off`, limited as TEX-15 says. Sets the sign bits of lanes that are
+/// not proved.
 #[inline(always)]
 pub(super) fn floors(at: &[f64], off: f64, bias: i32, close: &mut [u64], out: &mut [i32]) {
     let lanes = at.len();
     let (close, out) = (&mut close[..lanes], &mut out[..lanes]);
     for n in 0..lanes {
-        // Far from where a floor changes.
+        // In the middle of a step, far from where the floor changes.
         let (low, high) = (0.5 - COORDINATE_LIMIT as f64, COORDINATE_LIMIT as f64 + 0.5);
         let limited = if at[n] > low { at[n] } else { low };
         let t = if limited < high { limited } else { high } - 0.5;

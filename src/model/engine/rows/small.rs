@@ -1,5 +1,5 @@
-//! INT-1 to INT-4t for small triangles whose units are sampled on planes: functions are set up four at a time, in floats alone, and all quotients of
-//! a pixel share one reciprocal. `docs/exactness.md` has the argument.
+//! INT-1 to INT-4t for small triangles whose units are sampled on planes. Four functions are set up at a time, in floating point only, and
+//! all quotients of a pixel share one reciprocal. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::boxes::SIDE;
@@ -14,7 +14,7 @@ use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
-/// Functions that are set up at once.
+/// Number of functions that are set up at once.
 const FOUR: usize = 4;
 
 /// Two quotients that belong together.
@@ -27,27 +27,27 @@ enum Pair {
     Weights,
 }
 
-/// What all functions of a triangle share.
+/// The set-up that all functions of a triangle share.
 struct EdgeSetup {
     /// Edge functions at the first pixel, and their slopes.
     e: [f64; 3],
     a: [f64; 3],
     b: [f64; 3],
-    /// An upper bound of each |E_k| over the box, and of what is added to it there.
+    /// Upper bound of each |E_k| in the box, with all terms that are added to it.
     terms: [f64; 3],
     p: [f64; 3],
     /// 1 / P_k of the vertices.
     inverse: [f64; 3],
     denominator: Line,
-    /// Of the first pixel's D.
+    /// Reciprocal of the first pixel's D.
     reciprocal: f64,
-    /// Of a D that none is smaller than.
+    /// Reciprocal of a lower bound of D.
     widest: f64,
-    /// No term that goes into a D is larger than this many of the smallest.
+    /// Upper bound of the quotient of any term of D by the least D.
     ratio: f64,
-    /// More than a quotient changes where the numerators of the vertices are floored.
+    /// Upper bound of the change of a quotient by the floors of its numerators at the vertices.
     floors: f64,
-    /// Where quotients of whole numbers at the vertices are multiples of this one, and no tie is lowered (INT-3); 0 elsewhere.
+    /// If the values at the vertices are whole and no tie is lowered (INT-3), quotients are multiples of this number; otherwise 0.
     gap: f64,
 }
 
@@ -88,7 +88,7 @@ impl EdgeSetup {
         }
     }
 
-    /// How four quotients are estimated. `g`: their numerators, by vertex, before they are floored.
+    /// Sets up four quotients. `g` has the numerators at the vertices, before they are floored.
     #[inline(always)]
     fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Estimates4 {
         let mut all = Estimates4::default();
@@ -99,12 +99,12 @@ impl EdgeSetup {
                 gaps[n] = if is_whole(0) && is_whole(1) && is_whole(2) { self.gap } else { 0.0 };
             }
         }
-        // Not a struct for each: compilers leave the loop as it is then.
+        // Not one struct for each quotient, because compilers do not vectorise such a loop.
         for n in 0..FOUR {
             let g = [g[0][n], g[1][n], g[2][n]];
             let line = Line { c: sum::<FMA>(&g, &self.e), x: sum::<FMA>(&g, &self.a), y: sum::<FMA>(&g, &self.b) };
             let size = [g[0].abs(), g[1].abs(), g[2].abs()];
-            // Half a denominator, half a texel, and the rounding of this very number.
+            // Adds half a denominator, half a texel, and the rounding error of this number.
             let most = sum::<FMA>(&size, &self.inverse) + 260.0;
             let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK + self.floors;
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
@@ -119,7 +119,7 @@ impl EdgeSetup {
     }
 }
 
-/// [`QuotientEstimate`] of four quotients.
+/// The [`QuotientEstimate`]s of four quotients.
 #[derive(Default)]
 struct Estimates4 {
     c: [f64; FOUR],
@@ -128,7 +128,7 @@ struct Estimates4 {
     base: [i32; FOUR],
     shift: [u32; FOUR],
     limit: [i32; FOUR],
-    /// 1: it can prove something.
+    /// 1 if the estimate can prove something.
     proves: [i32; FOUR],
 }
 
@@ -140,9 +140,10 @@ impl Estimates4 {
     }
 }
 
-/// Everything that varies, for the pixels of a small triangle, one at least. `false`: not all could be estimated, nothing counts.
+/// Interpolates all attributes of the pixels of a small triangle, of which there is at least one. Returns `false` if an attribute could not
+/// be estimated; then nothing counts.
 ///
-/// `planes` is a place to put things.
+/// `planes` is scratch space.
 #[inline(always)]
 pub(super) fn interpolate<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -179,7 +180,7 @@ pub(super) fn interpolate<const FMA: bool>(
     true
 }
 
-/// What is divided by D.
+/// Computes everything that is divided by D.
 #[inline(always)]
 fn divide<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -191,7 +192,7 @@ fn divide<const FMA: bool>(
 ) -> bool {
     let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
     varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
-    // Whether anything is close, apart: looking for it among them would wait until they are stored.
+    // Kept apart from the results, because direction for unproved lanes among them would wait until they are stored.
     let (mut close, mut corrects) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
     {
@@ -241,7 +242,7 @@ fn divide<const FMA: bool>(
     true
 }
 
-/// Corrects the pairs of which some lane is not proved.
+/// Corrects the pairs that have lanes that are not proved.
 #[inline(never)]
 fn correct(
     context: &mut TriangleContext<'_>,
@@ -275,7 +276,7 @@ fn correct(
             }
         }
     }
-    // A corrected estimate is not counted as one by the definition.
+    // Corrected estimates do not count as computed by the definition.
     *planes = functions.given_back(&mut Reasons::default());
 }
 

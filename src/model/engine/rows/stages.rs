@@ -1,7 +1,7 @@
-//! The stages of a texture shader, one after the other, each for a whole block.
+//! Runs the stages of a texture shader, one after the other, each for a whole block.
 //!
-//! What the vertices give a stage is interpolated batch by batch: numbers, which are rounded to single precision, and coordinates that a bump
-//! stage moves, which keep their fraction. A lane that is not proved is left open, and the definition runs its stages in the end.
+//! The inputs of a stage are interpolated batch by batch: numbers, which are rounded to single precision, and coordinates that a bump stage moves, which
+//! keep their fraction. Lanes that are not proved are left open, and the definition runs their stages in the end.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::dot::{self, Floats};
@@ -26,39 +26,39 @@ use crate::trace::Silent;
 /// A number across a triangle.
 #[derive(Clone, Copy, Debug)]
 enum Function {
-    /// The same at its three vertices.
+    /// It is the same at the three vertices.
     Same(f32),
-    /// A quotient by D, and more than the definition's differs where it [floors](crate::raster::attribute) small numbers.
+    /// A quotient by D, and an upper bound of its change where the definition [floors](crate::raster::attribute) small numbers.
     Plane(RealPlane, f64),
 }
 
-/// What of a triangle a texture shader needs.
+/// The set-up of a triangle for a texture shader.
 #[derive(Clone, Debug, Default)]
 struct Attributes {
-    /// Which triangle of the draw this is.
+    /// Number of the triangle in the draw.
     triangle: Option<usize>,
     denominator: RealPlane,
-    /// The reciprocal of a D that none is smaller than.
+    /// Reciprocal of a lower bound of D.
     widest: f64,
     numbers: Vec<Function>,
     /// u and v that are moved, 1/256 texel.
     moved: Vec<[RealPlane; 2]>,
-    /// What those lose where weights fall short.
+    /// Losses of u and v where weights fall short.
     losses: Vec<[Losses; 2]>,
-    /// Whether u and v stay below what they are limited to, wherever the stage moves them.
+    /// Whether u and v stay within their limits, however the stage moves them.
     within_limits: Vec<bool>,
-    /// More than u and v change where the definition floors the numerators of the vertices.
+    /// Upper bound of the change of u and v where the definition floors the numerators of the vertices.
     floors: f64,
 }
 
 impl Attributes {
-    /// Becomes that of a triangle.
+    /// Sets up a triangle.
     fn set(&mut self, context: &TriangleContext<'_>, shader: &Shader) {
         let triangle = &context.triangle;
         let inverse = inverse(triangle);
         let p = [triangle.p[0] as f64, triangle.p[1] as f64, triangle.p[2] as f64];
         let least = triangle.p[0].min(triangle.p[1]).min(triangle.p[2]) as f64;
-        // Exact: 28 bits by 24.
+        // Exact, because 28 bits are multiplied by 24.
         let times_p = |values: [f64; 3]| [values[0] * p[0], values[1] * p[1], values[2] * p[2]];
         self.triangle = Some(context.number);
         self.denominator = RealPlane::new(triangle, &inverse, p, 0.0);
@@ -101,19 +101,19 @@ struct Moved {
     /// Estimates, 1/256 texel.
     u: [f64; LANES],
     v: [f64; LANES],
-    /// Half a step less what estimates may be off by: a moved coordinate that is no further from the middle of a step has a proved floor.
+    /// Half a step less the largest error. A moved coordinate that is no further from the middle of a step has a proved floor.
     room: [f64; LANES],
 }
 
-/// What the dot unit works in.
+/// Registers of the dot unit.
 #[derive(Clone, Debug)]
 struct DotUnit {
-    /// The dot product of each stage.
+    /// Dot product of each stage.
     dots: [Floats; TEXTURE_UNITS],
     reflected: [Floats; 3],
-    /// The eye where it is the same everywhere.
+    /// The eye vector, if it is constant.
     eye: [Floats; 3],
-    /// What a stage works in.
+    /// Scratch space of a stage.
     scratch: [Floats; 3],
 }
 
@@ -124,20 +124,20 @@ impl Default for DotUnit {
     }
 }
 
-/// What a texture shader works in.
+/// Buffers of a texture shader.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workshop {
-    /// The numbers that vary.
+    /// Numbers that vary.
     numbers: Vec<[f32; LANES]>,
-    /// Those that do not.
+    /// Numbers that are the same everywhere.
     same: Vec<Floats>,
     moved: Vec<Moved>,
     attributes: Attributes,
     reciprocals: Box<Reciprocals>,
     dominance: Box<Dominance>,
-    /// Not 0: the lane is the definition's.
+    /// Not 0 for lanes that are left open: the definition computes them.
     open: Vec<i32>,
-    /// First lane and number of the block's triangles.
+    /// First lane and number of each triangle of the block.
     triangles: Vec<(usize, usize)>,
     vectors: Vec<[Floats; 3]>,
     is_remapped: Vec<bool>,
@@ -145,7 +145,7 @@ pub(super) struct Workshop {
 }
 
 impl Workshop {
-    /// Makes room for a draw's shader.
+    /// Makes room for the shader of a draw.
     pub(super) fn begin(&mut self, shader: &Shader) {
         self.numbers.resize(shader.varying.len(), [0.0; LANES]);
         self.same.clear();
@@ -165,20 +165,20 @@ impl Workshop {
     }
 }
 
-/// What estimates of coordinates may be off by.
+/// Largest error of an estimated coordinate that is accepted.
 const COARSEST: f64 = 0.125;
 
-/// What is more than the last of the bits that the definition keeps of the largest number of a triangle's three.
+/// An upper bound of the last bit that the definition keeps, relative to the largest of a triangle's three numbers.
 const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// What the coordinate of a bump stage may be off by besides: its offset is floored at 2^-24 of 1/256 texel.
+/// Further error of a moved coordinate: its offset is floored at 2^-24 of 1/256 texel.
 const OFFSET: f64 = 1.0 / (1 << 23) as f64;
 
-/// Coordinates reach no limit below this, 1/256 texel.
+/// Coordinates below this have no limit, 1/256 texel.
 const FARTHEST: f64 = (COORDINATE_LIMIT - 16) as f64;
 
 impl Workshop {
-    /// What the vertices give the stages of a texture shader, for a batch.
+    /// Interpolates the inputs of a texture shader for a batch.
     #[inline(always)]
     pub(super) fn attributes<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -227,7 +227,7 @@ impl Workshop {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
             let offs = [margin(&planes[0]), margin(&planes[1])];
             let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + *floors + OFFSET;
-            // Also refuses what is no number.
+            // NaN proves nothing either.
             let proves = (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
             if !(proves & *within_limits) {
                 open.fill(1);
@@ -239,7 +239,8 @@ impl Workshop {
     }
 }
 
-/// Quotients to the nearest single-precision number, or as `BYTE`s (TSH-9); lanes that are not proved, and zeros of the former, are left open.
+/// Computes quotients, rounded to single precision, or as `BYTE`s (TSH-9). Lanes that are not proved are left open, and so are zeros in
+/// single precision.
 #[inline(always)]
 fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     reciprocals: &Reciprocals,
@@ -256,7 +257,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
             let (low, high) = ((value - off) * 4096.0, (value + off) * 4096.0);
             let (low, high) = (factor(floor_of_factor(low)), factor(floor_of_factor(high)));
             out[n] = low as f32;
-            // Also what is no number.
+            // NaN is left open too.
             open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
         } else {
             let (low, high) = ((value - off) as f32, (value + off) as f32);
@@ -266,7 +267,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     }
 }
 
-/// Runs the stages of a block's pixels, which leave their registers in their rows; how many pixels were the definition's.
+/// Runs the stages of a block's pixels, which write their registers to rows. Returns the number of pixels that the definition computed.
 #[inline(always)]
 pub(super) fn run<const FMA: bool>(
     job: Job<'_>,
@@ -406,7 +407,7 @@ pub(super) fn run<const FMA: bool>(
     define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band)
 }
 
-/// A number of the block's pixels, by what varies and what does not.
+/// Returns a number of the block's pixels.
 #[inline(always)]
 fn number<'w>(varying: &'w [[f32; LANES]], same: &'w [Floats], number: Number) -> Option<&'w Floats> {
     match number {
@@ -417,7 +418,7 @@ fn number<'w>(varying: &'w [[f32; LANES]], same: &'w [Floats], number: Number) -
 }
 
 impl Workshop {
-    /// The vector that a cube map is looked up with, and what is worked in meanwhile.
+    /// Returns the vector of a look-up in a cube map, and scratch space.
     #[inline(always)]
     fn vector(&mut self, shader: &Shader, operation: &ShaderOperation) -> Option<([&Floats; 3], &mut [Floats; 3])> {
         let Workshop { numbers, same, dot, .. } = self;
@@ -436,7 +437,7 @@ impl Workshop {
     }
 }
 
-/// TSH-4: the dot product of a stage, once.
+/// TSH-4: computes the dot product of a stage, unless it is known already.
 #[inline(always)]
 fn dot_product<const FMA: bool>(
     compiled: &CompiledDraw,
@@ -463,8 +464,8 @@ fn dot_product<const FMA: bool>(
     }
 }
 
-/// TSH-7: the floors, less the sampler's bias, of the estimates of `moved`, moved by so many 128ths of the image. Lanes whose floors are not proved are
-/// left open.
+/// TSH-7: writes the floors of coordinates, less the sampler's bias, that are moved by so many 128ths of the image. Lanes whose floors are
+/// not proved are left open.
 #[inline(always)]
 fn place(
     sampler: &Sampler,
@@ -474,7 +475,7 @@ fn place(
     open: &mut [i32],
 ) {
     let open = &mut open[..BLOCK];
-    // A side of the image is 256 times its texels.
+    // A side of the image has 256 steps for each of its texels.
     let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
     for n in 0..BLOCK {
         let at_u = moved.u[n] + f64::from(along[n]) * width - 0.5;
@@ -487,7 +488,7 @@ fn place(
     }
 }
 
-/// TSH-8 of a channel.
+/// TSH-8: multiplies a channel by luminance.
 #[inline(always)]
 fn luminance(state: [f32; 2], factors: &Floats, red: impl Fn(usize) -> u8, channel: &mut [i16; BLOCK]) {
     const ONE: f32 = (1 << 20) as f32;
@@ -497,7 +498,7 @@ fn luminance(state: [f32; 2], factors: &Floats, red: impl Fn(usize) -> u8, chann
         for n in 0..STEP {
             let product = f32::from(before[n].max(0)) * factors[n];
             let product = if product > 0.0 { product } else { 0.0 };
-            // Rounded to a multiple of 2^-20, which is less than one such step off.
+            // Rounded to a multiple of 2^-20, the product is less than one such step off.
             let product = nearest_32(if product < ONE { product } else { ONE });
             let byte = |product: i32| factor(product >> 8);
             let (low, high) = (byte(product - 1), byte(product + 1));
@@ -513,7 +514,7 @@ fn luminance(state: [f32; 2], factors: &Floats, red: impl Fn(usize) -> u8, chann
     }
 }
 
-/// The open lanes, by the definition; how many they are.
+/// Computes the open lanes by the definition. Returns their number.
 #[inline(never)]
 fn define(
     job: Job<'_>,
@@ -525,7 +526,7 @@ fn define(
 ) -> u64 {
     let mut count = 0;
     let lanes = runs.last().map_or(0, |run| run.lane + run.count);
-    // Most blocks have none.
+    // Most blocks have no open lanes.
     let any = work.open[..lanes].iter().fold(0, |all, open| all | open) != 0;
     let runs = if any { runs } else { &[] };
     let mut known: Option<(usize, TriangleContext<'_>)> = None;
@@ -548,7 +549,7 @@ fn define(
             alive[lane] = lives.is_some();
             count += 1;
             if lives.is_none() {
-                // Nothing reads what it holds; and rows of constants must stay as they are, for the next block.
+                // Nothing reads the registers of a dropped pixel, and rows of constants must not change.
                 continue;
             }
             job.compiled.put_textures(&registers, lane, rows);

@@ -1,4 +1,4 @@
-//! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows.
+//! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading and packing surface words, and the tests.
 
 use super::depth::OUTSIDE;
 use super::kernels::Lanes256;
@@ -9,7 +9,7 @@ use crate::state::{
     CompareFunction, StencilOperation, StencilTest, SurfaceFormat, depth_of, depth_stencil, stencil_of,
 };
 
-/// What blending reads of the surface's words, into the rows that want it.
+/// Unpacks the channels that blending reads from the surface's words.
 #[inline(always)]
 pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BLOCK], rows: &mut [Lanes256]) {
     for channel in 0..4 {
@@ -24,7 +24,7 @@ pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BL
     }
 }
 
-/// The commonest formats as constants: loops that hold one format's bits only.
+/// Calls the loop with a constant format for the most frequent formats.
 #[inline(always)]
 fn read_channel<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
     match format {
@@ -41,7 +41,7 @@ fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], ou
     }
 }
 
-/// The stored rows as words, from a lane on.
+/// Packs the stored rows into words, from a lane on.
 #[inline(always)]
 pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[Lanes256], lane: usize, words: &mut [u32]) {
     let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
@@ -61,7 +61,7 @@ fn pack_as(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], wo
     }
 }
 
-/// ROP-6, and what was there where a fragment was dropped.
+/// ROP-6: keeps the bits that are not written, and the words of dropped fragments.
 #[inline(always)]
 pub(super) fn merge(mask: u32, alive: &[bool; BLOCK], stored: &[u32; BLOCK], words: &mut [u32; BLOCK]) {
     for ((word, stored), alive) in words.iter_mut().zip(stored).zip(alive) {
@@ -70,7 +70,7 @@ pub(super) fn merge(mask: u32, alive: &[bool; BLOCK], stored: &[u32; BLOCK], wor
     }
 }
 
-/// A comparison of rows.
+/// Compares rows, and drops fragments that fail.
 #[inline(always)]
 pub(super) fn test<T: Copy + PartialOrd>(
     function: CompareFunction,
@@ -79,7 +79,7 @@ pub(super) fn test<T: Copy + PartialOrd>(
     alive: &mut [bool; BLOCK],
 ) {
     use CompareFunction::*;
-    // Loops that know which: compilers leave a choice of eight inside of one.
+    // Separate loops, because compilers leave a choice of eight inside a loop.
     macro_rules! each {
         ($($name:ident)*) => {
             match function {
@@ -92,7 +92,7 @@ pub(super) fn test<T: Copy + PartialOrd>(
     each!(Never Less Equal LessOrEqual Greater NotEqual GreaterOrEqual Always)
 }
 
-/// STN-1 and DEP-2: drops fragments and changes the words of depth and stencil; whether any of those can be another now.
+/// STN-1 and DEP-2: drops fragments and updates the words of depth and stencil. Returns whether any word may have changed.
 #[inline(always)]
 pub(super) fn test_depth_stencil(
     draw: &PlannedDraw,
@@ -129,7 +129,7 @@ fn test_depth(draw: &PlannedDraw, incoming: &[u32; BLOCK], memory: &[u32; BLOCK]
     }
 }
 
-/// STN-1 around the depth test; whether it can change a stencil.
+/// STN-1, around the depth test. Returns whether a stencil may have changed.
 #[inline(always)]
 fn test_stencil(
     state: &StencilTest,
@@ -162,7 +162,7 @@ fn test_stencil(
     true
 }
 
-/// What an operation leaves: loops that know which.
+/// Applies a stencil operation, with a loop for each operation.
 #[inline(always)]
 fn operate(test: &StencilTest, operation: StencilOperation, stencils: &[u8; BLOCK]) -> [u8; BLOCK] {
     use StencilOperation::*;

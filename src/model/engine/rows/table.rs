@@ -1,4 +1,4 @@
-//! Textures laid out for rows: texels decoded once, every address mode reduced to limits and a mask.
+//! Textures as tables for rows. Texels are decoded once, and every address mode becomes limits and a mask.
 
 use crate::number::Lane;
 use crate::state::{
@@ -12,24 +12,24 @@ use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::shadow;
 use crate::trace::Silent;
 
-/// How coordinates along one axis become entries of a table.
+/// How coordinates along an axis map to entries of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Axis {
-    /// Coordinates are limited to these first, 1/256 texel: beyond them every texel is the same.
+    /// Limits of coordinates, 1/256 texel. Beyond them all texels are the same.
     pub(super) low: i32,
     pub(super) high: i32,
-    /// The texel of the first entry.
+    /// Texel of the first entry.
     pub(super) first: i32,
-    /// Entries repeat after so many, a power of two less one; -1 where they do not, or after another number.
+    /// Mask of the index: one less than the period if that is a power of two, otherwise -1.
     pub(super) mask: i32,
-    /// What is subtracted from coordinates as often as it goes into them, 1/256 texel: where entries repeat after a number that is no power of two.
+    /// Period of coordinates, 1/256 texel, if it is not a power of two.
     pub(super) period: Option<i32>,
     /// Number of entries.
     pub(super) count: i32,
 }
 
 impl Axis {
-    /// TEX-7 of `n` texels.
+    /// TEX-7: returns the axis of `n` texels.
     fn new(mode: AddressMode, n: u32, border_texels: bool) -> Axis {
         let n = n as i32;
         let limited = |first: i32, last: i32| Axis {
@@ -55,12 +55,12 @@ impl Axis {
         }
     }
 
-    /// Whether coordinates need no limits.
+    /// Returns whether coordinates have no limits.
     pub(super) fn repeats(&self) -> bool {
         self.mask >= 0
     }
 
-    /// Takes the period off coordinates as often as it goes into them.
+    /// Reduces coordinates modulo the period.
     #[inline(always)]
     pub(super) fn reduce(&self, coordinates: &mut [i32]) {
         let Some(period) = self.period else { return };
@@ -69,47 +69,49 @@ impl Axis {
         }
     }
 
-    /// The entry of a coordinate within its limits.
+    /// Returns the entry of a coordinate within its limits.
     #[inline(always)]
     pub(super) fn entry(&self, coordinate: i32) -> i32 {
         ((coordinate >> 8) - self.first) & self.mask
     }
 }
 
-/// Decoded texels: R, G, B, A from the lowest byte up. Signed channels have 128 added, so that they filter as unsigned ones do.
+/// Decoded texels: R, G, B, A from the lowest byte up. 128 is added to signed channels, so that they are filtered like unsigned ones.
 #[derive(Clone, Debug)]
 pub(super) enum Texels {
-    /// One by one.
+    /// Single texels.
     Single(Vec<u32>),
-    /// One by one, with one more at the end of each row and one more row at the end of each face: footprints lie side by side.
+    /// Texels for footprints: one more at the end of each row, and one more row at the end of each face, so that neighbours lie side by
+    /// side.
     Footprints(Vec<u32>),
-    /// The only channel that differs from texel to texel, by its number: each texel with its right neighbour, and the two below.
+    /// The footprints of the only channel that varies, by its number: each entry has a texel, its right neighbour, and the two below.
     One(usize, Vec<u32>),
-    /// Footprints of every level, all with the rows of the widest.
+    /// Footprints of every level. All rows are as long as the widest.
     Levels(Vec<u32>),
-    /// The same of halves, as below.
+    /// Footprints of every level of 16-bit halves.
     WideLevels(Vec<u32>),
-    /// Footprints of halves, the high one in the high bits; signed ones with 32,768 added. Filtered, or the texel alone.
+    /// Footprints of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. The flag tells whether the unit
+    /// filters.
     Wide(Vec<u32>, bool),
-    /// Depths one by one, and how a reference compares with them.
+    /// Single depths, and the comparison with a reference.
     Depths(Vec<u32>, CompareFunction),
 }
 
-/// What a channel of a table holds.
+/// The contents of a channel of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Channel {
-    /// Everywhere the same.
+    /// The same byte everywhere.
     Constant(u8),
-    /// What the first such channel holds.
+    /// The same as the first such channel, by its number.
     Of(usize),
 }
 
-/// Finds channels that are constant or equal.
+/// Finds constant and equal channels.
 struct Facts {
     first: u32,
-    /// Bits in which some texel differs from the first.
+    /// Bits in which a texel differs from the first.
     varying: u32,
-    /// Bits in which a channel differs from the one so many further, in some texel.
+    /// Bits in which a channel differs from the channel 1, 2 or 3 further, in some texel.
     unequal: [u32; 3],
 }
 
@@ -137,46 +139,46 @@ impl Facts {
     }
 }
 
-/// A unit's image: level 0, or all levels if the lod counts.
+/// The image of a unit: level 0, or all levels if it needs a level of detail.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    /// Along u and v.
+    /// Axes along u and v.
     pub(super) axes: [Axis; 2],
-    /// Entries of one row.
+    /// Number of entries of a row.
     pub(super) pitch: i32,
-    /// Entries of one face.
+    /// Number of entries of a face.
     pub(super) face: u32,
     /// The decoded texels.
     pub(super) texels: Texels,
-    /// What its channels hold; signed ones with 128 added.
+    /// Contents of the channels. 128 is added to signed ones.
     pub(super) channels: [Channel; 4],
-    /// Where levels lie, if the lod counts.
+    /// Positions of the levels, if the unit needs a level of detail.
     levels: Vec<Placed>,
 }
 
-/// Where a level lies in a table.
+/// The position of a level in a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) axes: [Axis; 2],
-    /// Its first entry.
+    /// Index of its first entry.
     pub(super) first: i32,
-    /// Entries of a row.
+    /// Number of entries of a row.
     pub(super) pitch: i32,
 }
 
-/// What of a unit a table depends on.
+/// The properties of a unit that its table depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Key {
     texture: usize,
     palette: Option<usize>,
     modes: [AddressMode; 2],
-    /// Of a volume, along its layers.
+    /// Address mode along the layers of a volume.
     layers: Option<AddressMode>,
-    /// Single texels or footprints.
+    /// Whether it reads footprints instead of single texels.
     linear: bool,
-    /// How many levels, if the lod counts: as many as any lod of the unit can reach.
+    /// Number of levels that any level of detail of the unit can reach, if it needs one.
     levels: Option<usize>,
-    /// Channels that are constant or equal are left out.
+    /// Whether constant and equal channels are left out.
     folds: bool,
     border_color: [u8; 4],
     signed: [bool; 4],
@@ -203,7 +205,7 @@ impl Key {
     }
 }
 
-/// Whether footprints are read, if only of some levels.
+/// Returns whether a unit reads footprints, on some level at least.
 fn linear(unit: &PlannedUnit) -> bool {
     unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
@@ -212,17 +214,17 @@ fn is_volume(unit: &PlannedUnit) -> bool {
     unit.kind == TextureKind::ThreeDimensional
 }
 
-/// The axis along which a volume's layers lie.
+/// Returns the axis of a volume's layers.
 pub(super) fn layers(unit: &PlannedUnit) -> Option<Axis> {
     is_volume(unit).then(|| Axis::new(unit.state.address_r, unit.layers, false))
 }
 
-/// The comparison of a unit's depths with r.
+/// Returns the comparison of a unit's depths with r.
 pub(super) fn compares_r(unit: &PlannedUnit) -> Option<ShadowComparison> {
     unit.state.shadow.filter(|shadow| shadow.reference == ShadowReference::R)
 }
 
-/// The images of a table, one after the other; `None`: nothing but the border.
+/// Returns the images of a table in order. `None` stands for the border.
 fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
     if let Some(axis) = layers(unit) {
         let layer = |entry| address(unit.state.address_r, i64::from(axis.first + entry), unit.layers, false);
@@ -232,8 +234,8 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
     (0..faces).map(Some).collect()
 }
 
-/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (several taps of 16 bits
-/// or of a volume).
+/// Returns the axes of the levels of a unit: of level 0, or of all levels if it needs a level of detail. Returns `None` if rows cannot
+/// sample it (several taps of 16-bit formats or of a volume).
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
     let single = is_volume(unit) || unit.state.shadow.is_some();
     if single && unit.needs_lod() || (single || unit.is_wide()) && unit.state.anisotropy > 1 {
@@ -245,7 +247,7 @@ pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
     Some(unit.levels.iter().take(count).map(of).collect())
 }
 
-/// Texels that a table of these axes decodes.
+/// Returns the number of texels that a table with these axes decodes.
 pub(super) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
     let images = match layers(unit) {
         Some(axis) => axis.count as u64,
@@ -257,7 +259,7 @@ pub(super) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
 }
 
 impl Table {
-    /// How much it holds.
+    /// Returns the number of entries.
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
             Texels::Single(all)
@@ -270,10 +272,10 @@ impl Table {
         }
     }
 
-    /// Decodes the levels of a unit that these axes are of. `folds`: the reader knows of channels that are constant or equal.
+    /// Decodes the levels of a unit. `folds` tells whether the reader handles constant and equal channels itself.
     pub(super) fn new(unit: &PlannedUnit, levels: &[[Axis; 2]], image: &Image<'_, i32>, folds: bool) -> Table {
         let images = images(unit);
-        // There is a level 0.
+        // Every unit has a level 0.
         let none = Axis { low: 0, high: 0, first: 0, mask: 0, count: 0, period: None };
         let axes = levels.first().copied().unwrap_or([none; 2]);
         let [columns, rows] = axes;
@@ -291,7 +293,7 @@ impl Table {
                     placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
                 let slice = Slice { unit, level, image: *number };
-                // Past the end of smaller levels nobody reads.
+                // Nobody reads the entries past the end of smaller levels.
                 let column = |x: i32| slice.column(i64::from(x.min(columns.count) + columns.first));
                 let at: Vec<Option<i64>> = (0..wide as i32).map(column).collect();
                 for y in 0..rows.count + beyond {
@@ -302,7 +304,7 @@ impl Table {
         }
         let comparison = compares_r(unit);
         let channels = match comparison {
-            // What comes of a comparison is the same in all of them.
+            // The result of a comparison is the same in all channels.
             Some(_) if folds => [Channel::Of(0); 4],
             None if folds && !unit.is_wide() => {
                 let mut facts = Facts::new(all.first().copied().unwrap_or(0));
@@ -340,14 +342,15 @@ impl Table {
         Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
     }
 
-    /// Where a level of a face lies.
+    /// Returns the position of a level of a face.
     pub(super) fn placed(&self, level: usize, face: u32) -> Placed {
         let placed = self.levels[level];
         Placed { first: placed.first + (face * self.face) as i32, ..placed }
     }
 }
 
-/// A texel's bytes, signed ones with 128 added; or its halves, signed ones with 32,768. `None`: it lies outside.
+/// Decodes a texel to bytes, with 128 added to signed ones, or to 16-bit halves, with 32,768 added to signed ones. `None` stands for an
+/// index outside of the image.
 #[inline]
 fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, column: Option<i64>, row: Option<i64>) -> u32 {
     let texel = slice.inside(image.words, column, row);
@@ -367,7 +370,7 @@ fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, column: Option<i64>, row: O
         return half(0) << 16 | half(1);
     }
     let key = unit.state.color_key;
-    // What drops fragments is compared where it is fetched.
+    // Keys that drop fragments are compared at the fetch.
     let keyed = key.map_or(channels, |key| color_key::apply(unit, &key, channels, &mut Silent).0);
     u32::from_le_bytes(std::array::from_fn(|n| {
         let bias = if unit.state.signed[n] { 128 } else { 0 };
@@ -375,7 +378,7 @@ fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, column: Option<i64>, row: O
     }))
 }
 
-/// A colour key as an entry of single texels, and the bits that are compared.
+/// Returns a colour key as an entry of single texels, and the mask of the compared bits.
 pub(super) fn entry_of_key(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
     let (word, mask) = color_key::as_word(unit, key);
     let biased = unit.state.signed.map(|signed| if signed { 128 } else { 0 });

@@ -1,4 +1,4 @@
-//! TEX-17 on rows: the taps of each pixel, two and two to both sides of it.
+//! TEX-17 on rows: the taps of each pixel, in pairs on both sides of it.
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, and quotients of them that are floored")]
 
 use super::Sampler;
@@ -11,21 +11,21 @@ use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
 
-/// Most pairs of taps of a footprint.
+/// Largest number of pairs of taps of a footprint.
 const MAX_PAIRS: usize = anisotropy::MAX_TAPS / 2;
 
-/// The taps of a quad's footprint, two and two.
+/// The taps of a quad's footprint, in pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct PairsOfQuad {
-    /// As in [`Pair`].
+    /// Offsets and weights as in [`Pair`].
     offsets: [[i32; 2]; MAX_PAIRS],
     weights: [i32; MAX_PAIRS],
 }
 
 impl PairsOfQuad {
-    /// Those of the definition's taps, on a level of so many texels.
+    /// Converts the definition's taps, for a level with these sides.
     fn from_taps(taps: &anisotropy::Taps<i64, i32>, sides: [u32; 2]) -> PairsOfQuad {
-        // A single tap is two halves in the same place.
+        // A single tap counts as two halves in the same place.
         let weight = |n: usize| match taps.count {
             1 => {
                 if n == 0 {
@@ -44,25 +44,25 @@ impl PairsOfQuad {
     }
 }
 
-/// Two taps of the lanes of a block, at equal distances from them.
+/// A pair of taps for each lane of a block. Both have the same distance from the pixel.
 #[derive(Clone, Debug)]
 pub(super) struct Pair {
-    /// Where one lies from u and v, 1/256 texel; the other lies as far to the other side.
+    /// Offset of one tap from u and v, 1/256 texel. The other one lies on the opposite side.
     pub(super) offsets: [PerLane<i32>; 2],
-    /// What either weighs, of 256; 0: nothing.
+    /// Weight of each tap, of 256; 0 for none.
     pub(super) weights: PerLane<u16>,
 }
 
 /// The taps of the lanes of a block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Footprints {
-    /// As many as the unit can have.
+    /// The pairs, as many as the unit can have.
     pub(super) pairs: Vec<Pair>,
     known: Known<PairsOfQuad>,
 }
 
 impl Footprints {
-    /// Becomes that of a sampler.
+    /// Makes room for a sampler.
     pub(super) fn begin(&mut self, sampler: &Sampler) {
         self.pairs.resize(sampler.pairs, Pair { offsets: [[0; LANES]; 2], weights: [0; LANES] });
     }
@@ -77,11 +77,11 @@ impl Footprints {
     }
 }
 
-/// More than a coordinate, 1/256 texel.
+/// An upper bound of coordinates, 1/256 texel.
 const BEYOND_COORDINATES: u64 = 1 << 27;
 
-/// An offset that has the same effect, in 32 bits: what is further away than all coordinates lies beyond the image, and counts but for repeats of it and
-/// of its mirror image.
+/// Returns an equivalent offset in 32 bits. An offset beyond all coordinates lies outside the image, so that only its remainder by the
+/// image and its mirror image counts.
 #[inline(always)]
 fn near(offset: i64, side: u32) -> i32 {
     let magnitude = offset.unsigned_abs();
@@ -91,8 +91,8 @@ fn near(offset: i64, side: u32) -> i32 {
     offset.signum() as i32 * (BEYOND_COORDINATES + (magnitude - BEYOND_COORDINATES) % (512 * u64::from(side))) as i32
 }
 
-/// Pixels of a quad that are further apart than this have their taps from whole numbers, 1/65536 texel: the quotients of smaller ones, in double
-/// precision, are never rounded to a whole number that they are not.
+/// If pixels of a quad are further apart, in 1/65536 texel, its taps are computed in integers. Below that, quotients in double precision
+/// are never rounded up to an integer.
 const FARTHEST: f64 = (1 << 24) as f64;
 
 impl Measure for PairsOfQuad {
@@ -128,7 +128,7 @@ impl Measure for PairsOfQuad {
                 |n: usize| !(0..4).all(|delta: usize| deltas[delta][n] <= FARTHEST && deltas[delta][n] >= -FARTHEST);
             for n in (0..STEP).filter(|n| lanes.start + n < count && unknown[lanes.start + n] >> 63 == 0 && is_far(*n))
             {
-                // Whole numbers below 2^53.
+                // Integers below 2^53.
                 let quad =
                     [0, 1, 2].map(|pixel: usize| [0, 1].map(|axis: usize| at[pixel][axis][lanes.start + n] as i64));
                 out[n] = PairsOfQuad::defined(unit, Some(quad));
@@ -142,7 +142,8 @@ impl Measure for PairsOfQuad {
     }
 }
 
-/// [`anisotropy::taps`] of quads whose pixels are so far apart: u and v to the right one, u and v to the lower one.
+/// Computes [`anisotropy::taps`] for quads whose pixels are that close. `deltas` has u and v to the right pixel, then u and v to the lower
+/// one.
 #[inline(always)]
 fn pairs_of_near<const WIDE: bool>(deltas: &[[f64; STEP]; 4], limit: f64, out: &mut [PairsOfQuad; STEP]) {
     let least = f64::from(anisotropy::TEXEL);
@@ -187,7 +188,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 impl Setup<'_> {
-    /// The taps of a batch.
+    /// Computes the taps of a batch.
     #[inline(always)]
     pub(super) fn taps<const FMA: bool, const ROW: bool>(
         &self,

@@ -1,4 +1,4 @@
-//! What becomes of r on rows: the layer of a volume (VOL-1), or the depth that a texture of depths is compared with (SHD-1).
+//! The coordinate r on rows: the layer of a volume (VOL-1), or the reference of a depth texture (SHD-1).
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
@@ -17,7 +17,7 @@ use crate::state::DepthFormat;
 use crate::texture::coordinates::{SampleCoordinates, layer_planes};
 use crate::texture::planned::PlannedUnit;
 
-/// What a sampler that is otherwise complete takes r for.
+/// Returns the use of r in a sampler that is complete otherwise.
 pub(super) fn purpose(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
     if let Some(axis) = table::layers(unit) {
         let sides = [unit.layers; 2];
@@ -28,31 +28,31 @@ pub(super) fn purpose(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
     table::compares_r(unit).map(|_| Third::Reference(format))
 }
 
-/// The linear functions of r of a sampler.
+/// The linear functions of a sampler's r.
 #[derive(Debug)]
 pub(super) enum ThirdPlanes {
-    /// It has no use for r.
+    /// It does not use r.
     None,
-    /// Layers: r twice.
+    /// The layer of a volume, with r as both coordinates.
     Layer(Planes),
-    /// What is compared with depths (SHD-1).
+    /// The reference of a depth texture (SHD-1).
     Reference(Reference),
 }
 
-/// What depths are compared with across a triangle.
+/// The references of a depth texture across a triangle.
 #[derive(Debug)]
 pub(super) enum Reference {
     /// The same word everywhere.
     Same(u32),
-    /// So many times a quotient by D.
+    /// A multiple of a quotient by D.
     Plane(Plane, f64),
-    /// So many times r by q, which is positive.
+    /// A multiple of r divided by a positive q.
     Ratio([Plane; 3], f64),
-    /// Anything else: the definition, pixel by pixel.
+    /// Other references, which the definition computes pixel by pixel.
     Other,
 }
 
-/// Those of a draw's samplers; none if no sampler has any.
+/// Returns the functions of r of a draw's samplers; none if no sampler uses r.
 #[inline(always)]
 pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &CompiledDraw, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
     if !compiled.estimates {
@@ -79,7 +79,7 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
         (Some(Third::Reference(format)), Some(_)) => {
             let same = |values: [f32; 3]| values[0] == values[1] && values[1] == values[2];
             ThirdPlanes::Reference(if same(r) && same(q) {
-                // As at its first vertex.
+                // Equal to that at its first vertex.
                 let sample = Sample::new(triangle, [triangle.doubled_area, 0, 0]);
                 Reference::Same(defined(context, unit, *format, &sample, (0, 0)))
             } else if q == [1.0; 3] {
@@ -98,7 +98,7 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
     }
 }
 
-/// SHD-1 by the definition: the word that depths are compared with.
+/// SHD-1: returns the word of the reference by the definition.
 fn defined(
     context: &TriangleContext<'_>,
     unit: &PlannedUnit,
@@ -110,7 +110,7 @@ fn defined(
 }
 
 impl Setup<'_> {
-    /// Layers and references of a batch.
+    /// Computes layers and references of a batch.
     #[inline(always)]
     pub(super) fn thirds<const FMA: bool, const ROW: bool>(
         &self,
@@ -143,7 +143,7 @@ impl Setup<'_> {
         }
     }
 
-    /// SHD-1: the words that depths are compared with; whether some are unknown.
+    /// SHD-1: computes the words of references. Returns whether some are unknown.
     #[inline(always)]
     fn references<const FMA: bool, const ROW: bool>(
         &self,
@@ -163,14 +163,14 @@ impl Setup<'_> {
                 ((plane.line(&local.real).times(*scale), local.denominator), off)
             }
             Reference::Ratio(planes, scale) => {
-                let looking = CubeDirection::new(planes, local);
-                let [r, _, q] = looking.lines;
-                let (off, _) = looking.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], local), *scale);
+                let direction = CubeDirection::new(planes, local);
+                let [r, _, q] = direction.lines;
+                let (off, _) = direction.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], local), *scale);
                 ((r.times(*scale), q), off)
             }
             Reference::Other => (Default::default(), f64::NAN),
         };
-        // Also refuses what is no number.
+        // NaN proves nothing either.
         let proves = off >= 0.0 && off < f64::from(format.largest());
         if !proves {
             out.fill(UNKNOWN);
@@ -193,30 +193,31 @@ impl Setup<'_> {
         words::<FMA, ROW, false>(at, lines, off, format, out)
     }
 
-    /// The unknown ones, by the definition.
+    /// Computes the unknown references by the definition.
     #[inline(never)]
     fn defined_references(&self, batch: PixelBatch<'_>, sampler: &Sampler, format: DepthFormat, out: &mut [u32]) {
         let unit = &self.context.draw.units[sampler.index];
         let unknown = out[..batch.count].iter_mut().enumerate().filter(|(_, word)| **word == UNKNOWN);
         for (n, word) in unknown {
-            self.tell(Reason::References, 1);
+            self.count_defined(Reason::References, 1);
             *word = defined(self.context, unit, format, &self.sample(batch, n), batch.pixel(n));
         }
     }
 }
 
-/// Whether all quotients of a row lie within a buffer: between its ends they rise or fall.
+/// Returns whether all quotients of a row lie within a buffer's range. Between the ends of a row they are monotone.
 #[inline(always)]
 fn within<const FMA: bool>(at: Positions<'_>, lines: (Line, Line), off: f64, full: f64) -> bool {
     let last = f64::from(at.last);
     let (first, last) =
         (lines.0.c / lines.1.c, lines.0.at::<FMA, true>(last, 0.0) / lines.1.at::<FMA, true>(last, 0.0));
     let (low, high) = if first < last { (first, last) } else { (last, first) };
-    // Also refuses what is no number.
+    // NaN is refused too.
     low - off > 0.0 && high + off < full
 }
 
-/// Floors of quotients along a row, which are off by less than `off` and lie within a buffer; whether all are proved. `DIVIDES`: the divisor is not 1.
+/// Writes the floors of quotients along a row, whose error is less than `off` and which lie within the buffer's range. Returns whether all
+/// are proved. Without `DIVIDES` the divisor is 1.
 #[inline(always)]
 fn floors<const FMA: bool, const DIVIDES: bool>(
     at: Positions<'_>,
@@ -245,7 +246,7 @@ fn floored(full: f64, depth: f64) -> u32 {
     nearest(floor::<false>(if depth < full { depth } else { full })) as u32
 }
 
-/// DEP-3 of quotients that are off by less than `off`; whether some are unknown. `FLOAT`: the format is one of floats.
+/// DEP-3 of quotients whose error is less than `off`. Returns whether some are unknown. `FLOAT` says that the format has floats.
 #[inline(always)]
 fn words<const FMA: bool, const ROW: bool, const FLOAT: bool>(
     at: Positions<'_>,

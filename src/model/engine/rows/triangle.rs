@@ -1,4 +1,4 @@
-//! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a batch.
+//! INT-1 to INT-4t and all other interpolation across a triangle, for the pixels of a batch.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::color::{colors, narrow, narrow_weights};
@@ -21,49 +21,49 @@ use crate::state::TEXTURE_UNITS;
 use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::Image;
 
-/// Everything that varies across a triangle, as functions.
+/// The functions of all attributes of a triangle.
 pub(super) struct Interpolators<'a> {
     pub(super) setup: Setup<'a>,
-    /// 256 b0 and 256 b2, where some colour varies.
+    /// 256 b0 and 256 b2, if a colour varies.
     pub(super) weights: Option<[Plane; 2]>,
     pub(super) samplers: Vec<Planes>,
-    /// What samplers make of r, if some of them make anything.
+    /// The functions of r of samplers, if any use it.
     pub(super) thirds: Vec<ThirdPlanes>,
     fog: Option<Box<Fog>>,
 }
 
-/// What the batches of a block leave in their lanes.
+/// Results of a block's batches, in its lanes.
 #[derive(Clone, Debug)]
 pub(super) struct Varying {
-    /// u and v of each sampler, 1/256 texel, less half a texel where it filters.
+    /// u and v of each sampler in 1/256 texel, less half a texel if it filters.
     pub(super) coordinates: [[PerLane<i32>; 2]; TEXTURE_UNITS],
-    /// Faces of cube maps, layers of volumes.
+    /// Faces of cube maps or layers of volumes.
     pub(super) faces: [PerLane<u32>; TEXTURE_UNITS],
-    /// What depths are compared with.
+    /// References of depth textures.
     pub(super) references: [PerLane<u32>; TEXTURE_UNITS],
-    /// Places among layers, 1/256 layer, twice.
+    /// Positions among layers in 1/256 layer, twice.
     pub(super) layers: [PerLane<i32>; 2],
-    /// Depth, where it is tested.
+    /// Depths, if they are tested.
     pub(super) depth: PerLane<u32>,
     pub(super) depth_steps: Box<Steps>,
-    /// The texture shader lets the pixel live.
+    /// Whether the texture shader keeps the pixel.
     pub(super) alive: PerLane<bool>,
-    /// What samplers read whose levels count; as many as are wanted.
+    /// Fetches of samplers with levels, as many as needed.
     pub(super) reads: Vec<MipFetches>,
     pub(super) quads: Box<Quads>,
     pub(super) placing: Box<Placing>,
-    /// The taps of samplers that have several; as many as are wanted.
+    /// Taps of samplers that have several, as many as needed.
     pub(super) footprints: Vec<Footprints>,
-    /// Of the row whose batches come now.
+    /// The DDAs of the current row.
     pub(super) dda: DdaRow,
     /// W0 and W2 while they are corrected.
     pub(super) weights: [PerLane<i32>; 2],
-    /// The same in 16 bits.
+    /// W0 and W2 in 16 bits.
     pub(super) narrow: [PerLane<u16>; 2],
-    /// Of a small triangle.
+    /// Reciprocals for a small triangle.
     pub(super) reciprocals: Reciprocals,
     pub(super) whole: [PerLane<i32>; 2],
-    /// Where something is divided by q.
+    /// Scratch space for coordinates that are divided by q.
     pub(super) short: Box<Short>,
 }
 
@@ -92,14 +92,14 @@ impl Default for Varying {
 }
 
 impl Varying {
-    /// What depths are written to, and what they are computed in.
+    /// Returns the depths, and scratch space for them.
     pub(super) fn depths(&mut self) -> (&mut PerLane<u32>, &mut Steps) {
         (&mut self.depth, &mut self.depth_steps)
     }
 }
 
 impl<'a> Interpolators<'a> {
-    /// `samplers` is a place to put things; [`given_back`](Self::given_back) returns it.
+    /// Sets up a triangle. `samplers` is scratch space that [`given_back`](Self::given_back) returns.
     #[inline(always)]
     pub(super) fn new(
         context: &'a TriangleContext<'a>,
@@ -134,13 +134,13 @@ impl<'a> Interpolators<'a> {
         }
     }
 
-    /// What [`new`](Self::new) was given; adds what the definition computed.
+    /// Returns the scratch space of [`new`](Self::new), and adds the numbers of pixels that the definition computed.
     pub(super) fn given_back(self, reasons: &mut Reasons) -> Vec<Planes> {
         self.setup.count(reasons);
         self.samplers
     }
 
-    /// What is known of a row before its batches, from its first pixel on. Batches use the DDAs only after this has been called.
+    /// Sets up the DDAs of a row, from its first pixel on. Batches use the DDAs only after this has been called.
     #[inline(always)]
     pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &CompiledDraw, varying: &mut Varying) {
         let DdaRow { samplers, weights, complete, undivided } = &mut varying.dda;
@@ -174,7 +174,7 @@ impl<'a> Interpolators<'a> {
         }
     }
 
-    /// What of a row is known before its batches, for one of them.
+    /// Runs the DDAs of a row for one batch.
     #[inline(always)]
     pub(super) fn dda(&self, batch: PixelBatch<'_>, compiled: &CompiledDraw, varying: &mut Varying) {
         let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, dda, .. } = &mut *varying;
@@ -207,7 +207,7 @@ impl<'a> Interpolators<'a> {
         }
     }
 
-    /// Everything that varies, for a batch. `ROW`: its pixels are on one row, one beside the other.
+    /// Interpolates all attributes of a batch. `ROW` says that its pixels lie side by side on one row.
     #[inline(always)]
     pub(super) fn interpolate<const FMA: bool, const ROW: bool>(
         &self,
@@ -229,7 +229,7 @@ impl<'a> Interpolators<'a> {
         }
     }
 
-    /// What varies and is estimated.
+    /// Interpolates the attributes that are estimated.
     #[inline(always)]
     fn estimated<const FMA: bool, const ROW: bool>(
         &self,
@@ -249,7 +249,7 @@ impl<'a> Interpolators<'a> {
         if !ROW && compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0) {
             varying.quads.begin_box(batch);
         }
-        // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
+        // A loop of its own, so that values which compilers compute before it are not computed if nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
@@ -294,7 +294,7 @@ impl<'a> Interpolators<'a> {
                 let close = estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, w0, w2);
                 close[0] | close[1]
             } else {
-                setup.tell(Reason::Weights, batch.count);
+                setup.count_defined(Reason::Weights, batch.count);
                 for n in 0..batch.count {
                     let [first, third] = setup.sample(batch, n).weights();
                     (w0[n], w2[n]) = (first.value as i32, third.value as i32);
