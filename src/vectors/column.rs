@@ -1,4 +1,4 @@
-//! What stands in a column of a table of vectors: its name, how its numbers are written, which numbers it takes.
+//! Columns of tables of vectors: their names, and how their numbers are written and which numbers they take.
 
 use ninebit::state::Named;
 
@@ -7,18 +7,18 @@ use ninebit::state::Named;
 pub enum Kind {
     /// 0 to 2^bits - 1, decimal.
     Unsigned(u32),
-    /// Two's complement of so many bits, decimal.
+    /// A two's complement number of so many bits, decimal.
     Signed(u32),
-    /// A signed number of halves, written as a decimal fraction (`12`, `-3.5`); its bits count halves.
+    /// A signed number of halves, written as a decimal fraction (`12`, `-3.5`). Its bits count halves.
     Halves(u32),
-    /// One of these names; its number is its place in the list.
+    /// One of these names. Its number is the index in the list.
     Name(&'static [&'static str]),
-    /// A word of so many bits, hexadecimal: texels, blocks, the bits of single-precision floats.
+    /// A word of so many bits, hexadecimal: texels, blocks, or the bits of single-precision floats.
     Hex(u32),
 }
 
 impl Kind {
-    /// Bits in the packed view, at most 64.
+    /// Returns the number of bits in the packed view, at most 64.
     pub fn bits(&self) -> u32 {
         match self {
             Kind::Unsigned(bits) | Kind::Signed(bits) | Kind::Halves(bits) | Kind::Hex(bits) => *bits,
@@ -26,12 +26,12 @@ impl Kind {
         }
     }
 
-    /// Whether the packed bits are two's complement.
+    /// Returns whether the packed bits are two's complement.
     pub fn is_signed(&self) -> bool {
         matches!(self, Kind::Signed(_) | Kind::Halves(_))
     }
 
-    /// The kind as a header line and a layout write it: `u8`, `s9`, `h10`, `x32`, `e:A,B`.
+    /// Returns the kind as header lines and layouts write it: `u8`, `s9`, `h10`, `x32`, `e:A,B`.
     pub fn code(&self) -> String {
         match self {
             Kind::Unsigned(bits) => format!("u{bits}"),
@@ -42,7 +42,7 @@ impl Kind {
         }
     }
 
-    /// The least and the greatest number that can be written.
+    /// Returns the least and the greatest number that can be written.
     pub fn range(&self) -> (i64, i64) {
         let bits = self.bits();
         match self {
@@ -53,13 +53,13 @@ impl Kind {
         }
     }
 
-    /// Whether a number can be written.
+    /// Returns whether a number can be written.
     pub fn holds(&self, value: i64) -> bool {
         let (least, greatest) = self.range();
         (least..=greatest).contains(&value)
     }
 
-    /// A number as text.
+    /// Writes a number as text.
     pub fn write(&self, value: i64) -> String {
         match self {
             Kind::Unsigned(_) | Kind::Signed(_) => value.to_string(),
@@ -73,7 +73,7 @@ impl Kind {
         }
     }
 
-    /// A number out of text as [`write`](Self::write) has it; `None` for any other text.
+    /// Reads a number that [`write`](Self::write) has written. Returns `None` for any other text.
     pub fn read(&self, text: &str) -> Option<i64> {
         let value = match self {
             Kind::Unsigned(_) | Kind::Signed(_) => text.parse().ok()?,
@@ -95,26 +95,26 @@ impl Kind {
 /// The numbers that a column takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Domain {
-    /// Every whole number from the first to the second.
+    /// Every integer from the first to the second.
     Interval(i64, i64),
-    /// These, each a boundary of its own.
+    /// These numbers, each a boundary of its own.
     Listed(Vec<i64>),
     /// Every word of so many bits, at most 32.
     Word(u32),
-    /// Every word of which only the bits of the second, the mask, may differ from the first; those of the first are 0 there.
+    /// Every word that differs from the first only in bits of the second, the mask. The first has no bits of the mask.
     Bits(u32, u32),
-    /// Bits of finite single-precision floats of a magnitude below 2^limit; the first is whether negative ones are among them.
+    /// Bits of finite single-precision floats of a magnitude below 2^limit. The first tells whether negative ones are included.
     Float(bool, i32),
 }
 
-/// What a number of a row is called, and the values that it takes.
+/// A number of a row: its name, and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Name: `cfg.`, `in.`, `mid.` or `out.` and a name of its own.
+    /// Name, which begins with `cfg.`, `in.`, `mid.` or `out.`.
     pub name: String,
     /// How its numbers are written.
     pub kind: Kind,
-    /// What it takes; results have none.
+    /// The numbers that it takes; `None` for results.
     pub domain: Option<Domain>,
 }
 
@@ -123,72 +123,72 @@ impl Column {
         Column { name: name.to_owned(), kind, domain: Some(domain) }
     }
 
-    /// A result, `mid.` or `out.`.
+    /// Returns a column of results, `mid.` or `out.`.
     pub fn result(name: &str, kind: Kind) -> Column {
         Column { name: name.to_owned(), kind, domain: None }
     }
 
-    /// Several results of one kind.
+    /// Returns several columns of results of one kind.
     pub fn results<const N: usize>(names: [&str; N], kind: Kind) -> [Column; N] {
         names.map(|name| Column::result(name, kind))
     }
 
-    /// A choice among the variants of an enumeration.
+    /// Returns a column of the variants of an enumeration.
     pub fn choice<T: Named>(name: &str) -> Column {
         Column::names(name, T::NAMES)
     }
 
-    /// A choice among names.
+    /// Returns a column of names.
     pub fn names(name: &str, names: &'static [&'static str]) -> Column {
         Column::input(name, Kind::Name(names), Domain::Listed((0..names.len() as i64).collect()))
     }
 
-    /// 0 or 1.
+    /// Returns a column of flags, 0 or 1.
     pub fn flag(name: &str) -> Column {
         Column::input(name, Kind::Unsigned(1), Domain::Interval(0, 1))
     }
 
-    /// A column of bytes, 0 to 255.
+    /// Returns a column of bytes, 0 to 255.
     pub fn byte(name: &str) -> Column {
         Column::unsigned(name, 8, 255)
     }
 
-    /// A combiner register, -256 to 255.
+    /// Returns a column of combiner registers, -256 to 255.
     pub fn register(name: &str) -> Column {
         Column::input(name, Kind::Signed(9), Domain::Interval(-256, 255))
     }
 
-    /// A factor of a combiner product, -256 to 256.
+    /// Returns a column of factors of a combiner product, -256 to 256.
     pub fn factor(name: &str) -> Column {
         Column::input(name, Kind::Signed(10), Domain::Interval(-256, 256))
     }
 
-    /// A whole number from 0 to `last`.
+    /// Returns a column of integers from 0 to `last`.
     pub fn unsigned(name: &str, bits: u32, last: i64) -> Column {
         Column::input(name, Kind::Unsigned(bits), Domain::Interval(0, last))
     }
 
-    /// A whole number of an interval.
+    /// Returns a column of integers from `first` to `last`.
     pub fn signed(name: &str, bits: u32, first: i64, last: i64) -> Column {
         Column::input(name, Kind::Signed(bits), Domain::Interval(first, last))
     }
 
-    /// One of a few numbers.
+    /// Returns a column of the given numbers.
     pub fn listed(name: &str, kind: Kind, values: &[i64]) -> Column {
         Column::input(name, kind, Domain::Listed(values.to_vec()))
     }
 
-    /// A column of words, any bits of so many.
+    /// Returns a column of words of so many bits.
     pub fn word(name: &str, bits: u32) -> Column {
         Column::input(name, Kind::Hex(bits), Domain::Word(bits))
     }
 
-    /// The bits of a float.
+    /// Returns a column of the bits of floats.
     pub fn float(name: &str, negative: bool, limit: i32) -> Column {
         Column::input(name, Kind::Hex(32), Domain::Float(negative, limit))
     }
 
-    /// The number of different values that it takes.
+    /// Returns the number of different values that it takes.
     pub fn size(&self) -> u128 {
         match &self.domain {
             None => 1,
@@ -200,7 +200,7 @@ impl Column {
         }
     }
 
-    /// The number of that place in its domain, below [`size`](Self::size).
+    /// Returns the number at an index of its domain, which is below [`size`](Self::size).
     pub fn nth(&self, place: u128) -> i64 {
         match &self.domain {
             None => 0,
@@ -215,13 +215,13 @@ impl Column {
         }
     }
 
-    /// Whether its numbers count up by one from place to place.
+    /// Returns whether its numbers count up by one.
     pub fn counts(&self) -> bool {
         matches!(self.domain, Some(Domain::Interval(..) | Domain::Word(_)))
     }
 
-    /// The column with only the numbers from `first` to `last`, in its own order; `None` if either is not among its numbers, if they are the
-    /// wrong way round, or floats of both signs.
+    /// Returns the column with only the numbers from `first` to `last`, in its own order, or `None` if one of them is not among its
+    /// numbers, if they are in the wrong order, or if they are floats of both signs.
     pub fn narrowed(&self, first: i64, last: i64) -> Option<Column> {
         let domain = match self.domain.as_ref()? {
             Domain::Listed(values) => {
@@ -245,8 +245,9 @@ impl Column {
         Some(Column { domain: Some(domain), ..self.clone() })
     }
 
-    /// The column with only the words that differ from `word` in no bits but those of `mask`, smallest first; `None` if it is none of words, if `word` has one
-    /// of those bits, or if there is more than one way to write it: a mask of no bits, or of the lowest ones and no others, is a number or a range.
+    /// Returns the column with only the words that differ from `word` in bits of `mask`, smallest first. Returns `None` if it is not a
+    /// column of words, if `word` has a bit of the mask, or if there is another way to write it: an empty mask, or one of the lowest bits
+    /// only, is a number or a range.
     pub fn masked(&self, word: i64, mask: i64) -> Option<Column> {
         let Some(Domain::Word(bits)) = self.domain else { return None };
         let fits = |word: i64| u32::try_from(word).ok().filter(|_| word >> bits == 0);
@@ -255,7 +256,7 @@ impl Column {
         Some(Column { domain: Some(domain?), ..self.clone() })
     }
 
-    /// The numbers at which something may happen: ends, zero, halves, what lies next to them.
+    /// Returns the numbers at which something may happen: ends, zero, halves, and their neighbours.
     pub fn boundary(&self) -> Vec<i64> {
         let mut values = match &self.domain {
             None => vec![0],
@@ -288,7 +289,7 @@ impl From<Column> for Vec<Column> {
     }
 }
 
-/// The lowest bits of a number, in their order, at the places of a mask's bits.
+/// Spreads the lowest bits of a number to the positions of a mask's bits.
 fn spread(number: u32, mask: u32) -> u32 {
     let (mut mask, mut number, mut word) = (mask, number, 0);
     while mask != 0 && number != 0 {
@@ -299,19 +300,19 @@ fn spread(number: u32, mask: u32) -> u32 {
     word
 }
 
-/// How many floats, 0 included, lie below 2^limit.
+/// Returns the number of floats below 2^limit, including 0.
 fn positive_floats(limit: i32) -> i64 {
     i64::from(127 + limit) << 23
 }
 
-/// Bits of notable floats of a magnitude below 2^limit.
+/// Returns bits of notable floats of a magnitude below 2^limit.
 fn floats(negative: bool, limit: i32) -> Vec<i64> {
     let mut bits: Vec<u32> = vec![0, 1, 0x007f_ffff, 0x0080_0000];
     for exponent in [-24, -14, -9, -8, -4, -1, 0, 1, 4, 8, 10] {
         let power = ((exponent + 127) as u32) << 23;
         bits.extend([power - 1, power, power + 1, power | 0x0040_0000]);
     }
-    // k / 255 and half way between two of them.
+    // k / 255, and the middle between two of them.
     for k in [1_u32, 2, 64, 127, 128, 254] {
         bits.extend([halfway(2 * k), halfway(2 * k + 1)]);
     }
@@ -322,7 +323,7 @@ fn floats(negative: bool, limit: i32) -> Vec<i64> {
     bits.into_iter().map(i64::from).collect()
 }
 
-/// The float just below n / 510, for n from 1 to 510, without float arithmetic.
+/// Returns the float just below n / 510, for n from 1 to 510, without float arithmetic.
 fn halfway(n: u32) -> u32 {
     let quotient = (u64::from(n) << 40) / 510;
     let extra = 64 - 24 - quotient.leading_zeros();

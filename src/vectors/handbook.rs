@@ -1,12 +1,12 @@
-//! Grades of rules, out of the handbook itself.
+//! Grades of rules, read from the handbook.
 
 /// The handbook of rules.
 const TEXT: &str = include_str!("../../docs/numerics.md");
 
-/// How well a rule is known, the weakest last.
+/// The grades of rules, from the strongest to the weakest.
 pub const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
 
-/// Place in [`GRADES`] of the weakest grade that the handbook gives a rule; the last for an unknown rule.
+/// Returns the index in [`GRADES`] of the weakest grade of a rule in the handbook; the last one for an unknown rule.
 pub fn grade(rule: &str) -> usize {
     let weakest = GRADES.len() - 1;
     let mut entry = TEXT.lines().skip_while(|line| {
@@ -19,7 +19,7 @@ pub fn grade(rule: &str) -> usize {
     GRADES.iter().rposition(|grade| line.contains(grade)).unwrap_or(weakest)
 }
 
-/// The weakest grade of several rules.
+/// Returns the weakest grade of several rules.
 pub fn weakest(rules: &[&str]) -> &'static str {
     GRADES[rules.iter().map(|rule| grade(rule)).max().unwrap_or(0)]
 }

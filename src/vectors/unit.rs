@@ -1,4 +1,4 @@
-//! What is tested: a unit of the chip as a function from integers to integers.
+//! Units: parts of the chip as functions from integers to integers.
 
 use std::ops::Range;
 
@@ -7,56 +7,57 @@ use super::digest::Digesting;
 use ninebit::state::{POLICIES, Policies, Policy, Profile, named};
 use ninebit::trace::Recorder;
 
-/// What holds besides a row's own numbers.
+/// The conditions of a table, besides the numbers of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conditions {
     /// The chip whose rules apply.
     pub profile: Profile,
-    /// Rules that have alternatives.
+    /// The policies of rules with alternatives.
     pub policies: Policies,
 }
 
-/// A unit: columns that it reads, columns that it yields, and the function between them, which is the model's own.
+/// A unit: its input columns, its result columns, and the model's own function between them.
 pub trait Unit: Sync {
-    /// Its name: lower case, words joined by `-`; also that of its files.
+    /// Returns its name, which is also that of its files: lower case, with words joined by `-`.
     fn name(&self) -> &'static str;
 
-    /// What it does, in one line.
+    /// Returns a line that says what it does.
     fn about(&self) -> &'static str;
 
-    /// The rules that it applies, by id.
+    /// Returns the ids of its rules.
     fn rules(&self) -> &'static [&'static str];
 
-    /// The chips that have it.
+    /// Returns the chips that have it.
     fn profiles(&self) -> &'static [Profile] {
         &[Profile::Nv10, Profile::Nv2a]
     }
 
-    /// Configuration and inputs, `cfg.` and `in.`.
+    /// Returns the columns of configuration and inputs, `cfg.` and `in.`.
     fn inputs(&self) -> Vec<Column>;
 
-    /// Intermediates and results, `mid.` and `out.`.
+    /// Returns the columns of intermediates and results, `mid.` and `out.`.
     fn results(&self) -> Vec<Column>;
 
-    /// Computes the results of one row; both slices are as long as their columns.
+    /// Computes the results of one row. Both slices are as long as their columns.
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
 
-    /// Records the steps of one row, with the ideal beside the integers; none where the unit is a function without reports.
+    /// Records the steps of one row, with the ideal beside the integers. Units without reports record nothing.
     fn trace(&self, _inputs: &[i64], _conditions: &Conditions, _recorder: &mut Recorder) {}
 
-    /// Computes rows that follow each other at once, in block lanes, where the unit has a form of them: the same inputs but one, `varying`, which counts up
-    /// from where it is. All of them go together. `out` has room for exactly those rows: the numbers of the `out.` columns, each in as many whole bytes
-    /// as its bits need, low byte first.
+    /// Computes consecutive rows at once in block lanes, if the unit can do that. The rows have the same inputs except for `varying`, which
+    /// counts up from its value, and all of them are accepted. `out` has room for exactly these rows: the numbers of the `out.` columns,
+    /// each in as many whole bytes as its bits need, low byte first.
     ///
-    /// Returns how many rows have an output that is the least, and how many one that is the greatest, that the column's type holds; `None`: there is no such
-    /// form of these rows. What it yields is what [`evaluate`](Self::evaluate) yields: tests and `ninebit vectors check` hold the two together.
+    /// Returns the number of rows with an output that is the least of its column's type, and of rows with one that is the greatest, or
+    /// `None` if the unit cannot compute these rows so. The results are those of [`evaluate`](Self::evaluate); tests and `ninebit vectors
+    /// check` compare both.
     fn block(&self, _inputs: &[i64], _varying: usize, _conditions: &Conditions, _out: &mut [u8]) -> Option<[u64; 2]> {
         None
     }
 
-    /// Computes rows of which only the input `varying` varies, over these places of its column, and hands on those whose inputs go together.
+    /// Computes rows of which only the input `varying` varies, over the given places of its column, and passes on those that are accepted.
     ///
-    /// No unit overrides this. A provided method is compiled for each unit, which saves a call through a table for every row.
+    /// No unit overrides this. A provided method is compiled for each unit, which saves an indirect call for every row.
     #[allow(clippy::too_many_arguments, reason = "a loop that is compiled for each unit, and what it fills")]
     fn run(
         &self,
@@ -77,20 +78,21 @@ pub trait Unit: Sync {
         }
     }
 
-    /// Whether the inputs make sense together on this chip. Of a unit with [`block`](Self::block), rows between two that do, and of which one input varies, do.
+    /// Returns whether the inputs go together on this chip. If a unit with [`block`](Self::block) accepts two rows that differ in one
+    /// input, it accepts all rows between them.
     fn accepts(&self, _inputs: &[i64], _profile: Profile) -> bool {
         true
     }
 
-    /// Makes drawn inputs fit each other, where few would by chance.
+    /// Adjusts random inputs to each other, where few would fit by chance.
     fn fit(&self, _inputs: &mut [i64]) {}
 
-    /// Rows that are always there: examples of the handbook, what was once wrong.
+    /// Returns rows that are always in tables: examples of the handbook, and earlier errors.
     fn regressions(&self) -> Vec<Vec<i64>> {
         Vec::new()
     }
 
-    /// How a frame buffer of eight bits shows the row.
+    /// Returns how a frame buffer of eight bits can show the row.
     fn reach(&self, _inputs: &[i64], _results: &[i64]) -> Reach {
         Reach::Inside
     }
@@ -103,27 +105,27 @@ impl std::fmt::Debug for dyn Unit {
 }
 
 named! {
-    /// How a draw can show what a row says.
+    /// How a draw can show the result of a row.
     pub enum Reach =>
     /// The word in the table.
     word: &'static str {
-        /// Operands as texels, constants or vertex colours, the result as it is stored.
+        /// Operands are texels, constants or vertex colours, and the result is stored as it is.
         Direct => "direct",
-        /// An operand is negative or above 255: a general stage before makes it.
+        /// An operand is negative or above 255, so an earlier general stage has to compute it.
         StageBefore => "stage-before",
-        /// The result is negative: two draws, as it is and negated.
+        /// The result is negative, so two draws store it as it is and negated.
         TwoDraws => "two-draws",
-        /// Both of these.
+        /// Both an earlier stage and two draws are needed.
         StageBeforeTwoDraws => "stage-before+two-draws",
-        /// Geometry shows it: which pixels are covered, or which texel is met.
+        /// Geometry shows the result: which pixels are covered, or which texel is read.
         Geometry => "geometry",
-        /// Nothing shows it by itself; units that use it do.
+        /// No draw shows the result by itself, but units that use it do.
         Inside => "inside",
     }
 }
 
 impl Reach {
-    /// Whether operands and result fit a frame buffer.
+    /// Returns how operands and result fit a frame buffer.
     pub fn from_values(operands: &[i64], results: &[i64]) -> Reach {
         let bytes = |values: &[i64]| values.iter().all(|v| (0..=255).contains(v));
         match (bytes(operands), bytes(results)) {
@@ -135,18 +137,18 @@ impl Reach {
     }
 }
 
-/// What a row would yield if a rule were read otherwise.
+/// The results of a row under another reading of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alternative {
-    /// The rule and the value, `CMB-3=literal`.
+    /// The rule and the value of its policy: `CMB-3=literal`.
     pub policy: String,
-    /// The results, a number for each result column.
+    /// The results, one number for each result column.
     pub results: Vec<i64>,
 }
 
-/// The policies that change an `out.` column of a row, one at a time.
+/// Returns the policies that change an `out.` column of a row, one at a time.
 ///
-/// `columns` are those of the results, which the caller has looked up once.
+/// `columns` are the result columns, which the caller has looked up once.
 pub fn alternatives(
     unit: &dyn Unit,
     columns: &[Column],
@@ -165,7 +167,7 @@ pub fn alternatives(
     found
 }
 
-/// Every value of every policy that is not the default: the policy, the value, and all policies with it.
+/// Returns every value of every policy that is not the default: the policy, the value, and all policies with it.
 pub(crate) fn other_policies() -> impl Iterator<Item = (&'static Policy, &'static str, Policies)> {
     let values = POLICIES.iter().flat_map(|policy| policy.values.iter().enumerate().map(move |value| (policy, value)));
     values.filter_map(|(policy, (index, (value, _)))| {

@@ -1,4 +1,4 @@
-//! Many rows at once, for sweeps: the rules' own text in lanes.
+//! Many rows at once, for sweeps: the text of the rules, run on lanes.
 
 use multiversion::multiversion;
 
@@ -6,9 +6,10 @@ use ninebit::combiner::output::finished;
 use ninebit::number::{Factor, LANES, Lanes16, Sum};
 use ninebit::state::{Bias, RegisterFloor, Scale};
 
-/// `sum` + `c` d, rounded and saturated, for d from `first` on; low byte first. Returns how many results are -256, and how many are 255.
+/// Computes `sum` + `c` d, rounded and saturated, for d from `first` on, and writes the low byte first. Returns the numbers of results that
+/// are -256 and 255.
 ///
-/// `sum` is at full width, in 1/65025. Sixteen-bit registers, compiled for several instruction sets.
+/// `sum` is at full width, in 1/65025. Registers have sixteen bits, and the function is compiled for several instruction sets.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) -> [u64; 2] {
     let (mut low, mut high) = (0_u32, 0_u32);
@@ -22,7 +23,7 @@ pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) ->
     [low.into(), high.into()]
 }
 
-/// The inputs of sixteen rows that follow each other: all the same but one, which counts up.
+/// The inputs of sixteen consecutive rows. They are equal except for one input, which counts up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sixteen<'i> {
     inputs: &'i [i64],
@@ -31,22 +32,22 @@ pub(super) struct Sixteen<'i> {
 }
 
 impl Sixteen<'_> {
-    /// The input that counts up.
+    /// Returns the input that counts up.
     #[inline(always)]
     pub(super) fn numbers(&self) -> Lanes16<i32> {
         self.numbers
     }
 
-    /// Input `n` of all rows of the block.
+    /// Returns input `n` of all rows of the block.
     #[inline(always)]
     pub(super) fn at(&self, n: usize) -> Lanes16<i32> {
         if n == self.varying { self.numbers } else { Lanes16::all(self.inputs[n] as i32) }
     }
 }
 
-/// Rows of N outputs of a byte each, sixteen at a time. Returns how many rows have a 0, and how many a 255.
+/// Computes rows of N outputs of a byte each, sixteen rows at a time. Returns the numbers of rows that have a 0 and a 255.
 ///
-/// `inputs` are those of the first row; `varying` is the place of the one that counts up.
+/// `inputs` are those of the first row; `varying` is the index of the input that counts up.
 #[inline(always)]
 pub(super) fn bytes<const N: usize>(
     inputs: &[i64],
@@ -57,7 +58,7 @@ pub(super) fn bytes<const N: usize>(
     run::<N, 1>(inputs, varying, out, [0, 255], rows)
 }
 
-/// The same with N outputs of nine bits, in two bytes each: how many rows have a -256, and how many a 255.
+/// Computes rows of N outputs of nine bits, in two bytes each. Returns the numbers of rows that have a -256 and a 255.
 #[inline(always)]
 pub(super) fn registers<const N: usize>(
     inputs: &[i64],

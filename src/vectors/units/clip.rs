@@ -1,10 +1,10 @@
-//! Which pixels surface clip and window clip leave.
+//! The pixels that surface clip and window clip leave.
 
 use super::{Column, Conditions, Kind, Reach, Unit};
 use ninebit::plan::windows::windows;
 use ninebit::state::{Draw, Rectangle, SurfaceFormat, Target, WindowClip};
 
-/// Columns and rows of the target.
+/// Number of columns and of rows of the target.
 const SIDE: u32 = 4096;
 
 /// Whether a pixel is drawn.
@@ -41,7 +41,7 @@ impl Unit for Clip {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Near an edge of one of the rectangles, most of the time; none of them small.
+        // Usually near an edge of one of the rectangles, none of which is small.
         let (which, side) = (inputs[13] as usize % 4, inputs[14] as usize % 4);
         for first in [1, 5, 9] {
             inputs[first] &= 511;

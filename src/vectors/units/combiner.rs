@@ -8,20 +8,20 @@ use ninebit::number::{Factor, Lane};
 use ninebit::state::{self, Bias, Component, MuxSelect, Portion, Scale};
 use ninebit::trace::{Observer, Rule, Silent, Step};
 
-/// A product sum as the tables write it: in 1/65025.
+/// Kind of a sum of products in tables: in 1/65025.
 const WIDE: Kind = Kind::Signed(19);
 
-/// A factor in steps of 1/255 as the combiner holds it.
+/// Returns a factor in steps of 1/255 as the combiner represents it.
 fn factor(value: i64) -> <i32 as Lane>::Mapped {
     ninebit::number::Register::factor(value as i32)
 }
 
-/// A full-width sum in 1/65025; whole, because no input has half a step.
+/// Returns a full-width sum in 1/65025. It is whole, because no input has half a step.
 fn wide(sum: <i32 as Lane>::Full) -> i64 {
     i32::observe_sum(sum).0 / 4
 }
 
-/// Rounded and saturated, neither biased nor scaled.
+/// Rounds and saturates a sum without bias and scale.
 fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
     let rounded: i32 = ninebit::number::Sum::rounded(raw);
     ninebit::number::Register::saturated(rounded, conditions.policies.register_floor).into()
@@ -66,7 +66,7 @@ impl Unit for Product {
     }
 
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        // A product does not ask which of its factors counts up.
+        // The order of factors does not matter.
         Some(block::multiply_add(0, inputs[1 - varying] as i16, inputs[varying] as i16, out.as_chunks_mut().0))
     }
 
@@ -97,7 +97,7 @@ impl Unit for Sum {
     }
 
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        // Nor does a sum ask which of its products comes first.
+        // The order of products does not matter.
         let [first, other, a, b] = [varying, varying ^ 1, varying ^ 2, varying ^ 3].map(|n| inputs[n] as i16);
         Some(block::multiply_add(Factor::product(a, b), other, first, out.as_chunks_mut().0))
     }
@@ -122,7 +122,7 @@ impl Unit for DotProduct {
     }
 }
 
-/// AB or CD by SPARE0.a.
+/// The mux: AB or CD, by the alpha of SPARE0.
 pub(super) struct Mux;
 
 impl Unit for Mux {
@@ -137,7 +137,7 @@ impl Unit for Mux {
     }
 }
 
-/// Rounding, bias, scale, saturation.
+/// Rounding, bias, scale and saturation of an output.
 pub(super) struct ScaleBias;
 
 impl Unit for ScaleBias {
@@ -168,14 +168,14 @@ impl Unit for ScaleBias {
     }
 }
 
-/// Keeps what rules yield.
+/// An observer that keeps the results of rules.
 #[derive(Debug, Default)]
 struct Tap {
     observed: Vec<(Rule, i64)>,
 }
 
 impl Tap {
-    /// What a rule has yielded last; 0 if it has not been applied.
+    /// Returns the last result of a rule, or 0 if it was not applied.
     fn of(&self, rule: Rule) -> i64 {
         self.observed.iter().rev().find(|(observed, _)| *observed == rule).map_or(0, |(_, value)| *value)
     }

@@ -1,4 +1,4 @@
-//! Whole general stages: everything is read before anything is written.
+//! Whole general stages, which read all inputs before they write.
 
 use super::block::{self, Sixteen};
 use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, channels, named, paired, put, scale_takes_bias};
@@ -14,17 +14,17 @@ const FACTORS: [&str; 4] = ["mid.A", "mid.B", "mid.C", "mid.D"];
 const OUTPUTS: [&str; 3] = ["out.ab", "out.cd", "out.third"];
 const RGB: [&str; 3] = ["r", "g", "b"];
 
-/// Where the four inputs of a tested portion come from.
+/// Registers of the four inputs of a portion.
 const SOURCES: [Register; 4] =
     [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::SecondaryColor];
 
-/// A stage whose every output is needed.
+/// Returns a stage of which every output is needed.
 fn stage(rgb: Portion, alpha: Portion) -> PlannedStage {
     let (rgb, alpha) = (PlannedPortion::whole(rgb, 7), PlannedPortion::whole(alpha, 8));
     PlannedStage { index: 0, rgb, alpha, constants: [[0; 4]; 2], reads_constants: false }
 }
 
-/// A portion that reads the four sources.
+/// Returns a portion that reads the four registers.
 fn portion(component: Component, mappings: &[i64]) -> Portion {
     let mut portion = Portion::idle(component);
     for ((input, register), mapping) in portion.inputs.iter_mut().zip(SOURCES).zip(mappings) {
@@ -33,7 +33,7 @@ fn portion(component: Component, mappings: &[i64]) -> Portion {
     portion
 }
 
-/// The configuration that the RGB and the alpha portion share.
+/// Returns the columns of configuration that the RGB and the alpha portion share.
 fn configuration() -> Vec<Column> {
     let mut columns = INPUTS.map(|name| Column::choice::<InputMapping>(&format!("cfg.mapping_{name}"))).to_vec();
     columns.extend([Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::flag("cfg.mux")]);
@@ -44,7 +44,7 @@ fn configuration() -> Vec<Column> {
 /// An RGB portion with three outputs.
 pub(super) struct GeneralStage;
 
-/// The registers of a row.
+/// Returns the registers of a row.
 fn general_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (n, register) in SOURCES.into_iter().enumerate() {
@@ -55,21 +55,21 @@ fn general_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// What a stage computes for tables and sweeps.
+/// The values that a stage computes for tables and sweeps.
 type Computed<L> = StageOf<Direct<'static, L, Silent>>;
 
-/// What a stage computes of these registers.
+/// Runs a stage on registers.
 #[inline(always)]
 fn computed<L: Lane>(stage: &PlannedStage, mux: i64, file: &Registers<L>, conditions: &Conditions) -> Computed<L> {
     general::evaluate(stage, named(mux), file, &mut Direct::new(&conditions.policies, &mut Silent))
 }
 
-/// A factor as tables write it: in halves.
+/// Returns a factor in halves, as tables write it.
 fn halves(factor: <i32 as Lane>::Mapped) -> i64 {
     <i32 as Lane>::observe_factor(factor).0
 }
 
-/// The stage of a row.
+/// Returns the stage of a row.
 fn general_stage(inputs: &[i64]) -> PlannedStage {
     let mut rgb = portion(Component::Rgb, &inputs[..4]);
     (rgb.scale, rgb.bias, rgb.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
@@ -119,7 +119,7 @@ impl Unit for GeneralStage {
             let values = computed(&stage, inputs[7], &general_file(|n| rows.at(n)), conditions);
             std::array::from_fn(|n| values.rgb.outputs[n / 3][n % 3])
         };
-        // The mux decides by the last.
+        // The last input steers the mux.
         let has = varying >= 10 && !(varying == 22 && inputs[6] != 0);
         has.then(|| block::registers(inputs, varying, out, rows))
     }
@@ -128,7 +128,7 @@ impl Unit for GeneralStage {
 /// An alpha portion with three outputs.
 pub(super) struct AlphaPortion;
 
-/// The registers of a row.
+/// Returns the registers of a row.
 fn alpha_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (n, register) in SOURCES.into_iter().enumerate() {
@@ -138,7 +138,7 @@ fn alpha_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// The stage of a row, each input with its component.
+/// Returns the stage of a row, each input with its component.
 fn alpha_stage(inputs: &[i64]) -> PlannedStage {
     let mut alpha = portion(Component::Alpha, &inputs[..4]);
     for (input, component) in alpha.inputs.iter_mut().zip(&inputs[8..12]) {
@@ -189,10 +189,10 @@ impl Unit for AlphaPortion {
     }
 }
 
-/// A dot product's blue in the alpha of its destination.
+/// Blue of a dot product, written to the alpha of its destination.
 pub(super) struct BlueToAlpha;
 
-/// Blue of AB and CD, then alpha of SPARE0 and SPARE1.
+/// Returns blue of AB and CD, and then alpha of SPARE0 and SPARE1.
 fn blue_to_alpha<L: Lane>(
     inputs: &[i64],
     at: impl Fn(usize) -> L,
@@ -245,10 +245,10 @@ impl Unit for BlueToAlpha {
     }
 }
 
-/// A register value handed from one stage to the next.
+/// A register value that one stage passes to the next.
 pub(super) struct TwoStages;
 
-/// The stages of a row.
+/// Returns the stages of a row.
 fn two_stages(inputs: &[i64]) -> [PlannedStage; 2] {
     let signed = [InputMapping::SignedIdentity as i64; 4];
     let mut first = portion(Component::Rgb, &signed);
@@ -262,7 +262,7 @@ fn two_stages(inputs: &[i64]) -> [PlannedStage; 2] {
     [stage(first, alpha), PlannedStage { index: 1, ..stage(second, alpha) }]
 }
 
-/// The registers of a row.
+/// Returns the registers of a row.
 fn two_stages_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (n, register) in SOURCES.into_iter().enumerate() {
@@ -271,7 +271,7 @@ fn two_stages_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// What each of them computes.
+/// Returns the values that each stage computes.
 fn two_computed<L: Lane>(
     [first, second]: &[PlannedStage; 2],
     mut file: Registers<L>,

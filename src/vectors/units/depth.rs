@@ -1,4 +1,4 @@
-//! What becomes of a depth: offset, range, the word that is stored; and w buffers.
+//! Depths: polygon offset, range and stored word; and w buffers.
 
 use super::raster::{LARGE, fit, geometry, is_covered, triangle};
 use super::{Column, Conditions, Kind, Reach, Unit, float, named};
@@ -10,22 +10,22 @@ fn floats(inputs: &[i64]) -> [f32; 3] {
     std::array::from_fn(|n| float(inputs[n]))
 }
 
-/// A test of depths in steps of the buffer.
+/// Returns a depth test in steps of the buffer.
 fn test() -> DepthTest {
     DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) }
 }
 
-/// A triangle, where any will do.
+/// Returns some triangle.
 fn any() -> Option<Triangle> {
     Triangle::new(LARGE, true, Profile::Nv2a)
 }
 
-/// Whether the chip has the depth format of that number.
+/// Returns whether the chip has the depth format of that number.
 fn has(format: i64, profile: Profile) -> bool {
     profile == Profile::Nv2a || !named::<DepthFormat>(format).is_float()
 }
 
-/// Powers of two between which a format's words lie apart: the first, and how many.
+/// Returns the powers of two in the range of a format: the first, and their number.
 fn powers(format: i64) -> (i64, i64) {
     match named::<DepthFormat>(format) {
         DepthFormat::Z16 => (2, 14),
@@ -35,12 +35,12 @@ fn powers(format: i64) -> (i64, i64) {
     }
 }
 
-/// A float with the sign and fraction of `bits`, which say its power of two as well: one of `count` from the first.
+/// Returns a float with the sign and the fraction of `bits`, which also choose its power of two.
 fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
     bits & 0x807f_ffff | (127 + first + (bits >> 3) % count) << 23
 }
 
-/// The word of a depth.
+/// The stored word of a depth.
 pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
@@ -56,7 +56,7 @@ impl Unit for DepthWord {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // 1.5; 2^-7; 600; the largest of each format, and what is next to it.
+        // 1.5, 2^-7, 600, the largest depth of each format, and its neighbours.
         let numbers = [
             [3, -1],
             [1, -7],
@@ -79,7 +79,7 @@ impl Unit for DepthWord {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Mostly depths that no end of the format limits.
+        // Usually a depth within the format's range.
         if inputs[2] & 7 != 0 {
             inputs[1] = inputs[1].max(-inputs[1] / 2);
             let bits = 64 - i64::from(inputs[1].leading_zeros());
@@ -113,7 +113,7 @@ impl Unit for DepthRange {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // The handbook's examples, and all that a depth can be to two limits.
+        // The handbook's examples, and every order of a depth and two limits.
         let bits = |n: f32| i64::from(n.to_bits());
         let depths = [99.5, 100.0, 100.25, 200.0, 200.5].map(bits);
         let rows = [[201.0, 202.0, 250.0], [1.0, 2.0, 99.0], [99.0, 100.0, 99.0], [200.0, 201.0, 300.0]]
@@ -181,7 +181,7 @@ impl Unit for PixelDepth {
 
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);
-        // Depths that the formats hold, and mostly offsets that leave them there.
+        // Depths within the formats' ranges, and usually offsets that leave them there.
         let (factor, (first, count)) = (inputs[13], powers(inputs[8]));
         for z in &mut inputs[9..12] {
             *z = sized(*z, (first + count / 2, count / 2)) & 0x7fff_ffff;
@@ -243,7 +243,7 @@ impl Unit for WBuffer {
         for edge in &mut inputs[1..4] {
             *edge >>= shift;
         }
-        // Near each other, and a bias seldom.
+        // Depths near each other, and rarely a bias.
         let (first, count) = powers(inputs[0]);
         let nearest = first + (inputs[7] >> 4) % (count - 4);
         for w in &mut inputs[4..7] {

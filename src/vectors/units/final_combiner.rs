@@ -1,4 +1,4 @@
-//! The final combiner, one colour channel and alpha.
+//! The final combiner: one colour channel, and alpha.
 
 use super::{Column, Conditions, Kind, Reach, Unit, block, named, paired, put};
 use ninebit::combiner::direct::Direct;
@@ -9,7 +9,7 @@ use ninebit::state::{self, Component, FinalInput, FinalRegister, Register, named
 use ninebit::trace::{Recorder, Silent};
 
 enumeration! {
-    /// What an input of A to D reads in these vectors.
+    /// The source of an input A to D in these vectors.
     enum Source {
         /// A register of its own.
         Own,
@@ -20,10 +20,10 @@ enumeration! {
     }
 }
 
-/// A B + (1 - A) C + D with everything that feeds it.
+/// A B + (1 - A) C + D, with the values of its inputs.
 pub(super) struct FinalCombiner;
 
-/// What A, B, C, D, E, F read where it is a register of their own.
+/// The registers of A, B, C, D, E and F, if they read one of their own.
 pub(crate) const OWN: [FinalRegister; 6] = [
     FinalRegister::Texture0,
     FinalRegister::Texture1,
@@ -33,10 +33,10 @@ pub(crate) const OWN: [FinalRegister; 6] = [
     FinalRegister::Texture3,
 ];
 
-/// Columns of configuration.
+/// Number of columns of configuration.
 const CONFIGURATION: usize = 14;
 
-/// The registers that hold the inputs in their order, but the last: that is the alpha of SPARE1.
+/// The registers of the inputs in their order. The last input is the alpha of SPARE1.
 const REGISTERS: [Register; 8] = [
     Register::Texture0,
     Register::Texture1,
@@ -56,7 +56,7 @@ fn load<L: Lane>(file: &mut Registers<L>, input: usize, value: L) {
     }
 }
 
-/// The registers of a row.
+/// Returns the registers of a row.
 fn file<L: Lane>(inputs: &[i64], value: impl Fn(i64) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (n, input) in inputs[CONFIGURATION..].iter().enumerate() {
@@ -65,7 +65,7 @@ fn file<L: Lane>(inputs: &[i64], value: impl Fn(i64) -> L) -> Registers<L> {
     file
 }
 
-/// The combiner of a row.
+/// Returns the final combiner of a row.
 fn planned(inputs: &[i64]) -> PlannedFinal {
     let flag = |n: usize| inputs[n] != 0;
     let mut sources: [FinalInput; 6] = [FinalInput::zero(Component::Rgb); 6];

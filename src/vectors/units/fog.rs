@@ -1,4 +1,4 @@
-//! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
+//! Fog: words of the light unit, the table of the exponential modes, and the factor of a coordinate.
 
 use super::raster::LARGE;
 use super::{Column, Conditions, Kind, Reach, Unit, float, named, put};
@@ -9,16 +9,16 @@ use ninebit::raster::setup::Triangle;
 use ninebit::state::{FogFunction, FogMode, Profile};
 use ninebit::vertex::fog::passed;
 
-/// The modes that look up a table, in the order of the column.
+/// The modes with a table, in the order of the column.
 const CURVES: [FogMode; 4] = [FogMode::Exp, FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs];
 
-/// A float of a magnitude from 2^-7 to 2^9 with the sign and the fraction of these bits.
+/// Returns a float of a magnitude from 2^-7 to 2^9, with the sign and the fraction of these bits.
 fn moderate(bits: i64) -> i64 {
     let exponent = 120 + (bits as u32 >> 23 & 15);
     i64::from(bits as u32 & 0x807f_ffff | exponent << 23)
 }
 
-/// The factor where all vertices have one fog coordinate: what they pass, and the byte.
+/// The fog factor if all vertices have the same coordinate: the numbers that they pass on, and the byte.
 pub(super) struct FogFactor;
 
 impl Unit for FogFactor {
@@ -39,7 +39,7 @@ impl Unit for FogFactor {
     );
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Parameters as a start and an end or a density give them: p0 near 1.5, p1 small and mostly negative, mostly without p2.
+        // Parameters as a start and an end or a density yield them: p0 near 1.5, p1 small and usually negative, p2 usually 0.
         if inputs[5] & 3 != 0 {
             inputs[5] = moderate(inputs[5]);
             let near = (inputs[2] & 0x003f_ffff) as u32;
@@ -51,7 +51,7 @@ impl Unit for FogFactor {
     }
 
     fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
-        // What nv10 lacks: coefficients at pixels, and LinearAbs.
+        // nv10 has neither coefficients at pixels nor LinearAbs.
         profile == Profile::Nv2a || (inputs[1] != 0 && named::<FogMode>(inputs[0]) != FogMode::LinearAbs)
     }
 
@@ -87,7 +87,7 @@ impl Unit for FogTable {
     }
 }
 
-/// The words of the light unit: conversion, product and sum.
+/// The arithmetic of the light unit: conversion, product and sum.
 pub(super) struct LightUnit;
 
 impl Unit for LightUnit {
@@ -99,7 +99,7 @@ impl Unit for LightUnit {
     );
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Mostly of sizes that reach each other.
+        // Usually of similar magnitudes.
         if inputs[3] & 7 != 0 {
             for input in inputs.iter_mut() {
                 *input = moderate(*input);

@@ -1,7 +1,7 @@
 //! The units that vectors are made of, in the order of the pipe.
 
-/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, or of which
-/// inputs and results that depends (`shows`); the chips that have it, if not both; and the columns that it takes and gives, one by one or several at once.
+/// Defines a unit's name, its rules, and a line that says what it does. These may follow: how a frame buffer shows every row, or on which
+/// inputs and results that depends (`shows`); its chips, if not both; and its columns, one by one or several at once.
 macro_rules! known_as {
     (
         $name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; shows $operands:expr => $shown:expr)? $(; on $profiles:expr)?
@@ -69,7 +69,7 @@ use super::unit::{Conditions, Reach, Unit};
 use ninebit::number::Paired;
 use ninebit::state::{Bias, Named, Scale};
 
-/// Every unit of the catalogue.
+/// Returns every unit of the catalogue.
 pub fn all() -> Vec<&'static dyn Unit> {
     vec![
         &number::VertexColor,
@@ -138,45 +138,45 @@ pub fn all() -> Vec<&'static dyn Unit> {
     ]
 }
 
-/// The unit of that name.
+/// Returns the unit of that name.
 pub fn by_name(name: &str) -> Option<&'static dyn Unit> {
     all().into_iter().find(|unit| unit.name() == name)
 }
 
-/// The variant of that number; the last one of those that do not exist.
+/// Returns the variant of that number, or the last one if there is none.
 pub(super) fn named<T: Named>(number: i64) -> T {
     T::ALL[usize::try_from(number).unwrap_or(0).min(T::ALL.len() - 1)]
 }
 
-/// CMB-12: whether the scale and the bias of those numbers go together.
+/// CMB-12: returns whether a scale and a bias go together, by their numbers.
 fn scale_takes_bias(scale: i64, bias: i64) -> bool {
     named::<Bias>(bias) == Bias::None || matches!(named(scale), Scale::One | Scale::Two)
 }
 
 const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
 
-/// Columns of a name's channels.
+/// Returns the columns of a name's channels.
 fn channels<const N: usize>(name: &str, channels: [&str; N], column: impl Fn(&str) -> Column) -> [Column; N] {
     channels.map(|channel| column(&format!("{name}.{channel}")))
 }
 
-/// Byte columns, four for each name.
+/// Returns columns of bytes, four for each name.
 fn colors(names: &[&str]) -> Vec<Column> {
     names.iter().flat_map(|name| channels(&format!("in.{name}"), CHANNELS, Column::byte)).collect()
 }
 
-/// Results of a byte, four for each name.
+/// Returns results of bytes, four for each name.
 fn color_results<const N: usize>(names: [&str; N]) -> Vec<Column> {
     let byte = |name: &str| Column::result(name, Kind::Unsigned(8));
     names.iter().flat_map(|name| channels(name, CHANNELS, byte)).collect()
 }
 
-/// Four numbers as a colour of bytes.
+/// Returns four numbers as a colour of bytes.
 fn bytes(values: &[i64]) -> [u8; 4] {
     std::array::from_fn(|n| values[n] as u8)
 }
 
-/// The float of these bits.
+/// Returns the float with these bits.
 fn float(bits: i64) -> f32 {
     f32::from_bits(bits as u32)
 }
@@ -188,7 +188,7 @@ fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
     }
 }
 
-/// A register's integer, and the real number that the ideal has for it.
+/// Returns a register's integer with the ideal's real number.
 pub fn paired(value: i64) -> Paired {
     Paired { fixed: value as i32, ideal: value as f64 }
 }

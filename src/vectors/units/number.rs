@@ -1,9 +1,9 @@
-//! Where floats enter: colours, positions and depths.
+//! Numbers that are given as floats: colours, positions and depths.
 
 use super::{Column, Conditions, Kind, Reach, Unit, float};
 use ninebit::number::convert;
 
-/// A float vertex colour to a byte.
+/// A float vertex colour as a byte.
 pub(super) struct VertexColor;
 
 impl Unit for VertexColor {
@@ -18,13 +18,13 @@ impl Unit for VertexColor {
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Infinities and NaN; colours that fifteen significant bits would lift to the next byte.
+        // Infinities and NaN, and colours that fifteen significant bits would round up to the next byte.
         let bits = [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0x8000_0000, 0x3b00_8200, 0x3efd_fe00, 0x3f7d_7e00];
         bits.map(|bits| vec![bits]).to_vec()
     }
 }
 
-/// A float constant to a byte.
+/// A float constant as a byte.
 pub(super) struct ConstantColor;
 
 impl Unit for ConstantColor {
@@ -39,7 +39,7 @@ impl Unit for ConstantColor {
     }
 }
 
-/// A window coordinate to 1/16 pixel.
+/// A window coordinate in 1/16 pixel.
 pub(super) struct VertexSnap;
 
 impl Unit for VertexSnap {
@@ -53,7 +53,7 @@ impl Unit for VertexSnap {
     }
 }
 
-/// A depth to the buffer's units.
+/// A depth in the buffer's units.
 pub(super) struct Depth;
 
 impl Unit for Depth {

@@ -9,22 +9,22 @@ use ninebit_program::pixel_shader::{
     TextureInstruction, TextureOperation, Version, lower,
 };
 
-/// `mov r0, t3`, then the instruction: from t0, t1 and v0 to r0.
+/// `mov r0, t3`, followed by the instruction, which reads t0, t1 and v0 and writes r0.
 pub(super) struct Instruction;
 
 /// The sources a, b, c.
 const SOURCES: [(Bank, u8); 3] = [(Bank::Texture, 0), (Bank::Texture, 1), (Bank::Color, 0)];
 
-/// Columns before the sources' own.
+/// Number of columns before those of the sources.
 const FIRST_SOURCE: usize = 5;
 
-/// Columns of a source's configuration.
+/// Number of columns of a source's configuration.
 const COLUMNS_PER_SOURCE: usize = 3;
 
-/// Columns of configuration.
+/// Number of columns of configuration.
 const CONFIGURATION: usize = FIRST_SOURCE + 3 * COLUMNS_PER_SOURCE;
 
-/// The configuration of a source.
+/// Returns the columns of a source's configuration.
 fn configuration(name: &str) -> [Column; COLUMNS_PER_SOURCE] {
     [
         Column::names(&format!("cfg.selector_{name}"), &["own", "a", "b"]),
@@ -53,14 +53,14 @@ fn plain(register: ShaderRegister) -> Source {
     Source { register, selector: Selector::All, modifier: Modifier::Plain, negate: false }
 }
 
-/// The shader of a row.
+/// Returns the shader of a row.
 fn shader(inputs: &[i64]) -> PixelShader {
     let operation: Operation = named(inputs[0]);
     let r0 = register(Bank::Temporary, 0);
     let sources = (0..operation.sources()).map(|n| {
         let own = &inputs[FIRST_SOURCE + COLUMNS_PER_SOURCE * n..];
         let (bank, index) = SOURCES[n];
-        // Only r0.a steers the choice.
+        // Only r0.a can be the condition.
         let is_condition = operation == Operation::Cnd && n == 0;
         Source {
             register: if is_condition { r0 } else { register(bank, index) },
@@ -97,7 +97,7 @@ fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
     lower(&shader(inputs), &context).ok().map(|lowered| lowered.combiners)
 }
 
-/// The registers of a pixel.
+/// Registers of the inputs.
 const PLACES: [(Register, usize); 4] = [
     (Register::Texture0, CONFIGURATION),
     (Register::Texture1, CONFIGURATION + 4),
@@ -144,7 +144,7 @@ impl Unit for Instruction {
         }
         let (configuration, values) = inputs.split_at_mut(CONFIGURATION);
         if configuration[4] == 0 {
-            // Plain textures are bytes.
+            // Texels without a sign are bytes.
             values.iter_mut().filter(|value| **value < 0).for_each(|value| *value += 256);
         }
         let alpha_only = named::<Mask>(configuration[3]) == Mask::Alpha;
@@ -163,7 +163,7 @@ impl Unit for Instruction {
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        // Which source cnd takes depends on the last column.
+        // The last column decides which source cnd takes.
         let decides = named::<Operation>(inputs[0]) == Operation::Cnd && varying == inputs.len() - 1;
         let through = if decides { Through::Decision } else { Through::Register };
         let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);

@@ -1,4 +1,4 @@
-//! Programs of APIs as tables: one stage, unit or instruction, lowered to combiners as for a draw, and run on the registers of one pixel.
+//! Programs of APIs as tables: a stage, unit or instruction is lowered to combiners as for a draw, and runs on the registers of one pixel.
 
 use super::{CHANNELS, Column, Conditions, Kind, block, channels, color_results};
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
@@ -8,22 +8,22 @@ use ninebit::number::{Lane, Lanes16};
 use ninebit::state::{Combiners, FinalRegister, MuxSelect, Register};
 use ninebit::trace::Silent;
 
-/// Rules behind every lowered program.
+/// Rules of every lowered program.
 pub(super) const RULES: &[&str] = &[
     "CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-11", "NUM-2", "NUM-3",
     "NUM-5", "FIN-1", "FIN-2",
 ];
 
-/// What the last general stage leaves in SPARE0, and the fragment.
+/// Returns the results: SPARE0 after the last general stage, and the fragment.
 pub(super) fn results() -> Vec<Column> {
     let spare0 = channels("mid.spare0", CHANNELS, |name| Column::result(name, Kind::Signed(9)));
     [spare0.to_vec(), color_results(["out"])].concat()
 }
 
-/// Registers that a row fills, each with the place of its red among the inputs; green, blue and alpha follow.
+/// Registers that a row fills, each with the index of its red among the inputs. Green, blue and alpha follow.
 pub(super) type Places = [(Register, usize)];
 
-/// The registers of a row.
+/// Returns the registers of a row.
 fn file<L: Lane>(places: &Places, at: impl Fn(usize) -> L) -> Registers<L> {
     let mut file = Registers::new();
     for (register, first) in places {
@@ -32,10 +32,10 @@ fn file<L: Lane>(places: &Places, at: impl Fn(usize) -> L) -> Registers<L> {
     file
 }
 
-/// A lowered program, as it runs.
+/// A lowered program that can run.
 #[derive(Clone, PartialEq)]
 struct Program {
-    /// Each with whether it reads constants.
+    /// Each stage with whether it reads constants.
     stages: Vec<(PlannedStage, bool)>,
     mux_select: MuxSelect,
     last: (PlannedFinal, bool),
@@ -62,17 +62,18 @@ impl Program {
         Program { stages: stages.collect(), mux_select: combiners.mux_select, last: (last, constants) }
     }
 
-    /// The two constants of a general stage, or of the final combiner, which counts after them.
+    /// Returns the two constants of a general stage, or of the final combiner, which comes after the stages.
     fn constants(&self, stage: usize) -> &[[u8; 4]; 2] {
         self.stages.get(stage).map_or(&self.last.0.state.constants, |(stage, _)| &stage.constants)
     }
 
-    /// Those of a stage, as they are.
+    /// Returns a constant of a stage as it is.
     fn constant(&self, stage: usize, n: usize, channel: usize) -> i32 {
         self.constants(stage)[n][channel].into()
     }
 
-    /// The fragment; `file` is left as the general stages leave it. `constant` is what a constant holds: stage, constant, channel.
+    /// Runs the program. Returns the fragment, and leaves the registers after the general stages in `file`. `constant` returns a constant
+    /// by stage, number and channel.
     fn run<L: Lane>(
         &self,
         constant: impl Fn(usize, usize, usize) -> L,
@@ -102,7 +103,7 @@ impl Program {
     }
 }
 
-/// Runs a lowered program on a row and writes the results; zeros where the chip has no form for it.
+/// Runs a lowered program on a row and writes the results, which are 0 if the chip cannot run the program.
 pub(super) fn run(
     combiners: Option<Combiners>,
     places: &Places,
@@ -120,14 +121,14 @@ pub(super) fn run(
     }
 }
 
-/// How the input that counts up reaches a program.
+/// The use of the input that counts up in a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Through {
-    /// As a register's channel.
+    /// It is a channel of a register.
     Register,
-    /// As one that decides which of two products is taken: rows are computed one by one.
+    /// It decides which of two products is taken, so that rows are computed one by one.
     Decision,
-    /// As a constant.
+    /// It is a constant.
     Constant,
 }
 
@@ -152,7 +153,7 @@ pub(super) fn block(
     let is_constant = through == Through::Constant;
     let program = lowered(if is_constant { 0 } else { inputs[varying] })?;
     let other = if is_constant { lowered(255)? } else { program.clone() };
-    // The two differ in nothing but constants that are that input itself.
+    // The two differ only in constants that equal that input.
     let counts = |stage: usize, n: usize, channel: usize| {
         [program.constants(stage)[n][channel], other.constants(stage)[n][channel]]
     };

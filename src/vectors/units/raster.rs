@@ -1,4 +1,4 @@
-//! Triangles: which pixels they cover, and what the pixels get from the vertices.
+//! Triangles: the pixels that they cover, and the values that they interpolate.
 
 use super::{Column, Conditions, Kind, Reach, Unit, float, put};
 use ninebit::raster::depth;
@@ -9,7 +9,7 @@ use ninebit::state::{DepthFormat, Profile, TriangleVertices, Vertex, Vertices};
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
 
-/// The corners of a triangle, where any will do.
+/// Corners of some triangle.
 pub(super) const LARGE: [[f32; 4]; 3] = [[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]];
 
 /// Calls `then` with a sample of a triangle whose vertices all have these coordinates, and with the vertices.
@@ -23,17 +23,18 @@ pub(super) fn with_place<T>(
     Some(then(&Sample::new(&triangle, triangle.edges(8, 8)), vertices.triangle([0, 1, 2])))
 }
 
-/// The farthest position that is drawn, 1/16 pixel.
+/// Largest position of the drawn triangles, 1/16 pixel.
 const FARTHEST: i64 = 640 * 16;
 
-/// Three positions in 1/16 pixel, and a pixel.
+/// Returns the columns of three positions in 1/16 pixel, and of a pixel.
 pub(super) fn geometry() -> Vec<Column> {
     let mut columns = POSITIONS.map(|name| Column::signed(name, 17, 0, FARTHEST)).to_vec();
     columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 10, 640)));
     columns
 }
 
-/// Moves the pixel into the triangle's box, and a third of the triangles to whole pixels and a small size, where edges and ties are met.
+/// Moves the pixel into the triangle's box. Makes a third of the triangles small, with whole pixels as corners, so that edges and ties
+/// occur.
 pub(super) fn fit(inputs: &mut [i64]) {
     let (positions, pixel) = inputs.split_at_mut(6);
     let mixed = positions.iter().fold(0, |sum, n| (sum * 31 + n) & 0xffff);
@@ -53,13 +54,13 @@ pub(super) fn fit(inputs: &mut [i64]) {
     }
 }
 
-/// n / 16 as a float, exactly; |n| is below 2^24.
+/// Returns n / 16 as a float, which is exact for |n| below 2^24.
 fn sixteenths(n: i64) -> f32 {
     let whole = n as f32;
     if n == 0 { whole } else { f32::from_bits(whole.to_bits() - (4 << 23)) }
 }
 
-/// The triangle; `w` are the bits of three floats, if perspective counts.
+/// Returns the triangle of a row. `w` are the bits of three floats, if perspective is used.
 pub(super) fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> Option<Triangle> {
     let positions = [0, 1, 2].map(|n| {
         let w = w.map_or(1.0, |w| f32::from_bits(w[n] as u32));
@@ -68,12 +69,12 @@ pub(super) fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> O
     Triangle::new(positions, w.is_some(), profile)
 }
 
-/// Whether the pixel is covered.
+/// Returns whether the pixel is covered.
 pub(super) fn is_covered(inputs: &[i64], profile: Profile) -> bool {
     triangle(inputs, None, profile).is_some_and(|t| t.covers(t.edges(inputs[6], inputs[7])))
 }
 
-/// Whether a triangle covers a pixel.
+/// Coverage of a pixel by a triangle.
 pub(super) struct Coverage;
 
 impl Unit for Coverage {
@@ -126,8 +127,8 @@ impl Unit for ColorWeights {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5. Then halves and quarters of an area that is a
-        // power of two, which no tie lowers if all w are equal.
+        // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4 and 3 4 1, and sixteenths 5 6 5. Then halves and quarters of
+        // a power-of-two area, where no tie is lowered if all w are equal.
         let [one, two, other] = [1.0_f32, 2.0, 1.5].map(|w| i64::from(w.to_bits()));
         let positions = [
             [40, 24, 104, 216, 88, 264],
@@ -178,12 +179,13 @@ impl Unit for DepthInterpolation {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // A large quad of a captured frame, one edge number the largest after the other, and exponents of two and of three edge numbers that are equal.
+        // A large quad of a captured frame, with each edge number the largest in turn, and with exponents of two and of three edge numbers
+        // that are equal.
         let large = [2048, 640, 8192, 640, 8192, 7040];
         let pixels = [[408, 227], [200, 41], [505, 60], [500, 430], [256, 106], [384, 173], [340, 90], [300, 219]];
         let z = [[11_184_809, 11_184_809, 16_777_214], [0, 960, 0], [16_777_215, 0, 8_388_607], [5, 70_000, 1]];
         let row = |pixel: [i64; 2], z: [i64; 3]| [&large[..], &pixel, &[24], &z].concat();
-        // Reciprocals that are 3/16 low, not half a step, and not exact.
+        // Reciprocals that are low by 3/16 of a step instead of half a step, and not exact.
         let low = [
             [4915, 7045, 10035, 5508, 7107, 163, 476, 348, 24, 3_597_702, 12_720_132, 15_691_790],
             [2917, 264, 8027, 1474, 5186, 8247, 328, 231, 24, 8_419_059, 4_525_543, 12_990_690],
@@ -219,7 +221,7 @@ impl Unit for DepthInterpolation {
 
 const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
 
-/// Bits of w: powers of two, which make ties, and others.
+/// Returns a column of w as bits: powers of two, which yield ties, and others.
 fn w(name: &str) -> Column {
     let bits = [1.0_f32, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0].map(|w| i64::from(w.to_bits()));
     Column::listed(name, Kind::Hex(32), &bits)
@@ -309,7 +311,7 @@ impl Unit for TextureCoordinate {
 
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);
-        // Coordinates that are whole texels of vertices at whole pixels: ties.
+        // Coordinates of whole texels at vertices on whole pixels, which yield ties.
         if inputs[6] & 1 == 0 {
             for n in 11..14 {
                 inputs[n] = i64::from(((inputs[n] & 15) as f32).to_bits());

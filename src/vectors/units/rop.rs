@@ -1,4 +1,4 @@
-//! Alpha test, blending, surfaces.
+//! Alpha test, blending and surfaces.
 
 use super::{
     CHANNELS, Column, Conditions, Kind, Reach, Unit, block, bytes, channels, color_results, colors, named, paired, put,
@@ -9,7 +9,7 @@ use ninebit::rop::{blend, surface};
 use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
 use ninebit::trace::{Recorder, Silent};
 
-/// Source, destination and constant of a row of blending.
+/// Returns source, destination and constant of a row of blending.
 fn blended_colors<L: Lane>(at: impl Fn(usize) -> L) -> [[L; 4]; 3] {
     [3, 7, 11].map(|first| [at(first), at(first + 1), at(first + 2), at(first + 3)])
 }
@@ -18,7 +18,7 @@ fn alpha_test(inputs: &[i64]) -> state::AlphaTest {
     state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 }
 }
 
-/// Whether a fragment passes the alpha test.
+/// The alpha test of a fragment.
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
@@ -37,7 +37,7 @@ impl Unit for AlphaTest {
     }
 }
 
-/// A fragment and the surface.
+/// A fragment that is blended with the surface.
 pub(super) struct Blend;
 
 fn blend_state(inputs: &[i64]) -> state::Blend {
@@ -119,7 +119,7 @@ impl Unit for WriteMask {
     }
 }
 
-/// Bytes to a surface's word.
+/// Bytes that are stored as a surface's word.
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
@@ -134,7 +134,7 @@ impl Unit for SurfaceStore {
     }
 }
 
-/// A surface's word to the bytes that a blend reads.
+/// Bytes that blending reads from a surface's word.
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {

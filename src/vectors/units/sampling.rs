@@ -1,4 +1,4 @@
-//! How a texture unit samples volumes and long footprints, and what keys and comparisons make of a texel.
+//! Sampling of volumes and of long footprints, colour keys, and shadow comparisons.
 
 use super::raster;
 use super::texel::formats;
@@ -24,7 +24,7 @@ fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interp
     })
 }
 
-/// A texel behind a colour key.
+/// The colour key of a texel.
 pub(super) struct ColorKey;
 
 impl Unit for ColorKey {
@@ -36,7 +36,7 @@ impl Unit for ColorKey {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // In each mode and format equal, and different in one bit of each channel.
+        // In each mode and format: equal, and different in one bit of each channel.
         let formats = self.inputs()[1].boundary();
         let modes = 0..ColorKeyMode::ALL.len() as i64;
         let rows = modes.flat_map(|mode| formats.clone().into_iter().map(move |format| (mode, format)));
@@ -48,7 +48,7 @@ impl Unit for ColorKey {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Alpha of a format without is one; most keys nearly match.
+        // A format without alpha has the alpha 1. Most keys nearly match.
         if !named::<TextureFormat>(inputs[1]).has_alpha() {
             inputs[3] |= 0xff00_0000;
         }
@@ -74,10 +74,10 @@ impl Unit for ColorKey {
     }
 }
 
-/// A depth that is compared.
+/// The comparison of a reference with a depth.
 pub(super) struct ShadowComparison;
 
-/// The float that a word of a float format stands for.
+/// Returns the float that a word of a float format represents.
 fn of_word(format: DepthFormat, depth: u32) -> f32 {
     match format {
         DepthFormat::Z16 | DepthFormat::Z24S8 => depth as f32,
@@ -103,7 +103,7 @@ impl Unit for ShadowComparison {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // The handbook's example and its neighbours, by all functions.
+        // The handbook's example and its neighbours, with all functions.
         let numbers = [32766.0_f32, 32767.0, 32767.75, 32768.0].map(|r| i64::from(r.to_bits()));
         let one = i64::from(1.0_f32.to_bits());
         let functions = 0..CompareFunction::ALL.len() as i64;
@@ -117,7 +117,7 @@ impl Unit for ShadowComparison {
         if !format.has_stencil() {
             inputs[6] = 0;
         }
-        // A reference at the texel, or a little beside it, where q is a power of two.
+        // A reference equal to the texel or close to it, if q is a power of two.
         let kind = inputs[3] & 7;
         if kind < 5 {
             let power = (inputs[4] >> 2) % 5 - 2;
@@ -171,7 +171,7 @@ impl Unit for VolumeLayer {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Layers 0 to 3 of four, their borders, and what lies beyond, in every mode.
+        // Layers 0 to 3 of four, their borders, and beyond them, in every mode.
         let modes = 0..AddressMode::ALL.len() as i64;
         let ninths = (-10..=20).map(|n| i64::from((n as f32).to_bits()));
         let rows = ninths.flat_map(|r| modes.clone().map(move |mode| (mode, r)));
@@ -180,7 +180,7 @@ impl Unit for VolumeLayer {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Mostly around the image, q being 1 in half of the rows.
+        // Usually around the image, with q = 1 in half of the rows.
         if inputs[3] & 3 != 0 {
             inputs[2] = inputs[2] & 0x807f_ffff | (122 + (inputs[2] >> 2) % 7) << 23;
         }
@@ -207,7 +207,7 @@ impl Unit for VolumeLayer {
 /// The taps of a footprint.
 pub(super) struct AnisotropyTaps;
 
-/// Pairs of taps at most.
+/// Largest number of pairs of taps.
 const PAIRS: usize = anisotropy::MAX_TAPS / 2;
 
 impl Unit for AnisotropyTaps {
@@ -227,7 +227,7 @@ impl Unit for AnisotropyTaps {
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // One texel, and just above it; twice the other axis; equal lengths; whole multiples of the limits.
+        // One texel, and hardly more; twice the other axis; equal lengths; whole multiples of the limits.
         let texel = 1 << 16;
         let axes = [
             [texel, 0, 0, texel / 5],
@@ -246,7 +246,7 @@ impl Unit for AnisotropyTaps {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Of a few texels, one axis up to sixteen times the other.
+        // A few texels, with one axis up to sixteen times the other.
         let (all, one) = (8 + (inputs[1] & 7), inputs[2] >> 3 & 3);
         let first = if inputs[4] & 1 == 0 { 1 } else { 3 };
         for input in &mut inputs[1..5] {
@@ -272,7 +272,7 @@ impl Unit for AnisotropyTaps {
     }
 }
 
-/// Coordinates that go the shorter way around.
+/// Coordinates that are interpolated the shorter way around.
 pub(super) struct CylindricalWrap;
 
 impl Unit for CylindricalWrap {
@@ -287,7 +287,7 @@ impl Unit for CylindricalWrap {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // The handbook's example, and differences of halves and wholes, either way.
+        // The handbook's example, and differences of halves and wholes in both directions.
         let numbers =
             [[0.9, 0.1, 0.4], [0.25, 0.75, -0.25], [0.0, 1.0, -1.0], [3.0, 0.5, 5.5], [0.0, 0.500_000_06, 1.5]];
         let modes = 0..AddressMode::ALL.len() as i64;
@@ -296,7 +296,7 @@ impl Unit for CylindricalWrap {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Quarters of repeats, in every other row.
+        // Quarters of repeats in every other row.
         if inputs[3] & 1 == 0 {
             for input in &mut inputs[1..] {
                 let quarters = (*input >> 4) % 64 - 32;
@@ -312,7 +312,7 @@ impl Unit for CylindricalWrap {
         let unit = planned(state, TextureFormat::A8R8G8B8);
         let moved = wrapped(&unit, [1, 2, 3].map(|n| [float(inputs[n]), 0.0, 0.0, 1.0]));
         for (result, [s, ..]) in results.iter_mut().zip(moved) {
-            // Which zero it is depends on the machine, and nothing depends on it.
+            // The sign of zero depends on the machine, and nothing depends on it.
             *result = if s == 0.0 { 0 } else { s.to_bits().into() };
         }
     }

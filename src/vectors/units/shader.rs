@@ -12,7 +12,7 @@ use ninebit::trace::{Observer, Recorder, Silent};
 
 const NV2A: &[Profile] = &[Profile::Nv2a];
 
-/// A colour as the vector of a dot product.
+/// A colour as a vector of the dot unit.
 pub(super) struct Remap;
 
 impl Unit for Remap {
@@ -27,7 +27,7 @@ impl Unit for Remap {
     }
 }
 
-/// Coordinates times a colour.
+/// The dot product of coordinates and a colour.
 pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
@@ -125,7 +125,7 @@ impl Unit for CoordinateStage {
     }
 }
 
-/// By how much a bump map moves a coordinate.
+/// The offset of a coordinate by a bump map.
 pub(super) struct BumpOffset;
 
 impl Unit for BumpOffset {
@@ -166,7 +166,7 @@ impl Unit for Luminance {
     }
 }
 
-/// A byte, or a result of the dot unit, as a coordinate.
+/// The coordinate of a byte, or of a result of the dot unit.
 pub(super) struct Dependent;
 
 impl Unit for Dependent {
@@ -182,7 +182,7 @@ impl Unit for Dependent {
     );
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        // A float whose coordinate fits: all of the domain do.
+        // A float whose coordinate fits; in this domain all do.
         split(float(inputs[2])).1 < 16
     }
 

@@ -4,7 +4,7 @@ use super::{Column, Conditions, Kind, Reach, Unit, named};
 use ninebit::rop::stencil;
 use ninebit::state::{self, CompareFunction, Named, StencilOperation};
 
-/// Whether a fragment passes, and what is stored.
+/// The stencil test of a fragment, and the stored stencil.
 pub(super) struct StencilTest;
 
 impl Unit for StencilTest {
@@ -25,7 +25,7 @@ impl Unit for StencilTest {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Every operation at both ends and around the middle, where each of the three is chosen.
+        // Every operation at both ends and around the middle, with each of the three operations chosen.
         let row = |operation: i64, stored: i64, place: usize| {
             let mut operations = [2, 5, 1];
             operations[place] = operation;
@@ -40,7 +40,7 @@ impl Unit for StencilTest {
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Bytes that are equal where they are compared, one row in four.
+        // In one row of four, bytes that are equal in the compared bits.
         if inputs[4] & 3 == 0 {
             inputs[7] = inputs[4] ^ (inputs[7] & !inputs[5] & 255);
         }

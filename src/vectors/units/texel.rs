@@ -1,12 +1,12 @@
-//! Texels: words and blocks to bytes.
+//! Texels: words and blocks as bytes.
 
 use super::{Column, Conditions, Kind, Reach, Unit, color_results, named, put};
 use ninebit::state::{Named, Profile, TextureFormat};
 use ninebit::texture::{compressed, format};
 
-/// The formats for which `wanted` holds, as a column.
+/// Returns a column of the formats for which `wanted` is true.
 pub(super) fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
-    // Depths, which come last, are compared and not expanded.
+    // Depth formats come last. They are compared, not expanded.
     let count = TextureFormat::ALL.iter().take_while(|format| format.depth().is_none()).count();
     let all = &TextureFormat::ALL[..count];
     let numbers: Vec<i64> = (0..).zip(all).filter(|(_, f)| wanted(**f)).map(|(n, _)| n).collect();
@@ -17,7 +17,7 @@ fn is_compressed(format: TextureFormat) -> bool {
     matches!(format, TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5)
 }
 
-/// A texel's word to its bytes.
+/// The bytes of a texel's word.
 pub(super) struct TexelExpansion;
 
 impl Unit for TexelExpansion {

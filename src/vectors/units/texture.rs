@@ -1,4 +1,4 @@
-//! Where a texture unit looks, and how it mixes what it finds.
+//! Coordinates of texture units, and the linear filter.
 
 use super::raster::with_place;
 use super::{Column, Conditions, Kind, Reach, Unit, float, named, put};
@@ -15,7 +15,7 @@ use ninebit::trace::{Observer, Recorder, Silent};
 
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
 
-/// Unit 0 with a texture of this format, of two dimensions and one texel.
+/// Returns unit 0 with a two-dimensional texture of this format and one texel.
 pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
     let (levels, face_words) = Level::chain(format, 1, 1, 1, false);
     PlannedUnit {
@@ -34,7 +34,7 @@ pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit 
     }
 }
 
-/// Mode, size, and a coordinate in 1/256 texel.
+/// Returns the columns of mode, size, and a coordinate in 1/256 texel.
 fn addressing() -> [Column; 4] {
     [
         Column::choice::<AddressMode>("cfg.mode"),
@@ -44,19 +44,19 @@ fn addressing() -> [Column; 4] {
     ]
 }
 
-/// By how much coordinates differ in the pixels to the right and below, 1/65536 texel.
+/// Returns the columns of the coordinates' differences to the pixels on the right and below, 1/65536 texel.
 pub(super) fn footprint() -> [Column; 4] {
     ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"].map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32))
 }
 
-/// Coordinates around the image, most of the time.
+/// Moves coordinates close to the image in most rows.
 fn near(inputs: &mut [i64]) {
     if inputs[3] & 3 != 0 {
         inputs[3] = inputs[3].rem_euclid((inputs[2] + 8) * 768) - (inputs[2] + 8) * 256;
     }
 }
 
-/// A texel index by its mode: whether it is inside, and where.
+/// Addresses a texel index. Returns whether it is inside, and the texel.
 fn place(inputs: &[i64], index: i64) -> [i64; 2] {
     let found = address::address(named(inputs[0]), index, inputs[2] as u32, inputs[1] != 0);
     [found.is_some().into(), found.unwrap_or(0)]
@@ -156,7 +156,7 @@ fn mixed<L: Lane, O: Observer>(unit: &PlannedUnit, row: &[i64], observer: &mut O
     unit::mix(&Report { unit, prefix: "" }, [texel(0), texel(1), texel(2), texel(3)], weights, observer)
 }
 
-/// The mix of four texels.
+/// The linear filter of four texels.
 pub(super) struct Bilinear;
 
 impl Unit for Bilinear {
@@ -332,7 +332,7 @@ impl Unit for CubeFace {
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Every direction of components -1, 0 and 1: the ties.
+        // Every direction with components -1, 0 and 1, where ties occur.
         let component = |n: i64| [0xbf80_0000, 0, 0x3f80_0000][(n % 3) as usize];
         let infinite = [0x7f80_0000, 0xff80_0000, 0x7fc0_0000].map(|bits| vec![64, bits, 0x3f80_0000, 0]);
         let lattice = (0..27).map(|n| vec![64, component(n), component(n / 3), component(n / 9)]);
@@ -348,7 +348,7 @@ impl Unit for CubeFace {
     }
 }
 
-/// Filter and levels for a lod.
+/// The filter and the levels for a level of detail.
 pub(super) struct LevelChoice;
 
 impl Unit for LevelChoice {
@@ -377,7 +377,7 @@ impl Unit for LevelChoice {
 
     fn fit(&self, inputs: &mut [i64]) {
         inputs[3] = inputs[3].max(1);
-        // Biases and ratios that lie among the levels, more often than not.
+        // Biases and ratios that usually lie among the levels.
         if inputs[4] & 1 == 0 {
             inputs[4] /= 8;
         }

@@ -9,7 +9,7 @@ use ninebit_program::texture_environment::{
     lower,
 };
 
-/// A choice among the variants for which `wanted` holds.
+/// Returns a column of the variants for which `wanted` is true.
 pub(super) fn some<T: Named>(name: &str, wanted: impl Fn(T) -> bool) -> Column {
     let numbers: Vec<i64> = (0..).zip(T::ALL).filter(|(_, variant)| wanted(**variant)).map(|(n, _)| n).collect();
     Column::listed(name, Kind::Name(T::NAMES), &numbers)
@@ -19,7 +19,7 @@ fn is_combining(mode: Mode) -> bool {
     matches!(mode, Mode::Combine | Mode::Combine4)
 }
 
-/// What a unit lowers to that has a texture of that format; nothing where the chip has no form for it.
+/// Returns the lowered unit with a texture of that format, or `None` if the chip cannot run it.
 fn lowered(unit: Environment, format: BaseFormat, profile: Profile) -> Option<Combiners> {
     let environment = TextureEnvironment { units: vec![unit], color_sum: false };
     let textures = [Some(format), None, None, None];
@@ -27,12 +27,12 @@ fn lowered(unit: Environment, format: BaseFormat, profile: Profile) -> Option<Co
     lower(&environment, &context).map(|lowered| lowered.combiners).ok()
 }
 
-/// The registers of a pixel: the texture's input `first` and the next three, then the primary colour's.
+/// Returns the registers of a pixel: the texture's inputs from `first` on, then those of the primary colour.
 fn places(first: usize) -> [(Register, usize); 2] {
     [(Register::Texture0, first), (Register::PrimaryColor, first + 4)]
 }
 
-/// Rows in block lanes; the constant's columns follow those of the primary colour.
+/// Computes rows in block lanes. The columns of the constant follow those of the primary colour.
 fn block(
     inputs: &[i64],
     varying: usize,
@@ -48,7 +48,7 @@ fn block(
 /// The modes of OpenGL 1.1.
 pub(super) struct Classic;
 
-/// A colour as a texture of a base format holds it.
+/// Returns a colour as a texture of a base format stores it.
 fn as_format(format: BaseFormat, [r, g, b, a]: [i64; 4]) -> [i64; 4] {
     match format {
         BaseFormat::Alpha => [0, 0, 0, a],
@@ -109,7 +109,7 @@ const SOURCES: [EnvironmentSource; 4] = [
     EnvironmentSource::Texture,
 ];
 
-/// An operand as an alpha can have it.
+/// Returns the operand that alpha can have in its place.
 fn of_alpha(operand: Operand) -> Operand {
     match operand {
         Operand::SourceColor | Operand::SourceAlpha => Operand::SourceAlpha,

@@ -9,10 +9,11 @@ use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
 };
 
-/// D3DTOP with the arguments Texture and Current.
+/// An operation of Direct3D with the arguments Texture and Current.
 pub(super) struct Stage;
 
-/// What combines colours: Disable ends the cascade, and the two bump operations move coordinates (`bump-offset`, `bump-luminance`).
+/// Returns whether an operation combines colours. Disable ends the cascade, and the two bump operations move coordinates (`bump-offset`,
+/// `bump-luminance`).
 fn combines(operation: Operation) -> bool {
     operation != Operation::Disable && !operation.is_bump()
 }
@@ -27,17 +28,17 @@ fn copy(source: ArgumentSource) -> TextureStage {
     TextureStage { color: select(), alpha: select(), ..TextureStage::initial(0) }
 }
 
-/// Columns of configuration.
+/// Number of columns of configuration.
 const CONFIGURATION: usize = 5;
 
-/// The first column of the texture factor.
+/// Index of the first column of the texture factor.
 const FACTOR: usize = CONFIGURATION + 12;
 
 fn operation(inputs: &[i64]) -> Operation {
     named(inputs[0])
 }
 
-/// What a row lowers to; nothing where the chip has no form for it.
+/// Returns the lowered stage of a row, or `None` if the chip cannot run it.
 fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
     let operation = operation(inputs);
     let argument =
@@ -60,7 +61,7 @@ fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
     lower(&stages, &context).map(|lowered| lowered.combiners).ok()
 }
 
-/// The registers of a pixel.
+/// Returns the registers of a pixel.
 fn places(inputs: &[i64]) -> [(Register, usize); 3] {
     let (own, other) = match operation(inputs) {
         Operation::PreModulate => (Register::Texture0, Register::Texture1),
@@ -94,7 +95,7 @@ impl Unit for Stage {
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        // What is not read is not varied.
+        // Inputs that are not read do not vary.
         let operation: Operation = named(inputs[0]);
         let [_, first, second] = operation.reads();
         (first || inputs[1..3] == [0; 2]) && (second || operation.is_color_only() || inputs[3..5] == [0; 2])

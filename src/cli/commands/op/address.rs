@@ -36,13 +36,13 @@ pub(super) fn addressed(unit: &dyn Unit, (mode, size): (AddressMode, u32), coord
     plain_row(unit, &[mode as i64, 0, size.into(), coordinate], &mut Silent)
 }
 
-/// A mode and a side.
+/// The operation: an address mode and a side.
 struct Address {
     mode: AddressMode,
     size: u32,
 }
 
-/// Brings an index inside.
+/// Runs the operation.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let Arguments { mode, size, .. } = *arguments;
     let (line, checks) = (CommandLine::of_this_process(), texture_checks(&arguments.profile));

@@ -46,13 +46,13 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// The pixel's draw, planned; its colours come with each case.
+/// The planned draw of the pixel. Each case has its own colours.
 struct Pixel {
     plan: Plan,
     surface: SurfaceFormat,
 }
 
-/// The inputs: their names in traces, and as they are given.
+/// The inputs: their names in traces and on the command line.
 const COLORS: [(&str, &str); 3] =
     [("fragment", "source"), ("destination", "destination"), ("blend_constant", "constant")];
 
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let targets = vec![Target::new(1, 1, arguments.surface)];
     let scene = Scene { profile, targets, draws: vec![draw], ..Scene::default() };
-    // Colours come with each case: nothing that those of the draw settle may be left out.
+    // Each case has its own colours, so nothing may be pruned because of the draw's colours.
     let options = PlanOptions { prune: false, ..PlanOptions::default() };
     let mut plan = Plan::compile(&scene, &options).map_err(|_| Failure::fault("a pixel cannot be planned"))?;
     for draw in &mut plan.draws {
@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 
 impl Operation for Pixel {
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        // Every value is within a byte: the columns' ranges say so.
+        // The ranges of the columns keep every value within a byte.
         let color =
             |n: usize| -> [u8; 4] { std::array::from_fn(|channel| values[4 * n + channel].clamp(0, 255) as u8) };
         let mut plan = self.plan.clone();
@@ -116,7 +116,7 @@ impl Operation for Pixel {
             draw.final_combiner.state.constants[0] = color(0);
             draw.blend_constant = color(2);
         }
-        // The pixel exists and the draw covers it.
+        // The pixel exists, and the draw covers it.
         let Ok(trace) = engine::trace(&plan, 0, (0, 0), None) else { return Results::new() };
         let mut results = Results::new();
         for step in trace.draws.into_iter().flat_map(|draw| draw.steps) {

@@ -63,7 +63,7 @@ enum Half {
     Alpha,
 }
 
-/// A stage with register contents.
+/// A stage with the contents of registers.
 struct Stage {
     stage: GeneralStage,
     half: Half,
@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     })
 }
 
-/// What the command line calls things.
+/// Names of the options in messages.
 pub(super) struct Options;
 
 impl Notation for Options {
@@ -95,7 +95,7 @@ impl Notation for Options {
     }
 }
 
-/// The stage, and where its options stand.
+/// Returns the stage, and the places of its options.
 fn stage(arguments: &Arguments, line: &CommandLine) -> (GeneralStage, Places) {
     let (mut stage, mut places) = (GeneralStage::default(), Places::default());
     let alpha = arguments.portion == Half::Alpha;
@@ -132,7 +132,7 @@ fn stage(arguments: &Arguments, line: &CommandLine) -> (GeneralStage, Places) {
     (stage, places)
 }
 
-/// Destinations of AB, CD and the sum: as given, or one that shows the result.
+/// Returns the destinations of AB, CD and the sum: the given ones, or one that shows the result.
 fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
     let given = [arguments.ab, arguments.cd, arguments.sum];
     if given != [None; 3] {
@@ -156,7 +156,7 @@ impl Operation for Stage {
             rgb: PlannedPortion::whole(self.stage.rgb, 7),
             alpha: PlannedPortion::whole(self.stage.alpha, 8),
             constants: self.stage.constants,
-            // The registers hold them already.
+            // The registers have the constants already.
             reads_constants: false,
         };
         general::run(&stage, self.mux_select, &self.policies, &mut registers, observer);

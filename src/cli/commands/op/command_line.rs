@@ -1,4 +1,4 @@
-//! What is wrong with an operation's options, shown where they stand on the command line.
+//! Errors of an operation's options, shown at their place on the command line.
 
 use std::ffi::OsString;
 use std::ops::Range;
@@ -13,12 +13,12 @@ use crate::commands::scene::refused_beside;
 /// The command line as one text, for messages that point into it.
 pub(super) struct CommandLine {
     text: String,
-    /// Where its words stand.
+    /// Positions of its words.
     words: Vec<Range<usize>>,
 }
 
 impl CommandLine {
-    /// The words that this program was started with.
+    /// Returns the command line of this process.
     pub(super) fn of_this_process() -> Self {
         CommandLine::new(std::env::args_os().skip(1))
     }
@@ -34,7 +34,8 @@ impl CommandLine {
         CommandLine { text, words }
     }
 
-    /// Where the value of an option stands, or the option itself if it takes none. `None`: it is not given. `names`: without their dashes.
+    /// Returns the place of an option's value, or of the option itself if it has no value, or `None` if it is not given. `names` are
+    /// without dashes.
     pub(super) fn place(&self, names: &[&str]) -> Option<Range<usize>> {
         let word = |index: usize| self.words.get(index).map(|place| (place, &self.text[place.clone()]));
         (0..self.words.len()).rev().find_map(|index| {
@@ -49,7 +50,7 @@ impl CommandLine {
         })
     }
 
-    /// Goes on if none of these is an error.
+    /// Reports findings, and returns an error if one of them is an error.
     pub(super) fn accept(
         self,
         findings: impl IntoIterator<Item = Diagnostic>,

@@ -32,7 +32,7 @@ struct Cube {
     side: u32,
 }
 
-/// Numbers of a direction have as many bits as those of the chip's (TEX-12).
+/// Largest component of a direction. It has as many bits as on the chip (TEX-12).
 const MAX_COMPONENT: i64 = 1 << 28;
 
 /// Looks up a cube map.
@@ -63,7 +63,7 @@ impl Operation for Cube {
     }
 }
 
-/// Three decimal numbers as whole ones of the same ratios.
+/// Reads three decimal numbers, as integers of the same ratios.
 fn direction(text: &str) -> Result<[i64; 3], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let digits = |part: &str| part.split_once('.').map_or(0, |(_, fraction)| fraction.len());

@@ -32,11 +32,11 @@ pub(crate) struct Arguments {
 /// The operation: filters four texels with weights, or at coordinates.
 struct Mix {
     signed: bool,
-    /// The last two columns are coordinates instead of weights.
+    /// Whether the last two columns are coordinates instead of weights.
     coordinates: bool,
 }
 
-/// Mixes four texels.
+/// Runs the operation.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let coordinates = arguments.at.is_some();
     let texel = |name: &str| {

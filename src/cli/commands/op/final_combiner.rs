@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     contents: Contents,
 }
 
-/// The final combiner with register contents.
+/// The final combiner with the contents of registers.
 struct Final {
     planned: PlannedFinal,
     profile: Profile,
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     })
 }
 
-/// A program with this final combiner, where its options stand, and what is wrong with them by themselves.
+/// Returns a program with this final combiner, the places of its options, and the findings about them.
 fn program(arguments: &Arguments, line: &CommandLine) -> (Combiners, Places, Vec<Diagnostic>) {
     let (mut state, mut places, mut findings) = (FinalCombiner::default(), Places::default(), Vec::new());
     let others = [("e", arguments.e), ("f", arguments.f), ("g", arguments.g)];
@@ -78,7 +78,7 @@ fn program(arguments: &Arguments, line: &CommandLine) -> (Combiners, Places, Vec
     (Combiners { stages, final_combiner: state, ..Combiners::default() }, places, findings)
 }
 
-/// The state, of which everything that is set is needed.
+/// Plans the final combiner, all of which is needed.
 pub(super) fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
     let reads = |register: FinalRegister| state.inputs[..4].iter().any(|input| input.register == register);
     let product = reads(FinalRegister::ETimesF) || state.inputs[4..].iter().any(|input| !input.is_zero());
@@ -87,7 +87,7 @@ pub(super) fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
         live: if alpha { 15 } else { 7 },
         product: if product { 7 } else { 0 },
         sum: if reads(FinalRegister::Spare0PlusSecondary) { 7 } else { 0 },
-        // The registers hold them already.
+        // The registers have the constants already.
         reads_constants: false,
         lerps: true,
     }

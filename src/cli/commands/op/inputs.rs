@@ -10,7 +10,7 @@ use ninebit_vectors::units;
 
 use super::{Column, Common, Failure, Input, Operation, PolicyArguments, ProfileArgument, Setup, set, words};
 
-/// What the name of `--in` and the four numbers after it give.
+/// A name and four numbers, as `--in` gives them.
 #[derive(Clone, Debug)]
 pub(super) struct Assignment {
     name: String,
@@ -42,7 +42,7 @@ pub(super) struct FourInputs<R: Named + Send + Sync> {
 }
 
 impl<R: Named + Send + Sync> FourInputs<R> {
-    /// A to D, with the names of their options.
+    /// Returns A to D with the names of their options.
     pub(super) fn all(&self) -> [(&'static str, Option<Input<R>>); 4] {
         [("a", self.a), ("b", self.b), ("c", self.c), ("d", self.d)]
     }
@@ -69,7 +69,7 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    /// Runs an operation on registers, of the name and as these make it for a chip and policies.
+    /// Runs an operation on registers. `operation` returns it for a chip and policies.
     pub(super) fn drive<T: Operation>(
         &self,
         name: &'static str,
@@ -85,7 +85,7 @@ impl Contents {
     }
 }
 
-/// An operation on registers, with their columns.
+/// Sets up an operation on registers, with their columns.
 pub(super) fn on_registers<T: Operation>(
     name: &'static str,
     columns: Vec<Column>,
@@ -97,7 +97,7 @@ pub(super) fn on_registers<T: Operation>(
     Setup { find, chip: Some(chip), ..Setup::new(name, columns, known, operation) }
 }
 
-/// Reads R, G, B, A: one number is all four; three leave alpha at 255, as colours in scenes do.
+/// Reads R, G, B, A. One number is used for all four, and three numbers leave alpha at 255, as in scenes.
 pub(super) fn color(text: &str) -> Result<[i64; 4], String> {
     numbers(text).map(|numbers| four(&numbers))
 }
@@ -116,12 +116,12 @@ fn four(numbers: &[i64]) -> [i64; 4] {
     }
 }
 
-/// What a general register holds.
+/// Range of a general register.
 const SIGNED: RangeInclusive<i64> = -256..=255;
-/// What a constant holds.
+/// Range of a constant.
 const BYTE: RangeInclusive<i64> = 0..=255;
 
-/// A column for each channel of each register, all 0.
+/// Returns a column for each channel of each register, all 0.
 pub(super) fn register_columns() -> Vec<Column> {
     let channels = Register::ALL.iter().flat_map(|register| (0..4).map(|channel| (*register, channel)));
     channels
@@ -138,14 +138,14 @@ pub(super) fn register_columns() -> Vec<Column> {
         .collect()
 }
 
-/// The column of `REGISTER.CHANNEL` among [`register_columns`].
+/// Returns the index of the column of `REGISTER.CHANNEL` among [`register_columns`].
 pub(super) fn register_column(name: &str) -> Option<usize> {
     let (register, channel) = name.split_once('.')?;
     let register = words::register(register).ok().filter(|register| *register != Register::Zero)?;
     Some(4 * register as usize + words::channel(channel)?)
 }
 
-/// Puts what `--in` gives into the columns.
+/// Sets the columns that `--in` gives.
 pub(super) fn assign(columns: &mut [Column], assignments: &[Assignment]) -> Result<(), Failure> {
     for Assignment { name, values } in assignments {
         if name.contains('.') {
@@ -163,7 +163,7 @@ pub(super) fn assign(columns: &mut [Column], assignments: &[Assignment]) -> Resu
     Ok(())
 }
 
-/// Register contents, each integer as the ideal's real number, too.
+/// Returns the registers. Each integer is also the ideal's real number.
 pub(super) fn load(values: &[i64]) -> Registers<Paired> {
     let mut registers = Registers::new();
     for (register, values) in Register::ALL.iter().zip(values.chunks(4)) {

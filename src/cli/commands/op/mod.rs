@@ -63,7 +63,7 @@ pub(crate) enum Command {
     Unit(unit::Arguments),
 }
 
-/// What the chip takes of textures.
+/// Returns the checks of textures for a chip.
 fn texture_checks(profile: &ProfileArgument) -> TextureChecks {
     TextureChecks { profile: profile.profile, largest_side: Limits::default().texture_side }
 }

@@ -1,4 +1,4 @@
-//! What all operations share: named integers in, a trace and named results out.
+//! What all operations share: integers with names as inputs, a trace, and results with names.
 
 use std::collections::HashSet;
 use std::ffi::OsString;
@@ -39,25 +39,25 @@ pub(super) struct Common {
     output: Option<OsString>,
 }
 
-/// An integer that an operation takes.
+/// An integer input of an operation.
 #[derive(Clone, Debug)]
 pub(super) struct Column {
-    /// Its name in traces, and what it takes.
+    /// Its name in traces, and the numbers that it takes.
     pub(super) input: Input,
-    /// A shorter name by which it may be given.
+    /// A shorter name for the command line.
     pub(super) short: String,
-    /// How many make 1.0; of a signed texel, in the ideal, 128 do (TEX-18).
+    /// Number that stands for 1.0. In the ideal it is 128 for a signed texel (TEX-18).
     pub(super) per_one: i64,
-    /// A signed texel.
+    /// Whether it is a signed texel.
     pub(super) signed_texel: bool,
-    /// How to give it on the command line.
+    /// The option that gives it.
     pub(super) how_to_give: String,
-    /// What was given; `None` if it must be given yet.
+    /// The given number; `None` if it is still missing.
     pub(super) value: Option<i64>,
 }
 
 impl Column {
-    /// A column of whole numbers that must be given yet.
+    /// Returns a column of integers without a value.
     pub(super) fn new(
         (name, short): (&str, &str),
         range: RangeInclusive<i64>,
@@ -68,18 +68,18 @@ impl Column {
         Column { per_one, ..Column::from_input(input, short, how_to_give) }
     }
 
-    /// A column that must be given yet.
+    /// Returns a column without a value.
     pub(super) fn from_input(input: Input, short: &str, how_to_give: impl Into<String>) -> Column {
         let (short, how_to_give) = (short.to_owned(), how_to_give.into());
         Column { input, short, per_one: 1, signed_texel: false, how_to_give, value: None }
     }
 
-    /// Whether it takes a number.
+    /// Returns whether it takes a number.
     fn takes(&self, value: i64) -> bool {
         self.input.narrowed(value, value).is_some()
     }
 
-    /// The number that a text means, if the column takes it.
+    /// Reads a number, if the column takes it.
     pub(super) fn read(&self, text: &str) -> Option<i64> {
         let value = match &self.input.kind {
             Kind::Name(names) => {
@@ -90,7 +90,7 @@ impl Column {
         value.filter(|value| self.takes(*value))
     }
 
-    /// What it takes, in words.
+    /// Says which numbers it takes.
     pub(super) fn wants(&self) -> String {
         let input = &self.input;
         match (&input.domain, &input.kind) {
@@ -107,13 +107,13 @@ impl Column {
         }
     }
 
-    /// An error that says what it takes.
+    /// Returns an error that says which numbers it takes.
     pub(super) fn refuses(&self, value: impl std::fmt::Display) -> Failure {
         Failure::usage(format!("{value} is out of range for `{}`", self.input.name), format!("write {}", self.wants()))
     }
 }
 
-/// Gives columns, from the first, their values.
+/// Sets the values of columns, from the first on.
 pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>) -> Result<(), Failure> {
     for (column, value) in columns.iter_mut().zip(values) {
         if !column.takes(value) {
@@ -124,48 +124,48 @@ pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>)
     Ok(())
 }
 
-/// Coordinates of texels, in whole ones or in 1/256.
+/// Range of coordinates, in texels or in 1/256 texel.
 pub(super) const COORDINATES: RangeInclusive<i64> = -16_777_216..=16_777_215;
 
-/// What comes out: names and values, in order.
+/// The results in order: names and values.
 pub(super) type Results = Vec<(String, Value)>;
 
-/// What is done with the integers.
+/// An operation on integers.
 pub(super) trait Operation {
-    /// Whether values of all columns go together; if not, what is wrong.
+    /// Returns an error if the values of the columns do not go together.
     fn check(&self, _values: &[i64]) -> Result<(), String> {
         Ok(())
     }
 
-    /// Runs it on one value for each column.
+    /// Runs the operation on one value for each column.
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results;
 }
 
-/// An operation, set up.
+/// An operation with its columns.
 pub(super) struct Setup<T> {
-    /// What results are headed with.
+    /// Title of the results.
     pub(super) name: &'static str,
-    /// What it takes.
+    /// The inputs.
     pub(super) columns: Vec<Column>,
-    /// The place of the column that a name, perhaps a short one, means.
+    /// Returns the index of the column with a name, which may be a short one.
     pub(super) find: fn(&[Column], &str) -> Option<usize>,
     /// Names that `find` knows, for messages.
     pub(super) known: String,
-    /// The chip and the policies, where they matter.
+    /// Chip and policies, if the operation depends on them.
     pub(super) chip: Option<(Profile, Policies)>,
-    /// What is done.
+    /// The operation.
     pub(super) operation: T,
 }
 
 impl<T: Operation> Setup<T> {
-    /// An operation for which the chip does not matter, and whose columns have the names that stand in them.
+    /// Sets up an operation that is the same on all chips and whose columns are found by their own names.
     pub(super) fn new(name: &'static str, columns: Vec<Column>, known: impl Into<String>, operation: T) -> Setup<T> {
         let find =
             |columns: &[Column], name: &str| columns.iter().position(|c| c.input.name == name || c.short == name);
         Setup { name, columns, find, known: known.into(), chip: None, operation }
     }
 
-    /// Runs it on what was given: one case, or a table of them.
+    /// Runs the operation on the given values, or on a table of cases.
     pub(super) fn drive(&self, common: &Common) -> Result<(), Failure> {
         if let Some(path) = &common.inputs {
             return table::run(self, path, common.output.as_deref());
@@ -216,7 +216,7 @@ impl<T: Operation> Setup<T> {
     }
 }
 
-/// Steps for the given integers that the operation reads.
+/// Returns steps for the given integers that the operation reads.
 fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
     let mut made: HashSet<&str> = HashSet::new();
     let mut read: HashSet<&str> = HashSet::new();
@@ -237,7 +237,7 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
         .collect()
 }
 
-/// A result without quotes.
+/// Returns the text of a result, without quotes.
 pub(super) fn shown(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -35,14 +35,14 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// A program with what a pixel brings.
+/// A program with the registers of a pixel.
 struct Program {
     combiners: Combiners,
     profile: Profile,
     policies: Policies,
 }
 
-/// What a pixel does not bring: constants are the program's, and SPARE0's alpha begins as TEXTURE0's (CMB-13).
+/// Registers that a pixel does not have: constants belong to the program, and SPARE0's alpha begins as TEXTURE0's (CMB-13).
 const OWN: [Register; 4] = [Register::ConstantColor0, Register::ConstantColor1, Register::Spare0, Register::Spare1];
 
 /// Runs a whole pixel program.

@@ -1,4 +1,4 @@
-//! Many cases: tab-separated values in, the same with the results out.
+//! Tables of cases: tab-separated values, which are written again with the results.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -12,7 +12,7 @@ use ninebit_files::read::{self, Kind, ReadError};
 
 use super::{Exit, Failure, Operation, Report, Setup, operation::shown as written};
 
-/// Broken rows that are named.
+/// Largest number of refused rows that are listed.
 const MAX_ERRORS: usize = 16;
 
 /// Runs an operation on each line of a table.
@@ -50,9 +50,9 @@ fn read(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text"))
 }
 
-/// The table with its results.
+/// Returns the table with its results.
 fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<String, Failure> {
-    // Lines that are empty or begin with # are no cases.
+    // Empty lines and those that begin with # are not cases.
     let mut lines = (1_usize..)
         .zip(text.lines())
         .map(|(number, line)| (number, line.trim_end_matches('\r')))
@@ -97,7 +97,7 @@ fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<St
     Ok(out)
 }
 
-/// The operation's column behind each column of the table.
+/// Returns the operation's column for each column of the table.
 fn header_columns<T>(setup: &Setup<T>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
     let wrong = |column: usize, what: String| {
         let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
@@ -126,7 +126,7 @@ fn columns_help(known: &str) -> String {
     format!("the first line names the inputs, apart by tabs: {known}")
 }
 
-/// Puts the values of one line in their places.
+/// Reads the values of one line.
 fn row(
     setup: &Setup<impl Operation>,
     columns: &[usize],
@@ -148,7 +148,7 @@ fn row(
     setup.operation.check(values)
 }
 
-/// Rows that were refused: the first of them in words, and how many there were.
+/// The first refused rows as text, and the number of all.
 struct Errors {
     shown: Vec<String>,
     rows: usize,

@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(vectors::lacks(unit, profile));
     }
     let column = |input: UnitColumn| {
-        // The name without what kind of column it is.
+        // The name without its prefix.
         let short = input.name.split_once('.').map_or(input.name.as_str(), |(_, own)| own).to_owned();
         let column = Column::from_input(input, &short, "");
         Column { how_to_give: format!("write `--in {short}=VALUE`: {}", column.wants()), ..column }

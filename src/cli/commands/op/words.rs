@@ -1,8 +1,8 @@
-//! Words of the command line: the names of the state's enumerations, those of the vendor's extensions, and short ones.
+//! Words of the command line: names of the state's enumerations, of the vendor's extensions, and short ones.
 
 use ninebit::state::*;
 
-/// A word without what only decorates it: `GL_SPARE0_NV`, `Spare0` and `spare0` are one.
+/// Returns a word without decoration: `GL_SPARE0_NV`, `Spare0` and `spare0` are the same.
 fn plain(word: &str) -> String {
     let word = word.to_ascii_lowercase().replace('-', "_");
     let word = word.strip_prefix("gl_").unwrap_or(&word);
@@ -10,13 +10,13 @@ fn plain(word: &str) -> String {
     word.replace('_', "")
 }
 
-/// The variant that a word names, by its own name or one of `short` (plain word, own name).
+/// Returns the variant of a word, by its own name or by a name in `short` (plain word, own name).
 fn named<T: Named>(what: &str, word: &str, short: &[(&str, &str)]) -> Result<T, String> {
     let wanted = plain(word);
     let wanted = short.iter().find(|(short, _)| plain(short) == wanted).map_or(wanted.clone(), |(_, name)| plain(name));
     let found = T::NAMES.iter().position(|name| plain(name) == wanted);
     found.map(|index| T::ALL[index]).ok_or_else(|| {
-        // One name for each: the first short one, or its own.
+        // One name for each variant: the first short one, or its own.
         let names: Vec<String> = T::NAMES
             .iter()
             .map(|name| short.iter().find(|(_, own)| own == name).map_or_else(|| snake(name), |(s, _)| (*s).to_owned()))
@@ -25,7 +25,7 @@ fn named<T: Named>(what: &str, word: &str, short: &[(&str, &str)]) -> Result<T, 
     })
 }
 
-/// "OneMinusSourceAlpha" as "one_minus_source_alpha"; names of formats as they are.
+/// Returns "OneMinusSourceAlpha" as "one_minus_source_alpha". Names of formats stay as they are.
 fn snake(name: &str) -> String {
     if name.chars().skip(1).any(|letter| letter.is_ascii_digit())
         && name.chars().filter(char::is_ascii_uppercase).count() > 1
@@ -68,12 +68,12 @@ const MAPPINGS: &[(&str, &str)] = &[
     ("negate", "SignedNegate"),
 ];
 
-/// A register of the general stages.
+/// Reads a register of the general stages.
 pub(super) fn register(word: &str) -> Result<Register, String> {
     named("register", word, REGISTERS)
 }
 
-/// Where a result goes; ZERO discards.
+/// Reads the destination of a result. ZERO discards it.
 pub(super) fn destination(word: &str) -> Result<Register, String> {
     match plain(word).as_str() {
         "discard" => Ok(Register::Zero),
@@ -82,12 +82,12 @@ pub(super) fn destination(word: &str) -> Result<Register, String> {
     }
 }
 
-/// A channel: 0 to 3.
+/// Reads a channel, 0 to 3.
 pub(super) fn channel(word: &str) -> Option<usize> {
     [["r", "red"], ["g", "green"], ["b", "blue"], ["a", "alpha"]].iter().position(|names| names.contains(&word))
 }
 
-/// An input as written: `REGISTER[.COMPONENT][:MAPPING]`.
+/// An input as it is written: `REGISTER[.COMPONENT][:MAPPING]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Input<R> {
     pub(super) register: R,
@@ -96,7 +96,7 @@ pub(super) struct Input<R> {
 }
 
 impl From<Input<Register>> for CombinerInput {
-    /// Without a component red, green and blue.
+    /// Without a component, it is red, green and blue.
     fn from(input: Input<Register>) -> Self {
         let mapping = input.mapping.unwrap_or(InputMapping::UnsignedIdentity);
         CombinerInput { register: input.register, component: input.component.unwrap_or(Component::Rgb), mapping }
@@ -104,14 +104,14 @@ impl From<Input<Register>> for CombinerInput {
 }
 
 impl From<Input<FinalRegister>> for FinalInput {
-    /// The same. Another mapping than those of the final combiner is the identity: who asks has refused it.
+    /// Mappings that the final combiner lacks have been refused, so they become the identity.
     fn from(input: Input<FinalRegister>) -> Self {
         let invert = input.mapping == Some(InputMapping::UnsignedInvert);
         FinalInput { register: input.register, component: input.component.unwrap_or(Component::Rgb), invert }
     }
 }
 
-/// An input of a general stage or of the final combiner.
+/// Reads an input of a general stage or of the final combiner.
 pub(super) fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
     let (place, mapping) = match text.split_once(':') {
         Some((place, mapping)) => (place, Some(named("mapping", mapping, MAPPINGS)?)),
@@ -127,14 +127,14 @@ pub(super) fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
     Ok(Input { register: named("register", name, REGISTERS)?, component, mapping })
 }
 
-/// An output scale.
+/// Reads an output scale.
 pub(super) fn scale(word: &str) -> Result<Scale, String> {
     let short = [("1", "One"), ("2", "Two"), ("4", "Four"), ("half", "Half"), ("0.5", "Half"), ("1/2", "Half")];
     let word = plain(word);
     named("scale", word.strip_prefix("scaleby").unwrap_or(&word), &short)
 }
 
-/// The bit that steers the mux.
+/// Reads the bit that steers the mux.
 pub(super) fn mux_select(word: &str) -> Result<MuxSelect, String> {
     named("mux selection", word, &[])
 }
@@ -144,13 +144,13 @@ pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     named("profile", word, &[])
 }
 
-/// A blend equation.
+/// Reads a blend equation.
 pub(super) fn equation(word: &str) -> Result<BlendEquation, String> {
     let word = plain(word);
     named("blend equation", word.strip_prefix("func").unwrap_or(&word), &[])
 }
 
-/// A blend factor.
+/// Reads a blend factor.
 pub(super) fn factor(word: &str) -> Result<BlendFactor, String> {
     let short = [
         ("0", "Zero"),
@@ -170,33 +170,33 @@ pub(super) fn factor(word: &str) -> Result<BlendFactor, String> {
     ];
     let long = plain(word).replace("src", "source").replace("dst", "destination");
     let long = short.iter().find(|(short, _)| *short == long).map_or(long, |(_, name)| (*name).to_owned());
-    // In the message the factors have their own names.
+    // Messages name the factors as they are written.
     named("blend factor", &long, &[]).map_err(|message: String| message.replacen(&long, word, 1))
 }
 
-/// A surface format.
+/// Reads a surface format.
 pub(super) fn surface(word: &str) -> Result<SurfaceFormat, String> {
     named("surface format", word, &[])
 }
 
-/// An address mode.
+/// Reads an address mode.
 pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
     let short = [("wrap", "Wrap"), ("repeat", "Wrap"), ("mirror", "Mirror"), ("mirrored_repeat", "Mirror")];
     named("address mode", word, &short)
 }
 
-/// A whole number, decimal or hexadecimal: `-128`, `0x80`, `-0x80`.
+/// Reads an integer, decimal or hexadecimal: `-128`, `0x80`, `-0x80`.
 pub(super) fn number(text: &str) -> Option<i64> {
     let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
     match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
-        // Two signs are no number.
+        // A number has one sign.
         Some(digits) if digits.starts_with(['+', '-']) => None,
         Some(digits) => i64::from_str_radix(&format!("{sign}{digits}"), 16).ok(),
         None => text.parse().ok(),
     }
 }
 
-/// Reads whole numbers with commas between.
+/// Reads integers separated by commas.
 pub(super) fn numbers(text: &str) -> Option<Vec<i64>> {
     text.split(',').map(|text| number(text.trim())).collect()
 }
