@@ -248,18 +248,11 @@ impl Cascade {
     }
 
     /// Adds a stage. Findings about it have the place `span`; reports show its `origin`.
-    pub(crate) fn stage(
-        &mut self,
-        span: Span,
-        rgb: &Equation,
-        alpha: Alpha,
-        destination: Destination,
-        origin: StageOrigin,
-    ) {
+    pub(crate) fn stage(&mut self, span: Span, rgb: &Equation, alpha: Alpha, target: Destination, origin: StageOrigin) {
         if self.profile == Profile::Nv2a {
             self.constants.clear();
         }
-        let register = match destination {
+        let register = match target {
             Destination::Current => Register::Spare0,
             Destination::Temporary => Register::Spare1,
         };
@@ -279,7 +272,7 @@ impl Cascade {
             alpha_is_blue: alpha == Alpha::DotProduct && !blue_to_alpha,
             signed: rgb.is_signed() || signed_alpha,
         };
-        match destination {
+        match target {
             Destination::Current => self.current = value,
             Destination::Temporary => self.temporary = Some(value),
         }
@@ -379,13 +372,8 @@ impl Cascade {
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
 
-    /// Returns the program, or all findings: `findings`, then those about the cascade. `what` is what messages call the program, such as "cascade".
-    pub(crate) fn finish(
-        mut self,
-        what: &str,
-        end: End,
-        mut findings: Vec<Diagnostic>,
-    ) -> Result<Lowered, Vec<Diagnostic>> {
+    /// Returns the program, or all findings: `all`, then those about the cascade. `what` is what messages call the program, such as "cascade".
+    pub(crate) fn finish(mut self, what: &str, end: End, mut all: Vec<Diagnostic>) -> Result<Lowered, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // No stage affects the result.
             let nothing = Cascade::new(self.profile, self.signed_textures);
@@ -399,9 +387,9 @@ impl Cascade {
         if let Some(span) = self.places.get(most) {
             self.findings.push(too_many_stages(self.profile, needed, span.clone(), what));
         }
-        findings.extend(self.findings);
-        if !findings.is_empty() {
-            return Err(findings);
+        all.extend(self.findings);
+        if !all.is_empty() {
+            return Err(all);
         }
         let constants = self.stages.last().map_or([[0; 4]; 2], |stage| stage.constants);
         if self.profile == Profile::Nv10 {

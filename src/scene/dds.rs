@@ -13,7 +13,7 @@ use ninebit_files::texels;
 mod pixel_format;
 
 /// The first bytes of every DDS file.
-pub(crate) const SIGNATURE: [u8; 4] = *b"DDS ";
+pub const SIGNATURE: [u8; 4] = *b"DDS ";
 
 /// Number of bytes of signature and header.
 const HEADER: usize = 128;
