@@ -1,5 +1,5 @@
-//! The scalar engine on whole frames: DOT3 of one bilinear normal map and the interpolated light vector, 640x480; the comparison with
-//! its ideal; planning.
+//! Measures the scalar engine on whole frames of 640x480: DOT3 of a bilinear normal map with the interpolated light vector, the comparison
+//! with the ideal, the cost of state, and planning.
 #![allow(missing_docs, clippy::float_arithmetic, clippy::unwrap_used, reason = "a benchmark")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -12,7 +12,7 @@ use std::hint::black_box;
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
 
-/// A bumpy normal map: any bytes do, as long as they vary from texel to texel.
+/// Returns a texture of pseudo-random bytes. The speed does not depend on their values, as long as they vary from texel to texel.
 fn normal_map() -> Texture {
     let words: Vec<u32> = (0..256 * 256_u32)
         .map(|n| {
@@ -30,7 +30,7 @@ fn input(register: Register, mapping: InputMapping) -> CombinerInput {
     CombinerInput { register, component: Component::Rgb, mapping }
 }
 
-/// spare0 = expand(texture0) . expand(primary), shown as it is.
+/// Returns combiners that compute spare0 = expand(texture0) . expand(primary) and show it unchanged.
 fn dot3() -> Combiners {
     let mut rgb = Portion::idle(Component::Rgb);
     rgb.inputs[0] = input(Register::Texture0, InputMapping::ExpandNormal);
@@ -93,7 +93,7 @@ fn engine(c: &mut Criterion) {
     group.finish();
 }
 
-/// The same frame compared with its ideal; the ratio to `dot3_frame/perspective/1_thread` is what counts.
+/// Compares the same frame with its ideal. The time is of interest as a multiple of `dot3_frame/perspective/1_thread`.
 fn comparison(c: &mut Criterion) {
     let mut group = c.benchmark_group("compare");
     group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(10);
@@ -105,7 +105,7 @@ fn comparison(c: &mut Criterion) {
     group.finish();
 }
 
-/// The primary colour, shown as it is.
+/// Returns combiners that show a register unchanged, without arithmetic in the general stage.
 fn shown(register: FinalRegister) -> Combiners {
     let mut combiners = dot3();
     combiners.stages[0].rgb = Portion::idle(Component::Rgb);
@@ -113,7 +113,7 @@ fn shown(register: FinalRegister) -> Combiners {
     combiners
 }
 
-/// What each piece of state costs: the same frame with more and more of it.
+/// Measures the cost of state: the same frame with one or more pieces of state added.
 fn state(c: &mut Criterion) {
     let mut group = c.benchmark_group("state");
     group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(10);

@@ -1,4 +1,4 @@
-//! How fast all rows of a unit are digested, on one core: the bar is 100 million product sums a second.
+//! Measures how fast the rows of an exhaustive sweep are digested on one core. The target is 100 million product sums a second.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -19,7 +19,7 @@ fn digests(c: &mut Criterion) {
         let Some(sweep) = units::by_name(name).and_then(|unit| Exhaustive::new(unit, Profile::Nv2a)) else { continue };
         bench(name, &sweep, rows);
     }
-    // Sixteen rows at a time.
+    // These units evaluate sixteen rows at a time.
     for name in ["blend/add", "final-combiner/own", "texture-combine/combine4-add", "general-stage/product"] {
         let path = format!("{}/../vectors/digests/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let Ok((_, sweep)) = Tree::read(path.as_ref()) else { continue };

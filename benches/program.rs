@@ -1,5 +1,6 @@
-//! What reading a pixel program costs: a two-stage program as text and as register words, as Direct3D texture stages and as the OpenGL texture
-//! environment; a pixel shader of eight instructions; and reading and planning a scene of a thousand draws.
+//! Measures how long it takes to read a pixel program: a program of two stages as text, as register words, as Direct3D texture stages and
+//! as an OpenGL texture environment, and a pixel shader of eight instructions. Also measures reading and planning a scene of a thousand
+//! draws.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
@@ -60,7 +61,7 @@ fn program(c: &mut Criterion) {
     group.finish();
 }
 
-/// A thousand draws, each with a program of its own language's, textures and a blend.
+/// Returns the text of a scene of a thousand draws. Each draw has textures, blending and a program in one of three languages.
 fn thousand_draws() -> String {
     let draw = |n: usize| {
         let (x, y) = (n % 32 * 16, n / 32 * 8);

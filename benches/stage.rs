@@ -1,7 +1,7 @@
-//! One text of a DOT3 stage, three evaluations: traced scalar, float64, and blocks of 128 pixels in 16 bits.
+//! Measures one DOT3 stage in three evaluations from the same source: traced scalar, float64, and blocks of 128 pixels in 16 bits.
 //!
-//! The stage is spare0.rgb = expand(texture0) . expand(primary), read by the final combiner through the unsigned identity.
-//! Every evaluation calls the same `expand_normal`, `dot_product` and `output`.
+//! The stage computes spare0.rgb = expand(texture0) . expand(primary), which the final combiner reads through the unsigned identity. Every
+//! evaluation calls the same `expand_normal`, `dot_product` and `output`.
 #![allow(missing_docs, clippy::float_arithmetic, reason = "a benchmark")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -16,7 +16,7 @@ use std::hint::black_box;
 
 const PIXELS: usize = 128;
 
-/// The stage, once.
+/// Evaluates the stage in any register type.
 #[inline(always)]
 fn dot3<R: Register>(texture: [R; 3], primary: [R; 3]) -> R
 where
@@ -29,7 +29,7 @@ where
 
 type Block = [[i16; PIXELS]; 3];
 
-/// Sixteen-bit lanes: the general register lane.
+/// Evaluates a block in 16-bit lanes of the general register type.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2+fma", "aarch64+neon"))]
 fn block_general(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     for n in 0..PIXELS {
@@ -38,7 +38,7 @@ fn block_general(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     }
 }
 
-/// Sixteen-bit lanes whose expanded products stay in sixteen bits.
+/// Evaluates a block in 16-bit lanes whose products of expanded values stay within 16 bits.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2+fma", "aarch64+neon"))]
 fn block_narrow(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     for n in 0..PIXELS {
@@ -47,7 +47,7 @@ fn block_narrow(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     }
 }
 
-/// The same, held to AVX2 where AVX-512 is at hand.
+/// Like [`block_narrow`], but limited to AVX2 on processors that have AVX-512.
 #[multiversion(targets("x86_64+avx2+fma"))]
 fn block_narrow_avx2(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     for n in 0..PIXELS {
@@ -56,7 +56,7 @@ fn block_narrow_avx2(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) 
     }
 }
 
-/// The general lane, held to AVX2.
+/// Like [`block_general`], but limited to AVX2.
 #[multiversion(targets("x86_64+avx2+fma"))]
 fn block_general_avx2(texture: &Block, primary: &Block, out: &mut [i16; PIXELS]) {
     for n in 0..PIXELS {
@@ -74,7 +74,7 @@ where
     }
 }
 
-/// Bytes as a normal map and a light vector would give them.
+/// Returns a block of pseudo-random bytes in place of a normal map or a light vector.
 fn operand(seed: u64) -> Block {
     let mut random = Random::seeded(seed);
     std::array::from_fn(|_| std::array::from_fn(|_| i16::from(random.bits() as u8)))

@@ -1,6 +1,7 @@
-//! What a texture unit costs for each pixel that it samples: filters, levels, kinds and formats, scalar engine, one thread.
+//! Measures the cost of a texture unit for each pixel that it samples, by filter, number of levels, kind and format, on the scalar engine
+//! with one thread.
 //!
-//! A quad of 256 x 256 pixels without anything but the unit; `nothing` is the same quad in one colour, to be taken off.
+//! The scene is a quad of 256 x 256 pixels. `nothing` is the same quad in one colour; its time is to be subtracted.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a benchmark")]
 
 #[path = "../tests/common/build.rs"]
@@ -15,7 +16,7 @@ use std::hint::black_box;
 
 const SIDE: u32 = 256;
 
-/// A texture of words that vary from texel to texel.
+/// Returns a texture whose words vary from texel to texel.
 fn texture(kind: TextureKind, format: TextureFormat, levels: u32) -> Texture {
     let (_, face) = Level::chain(format, SIDE, SIDE, levels, false);
     let faces = if kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
@@ -25,7 +26,7 @@ fn texture(kind: TextureKind, format: TextureFormat, levels: u32) -> Texture {
     Texture { name: "texture".to_string(), kind, format, image: TextureImage::Texels(texels) }
 }
 
-/// The quad, sampling so many texels a pixel.
+/// Returns a scene of one quad, in which a pixel steps over `ratio` texels.
 fn scene(texture: Option<Texture>, unit: TextureUnit, ratio: f32) -> Scene {
     let side = SIDE as f32;
     let scale = match &texture {
@@ -82,7 +83,7 @@ fn units(c: &mut Criterion) {
     bench("cube_nearest", Some(texture(TextureKind::Cube, argb, 1)), nearest, 1.0);
     bench("cube_bilinear", Some(texture(TextureKind::Cube, argb, 1)), bilinear, 1.0);
     bench("cube_trilinear", Some(texture(TextureKind::Cube, argb, 9)), trilinear, 3.0);
-    // Compressed texels are decoded on demand; the same filter on A8R8G8B8 is what a cache of decoded texels could reach.
+    // Compressed texels are decoded at each access. The same filter on A8R8G8B8 is the limit for a cache of decoded texels.
     bench("dxt1_nearest", Some(texture(flat, TextureFormat::Dxt1, 1)), nearest, 1.0);
     bench("dxt1_bilinear", Some(texture(flat, TextureFormat::Dxt1, 1)), bilinear, 1.0);
     bench("dxt5_bilinear", Some(texture(flat, TextureFormat::Dxt5, 1)), bilinear, 1.0);

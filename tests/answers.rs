@@ -1,4 +1,4 @@
-//! `docs/answers.md`: its grades are the handbook's, its commands run and end as it says, and its vectors exist.
+//! Checks `docs/answers.md`: grades are those of the handbook, commands run and end as the page says, and vectors exist.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench::Bench;
@@ -9,7 +9,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(at(path)).unwrap()
 }
 
-/// The grade of a rule in the handbook.
+/// Returns the grade of a rule in the handbook.
 fn grade(rule: &str, handbook: &str) -> String {
     let section = handbook.split(&format!("### {rule} ")).nth(1).unwrap_or_else(|| panic!("there is no rule {rule}"));
     section.split("- Grade: ").nth(1).unwrap().lines().next().unwrap().to_string()
@@ -40,7 +40,7 @@ fn grades_are_those_of_the_handbook() {
     }
 }
 
-/// Every command of the page; the line below it is the last one that it prints.
+/// Runs every command of the page and compares the last line of its output with the line below the command.
 #[test]
 fn commands_end_as_the_page_says() {
     let (page, bench) = (read("docs/answers.md"), Bench::new());

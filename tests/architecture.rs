@@ -1,4 +1,4 @@
-//! What `docs/architecture.md` says of the modules' dependencies holds in the sources.
+//! Checks that the sources follow the module dependencies of `docs/architecture.md`.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::circles::circles;
@@ -6,10 +6,10 @@ use crate::pages;
 use crate::repository::{at, name};
 use std::path::{Path, PathBuf};
 
-/// Modules that use one another and the standard library, nothing else.
+/// Modules that may use only one another and the standard library.
 const CORE: [&str; 8] = ["state", "number", "trace", "algebra", "raster", "texture", "combiner", "rop"];
 
-/// Adds the files below a folder, but for those that are compressed.
+/// Appends all files below a folder except for compressed ones.
 pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -21,7 +21,7 @@ pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The sources of a folder without comments and tests: file and text.
+/// Returns the path and the text of each source in a folder, without comments and unit tests.
 fn sources(folder: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     files(&at(folder), &mut found);
@@ -36,7 +36,7 @@ fn sources(folder: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The names that follow `prefix` in a text.
+/// Returns the names that follow `prefix` in a text.
 fn names_after<'a>(text: &'a str, prefix: &str) -> Vec<&'a str> {
     text.split(prefix)
         .skip(1)
@@ -44,7 +44,7 @@ fn names_after<'a>(text: &'a str, prefix: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The crates that `Cargo.toml` names, but for the model.
+/// Returns the names of the workspace's dependencies except for the model.
 fn crates() -> Vec<String> {
     let manifest = std::fs::read_to_string(at("Cargo.toml")).unwrap();
     let dependencies = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
@@ -63,7 +63,7 @@ fn the_core_uses_itself_and_the_standard_library() {
     for module in CORE {
         for (file, text) in sources(&format!("src/model/{module}")) {
             for name in names_after(&text, "crate::") {
-                // `$crate::state` in a macro counts as well, and so does the macro.
+                // `$crate::state` in a macro counts as well. The macro `named` is allowed.
                 assert!(CORE.contains(&name) || name == "named", "{file} uses {name}");
             }
             for name in &crates {
@@ -73,7 +73,7 @@ fn the_core_uses_itself_and_the_standard_library() {
     }
 }
 
-/// Numbers know nothing of observers, and the operations of the order nothing of who runs them.
+/// `number` must not depend on observers, and `algebra` must not depend on the modules that run its operations.
 #[test]
 fn numbers_and_the_algebra_stand_below() {
     for (module, below) in [("number", &["state", "number"][..]), ("algebra", &["state", "algebra", "trace"])] {
@@ -103,12 +103,13 @@ fn the_oracle_is_independent() {
     }
 }
 
-/// What others have named reaches people and reports through `shown`.
+/// Names from outside are printed and reported only through `shown`, which makes them safe.
 #[test]
 fn names_are_shown_in_one_place() {
     for (file, text) in sources("src") {
         assert!(file == "src/model/shown.rs" || !text.contains(".display()"), "{file}: `shown::path` shows a path");
-        // Annotations are commands, tables of numbers have no names in them, and a trace is streamed in parts that are shown already.
+        // The exceptions: annotations are commands, tables of numbers contain no names, and a trace is streamed in parts that `shown` has
+        // already made safe.
         let bytes = [
             "src/files/output.rs",
             "src/cli/commands/replay.rs",
@@ -122,7 +123,7 @@ fn names_are_shown_in_one_place() {
     }
 }
 
-/// Files in `tests` are no test binaries by themselves here: one that nobody names would never run.
+/// Files in `tests` do not become test binaries by themselves. A file that neither the suite nor the manifest names would never run.
 #[test]
 fn every_test_file_runs() {
     let (suite, manifest) =
@@ -137,7 +138,7 @@ fn every_test_file_runs() {
     }
 }
 
-/// Limits and the record of inputs hold for what goes through `read`, so everything has to.
+/// Limits and the record of inputs apply only to files that are read through `read`, so every file has to be.
 #[test]
 fn files_are_read_in_one_place() {
     for (file, text) in sources("src").into_iter().filter(|(file, _)| file != "src/files/read.rs") {
@@ -147,7 +148,7 @@ fn files_are_read_in_one_place() {
     }
 }
 
-/// The crates: the folder of the manifest, and its text.
+/// Returns the folder and the manifest of each crate.
 fn manifests() -> Vec<(PathBuf, String)> {
     let folders = std::fs::read_dir(at("src")).unwrap().map(|entry| entry.unwrap().path());
     let mut folders: Vec<PathBuf> = folders.filter(|folder| folder.join("Cargo.toml").exists()).collect();
@@ -156,7 +157,7 @@ fn manifests() -> Vec<(PathBuf, String)> {
     folders.into_iter().map(|folder| (folder.clone(), text(&folder))).collect()
 }
 
-/// The page's table of crates is made of their manifests.
+/// The page's table of crates is generated from their manifests.
 #[test]
 fn crates_are_listed() {
     let mut table = "| folder | crate | what it is for | uses |\n|---|---|---|---|\n".to_owned();
@@ -175,7 +176,8 @@ fn crates_are_listed() {
     pages::hold("docs/architecture.md", "tests/architecture.rs", &table);
 }
 
-/// What has no examples in its documentation is not asked for any: collecting none takes rustdoc a second a crate.
+/// A crate whose documentation has no examples has its doc tests turned off, because rustdoc needs a second for each crate even to find
+/// none. Such a crate must not get examples.
 #[test]
 fn crates_without_tests_of_documentation_have_no_examples() {
     let mut silent = 0;
@@ -192,7 +194,7 @@ fn crates_without_tests_of_documentation_have_no_examples() {
             });
             let lines: Vec<&str> = comments.map(str::trim_start).collect();
             let fences = lines.windows(2).filter_map(|pair| Some((pair[0].strip_prefix("```")?, pair[1])));
-            // Every other one ends a block. What is included is an example, which is tested.
+            // Every second fence ends a block. Included text is an example that is tested elsewhere.
             let opening = fences.step_by(2).find(|(words, next)| !words.starts_with("text") && !next.starts_with('('));
             assert!(opening.is_none(), "{}: {opening:?}", path.display());
         }
@@ -200,7 +202,7 @@ fn crates_without_tests_of_documentation_have_no_examples() {
     assert!(silent > 0);
 }
 
-/// One version of Rust is pinned for who builds the repository and promised to who uses a crate of it.
+/// The Rust version that is pinned for builds of the repository is the version that the crates declare.
 #[test]
 fn the_pinned_compiler_is_the_promised_one() {
     let value = |path: &str, key: &str| {
@@ -212,7 +214,7 @@ fn the_pinned_compiler_is_the_promised_one() {
     assert_eq!(pinned, format!("{promised}.0"));
 }
 
-/// A recipe runs Cargo or a script of the repository.
+/// Recipes of the justfile run only Cargo or scripts of the repository.
 #[test]
 fn recipes_run_what_there_is() {
     let text = std::fs::read_to_string(at("justfile")).unwrap();

@@ -1,4 +1,4 @@
-//! Image files as they come, and as nobody should make them.
+//! Tests reading of image files, well-formed and broken.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -8,7 +8,7 @@ use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene::image::{ImageError, ImageLimits, Rgba, decode, load};
 use proptest::prelude::*;
 
-/// The checksum that ends every chunk of a PNG.
+/// Returns the CRC-32 that ends every chunk of a PNG.
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { (c >> 1) ^ 0xedb8_8320 } else { c >> 1 })
@@ -29,7 +29,7 @@ fn png(chunks: &[Vec<u8>]) -> Vec<u8> {
     [b"\x89PNG\r\n\x1a\n".to_vec(), chunks.concat()].concat()
 }
 
-/// Two zero bytes, compressed: a filter byte and one pixel of index or grey 0.
+/// Two zero bytes, compressed: a filter byte, and one pixel whose index or grey is 0.
 const TWO_ZEROS: [u8; 10] = [0x78, 0x9c, 0x63, 0x60, 0x00, 0x00, 0x00, 0x02, 0x00, 0x01];
 
 fn end() -> Vec<u8> {
@@ -118,7 +118,7 @@ fn sixteen_bits_are_refused() {
 fn every_truncation_is_an_error() {
     let pixels: Vec<[u8; 4]> = (0..64u8).map(|i| [i, i.wrapping_mul(37), 255 - i, i]).collect();
     let file = encode_png(8, 8, &pixels, Compression::Small).unwrap();
-    // The last twelve bytes only say that it ends.
+    // The last twelve bytes are the end chunk, which may be missing.
     for length in 0..file.len() - 12 {
         let result = decode_as("x.png", &file[..length]);
         assert!(["NB0513", "NB0517"].contains(&code(result)), "{length} bytes");
@@ -143,7 +143,7 @@ fn structure_is_checked() {
 
 #[test]
 fn tgas_of_every_kind_become_rgba() {
-    // Blue, green, red, alpha; the first row is the bottom one unless bit 5 says otherwise.
+    // Texels are stored as blue, green, red, alpha. The first row is the bottom one unless bit 5 is set.
     let two_rows = [1, 2, 3, 4, 5, 6, 7, 8];
     let bottom_up = decode_as("x.TGA", &tga(2, 1, 2, 32, 8, &two_rows)).unwrap();
     assert_eq!(bottom_up.pixels, [[7, 6, 5, 8], [3, 2, 1, 4]]);
@@ -211,7 +211,7 @@ proptest! {
     #[test]
     fn damaged_tgas_never_panic(head in any::<[u8; 18]>(), data in prop::collection::vec(any::<u8>(), 0..200)) {
         let mut head = head;
-        // Small enough to be decoded at all.
+        // Sizes stay small enough to be decoded.
         (head[13], head[15], head[6]) = (head[13] & 1, head[15] & 1, head[6] & 1);
         let _ = decode_as("x.tga", &[&head[..], &data].concat());
     }

@@ -1,4 +1,4 @@
-//! Outputs arrive whole or not at all.
+//! Tests that outputs are written as a whole or not at all.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::ffi::OsStr;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use ninebit_files::output::{Compression, Destination, encode_png, write_file};
 
-/// Names in a folder, sorted.
+/// Returns the names in a folder, sorted.
 fn listing(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -100,7 +100,7 @@ mod unix {
     }
 }
 
-/// A folder that cannot be put in its place leaves nothing, as one that is given up.
+/// Neither a folder that is abandoned nor one that cannot be moved to its place leaves anything behind.
 #[test]
 fn folders_arrive_whole_or_not_at_all() {
     use ninebit_files::output::PendingFolder;

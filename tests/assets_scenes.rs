@@ -1,4 +1,5 @@
-//! The generated textures of the scenes under `vectors/scenes` are what the generators make. What the scenes show: `tests/cases`.
+//! Checks that the generated textures of the scenes under `vectors/scenes` are what the generators make. The pictures of the scenes are
+//! checked by `tests/cases`.
 #![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
 use crate::repository::at;

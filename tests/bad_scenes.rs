@@ -1,7 +1,7 @@
-//! Broken scenes and every character of what is said about them.
+//! Compares the complete diagnostics of broken scenes with stored texts.
 //!
-//! `tests/bad/NAME.ron` is refused (or warned about) with the text in `NAME.txt`. `BLESS=1` writes the texts anew: read the
-//! difference before you keep it.
+//! `tests/bad/NAME.ron` is refused, or causes a warning, with the text in `NAME.txt`. `BLESS=1` rewrites the texts; read the difference
+//! before you keep it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::{at, seen};

@@ -1,10 +1,10 @@
-//! Captured frames of a real NV2A: every one that is drawn here is the captured one, by both engines.
+//! Compares captured frames of a real NV2A with the frames that both engines draw.
 
 use ninebit::engine::{Engine, RenderOptions};
 use ninebit_vectors::captures::{self, SIZE};
 use rayon::prelude::*;
 
-/// A sample of all suites; all frames by `ninebit captures check`.
+/// Tests a sample of all suites. `ninebit captures check` compares all frames.
 #[test]
 fn every_frame_is_exact() {
     let frames = captures::frames(&[]).unwrap_or_else(|unmatched| panic!("{unmatched:#?}"));
@@ -14,7 +14,7 @@ fn every_frame_is_exact() {
         .par_iter()
         .enumerate()
         .filter_map(|(n, frame)| {
-            // The definition draws a tenth of them.
+            // The scalar engine, which is slower, draws a tenth of the frames.
             let engine = if n % 10 == 0 { Engine::Scalar } else { Engine::Fast };
             let pixels = frame.render(&RenderOptions { engine, threads: 1, ..RenderOptions::default() }).unwrap();
             (frame.is(&pixels) == frame.open.is_some()).then(|| format!("{}/{} by {engine:?}", frame.suite, frame.name))
@@ -25,7 +25,7 @@ fn every_frame_is_exact() {
     println!("{} frames, {compared} pixels", frames.len());
 }
 
-/// A sample has frames of every suite, none twice, and is all of them where so many are asked for.
+/// A sample contains frames of every suite, none of them twice. If more frames are asked for than there are, it contains all of them.
 #[test]
 fn samples_are_spread() {
     let all = || captures::frames(&[]).unwrap();
@@ -45,7 +45,7 @@ fn samples_are_spread() {
     assert_eq!(sorted.len(), count);
 }
 
-/// The comparison can fail: one pixel makes the difference, and one under the text makes none.
+/// A single changed pixel is noticed, except under the printed text, which is not compared.
 #[test]
 fn one_pixel_makes_a_difference() {
     let frames = captures::frames(&["Stencil"]).unwrap();

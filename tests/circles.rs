@@ -1,33 +1,34 @@
-//! Which files of a crate import one another, read off their sources.
+//! Finds the files of a crate that import one another, by reading their sources.
 //!
-//! A file imports what `use` takes, and what its text reaches by `crate`, `super`, or a module that `use` took. Not counted is a module that calls
-//! its own children by their names, or hands on what they hold: that is the way down, and the children's imports say whether there is one up.
+//! A file imports what `use` names, and what its text reaches by `crate`, by `super`, or through a module that `use` named. A module that
+//! calls its own children by name, or re-exports their items, does not count as importing them: dependencies on children are expected, and
+//! only the imports of the children show whether there is one in the other direction.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The path of a module, from the root of its crate.
+/// The path of a module from the root of its crate.
 type Module = Vec<String>;
 
-/// A file of a crate.
+/// The names and imports of a file.
 struct Source {
     module: Module,
-    /// What `use` brings into its scope: the name there, and the path.
+    /// Names that `use` brings into scope, each with its path.
     imports: BTreeMap<String, Vec<String>>,
-    /// The paths of what it imports.
+    /// The paths that the file imports.
     paths: Vec<Vec<String>>,
-    /// The paths of modules all of whose names it imports.
+    /// The paths of modules that the file imports with `*`.
     globs: Vec<Vec<String>>,
-    /// The names that its text has.
+    /// All names in the text.
     names: BTreeSet<String>,
-    /// Those that stand where an item is defined.
+    /// The names of the items that the file defines.
     items: BTreeSet<String>,
 }
 
-/// Groups of files that all reach one another by imports, each file with what it imports of its group; those of one file are left out. A name
-/// counts for the file that holds its item, however many modules hand it on.
+/// Returns the groups of files that all reach one another by imports, each file with the files of its group that it imports. A name counts
+/// for the file that defines its item, even if other modules re-export it. Groups of one file are left out.
 ///
-/// `files`: the names of a crate's files from its folder on, and their texts.
+/// `files` has the path of each file within the crate's folder, and its text.
 pub fn circles(files: &[(String, String)]) -> Vec<BTreeMap<&str, Vec<&str>>> {
     let uses = edges(files);
     let reached: Vec<BTreeSet<usize>> = (0..uses.len()).map(|n| reach(&uses, n)).collect();
@@ -43,7 +44,7 @@ pub fn circles(files: &[(String, String)]) -> Vec<BTreeMap<&str, Vec<&str>>> {
         .collect()
 }
 
-/// Of each file, which others hold what it names.
+/// Returns for each file the indices of the files that define the names it imports.
 fn edges(files: &[(String, String)]) -> Vec<BTreeSet<usize>> {
     let sources: Vec<Source> = files.iter().map(|(name, text)| source(name, text)).collect();
     let modules: BTreeMap<&[String], usize> =
@@ -66,7 +67,7 @@ fn edges(files: &[(String, String)]) -> Vec<BTreeSet<usize>> {
         .collect()
 }
 
-/// All that is used, and what that uses.
+/// Returns everything that `from` uses, directly and indirectly.
 fn reach(uses: &[BTreeSet<usize>], from: usize) -> BTreeSet<usize> {
     let (mut found, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(next) = open.pop() {
@@ -75,7 +76,8 @@ fn reach(uses: &[BTreeSet<usize>], from: usize) -> BTreeSet<usize> {
     found
 }
 
-/// The file that holds what a path of a file names. `None`: another crate, or a module as such.
+/// Returns the file that defines the item to which a path in a file refers. Returns `None` for items of other crates, for modules, and for
+/// items of the file itself.
 fn holder(
     sources: &[Source],
     modules: &BTreeMap<&[String], usize>,
@@ -96,7 +98,8 @@ fn holder(
     handed_on.or(Some(held)).filter(|held| *held != file)
 }
 
-/// The file of the module that a path of a file leads to, and what of the path is left there. `None`: it starts with the name of no module.
+/// Returns the file of the module to which a path leads, and the rest of the path. Returns `None` if the path does not begin with the name
+/// of a module.
 fn reached<'p>(
     sources: &[Source],
     modules: &BTreeMap<&[String], usize>,
@@ -166,7 +169,7 @@ fn source(name: &str, text: &str) -> Source {
     found
 }
 
-/// Reads what `use` takes, from a word on.
+/// Reads one tree of a `use` statement, beginning at word `at`.
 fn tree(words: &[String], at: &mut usize, before: &[String], found: &mut Source) {
     let mut path = before.to_vec();
     loop {
@@ -198,7 +201,7 @@ fn tree(words: &[String], at: &mut usize, before: &[String], found: &mut Source)
         *at += 2;
     }
     if !matches!(path[0].as_str(), "crate" | "super" | "self") {
-        // That of a child, or of another crate.
+        // The path begins with a child module or with another crate.
         path.insert(0, "self".to_owned());
     }
     found.paths.push(path.clone());
@@ -209,7 +212,7 @@ fn is_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The names and signs of a text without comments, literals and tests.
+/// Returns the names and punctuation of a text without comments, literals and unit tests.
 fn words(text: &str) -> Vec<String> {
     let text = text.split("\nmod tests {").next().unwrap();
     let mut words = Vec::new();

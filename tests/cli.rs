@@ -1,4 +1,4 @@
-//! The program as it is used: exit statuses, what goes to stdout and what to stderr.
+//! Tests the program from outside: exit statuses, and what it writes to stdout and to stderr.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -58,7 +58,7 @@ fn scenes_become_pages() {
     let folder = bench.path("");
     assert!(!page.contains(folder.to_str().unwrap().trim_end_matches('/')), "the page says where its scene lay");
     assert_eq!(bench.run("inspect scene.ron -o - --policy CMB-3=literal").text(), page);
-    // The picture that is seen first is that of the default policies.
+    // The picture that the page shows first is drawn with the default policies, so the page does not contain one here.
     assert!(page.contains(r#""picture":null"#));
     assert!(bench.run("inspect scene.ron -o -").text().contains(r#""picture":"iVBORw0KGgo"#));
     bench.run("inspect bad.ron -o bad.html").failed(3, "NB0204");
@@ -134,7 +134,7 @@ fn programs_are_printed_in_other_forms() {
     bench.run("check lit-text-file.ron").failed(4, "NB0502");
 }
 
-/// A program in each language that has files of its own, and the texts that it is printed as.
+/// Prints a program in each language that has files of its own, in each form of output.
 #[test]
 fn programs_are_printed_as_functions() {
     let bench = Bench::new();
@@ -147,7 +147,7 @@ fn programs_are_printed_as_functions() {
         let path = at(format!("tests/cli/lower-{form}.txt"));
         assert_data_eq!(printed, snapbox::Data::read_from(&path, None));
     }
-    // The words, the program that they are, and the scene with them are one function.
+    // Register words, the program that they encode, and the scene that contains them are printed as the same function.
     let body = |text: String| text.split_once("_program(").unwrap().1.to_owned();
     let words = body(bench.run("lower lit.words --profile nv10 --to glsl").text());
     assert_eq!(body(bench.run("lower lit.rc --profile nv10 --to glsl").text()), words);
@@ -192,7 +192,7 @@ fn whole_programs_run_without_a_scene() {
     bench.run("op program lit.txt").failed(2, "--from");
 }
 
-/// A scene from standard input is the scene of the file.
+/// A scene that is read from standard input is handled like one from a file.
 #[test]
 fn scenes_come_from_standard_input() {
     let bench = Bench::new();
@@ -319,7 +319,7 @@ fn colour_is_a_choice() {
     assert!(Run::from_output(forced).stderr.contains('\x1b'), "the command line outranks the environment");
 }
 
-/// A scene of one red triangle on 8 x 4 pixels, and a second target.
+/// A scene with one red triangle on 8 x 4 pixels and a second target.
 const SCENE: &str = r#"(
     version: 1,
     profile: Nv2a,

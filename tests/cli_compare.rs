@@ -1,4 +1,4 @@
-//! `ninebit compare` as it is used.
+//! Tests `ninebit compare` from outside.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, dead_code, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -6,7 +6,7 @@ use crate::bench;
 use bench::Bench;
 use std::fs;
 
-/// A white triangle, and the same through a half-bias product.
+/// A white triangle, which is exact, and the same triangle through a half-bias product, which is not.
 const EXACT: &str = "(version: 1, profile: Nv10, targets: [(name: \"frame\", width: 8, height: 8)], draws: [(vertices: Window([\
                      (position: (0, 0)), (position: (8, 0)), (position: (0, 8))]))])";
 const OFF: &str = "(version: 1, profile: Nv10, targets: [(name: \"frame\", width: 8, height: 8)], draws: [(vertices: Window([\
@@ -42,7 +42,7 @@ fn heat_maps_are_written_or_refused() {
     let bench = bench();
     bench.run("compare off.ron --heatmap heat.png").text();
     let picture = image::load_from_memory(&fs::read(bench.path("heat.png")).unwrap()).unwrap().to_rgba8();
-    // The legend is wider than this frame.
+    // The legend is wider than this frame, and makes the picture wider.
     assert!(picture.width() > 300 && picture.height() == 8 + 36);
     assert_eq!(picture.get_pixel(0, 0).0, [22, 50, 120, 255], "one step");
     assert_eq!(picture.get_pixel(7, 7).0, [40, 40, 40, 255], "not drawn");

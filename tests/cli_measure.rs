@@ -1,4 +1,4 @@
-//! `ninebit measure` and the generators of what lighting techniques look up.
+//! Tests `ninebit measure`, and the generators of the tables that lighting techniques look up.
 
 use crate::bench::Bench;
 

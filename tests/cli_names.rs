@@ -1,14 +1,15 @@
-//! Whatever scenes, files and texts are called: nothing that is printed or reported orders a terminal or a service about.
+//! Checks that hostile names of scenes, files and texts cannot inject terminal sequences or workflow commands into outputs or reports.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
 
 use crate::bench::{Bench, Run};
 
-/// A name as RON writes it: the end of a line, a workflow command, ESC, a change of direction, XML's and HTML's own, a link.
+/// A name in RON notation with the end of a line, workflow commands, ESC, CSI, a change of writing direction, markup of XML and HTML, and a
+/// link.
 const HOSTILE: &str = r#"n\n::error::injected\r##[error]old\u{1b}[31m\u{9b}2J\u{202e}\u{ffff}]]></failure><script>alert(1)</script>[a](http://b.c)|"#;
 
-/// A scene of which everything is called so.
+/// Returns a scene in which everything has the hostile name.
 fn scene() -> String {
     format!(
         r#"(version: 1, profile: Nv2a, targets: [(name: "{HOSTILE}", width: 8, height: 8)],
@@ -17,7 +18,8 @@ fn scene() -> String {
     )
 }
 
-/// No character that moves a cursor or is not seen, no line that is an order; but for lines of `own`.
+/// Checks that a text has no control characters, no invisible characters and no workflow commands. Lines that begin with `own` are commands
+/// that the program itself intends.
 fn harmless(what: &str, text: &str, own: &str) {
     for line in text.split('\n') {
         let bad = |c: char| {
@@ -39,7 +41,7 @@ fn harmless_run(what: &str, run: &Run, own: &str) {
 fn every_command_shows_hostile_names_as_text() {
     let bench = Bench::new();
     bench.write("a.ron", scene());
-    // Something is wrong with each of these, and the names are in the messages.
+    // Each of these has an error, whose message quotes the name.
     bench.write("unknown.ron", scene().replace("textures: [\"", "textures: [\"no"));
     bench.write("field.ron", scene().replace("width: 8", &format!("width: 8, \"{HOSTILE}\": 1")));
     bench.write("control.ron", "(version: 1, /* \u{1b}[31m \u{9b}2J \u{202e} ##[error]x */ profile: Nv11)");
@@ -95,7 +97,7 @@ fn the_command_line_is_shown_as_text() {
     }
 }
 
-/// What the schema of Jenkins says: of each element its attributes, required ones with `!`, and the elements in it.
+/// The JUnit schema of Jenkins: each element, its attributes (required ones end with `!`), and the elements that it may contain.
 const JUNIT: [(&str, &[&str], &[&str]); 6] = [
     ("testsuites", &["name", "time", "tests", "failures", "disabled", "errors"], &["testsuite"]),
     (
@@ -144,7 +146,7 @@ const JUNIT: [(&str, &[&str], &[&str]); 6] = [
     ("skipped", &["type", "message"], &["#text"]),
 ];
 
-/// Holds a report to [`JUNIT`] and to XML 1.0; how many elements of each name it has.
+/// Checks a report against [`JUNIT`] and XML 1.0. Returns the number of elements of each name.
 fn valid(xml: &str) -> std::collections::BTreeMap<String, usize> {
     use quick_xml::events::Event;
     let allowed =
@@ -247,7 +249,7 @@ fn reports_hold_hostile_names_as_text() {
     harmless("artifact", &read("found/differs.txt"), "");
 }
 
-/// The schema of the test sees what it is there for.
+/// The schema check of this test notices an element in the wrong place.
 #[test]
 #[should_panic(expected = "`skipped` of `testsuites`")]
 fn the_schema_refuses_what_it_does_not_know() {

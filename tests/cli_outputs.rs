@@ -1,4 +1,4 @@
-//! What the program writes, where, and what it leaves alone.
+//! Tests which files the program writes, where, and which ones it does not touch.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -11,7 +11,7 @@ use ninebit_files::output::{Compression, encode_png};
 
 use crate::bench::{Bench, Run};
 
-/// A textured triangle; compared with its ideal it is off by a step.
+/// A scene of one textured triangle, which differs from its ideal by one step.
 const SCENE: &str = r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 8, height: 8)],
     textures: { "stone": (source: File("stone.png")) },
     draws: [(
@@ -19,7 +19,7 @@ const SCENE: &str = r#"(version: 1, profile: Nv10, targets: [(name: "frame", wid
         program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: PrimaryColor, ab: Spare0))], final_combiner: (d: Spare0)),
     )])"#;
 
-/// The scene and its texture.
+/// Returns a folder with the scene and its texture.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.write("a.ron", SCENE).write("stone.png", picture([200, 100, 50, 255]));
@@ -30,7 +30,7 @@ fn picture(color: [u8; 4]) -> Vec<u8> {
     encode_png(8, 8, &[color; 64], Compression::Small).unwrap()
 }
 
-/// Names in a folder and below.
+/// Returns the paths of the files in a folder and below.
 fn files(folder: &Path) -> Vec<String> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -85,7 +85,7 @@ fn no_output_takes_the_place_of_an_input() {
         assert_eq!(fs::read(bench.path(input)).unwrap(), before, "{command}");
     }
     assert!(!bench.path("r.json").exists());
-    // What only looks like it.
+    // These outputs are no inputs, although the second run finds the file of the first.
     bench.run("render a.ron -o frame.png").data();
     bench.run("render a.ron -o frame.png").data();
     bench.run("render a.ron -o /dev/null").data();
@@ -101,7 +101,7 @@ fn reports_and_pictures_of_a_replay_have_places_of_their_own() {
         assert!(run.status == 2 && run.stderr.contains("error[NB070"), "{reports}: {}", run.stderr);
         assert!(!bench.path("r").exists() && !bench.path("r.json").exists(), "nothing was written");
     }
-    // A texture that is called like the picture of its scene.
+    // The texture has the name that the picture of its scene would get.
     fs::rename(bench.path("stone.png"), bench.path("a.png")).unwrap();
     bench.write("a.ron", SCENE.replace("stone.png", "a.png"));
     let before = fs::read(bench.path("a.png")).unwrap();
@@ -130,7 +130,7 @@ fn a_tree_does_not_take_the_place_of_a_leaf() {
     bench.run("vectors merge leaves -o tree.json").text();
 }
 
-/// A small pack.
+/// Exports a small pack to `pack`.
 fn export(bench: &Bench) {
     bench.run("vectors export -o pack --unit input-mapping").text();
 }
@@ -155,7 +155,7 @@ fn what_a_killed_run_left_harms_nobody() {
 fn a_run_that_is_told_to_end_leaves_no_temporary_file() {
     use std::os::unix::process::ExitStatusExt;
     use std::time::{Duration, Instant};
-    // Those that are ignored here, such as by `nohup`, the program ignores as well.
+    // The program keeps ignoring signals that are already ignored, for example under `nohup`, so these are skipped.
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = mask.map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).unwrap());
@@ -302,7 +302,7 @@ fn charts_keep_what_is_under_version_control() {
     bench.run("chart techniques --quick --only speed --out docs").failed(2, "error[NB0707]");
     assert_eq!(fs::read(bench.path("docs/speed-accuracy.md")).unwrap(), b"committed");
     assert_eq!(files(&bench.path("docs")), ["speed-accuracy.md"]);
-    // Its own folder keeps itself out of version control, and is written to again.
+    // The default folder contains a `.gitignore` for itself, and can be written to again.
     for _ in 0..2 {
         bench.run("chart techniques --quick --only speed").data();
     }
@@ -312,7 +312,7 @@ fn charts_keep_what_is_under_version_control() {
     assert_ne!(fs::read(bench.path("docs/speed-accuracy.md")).unwrap(), b"committed");
 }
 
-/// "The first command draws the picture above, byte for byte."
+/// Checks a claim of the readme: "The first command draws the picture above, byte for byte."
 #[test]
 fn the_picture_of_the_readme_is_what_its_command_writes() {
     let bench = Bench::new();

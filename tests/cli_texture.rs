@@ -1,4 +1,4 @@
-//! `ninebit texture` as it is used.
+//! Tests `ninebit texture` from outside.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -9,7 +9,7 @@ use dds::File;
 use ninebit_files::output::{Compression, encode_png};
 use snapbox::{assert_data_eq, file};
 
-/// A cube map of one row of blocks a face: red 0, 8, 16 and so on by face.
+/// Returns a cube map in DXT1 with two levels. The faces have the red levels 0 to 5 of 31.
 fn cube() -> Vec<u8> {
     let block = |n: u16| [(n << 11).to_le_bytes(), (n << 11).to_le_bytes(), [0; 2], [0; 2]].concat();
     let faces: Vec<u8> = (0..6).flat_map(|n| [block(n), block(n)].concat()).collect();
@@ -38,7 +38,7 @@ fn scene(bench: &Bench) {
     bench.write("scene.ron", SCENE.replace("PALETTE", &entries("ffff0000")).replace("EULAP", &entries("ff0000ff")));
 }
 
-/// Size and pixels of a picture that the program wrote.
+/// Returns width, height and pixels of a PNG.
 fn picture(png: &[u8]) -> (u32, u32, Vec<[u8; 4]>) {
     let picture = image::load_from_memory(png).unwrap().to_rgba8();
     (picture.width(), picture.height(), picture.pixels().map(|pixel| pixel.0).collect())
@@ -65,14 +65,14 @@ fn faces_make_a_cross_and_levels_a_column() {
     assert_eq!((width, height), (4 * 4 + 4 * 2, 3 * 4));
     let at = |x: usize, y: usize| pixels[y * width as usize + x];
     let red = |n: u8| [n << 3 | n >> 2, 0, 0, 255];
-    // +X, -X, +Y, -Y, +Z, -Z in level 0, then +Z of level 1; a corner.
+    // Faces +X, -X, +Y, -Y, +Z, -Z of level 0, then +Z of level 1, then an empty corner of the cross.
     let found = [at(8, 4), at(0, 4), at(4, 0), at(4, 8), at(4, 4), at(12, 4), at(16 + 2, 2), at(0, 0)];
     assert_eq!(found, [red(0), red(1), red(2), red(3), red(4), red(5), red(4), [0; 4]]);
     for (face, n) in [("+x", 0), ("-X", 1), ("-z", 5)] {
         let png = bench.run(&format!("texture cube.dds --decode -o - --profile nv10 --level 1 --face {face}")).data();
         assert_eq!(picture(&png), (2, 2, vec![red(n); 4]));
     }
-    // The dither moves red by position.
+    // Dither makes red depend on the position.
     let dithered = picture(&bench.run("texture cube.dds --decode -o - --level 0 --face -Z").data()).2;
     assert!(dithered.iter().any(|pixel| *pixel != dithered[0]), "{dithered:?}");
 }

@@ -1,4 +1,5 @@
-//! RAS-6 and RAS-7 in whole scenes: what is cut off is missing, what is left is where it was, and what was cut is told of.
+//! Tests RAS-6 and RAS-7 on whole scenes: outside the planes nothing is drawn, inside them everything stays where it was, and traces and
+//! explanations report the cut.
 use super::bench::Bench;
 use crate::repository::at;
 use ninebit::engine::{RenderOptions, render, trace};
@@ -13,7 +14,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::path::Path;
 
-/// A scene of one draw, white on black, 64 x 64.
+/// Returns a scene of one draw, white on black, on 64 x 64 pixels.
 fn text(vertices: &str) -> String {
     format!(
         "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 64, height: 64)], draws: [(name: \"it\", vertices: {vertices}, \
@@ -29,7 +30,7 @@ fn drawn(plan: &Plan) -> Frames {
     render(plan, &RenderOptions::default())
 }
 
-/// How many pixels are white.
+/// Returns the number of white pixels.
 fn white(plan: &Plan) -> usize {
     drawn(plan).surfaces[0].words.iter().filter(|word| **word == 0xffff_ffff).count()
 }
@@ -45,12 +46,12 @@ fn floor(matrix: &str, from: f32, to: f32) -> String {
 
 #[test]
 fn a_floor_that_passes_the_viewer_reaches_from_near_to_far() {
-    // At z = -10 the floor is seen at y = -0.1, row 35.2: the rows below are its own, down to the last at z = -1.
+    // At z = -10 the floor appears at y = -0.1, row 35.2. It covers the rows below, down to the last one at z = -1.
     let whole = plan(&floor(VIEW, 50.0, -500.0));
     assert_eq!(white(&whole), 64 * (64 - 35));
     let planes: Vec<ClipPlane> = ClipPlane::in_set(whole.draws[0].assembly.clipping.planes).collect();
     assert_eq!(planes, [ClipPlane::Near, ClipPlane::Far, ClipPlane::Left, ClipPlane::Right]);
-    // What begins at the planes is the same picture.
+    // A floor that already ends at both planes yields the same picture.
     assert_eq!(white(&plan(&floor(VIEW, -1.0, -10.0))), white(&whole));
 }
 
@@ -79,14 +80,14 @@ fn what_lies_beyond_a_plane_is_not_drawn() {
         assert!(got.abs_diff(pixels) < 250 && (got == 0) == (pixels == 0), "{matrix} at {z}: {got}");
         assert_eq!(plan.draws[0].assembly.clipping.removed, if pixels == 0 { 2 } else { 0 });
     }
-    // Depths that are limited are drawn, as far as w is in front.
+    // With clamped depths everything in front of the viewer is drawn.
     let clamped = quad(VIEW, -10.5).replace("vertices: [(", "viewport: (depth_clamp: true), vertices: [(");
     assert!(white(&plan(&clamped)) > 2500);
 }
 
 #[test]
 fn flat_pieces_take_the_colour_of_their_triangle() {
-    // The provoking vertex, the last one, is red and lies behind the viewer.
+    // The provoking vertex, which is the last one, is red and lies behind the viewer.
     let text = format!(
         "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 64, height: 64)], draws: [(name: \"it\", shade_model: Flat, \
          vertices: Matrix(matrix: {VIEW}, vertices: [(position: (-2, -1, -2), diffuse: (0, 255, 0)), (position: (2, -1, -2), diffuse: (0, 255, 0)), \
@@ -118,7 +119,8 @@ fn traces_and_explanations_tell_what_was_cut() {
     assert!(!told("explain far.ron").contains("RAS-6"));
 }
 
-/// Random scenes with vertices around the viewer: pieces lie in the domain, keep their order, and every pixel of theirs can be traced.
+/// Random scenes with vertices around the viewer: clipped pieces are in the order of their triangles, at most eight for each, and pixels
+/// can be traced.
 #[test]
 fn pieces_of_random_scenes_are_in_order() {
     let strategy = random_scene::wide::scene();
@@ -150,13 +152,13 @@ fn the_corridor_is_cut_on_all_sides() {
         assert!(planes & plane.bit() != 0, "{plane:?}");
     }
     assert!(planes & !(ClipPlane::Near.bit() | ClipPlane::Far.bit() | ClipPlane::W.bit()) != 0, "no guard band");
-    // The viewer stands inside: every pixel is drawn, but for those that show the far end.
+    // The viewer stands inside the corridor, so every pixel is drawn except for those at the far end.
     let clear = drawn(&Plan { draws: Vec::new(), ..plan.clone() }).surfaces[0].words[0];
     let open = drawn(&plan).surfaces[0].words.iter().filter(|word| **word == clear).count();
     assert!(open < 480 * 360 / 50, "{open}");
 }
 
-/// The largest target is filled by a mesh that reaches from one side of clip space to the other, of which the guard band cuts the rim.
+/// A mesh whose sides are those of the clip space fills the largest target, and no triangle is removed.
 #[test]
 fn the_largest_target_is_within_reach() {
     let text = "(version: 1, profile: Nv2a, targets: [(name: \"a\", width: 4096, height: 4096)],

@@ -1,4 +1,4 @@
-//! The combiner language: what is printed reads back, what is read prints in one form, garbage is refused.
+//! Tests the combiner language: combiners survive printing and reading, every text has one printed form, and garbage is refused.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::repository::at;
@@ -25,8 +25,8 @@ fn codes(text: &str) -> Vec<&'static str> {
     refused(text).iter().map(|finding| finding.code).collect()
 }
 
-/// What is printed of a state reads back as this: no chip has a state without general stages, and the final combiner alone stands behind one
-/// that changes nothing.
+/// Returns the combiners as they are read back. A program needs at least one general stage on every chip, so a final combiner alone gets a
+/// stage that changes nothing.
 fn with_a_stage(mut combiners: Combiners) -> Combiners {
     if combiners.stages.is_empty() {
         combiners.stages.push(GeneralStage::idle(combiners.final_combiner.constants));
@@ -94,7 +94,7 @@ fn legal_programs_stay_legal() {
     assert!(stages > 300, "{stages}");
 }
 
-/// As the well-known assembler has it: its header, real constants, short forms.
+/// Reads a program in the style of the well-known assembler, with its header, real constants and short forms.
 #[test]
 fn a_program_in_the_common_style() {
     let text = "!!RC1.0
@@ -156,7 +156,7 @@ fn without_a_final_combiner_it_is_opengls_initial_one() {
     assert!(combiners.final_combiner.color_sum_clamp);
 }
 
-/// The assembler sets G to zero where the text has no `out.a`, and A to D where it has no `out.rgb`.
+/// The assembler sets G to zero if the text has no `out.a`, and A to D if it has no `out.rgb`.
 #[test]
 fn an_output_that_is_not_written_is_zero() {
     for text in ["!!RC1.0 { rgb { spare0 = tex0; } } out.rgb = spare0;", "{} out.rgb = spare0;"] {
@@ -171,7 +171,8 @@ fn an_output_that_is_not_written_is_zero() {
     assert!(read("{} out.rgb = spare0; out.a = zero;").unwrap().warnings.is_empty());
 }
 
-/// Signs and bare points are numbers of the assembler; what is beyond 0.0 to 1.0 is limited, as by the extension.
+/// As in the assembler, numbers may have signs, and a point without digits on one side. As in the extension, values outside 0.0 to 1.0 are
+/// clamped.
 #[test]
 fn numbers_of_constants() {
     let program = read("const0 = (.2, +0.5, -1.0, 2); const1 = (- 0.0, 1., 0, +1); {}").unwrap();
@@ -188,7 +189,7 @@ fn the_final_combiner_alone_is_a_program() {
     assert!(program.warnings.is_empty(), "{:?}", program.warnings);
 }
 
-/// D first is the same sum.
+/// A sum means the same with D in front.
 #[test]
 fn the_addend_stands_on_either_side() {
     let last = |rgb: &str| read(&format!("{{}} out.rgb = {rgb}; out.a = zero;")).unwrap().combiners.final_combiner;
@@ -308,7 +309,7 @@ fn the_same_program_in_every_language_draws_the_same_bytes() {
     assert_eq!(words, program);
 }
 
-/// The same steps in code that take a text to combiners and back, or run it, in three languages.
+/// The steps of text to combiners, back to text, and running the result, as code in three languages writes them.
 #[test]
 fn programs_are_read_printed_and_run_by_code() {
     let text = "{ rgb { spare0 = expand(tex0) . expand(col0); } } out.rgb = unsigned(spare0); out.a = spare0.a;";

@@ -1,4 +1,4 @@
-//! The comparison with the ideal: what it says agrees with the trace, adds up, and stays within the stated bounds.
+//! Tests the comparison with the ideal: it agrees with the trace, its parts add up, and it stays within the stated bounds.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::repository::at;
@@ -19,7 +19,7 @@ fn options(mode: Mode) -> CompareOptions {
     CompareOptions { mode, target: 0, threads: 1, channels: ALL_CHANNELS }
 }
 
-/// Scenes of the repository, by path.
+/// Returns the DOT3 scenes of the repository by path.
 fn repository() -> Vec<(PathBuf, Plan)> {
     let folder = at("vectors/scenes/dot3");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -31,7 +31,7 @@ fn repository() -> Vec<(PathBuf, Plan)> {
     paths.into_iter().map(|path| (path.clone(), scene::load(&path, &Limits::default()).unwrap().plan)).collect()
 }
 
-/// Random plans under every policy, the same on every machine.
+/// Calls `visit` with random plans under varying policies, the same ones on every machine.
 fn random(count: usize, mut visit: impl FnMut(&Plan, &Scene)) {
     let mut runner = TestRunner::deterministic();
     for n in 0..count {
@@ -67,12 +67,12 @@ fn single_rules_stay_within_their_bounds_on_random_scenes() {
         check_bounds(&format!("{:?} {scene:?}", plan.policies), &comparison);
         seen.extend(comparison.rules.iter().map(|rule| rule.rule.name()));
     });
-    // Anisotropy comes with scenes that are made for it.
+    // Anisotropy occurs only in scenes that are made for it.
     let floor = at("vectors/scenes/sampling/anisotropy.ron");
     let floor = compare(&scene::load(&floor, &Limits::default()).unwrap().plan, &options(Mode::PerOp));
     check_bounds("anisotropy.ron", &floor);
     seen.extend(floor.rules.iter().map(|rule| rule.rule.name()));
-    // Every rule that can be off has been met.
+    // Every rule that can cause an error has occurred.
     assert_eq!(seen.len(), Rule::ALL.len(), "{seen:?}");
 }
 
@@ -88,12 +88,12 @@ fn parts_add_up_to_the_error() {
     });
 }
 
-/// The trace's ideal follows the definition too: its last word on a pixel is what the comparison holds.
+/// The ideal of a trace follows the decisions of the definition as well. Its last value for a pixel is that of the comparison.
 #[test]
 fn followed_ideals_are_those_of_the_trace() {
     let mut compared = 0;
     random(250, |plan, scene| {
-        // The trace starts anew where a draw reads a surface.
+        // A trace cannot follow the ideal through a surface that a draw reads, so such scenes are skipped.
         let mut read = scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten());
         if read.any(|unit| matches!(scene.textures[unit.texture].image, TextureImage::Target { .. })) {
             return;
@@ -147,7 +147,7 @@ fn threads_change_nothing_that_is_counted() {
     });
 }
 
-/// A draw of one colour in all pixels: D = the primary colour, or whatever `change` makes of it.
+/// Returns the plan of a scene in which one draw stores the same colour in every pixel. D is the primary colour unless `change` alters it.
 fn flat(change: impl FnOnce(&mut Scene)) -> Plan {
     let text = "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 4, height: 4)], draws: [(vertices: Window([\
                 (position: (0, 0), diffuse: (100, 200, 37, 255)), (position: (4, 0), diffuse: (100, 200, 37, 255)), \
@@ -173,8 +173,8 @@ fn what_is_exact_has_no_error() {
     }
 }
 
-/// 100 expanded is 2 (100 - 128) = -56 and ideally 2 * 100 - 255 = -55: one step of CMB-3; times 200 of 255 it is -43.9 and -43.1,
-/// negated 43.9 and 43.1, rounded to 44.
+/// Expanded, 100 is 2 (100 - 128) = -56 and ideally 2 * 100 - 255 = -55, which differ by one step of CMB-3. Times 200/255, the results are
+/// -43.9 and -43.1. Negated and rounded they are 44 and ideally 43.1.
 #[test]
 fn one_product_by_hand() {
     let plan = flat(|scene| {
@@ -211,7 +211,7 @@ fn one_product_by_hand() {
     assert_eq!(free.channels[0].errors.low, red.low);
 }
 
-/// An alpha test on the edge: the ideal's alpha rounds to the other side of the reference.
+/// An alpha test near its limit, where the ideal alpha rounds to the other side of the reference.
 #[test]
 fn decisions_that_differ_are_left_out() {
     let plan = flat(|scene| {
@@ -226,7 +226,7 @@ fn decisions_that_differ_are_left_out() {
     let test = free.decisions.iter().find(|d| d.decision == Decision::AlphaTest).unwrap();
     assert_eq!(test.taken, 1000);
     assert!(test.differing > 0 && free.diverged == test.differing, "{test:?} {}", free.diverged);
-    // What is left is not off by a whole colour.
+    // The remaining pixels do not differ by a whole colour.
     assert!(free.channels.iter().all(|c| c.errors.max() < 3.0), "{:?}", free.channels);
     let follow = compare(&plan, &options(Mode::Follow));
     let followed = follow.decisions.iter().find(|d| d.decision == Decision::AlphaTest).unwrap();

@@ -1,4 +1,4 @@
-//! DDS files: what they become, and what is said of those that lie.
+//! Tests how DDS files are read, and the errors for those with false headers.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::dds;
@@ -14,7 +14,7 @@ fn read(file: &File) -> Result<Dds, ImageError> {
     decode(&file.bytes(), Path::new("rock.dds"), &ImageLimits::default())
 }
 
-/// Code and text of the refusal.
+/// Returns the code and the text of the error.
 fn refused(file: &File) -> String {
     let error = read(file).expect_err("must be refused");
     assert!(!error.help().is_empty());
@@ -27,7 +27,7 @@ fn masks_say_the_format() {
     for (flags, bits, masks, format) in [
         (0x41, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000], A8R8G8B8),
         (0x40, 32, [0xff_0000, 0xff00, 0xff, 0], X8R8G8B8),
-        // The flag decides whether there is alpha.
+        // The flag decides whether there is an alpha channel, even if there is a mask for it.
         (0x40, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000], X8R8G8B8),
         (0x41, 32, [0xff, 0xff00, 0xff_0000, 0xff00_0000], A8B8G8R8),
         (0x41, 32, [0xff00, 0xff_0000, 0xff00_0000, 0xff], B8G8R8A8),
@@ -60,7 +60,7 @@ fn blocks_levels_and_faces_in_their_order() {
     let blocks: Vec<u8> = (0..8 * 3).collect();
     let image = read(&File::coded(b"DXT1", 4, 4, 3, blocks)).unwrap();
     assert_eq!((image.format, image.levels, image.cube), (TextureFormat::Dxt1, 3, false));
-    // Levels of 4, 2 and 1 texels take a block each; colours first, then indices, little-endian.
+    // Levels of 4, 2 and 1 texels take a block each. A block has colours first, then indices, both little-endian.
     assert_eq!(image.words, [0x0302_0100, 0x0706_0504, 0x0b0a_0908, 0x0f0e_0d0c, 0x1312_1110, 0x1716_1514]);
     for (code, format) in [
         (b"DXT2", TextureFormat::Dxt3),
@@ -102,7 +102,7 @@ fn palettes_come_along() {
     assert_eq!((palette.len(), palette[7]), (256, 0x8007_0102));
 }
 
-/// Rows of 3 and 1 texels of 16 bits, filled up to 8 and 4 bytes: known by pitch and length together.
+/// Rows of 3 and 1 texels of 16 bits may be padded to 8 and 4 bytes. This is recognised by the pitch together with the length of the file.
 #[test]
 fn padded_rows() {
     let padded = [1, 0, 2, 0, 3, 0, 99, 99, 4, 0, 5, 0, 6, 0, 99, 99, 7, 0, 99, 99];
@@ -275,7 +275,7 @@ fn a_dds_is_known_by_its_contents() {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
-    /// Headers of likely and unlikely words: an image whose words fit, or an error.
+    /// Any header yields an image with the right number of words, or an error.
     #[test]
     fn any_header_is_an_image_or_an_error(
         words in proptest::collection::vec(prop_oneof![Just(0_u32), 0..40_u32, any::<u32>()], 31),

@@ -1,4 +1,5 @@
-//! The scenes of `vectors/scenes/deciding`: each tells the values of one policy apart at a glance, and no other policy changes it.
+//! Tests the scenes of `vectors/scenes/deciding`. The values of a policy look clearly different in its scene, and no other policy changes
+//! the scene.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -14,7 +15,7 @@ use ninebit_scene as scene;
 use ninebit_scene::diff::{self, compare};
 use ninebit_scene::image::Rgba;
 
-/// Levels by which two pictures must differ, and in how many pixels that touch.
+/// Two pictures must differ by at least this many levels of 255, in at least `PIXELS` adjacent pixels.
 const LEVELS: u8 = 32;
 const PIXELS: u64 = 4096;
 
@@ -22,7 +23,7 @@ fn folder() -> PathBuf {
     at("vectors/scenes/deciding")
 }
 
-/// The scene that decides a policy.
+/// Returns the plan of the scene that decides a policy.
 fn scene_of(policy: &Policy) -> Plan {
     let prefix = format!("{}-", policy.rule);
     let named = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with(&prefix);
@@ -42,7 +43,7 @@ fn picture(plan: &Plan, rule: &str, value: usize) -> Rgba {
     Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
 }
 
-/// Pixels of the largest region in which a channel of each pixel differs by `LEVELS` or more.
+/// Returns the size of the largest region in which a channel of each pixel differs by `LEVELS` or more.
 fn apart(a: &Rgba, b: &Rgba) -> u64 {
     let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) >= LEVELS);
     let marks = a.pixels.iter().zip(&b.pixels).map(far).map(|far| if far { [255; 4] } else { [0; 4] }).collect();
@@ -65,11 +66,11 @@ fn values_of_a_policy_look_different() {
     }
 }
 
-/// Columns and rows of cells, and the pixels of a cell's side.
+/// Numbers of columns and rows of cells, and width and height of a cell in pixels.
 const CELLS: [u32; 2] = [8, 3];
 const CELL: [u32; 2] = [32, 64];
 
-/// The colour in the middle of each cell.
+/// Returns the colour in the middle of each cell.
 fn cells(plan: &Plan, rule: &str, value: usize) -> Vec<[u8; 4]> {
     let mut plan = plan.clone();
     plan.policies = Policies::DEFAULT;
@@ -93,7 +94,7 @@ fn a_scene_asks_one_question() {
     }
 }
 
-/// The first row is white under the default, the second is not: what the scenes and their page say.
+/// With the default value the first row of cells is white and the second is black, as the scenes and their page state.
 #[test]
 fn rows_name_the_answer() {
     for policy in POLICIES {
@@ -104,7 +105,7 @@ fn rows_name_the_answer() {
     }
 }
 
-/// Runs of white in a row of a picture.
+/// Returns the lengths of the runs of white pixels in a row of a picture.
 fn bars(picture: &Rgba, y: u32) -> Vec<usize> {
     let row = &picture.pixels[(y * picture.width) as usize..][..picture.width as usize];
     let runs = row.chunk_by(|a, b| a == b).filter(|run| run[0] == [255; 4]);
@@ -120,7 +121,8 @@ fn weights_of_eight_bits_show_as_a_wide_bar() {
     }
 }
 
-/// Scenes of rules that have no policy: their bands of 48 rows, the first of which is the card's, and what the model says of its draw.
+/// Scenes of open questions for which there is no policy: the name, the number of bands of 48 rows, and the codes with which the model
+/// refuses the draw that the card answers. The first band belongs to the card.
 const OPEN: [(&str, u32, &[&str]); 6] = [
     ("DEP-6-slope", 5, &["NB0402"]),
     ("FOG-3-third", 4, &[]),
@@ -131,7 +133,7 @@ const OPEN: [(&str, u32, &[&str]); 6] = [
 ];
 const BAND: u32 = 48;
 
-/// A band of a picture.
+/// Returns one band of a picture.
 fn band(picture: &Rgba, number: u32) -> Rgba {
     let pixels = picture.width as usize * BAND as usize;
     let first = number as usize * pixels;
@@ -151,7 +153,7 @@ fn bands_of_open_questions_look_different() {
                 assert!(apart(a, b) >= 900, "{name}: bands {} and {}: {}", n + 1, m + 1, apart(a, b));
             }
         }
-        // What the model does not refuse is its own reading, which comes first.
+        // If the model does not refuse the draw, the first band shows its own reading, which is that of the second.
         if refused.is_empty() {
             assert_eq!(all[0].pixels, all[1].pixels, "{name}");
         } else {
@@ -163,7 +165,7 @@ fn bands_of_open_questions_look_different() {
     }
 }
 
-/// The card's draw stands in the scene behind `// ? `, and the model refuses it for what the scene asks, and for nothing else.
+/// The draw for the card stands behind `// ? ` in its scene. The model refuses it only because of the rule in question.
 #[test]
 fn open_questions_are_refused_by_name() {
     for (name, _, refused) in OPEN {
@@ -185,7 +187,7 @@ fn open_questions_are_refused_by_name() {
     }
 }
 
-/// What `docs/hardware.md` says becomes of a capture: replay names the policy that draws it.
+/// As `docs/hardware.md` states, a replay of a captured picture names the policy that reproduces it.
 #[test]
 fn a_capture_is_recognised() {
     let place = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `ninebit diff`: the comparison against a naive one, and the command.
+//! Tests `ninebit diff`: the comparison itself, against a naive one, and the command.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -10,7 +10,7 @@ use ninebit_scene::image::{ImageLimits, Rgba, load};
 use proptest::prelude::*;
 use serde_json::Value;
 
-/// Regions found by walking from pixel to pixel.
+/// Returns the regions that differ, found pixel by pixel.
 fn naive_regions(a: &Rgba, b: &Rgba) -> Vec<Vec<(u32, u32)>> {
     let differs = |x: u32, y: u32| {
         let at = (y * a.width + x) as usize;
@@ -57,7 +57,7 @@ fn pictures() -> impl Strategy<Value = (Rgba, Rgba)> {
 }
 
 proptest! {
-    /// Counts, histograms and regions are those of a comparison that knows nothing of rows and runs.
+    /// Counts, histograms and regions equal those of a naive comparison, which does not work by rows and runs.
     #[test]
     fn counts_are_those_of_a_naive_comparison((a, b) in pictures()) {
         let found = compare(&a, &b, &Options { ignore_alpha: false, regions: 1000 }).unwrap();
@@ -100,7 +100,7 @@ const SCENE: &str = r#"(
     ]))],
 )"#;
 
-/// The scene's frame as `a.png`; as `b.png` the same with four pixels changed.
+/// Returns a folder with the frame of the scene as `a.png`, and the same frame with four changed pixels as `b.png`.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.write("scene.ron", SCENE);
@@ -120,7 +120,7 @@ fn write(bench: &Bench, name: &str, picture: &Rgba) {
     bench.write(name, bytes);
 }
 
-/// The pictures differ: status 1, a report on stdout, nothing on stderr.
+/// Checks that the pictures differ: status 1, and nothing on stderr. Returns the report on stdout.
 fn different(run: Run) -> String {
     assert_eq!((run.status, run.stderr.as_str()), (1, ""));
     String::from_utf8(run.stdout).unwrap()
@@ -145,7 +145,7 @@ fn equal_pictures_are_status_0() {
     assert_eq!((&json["equal"], &json["regions"]), (&true.into(), &Value::Array(vec![])));
 }
 
-/// A screenshot as a TGA of 24 bits: its missing alpha counts as 255.
+/// The missing alpha of a screenshot in a 24-bit TGA counts as 255.
 #[test]
 fn a_picture_without_alpha_is_opaque() {
     let bench = bench();
@@ -192,7 +192,7 @@ fn the_difference_is_drawn() {
     assert_eq!((&json["picture"]["path"], &json["picture"]["scale"]), (&"d.png".into(), &1.into()));
 }
 
-/// Two depths that differ in one step of the upper 16 bits, and the scene that has one of them.
+/// Compares two depth buffers with each other and with the scene that produced one of them.
 #[test]
 fn depth_buffers_are_compared() {
     let bench = bench();

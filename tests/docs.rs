@@ -1,4 +1,4 @@
-//! What the pages on commands show is what the commands print.
+//! Checks that the pages show what the commands print.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Runs the `$ ninebit` lines of a page's console blocks in order, in one folder; what follows each is its output. A line of three
-/// dots stands for any lines.
+/// Runs the `$ ninebit` lines of a page's console blocks in order, in one folder, and compares the output with the lines that follow each.
+/// `...` on a line of its own stands for any lines.
 fn commands_print_what_is_shown(page: &str) {
     let bench = Bench::new();
     copy(&at("vectors/scenes"), &bench.path("vectors/scenes"));
@@ -63,7 +63,7 @@ fn op() {
     commands_print_what_is_shown("docs/op.md");
 }
 
-/// The variables that tests and the program's own unit tests read are those that the page lists.
+/// The page on testing lists exactly the variables that the tests read.
 #[test]
 fn variables_of_tests_are_listed() {
     let page = fs::read_to_string(at("docs/testing.md")).unwrap();
@@ -89,16 +89,17 @@ fn variables_of_tests_are_listed() {
     assert_eq!(listed, read);
 }
 
-/// Words that people may have to read and keep up to date in all documents together: what is neither written by a program nor held row by row.
+/// Largest number of words in all documents that are written and maintained by hand, as opposed to those that a program writes or a test
+/// checks row by row.
 const MAX_WORDS: usize = 45_000;
 
-/// Pages whose console blocks are run: what follows a command in them is its output.
+/// Pages whose console blocks are run, so that the text after a command is its output.
 const RUN: [&str; 5] = ["docs/answers.md", "docs/commands.md", "docs/compare.md", "docs/diff.md", "docs/op.md"];
 
-/// Texts that programs fill in, which are documents by hand all the same.
+/// Templates that programs fill in. They count as written by hand.
 const TEMPLATES: [&str; 2] = ["src/lab/chart/page.md", "src/lab/experiments/page.md"];
 
-/// The pages in a folder and below it.
+/// Returns the pages in a folder and below it, sorted.
 fn pages_below(folder: &str) -> Vec<String> {
     let (mut found, mut folders) = (Vec::new(), vec![at(folder)]);
     while let Some(folder) = folders.pop() {
@@ -114,13 +115,13 @@ fn pages_below(folder: &str) -> Vec<String> {
     found
 }
 
-/// The documents, by their path.
+/// Returns the paths of the documents.
 fn documents() -> Vec<String> {
     let top = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"].map(Into::into);
     top.into_iter().chain(pages_below("docs")).collect()
 }
 
-/// Words of a document as `wc -w` counts them: by hand, in tables that a test holds row by row, and written by a program.
+/// Numbers of words in a document as `wc -w` counts them: written by hand, in tables that a test checks row by row, and generated.
 #[derive(Clone, Copy, Default)]
 struct Words {
     by_hand: usize,
@@ -170,7 +171,7 @@ impl Words {
     }
 }
 
-/// `cargo test --test suite docs::words -- --nocapture` prints the table.
+/// Limits the words by hand. `cargo test --test suite docs::words -- --nocapture` prints the table.
 #[test]
 fn words() {
     let mut table = format!("{:>8} {:>8} {:>9}\n", "by hand", "held", "generated");
@@ -186,7 +187,7 @@ fn words() {
     assert!(all.by_hand <= MAX_WORDS, "{} words by hand, {MAX_WORDS} are allowed:\n{table}", all.by_hand);
 }
 
-/// The anchors of a page's headings, as GitHub makes them.
+/// Returns the anchors of a page's headings as GitHub forms them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut code = false;
@@ -204,7 +205,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
     found
 }
 
-/// Every link of a document, and of the pages beside vectors and fuzz targets, leads to a file, and to a heading of it.
+/// Every link in the documents and in the pages of vectors, fuzzing and benchmarks leads to a file, and if it has an anchor to a heading.
 #[test]
 fn links_lead_somewhere() {
     let mut broken = Vec::new();
@@ -236,7 +237,7 @@ fn links_lead_somewhere() {
     assert!(broken.is_empty(), "these links lead nowhere:\n{}", broken.join("\n"));
 }
 
-/// The list of decisions is made of their titles.
+/// The list of decisions is generated from their titles.
 #[test]
 fn decisions_are_listed() {
     let mut files: Vec<_> = fs::read_dir(at("docs/decisions")).unwrap().map(|entry| entry.unwrap().path()).collect();

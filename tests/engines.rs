@@ -1,9 +1,10 @@
-//! The fast engine against the definition: the same words and depths in every scene of the repository and in random ones, whatever the
-//! instruction set, the threads and the policies.
+//! Compares the fast engine with the definition. Both yield the same words and depths in every scene of the repository and in random
+//! scenes, with every instruction set, number of threads and policy.
 //!
-//! The normal run draws the first 2,000 of two sequences of random scenes, plain ones and wider ones. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
-//! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
-//! instruction set with 1, 2, 3 and 8 threads and bands of all sizes, and `NINEBIT_ENGINE_SEED` chooses another sequence.
+//! A normal run draws the first 2,000 scenes of two random sequences, a plain and a wider one. `NINEBIT_ENGINE_SCENES` sets this number.
+//! `NINEBIT_ENGINE_SHARD=k/n` draws every n-th scene, beginning with scene k (from 0). `NINEBIT_ENGINE_MATRIX` is the number of first
+//! scenes that are drawn with every instruction set, with 1, 2, 3 and 8 threads, and with bands of several sizes. `NINEBIT_ENGINE_SEED`
+//! selects another sequence.
 use crate::repository::at;
 use crate::scene_files;
 use crate::settings::number;
@@ -20,13 +21,13 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// The first pixel where two renders differ.
+/// Describes the first pixel at which two renders differ, or returns `None`.
 fn difference(got: &Frames, expected: &Frames) -> Option<String> {
     for (target, (got, expected)) in got.surfaces.iter().zip(&expected.surfaces).enumerate() {
         for (what, got, expected, width) in
             [("word", &got.words, &expected.words, got.width), ("depth", &got.depth, &expected.depth, got.width)]
         {
-            // Nearly always they are equal, which is known at once.
+            // Comparing whole buffers first is faster, since they are nearly always equal.
             if got == expected {
                 continue;
             }
@@ -43,7 +44,7 @@ fn difference(got: &Frames, expected: &Frames) -> Option<String> {
     None
 }
 
-/// Renders by the definition and by the fast engine in some ways, and says where they differ; the definition's frames.
+/// Renders with the definition and with the fast engine in several ways. Returns the frames of the definition, or the first difference.
 fn compare(plan: &Plan, ways: &[RenderOptions]) -> Result<Frames, String> {
     let scalar = render(plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
     for options in ways {
@@ -54,7 +55,7 @@ fn compare(plan: &Plan, ways: &[RenderOptions]) -> Result<Frames, String> {
     Ok(scalar)
 }
 
-/// The fast engine with an instruction set and some threads.
+/// Returns options for the fast engine with an instruction set and a number of threads.
 fn fast(isa: Isa, threads: usize) -> RenderOptions {
     RenderOptions { threads, isa: Some(isa), ..RenderOptions::default() }
 }
@@ -71,7 +72,7 @@ fn engines_agree_on_every_scene_of_the_repository() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// Everything that the engine can be told: instruction sets, threads, rows of a band.
+/// Returns all combinations of instruction sets, threads and rows of a band.
 fn every_way() -> Vec<RenderOptions> {
     let mut ways = Vec::new();
     for isa in Isa::ALL.iter().filter(|isa| isa.is_available()) {
@@ -84,7 +85,7 @@ fn every_way() -> Vec<RenderOptions> {
     ways
 }
 
-/// A scene of a sequence, as something that can be made simpler.
+/// Returns a scene of a sequence in a form that can be shrunk.
 fn tree<S: Strategy<Value = Scene>>(sequence: &S, seed: u32, number: u32) -> S::Tree {
     let mut bytes = [0; 32];
     bytes[..4].copy_from_slice(&seed.to_le_bytes());
@@ -94,7 +95,7 @@ fn tree<S: Strategy<Value = Scene>>(sequence: &S, seed: u32, number: u32) -> S::
     sequence.new_tree(&mut runner).unwrap()
 }
 
-/// Policies for a scene of the sequence: each rule's by chance, or one rule's alone.
+/// Returns policies for a scene of the sequence: random values for all rules, or for a single rule.
 fn policies(seed: u32, number: u32) -> Policies {
     let bytes = Sha256::digest([seed.to_le_bytes(), number.to_le_bytes()].concat());
     let alone = (number % 2 == 1).then_some(usize::from(bytes[31]) % POLICIES.len());
@@ -105,7 +106,7 @@ fn policies(seed: u32, number: u32) -> Policies {
     policies
 }
 
-/// What a frame adds to the digest: the first 64 bits of the SHA-256 of its words and depths.
+/// Returns the first 64 bits of the SHA-256 of a frame's words and depths, for the digest of the run.
 fn digest(frames: &Frames) -> u64 {
     let mut hash = Sha256::new();
     for surface in &frames.surfaces {
@@ -115,8 +116,8 @@ fn digest(frames: &Frames) -> u64 {
     u64::from_be_bytes(hash.finalize()[..8].try_into().unwrap())
 }
 
-/// Draws the scenes of a sequence by both engines, under the default policies and under others. Sums of digests do not depend on how the scenes
-/// are shared out among shards.
+/// Draws the scenes of a sequence with both engines, under the default policies and under others. The digest is a sum, so the sums of all
+/// shards add up to the digest of an undivided run.
 fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
     let (scenes, seed) = (number("NINEBIT_ENGINE_SCENES", 2_000), number("NINEBIT_ENGINE_SEED", 5));
     let shard = std::env::var("NINEBIT_ENGINE_SHARD").unwrap_or_else(|_| "0/1".to_owned());
@@ -127,7 +128,7 @@ fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
     let check = |number: u32, scene: &Scene| {
         let ways = if number < matrix { &every_way[..] } else { &best };
         let policies = policies(seed, number);
-        // A panic is a difference, too: it can be made simpler.
+        // A panic counts as a difference, so that its scene is shrunk as well.
         let compared = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
             let plan = |prune| Plan::compile(scene, &PlanOptions { prune, ..PlanOptions::default() }).unwrap();
             if number < matrix {
@@ -163,13 +164,13 @@ fn engines_agree_on_random_scenes() {
     agree(&random_scene::scene(), number("NINEBIT_ENGINE_MATRIX", 12));
 }
 
-/// Scenes that share what they have, with extreme numbers, programs of every language, and vertices behind the viewer.
+/// Scenes whose draws share resources, with extreme numbers, programs of every language, and vertices behind the viewer.
 #[test]
 fn engines_agree_on_wider_random_scenes() {
     agree(&random_scene::wide::scene(), number("NINEBIT_ENGINE_MATRIX", 12));
 }
 
-/// Leaves the simplest value that still fails.
+/// Shrinks a value as long as it still fails.
 fn simplify<T: ValueTree>(tree: &mut T, fails: impl Fn(&T::Value) -> bool) {
     for _ in 0..20_000 {
         if !tree.simplify() {
@@ -183,8 +184,8 @@ fn simplify<T: ValueTree>(tree: &mut T, fails: impl Fn(&T::Value) -> bool) {
     }
 }
 
-/// One texture by two units of a draw and by a second draw, each with a state of its own: nothing that is kept for one may serve another that it
-/// does not fit.
+/// Two units of a draw, and a second draw, sample one texture with different state. Nothing that the engine caches for one state may be
+/// used for another.
 #[test]
 fn engines_agree_on_textures_that_states_share() {
     let states = [
@@ -246,7 +247,7 @@ fn engines_agree_on_textures_that_states_share() {
     }
 }
 
-/// A volume of few layers after one of many: lanes without a pixel must not look for the layers that the draw before left there.
+/// A volume with few layers follows one with many. Lanes without a pixel must not access layers that only the earlier volume has.
 #[test]
 fn engines_agree_on_a_smaller_volume_after_a_larger_one() {
     let layers = |count: usize| {
@@ -287,7 +288,7 @@ fn engines_agree_on_a_smaller_volume_after_a_larger_one() {
     }
 }
 
-/// Stages of a texture shader that sample at the same coordinates, some of whose colours nobody reads.
+/// Stages of a texture shader sample at the same coordinates, and some of their colours are not read.
 #[test]
 fn engines_agree_on_stages_with_equal_coordinates() {
     let bump = "(operation: BumpEnvironment(matrix: (0.5, 0, 0.7, 0)), coordinates: 0, previous: 0)";

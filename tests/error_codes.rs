@@ -1,4 +1,4 @@
-//! `docs/errors.md` has every code that the sources use, and no other, with the exit code that it has.
+//! Checks that `docs/errors.md` lists exactly the codes that the sources use, with the right exit codes.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::architecture;
@@ -7,22 +7,22 @@ use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Chapters of codes that are no findings about a scene: of outputs, faults, packs of vectors and replays.
+/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs and replays.
 const OTHERS: [&str; 4] = ["07", "08", "10", "12"];
 
-/// A row of the page.
+/// A row of the page's tables.
 pub struct Row {
-    /// The two digits that the heading above has.
+    /// The two digits in the heading above the row.
     chapter: String,
-    /// The code.
+    /// The code, such as `NB0101`.
     pub code: String,
-    /// Its meaning.
+    /// What the code means.
     pub meaning: String,
     exit: String,
     way_out: String,
 }
 
-/// The rows of the page, from the top.
+/// Returns the rows of the page in order.
 pub fn rows() -> Vec<Row> {
     let (mut rows, mut chapter) = (Vec::new(), String::new());
     for line in std::fs::read_to_string(at("docs/errors.md")).unwrap().lines() {
@@ -37,7 +37,7 @@ pub fn rows() -> Vec<Row> {
     rows
 }
 
-/// Codes that occur in the files of a folder.
+/// Returns the codes that occur in the files of a folder.
 fn used(folder: &Path) -> BTreeSet<String> {
     let (mut found, mut codes) = (Vec::new(), BTreeSet::new());
     architecture::files(folder, &mut found);
@@ -68,7 +68,7 @@ fn the_page_has_every_code_and_no_other() {
     }
 }
 
-/// The exit code of a finding about a scene, or of what is none.
+/// Returns the exit code of an error code.
 fn exit(code: &str) -> u8 {
     if !OTHERS.contains(&&code[2..4]) {
         let finding = Diagnostic {

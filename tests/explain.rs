@@ -1,4 +1,4 @@
-//! The plan in words: what it predicts is what a run counts, and what it leaves out cannot be seen.
+//! Tests explanations of plans: their predictions are what a run counts, and what they call invisible changes no pixel.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::repository::at;
@@ -15,7 +15,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::path::Path;
 
-/// Prediction and run agree; the number of fragments predicted, and of draws in which tests decided.
+/// Checks that prediction and run agree. Returns the number of predicted fragments, and of draws whose tests drop fragments.
 fn check(what: &str, scene: &Scene, plan: &Plan) -> (u64, u64) {
     let counted = count(plan);
     let (mut fragments, mut tested) = (0, 0);
@@ -77,7 +77,7 @@ fn predictions_are_counted_on_random_scenes() {
     assert!(fragments > 100_000 && tested > 50, "{fragments} {tested}");
 }
 
-/// A quad over 4 x 4 pixels; `fields` are those of the draw.
+/// Returns a scene with a quad of 4 x 4 pixels, whose draw has the given fields.
 fn quad(fields: &str) -> Scene {
     let text = format!(
         "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 4, height: 4, clear: (color: (9, 8, 7, 6)))], draws: [\
@@ -120,7 +120,7 @@ fn draws_that_nothing_can_see_are_left_out() {
     }
 }
 
-/// The scene reader refuses an empty scissor and a draw without triangles; the state may have them.
+/// The scene reader refuses an empty scissor rectangle and a draw without triangles, but the state can have both.
 #[test]
 fn empty_draws_are_left_out() {
     let invisible = |scene: &Scene| Plan::compile(scene, &PlanOptions::default()).unwrap().draws[0].folded.invisible;

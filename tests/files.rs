@@ -1,11 +1,11 @@
-//! Files of every kind are read within a limit, and what is no regular file is not waited for.
+//! Tests that files of every kind are read within a limit, and that the program does not wait for files that are not regular ones.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs::File;
 
 use crate::bench::Bench;
 
-/// A scene of one triangle whose program stands in a file.
+/// A scene of one triangle with a program in a file.
 const SCENE: &str = r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 8, height: 8)], draws: [(
     vertices: Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))]),
     program: CombinerText(file: "program.txt"),
@@ -17,7 +17,7 @@ fn sparse(bench: &Bench, name: &str) {
     File::create(path).unwrap().set_len(64 << 30).unwrap();
 }
 
-/// The command is refused with this code, names the limit, where reading so many gigabytes would end it.
+/// Checks that the command is refused with this code and names the limit. Without a limit it would read 64 GB.
 fn beyond(bench: &Bench, command: &str, code: &str, limit: &str) {
     let run = bench.run(command);
     let text = run.stderr.clone() + &String::from_utf8_lossy(&run.stdout);
@@ -69,7 +69,7 @@ fn files_of_packs_and_results_have_limits() {
     bench.write("results/device.json", device);
     sparse(&bench, "results/product.tsv");
     beyond(&bench, "vectors compare pack results", "NB1013", "vector_table_bytes");
-    // Of a file that the manifest lists no byte more is looked at than it lists.
+    // Of a file that the manifest lists, not more bytes are read than it lists.
     sparse(&bench, "pack/units/product.tsv");
     bench.run("vectors check pack").failed(3, "NB1011");
 }

@@ -1,4 +1,4 @@
-//! `ninebit op`: worked examples, tables, and what is refused.
+//! Tests `ninebit op`: worked examples, tables, and arguments that are refused.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -6,7 +6,7 @@ use crate::bench;
 use bench::Bench;
 use serde_json::Value;
 
-/// What `ninebit op` with these arguments gives for a result.
+/// Returns one result of `ninebit op` with these arguments.
 fn result(arguments: &str, name: &str) -> Value {
     let text = Bench::new().run(&format!("op {arguments} --format json")).text();
     let document: Value = serde_json::from_str(&text).unwrap();
@@ -18,7 +18,7 @@ fn result(arguments: &str, name: &str) -> Value {
 const PRODUCT: &str = "combiner --a tex0 --b primary --in tex0=100 --in primary=200";
 const SUM: &str = "combiner --a tex0 --b primary --c tex0 --d primary --in tex0=100 --in primary=200";
 
-/// Numbers may be written as registers are.
+/// Numbers may be written in hexadecimal notation.
 #[test]
 fn hexadecimal_numbers() {
     for arguments in ["tex0=0x64 --in primary=0xC8", "tex0=0X64,0x64,100,0 --in primary=200"] {
@@ -32,7 +32,7 @@ fn hexadecimal_numbers() {
     }
 }
 
-/// Units of the vectors: inputs as tables write them, refused by name where a column does not take them or a chip has no such unit.
+/// `op unit` takes the inputs of vector tables. An input that its column does not allow, or a unit that the chip lacks, is refused by name.
 #[test]
 fn units() {
     let stencil = "unit stencil-test --in function=greater --in fail=Keep --in depth_fail=Invert --in pass=Increment --in reference=0x80 \
@@ -68,7 +68,7 @@ fn products_and_sums() {
     assert_eq!(result(&format!("{PRODUCT} --scale 2 --policy CMB-9=after"), "spare0.g"), 157);
     assert_eq!(result(SUM, "spare0.b"), 157);
     assert_eq!(result(&format!("{SUM} --policy CMB-7=each"), "spare0.b"), 156);
-    // Both products apart, one of them halved: nothing but the destinations changes.
+    // With other destinations the products are kept apart, but their values do not change.
     let apart = format!("{SUM} --ab spare1 --cd tex1 --sum discard");
     assert_eq!((result(&apart, "spare1.r"), result(&apart, "texture1.r")), (78.into(), 78.into()));
     assert_eq!(result(&format!("{PRODUCT} --portion alpha"), "spare0.a"), 78);
@@ -120,9 +120,9 @@ fn final_combiner() {
     assert_eq!((result(sum, "fragment.r"), result(sum, "fragment.a")), (255.into(), 55.into()));
     let product = "final --a ef --b zero:invert --e tex0 --f tex1 --in tex0=100 --in tex1=200";
     assert_eq!(result(product, "fragment.g"), 78);
-    // Of a negative register the final combiner sees 0.
+    // The final combiner reads a negative register as 0.
     assert_eq!(result("final --d tex0:invert --in tex0=-100", "fragment.b"), 255);
-    // 200 + 100 enters D whole: a quarter of it is left.
+    // The sum 200 + 100 is not clamped, so a quarter of it is 75.
     let open = "final --a const0 --b sum --in spare0=200 --in secondary=100 --const0 64 --no-color-sum-clamp";
     assert_eq!(result(open, "fragment.r"), 75);
 }
@@ -134,7 +134,7 @@ fn blend() {
     let cut = format!("{over} --source 203,0,0,128 --stored 0x6000 --surface r5g6b5");
     assert_eq!((result(&cut, "blend.r"), result(&cut, "field.r")), (148.into(), 18.into()));
     assert_eq!(result(&cut, "stored.word"), 18 << 11);
-    // Twelve in five bits is 96 in eight.
+    // The surface stores 99 as 12 in five bits, which a blend reads as 96.
     let bytes = format!("{over} --source 203,0,0,128 --destination 99,0,0 --surface r5g6b5");
     assert_eq!(result(&bytes, "blend.r"), 148);
     let signed = "blend --equation signed_add --source 200 --destination 127 --profile nv2a";
@@ -175,7 +175,7 @@ fn text_is_a_trace() {
     assert!(idle.contains("nothing is written"), "{idle}");
 }
 
-/// Every register content through the signed expand mapping, by its formula.
+/// Applies the expand mapping to every register value and compares with the formula.
 #[test]
 fn tables() {
     let bench = Bench::new();
@@ -247,7 +247,7 @@ fn broken_tables_say_where() {
     bench.run("op combiner --inputs large.tsv").failed(5, "error[NB0534]");
 }
 
-/// Operations that a chip does not take, and what is said of them: of a general stage, and others.
+/// Operations that a chip refuses, with the beginning of the message.
 const ILLEGAL: [(&str, &str); 20] = [
     ("combiner --a tex0 --scale 4 --bias", "error[NB0307]: bias NegativeHalf does not go with scale Four"),
     ("combiner --a tex0 --portion alpha --dot", "error[NB0306]: the alpha portion has no dot products"),
@@ -327,7 +327,7 @@ fn a_wrong_command_line_is_status_2() {
     wrong("address --mode sideways --size 8 --index 1", "there is no address mode `sideways`");
 }
 
-/// The worked examples of `docs/numerics.md`, as far as they are one operation.
+/// The worked examples of `docs/numerics.md` that consist of one operation.
 #[test]
 fn examples_of_the_handbook() {
     let number = |command: &str, name: &str| result(command, name).as_i64().unwrap_or_else(|| panic!("{command}"));

@@ -1,4 +1,4 @@
-//! The crate against a second model written from the rules: the same words and depths, pixel by pixel.
+//! Compares the crate with a second model that is written from the rules: every word and depth has to be the same.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::settings;
@@ -20,7 +20,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-/// A runner whose scenes are the same on every machine. NINEBIT_ORACLE_SEED gives others.
+/// Returns a runner whose scenes are the same on every machine. `NINEBIT_ORACLE_SEED` selects others.
 fn runner(cases: u32) -> TestRunner {
     let config = Config {
         cases,
@@ -33,7 +33,7 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
 }
 
-/// The first pixel where two renders differ: target, x, y and what stands there.
+/// Returns the first pixel at which two renders differ: target, x, y, and both values.
 fn difference(got: &[Surface], expected: &[Surface]) -> Option<(usize, u32, u32, String)> {
     for (target, (g, e)) in got.iter().zip(expected).enumerate() {
         for (name, g, e, width) in [("word", &g.words, &e.words, g.width), ("depth", &g.depth, &e.depth, g.width)] {
@@ -49,7 +49,7 @@ fn difference(got: &[Surface], expected: &[Surface]) -> Option<(usize, u32, u32,
     None
 }
 
-/// Every way to render a scene, against the oracle.
+/// Compares every way to render a scene with the oracle.
 fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
     let expected = model::render(scene, policies);
     for (prune, threads) in [(true, 1), (false, 1), (true, 3)] {
@@ -63,8 +63,8 @@ fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares random scenes, some with other policies. Among the first `counted` of them each name of `wanted` has to be met `often` times: to count
-/// all would take longer than to draw them.
+/// Compares random scenes, a third of them with other policies. In the first `counted` scenes each name of `wanted` has to occur `often`
+/// times. Counting in all of them would take longer than drawing them.
 fn run(
     cases: u32,
     scenes: BoxedStrategy<Scene>,
@@ -99,7 +99,7 @@ fn run(
     assert!(missing.is_empty(), "too seldom: {missing:?}");
 }
 
-/// Any value of every policy.
+/// Returns any combination of policy values.
 fn policies() -> impl Strategy<Value = Policies> {
     proptest::collection::vec(0..3_usize, POLICIES.len()).prop_map(|values| {
         let mut policies = Policies::DEFAULT;
@@ -113,7 +113,7 @@ fn policies() -> impl Strategy<Value = Policies> {
 #[test]
 fn random_scenes_agree() {
     run(settings::number("NINEBIT_ORACLE_SCENES", 2000), random_scene::scene().boxed(), (400, 500), |need| {
-        // Depths and volumes come with the wider scenes.
+        // Depth formats and volumes occur only in the wider scenes.
         let depths = TextureFormat::ALL.iter().position(|format| format.depth().is_some()).unwrap_or(0);
         need("TextureFormat", &TextureFormat::NAMES[..depths]);
         need("TextureKind", &TextureKind::NAMES[..3]);
@@ -178,10 +178,10 @@ fn random_scenes_draw_something() {
     assert!(rich >= 200, "{rich} of 400");
 }
 
-/// Patterns of floats of all kinds, most of sizes that reach each other.
+/// Returns floats of all kinds. The exponents of most of them are close, so that sums of them matter.
 fn number() -> impl Strategy<Value = f32> {
     let moderate = (any::<u32>(), 118_u32..136).prop_map(|(bits, e)| bits & 0x807f_ffff | e << 23);
-    // Mantissas whose middle is all ones are cut, not rounded.
+    // Mantissas whose middle bits are all 1 are truncated, not rounded.
     let ones = moderate.clone().prop_map(|bits| bits | 255 << 10);
     let few = (moderate.clone(), 0_u32..23).prop_map(|(bits, zeros)| bits >> zeros << zeros);
     let odd = prop::sample::select(vec![
@@ -201,7 +201,7 @@ fn number() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(Config { cases: 20_000, failure_persistence: None, ..Config::default() })]
 
-    /// FOG-1, FOG-3, INT-5n: what a vertex passes, of anything.
+    /// FOG-1, FOG-3, INT-5n: compares the value that a vertex passes on, for arbitrary floats.
     #[test]
     fn words_of_the_light_unit(
         mode in 0..FogMode::ALL.len(), p0 in number(), p1 in number(), p2 in prop_oneof![1 => Just(0.0), 1 => number()], d in number(),
@@ -211,12 +211,12 @@ proptest! {
         for profile in Profile::ALL {
             let (got, expected) = (passed(&function, *profile, d), model::fog::at_vertex(&function, *profile, d));
             let same = got.to_bits() == expected.to_bits() || (got.is_nan() && expected.is_nan());
-            // Zeros of either sign are one.
+            // Zeros of different sign count as equal.
             prop_assert!(same || (got == 0.0 && expected == 0.0), "{:?}: {:#x}, oracle {:#x}", profile, got.to_bits(), expected.to_bits());
         }
     }
 }
 
-/// Every operation of the texture shader.
+/// The names of all operations of the texture shader.
 const OPERATIONS: &str = "None Sample PassThrough CullFragment BumpEnvironment DependentAlphaRed DependentGreenBlue \
     DotProduct DotProduct2D DotProductCube DotReflectDiffuse DotReflectSpecular DotReflectConstantEye";

@@ -1,4 +1,4 @@
-//! What the README shows is what the program does: its picture and its excerpt of a trace.
+//! Checks that the picture and the excerpt of a trace in the README are what the program produces.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test")]
 
 use crate::repository::at;

@@ -1,4 +1,4 @@
-//! Register words: from programs and back, refusals, and what is printed.
+//! Tests register words: conversion from programs and back, refused values, and printed forms.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use ninebit_test_support::random_scene;
@@ -22,7 +22,7 @@ fn programs_survive_their_words() {
         for draw in &scene.draws {
             let words = encode(&draw.combiners, scene.profile);
             assert_eq!(decode(&words).as_ref(), Ok(&draw.combiners));
-            // As a scene has them.
+            // The words as they are written in a scene.
             let text = format!(
                 "(version: 1, profile: {}, draws: [(vertices: Window([]), program: {})])",
                 scene.profile.name(),
@@ -47,12 +47,12 @@ fn code(chip: Profile, final_sum: bool) -> impl Strategy<Value = u32> {
     prop::sample::select(codes)
 }
 
-/// Four fields of a byte each, the first on top.
+/// Packs four bytes into a word, the first in the highest bits.
 fn pack([a, b, c, d]: [u32; 4]) -> u32 {
     a << 24 | b << 16 | c << 8 | d
 }
 
-/// Words that the chip takes.
+/// Returns words that the chip accepts.
 fn words(chip: Profile) -> impl Strategy<Value = RegisterWords> {
     let stages = chip.general_stages();
     let input = || {
@@ -80,7 +80,7 @@ fn words(chip: Profile) -> impl Strategy<Value = RegisterWords> {
     )
         .prop_map(move |(stages, sum, (product, flags), (count, msb, colors, own), constants)| {
             let mut words = RegisterWords::new(chip);
-            // What is not used is 0: that is what programs become.
+            // Unused words are 0, as they are when programs are encoded.
             for (n, (alpha, rgb, out_alpha, out_rgb)) in stages.into_iter().enumerate().take(count as usize) {
                 words.set(Word::RcInAlpha, n, alpha);
                 words.set(Word::RcInRgb, n, rgb);
@@ -120,7 +120,7 @@ proptest! {
         prop_assert_eq!(encode(&program, words.chip), words);
     }
 
-    /// A word that is taken keeps all its bits; one that is not says why.
+    /// A word that is accepted keeps all of its bits. One that is refused has a message with its value, and help.
     #[test]
     fn a_word_is_taken_or_refused(n in 0..Word::ALL.len(), index in 0..2usize, value in any::<u32>(), nv2a in any::<bool>()) {
         let chip = if nv2a { Profile::Nv2a } else { Profile::Nv10 };
@@ -136,7 +136,7 @@ proptest! {
     }
 }
 
-/// The fields that decide, exhaustively.
+/// Tests all values of the fields that decide whether a word is accepted.
 #[test]
 fn codes_are_taken_as_the_chips_do() {
     for chip in [Profile::Nv10, Profile::Nv2a] {

@@ -1,4 +1,4 @@
-//! `ninebit replay` as it is used, and what must not change what it says.
+//! Tests `ninebit replay` from outside, and checks what must not change its results.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench;
@@ -20,7 +20,7 @@ use snapbox::{assert_data_eq, file};
 
 use bench::{Bench, Run};
 
-/// A triangle that a dot product lights: 3 * 100 * `light` / 255 in red, green and blue.
+/// Returns a scene of a triangle lit by a dot product, 3 * 100 * `light` / 255 in red, green and blue.
 fn lit(light: u8) -> String {
     format!(
         r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 24, height: 16), (name: "other", width: 4, height: 4)],
@@ -37,7 +37,7 @@ draws: [(
     )
 }
 
-/// What a scene of a bench draws under some policies.
+/// Draws a scene under some policies. Returns its expectation and its picture as PNG.
 fn drawn(bench: &Bench, name: &str, policies: &[&str]) -> (Expectation, Vec<u8>) {
     let loaded = scene::load(&bench.path(name), &Limits::default()).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let mut chosen = Policies::DEFAULT;
@@ -47,7 +47,8 @@ fn drawn(bench: &Bench, name: &str, policies: &[&str]) -> (Expectation, Vec<u8>)
     (Expectation::from_surface("frame", &surface), png)
 }
 
-/// A bench with three scenes: `a/one` is as expected, `a/two` was drawn under a policy, `b` has only a digest of something else.
+/// Returns a folder with three scenes: `a/one` is as expected, `a/two` was drawn under a policy, and `b` has only a digest, of something
+/// else.
 fn three() -> Bench {
     let bench = Bench::new();
     fs::create_dir(bench.path("a")).unwrap();
@@ -60,7 +61,7 @@ fn three() -> Bench {
     bench
 }
 
-/// Everything that a run wrote to stdout; its status and that it said nothing on stderr.
+/// Checks the status and that stderr is empty. Returns stdout.
 fn said(run: Run, status: i32) -> String {
     assert_eq!((run.status, run.stderr.as_str()), (status, ""));
     String::from_utf8(run.stdout).unwrap()
@@ -119,15 +120,15 @@ fn pictures_of_an_earlier_run_show_where() {
     bench.write("b.expect.ron", expected.to_text()).write("earlier/b.png", png);
     let text = said(bench.run("replay b.ron --expected earlier"), 1);
     assert!(text.contains("by 1 at most") && text.contains("no single policy explains it"), "{text}");
-    // Pictures that are written are those that are read.
+    // Pictures that `--pictures` writes can be read by `--expected`.
     said(bench.run("replay . --pictures written"), 1);
     assert_eq!(said(bench.run("replay a/one.ron --expected written"), 0), "1 scene: 1 as expected\n");
-    // One that is not of the digest is no evidence.
+    // A picture that does not match the digest is not used as evidence.
     let text = said(bench.run("replay b.ron --expected written --artifacts found"), 1);
     assert!(text.contains("digest "), "{text}");
     let remark = "written/b.png is another picture than the expected one";
     assert!(fs::read_to_string(bench.path("found/b.txt")).unwrap().contains(remark));
-    // The expectation may name a picture itself.
+    // The expectation itself may name a picture.
     let named = Expectation { picture: Some("earlier/b.png".to_owned()), ..expected };
     bench.write("b.expect.ron", named.to_text());
     assert!(said(bench.run("replay b.ron"), 1).contains("by 1 at most"));
@@ -179,7 +180,7 @@ fn expectations_are_written_on_request_only() {
     assert_eq!(fs::read_to_string(bench.path("scene.expect.ron")).unwrap(), expected.to_text());
     assert_eq!(said(bless("replay . --bless"), 0), "1 scene: 1 as expected\n");
 
-    // What else an expectation says stays; the picture that it names is drawn anew.
+    // Other fields of an expectation are kept. The picture that it names is drawn again.
     let (other, mask) = (drawn(&bench, "scene.ron", &["CMB-8=each"]).0, vec![[255; 4]; 24 * 16]);
     bench.write("mask.png", encode_png(24, 16, &mask, Compression::Small).unwrap());
     let kept =
@@ -193,13 +194,13 @@ fn expectations_are_written_on_request_only() {
     };
     assert!(pixels(&fs::read(bench.path("p.png")).unwrap()) == pixels(&png));
 
-    // A picture cannot leave the folder, and then nothing is written.
+    // A picture must not lie outside the folder. If it does, nothing is written.
     let outside = Expectation { picture: Some("../p.png".into()), sha256: "1".repeat(64), ..kept.clone() }.to_text();
     bench.write("scene.expect.ron", &outside);
     assert!(said(bless("replay . --bless"), 3).contains("NB0501"));
     assert_eq!(fs::read_to_string(bench.path("scene.expect.ron")).unwrap(), outside);
 
-    // Somebody else's pictures are not written.
+    // Pictures that were captured elsewhere are not overwritten.
     let allowance = Allowance { picture: "p.png".into(), pixels: 0, difference: 0, reason: "a test".into() };
     let zero = Expectation { sha256: "2".repeat(64), ..other };
     bench.write("p.png", encode_png(24, 16, &mask, Compression::Small).unwrap());
@@ -287,7 +288,7 @@ fn wrong_command_lines_are_refused() {
     bench.run("replay . --report json=-,junit=-").failed(2, "cannot all go to stdout");
     bench.run("replay . --filter a[").failed(2, "is not a pattern");
     bench.run("replay . --profile Nv30").failed(2, "Nv10");
-    // Two files of one name: parts that lead up are no part of it.
+    // Two files would have the same name, because leading `..` parts are not part of a name.
     fs::create_dir_all(bench.path("b/a")).unwrap();
     bench.write("b/a/one.ron", "");
     let mut command = bench.command("replay a/one.ron ../a/one.ron");
@@ -361,7 +362,7 @@ fn github_shows_annotations() {
     assert!(text.matches("::error ").count() == 10 && text.contains("3 more scenes are not as expected"), "{text}");
 }
 
-/// Whatever the differences, the library gives what the program prints.
+/// If there are differences, the library reports the same as the program.
 #[test]
 fn the_library_says_the_same() {
     let bench = three();

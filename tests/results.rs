@@ -1,4 +1,4 @@
-//! Results of cards: held to their pack, refused where they are not whole, adopted where they are silicon.
+//! Tests the results of cards: they are compared with their pack, refused if they are incomplete, and adopted if they come from silicon.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -20,7 +20,7 @@ use ninebit_vectors::units;
 
 const UNITS: [&str; 3] = ["product", "scale-bias", "input-mapping"];
 
-/// A pack, and a folder in which a card may answer.
+/// A vector pack, and a folder for the results of a card.
 struct Asked {
     folder: tempfile::TempDir,
     manifest: Manifest,
@@ -53,7 +53,7 @@ impl Asked {
         self.results().join(format!("{unit}.tsv"))
     }
 
-    /// The results of a card that follows these policies, in whole numbers.
+    /// Writes the results of a card that follows these policies. Rows with real numbers are left out.
     fn answer(&self, vendor: &str, renderer: &str, policies: Policies) {
         fs::create_dir_all(self.results()).unwrap();
         let device = serde_json::json!({
@@ -96,13 +96,13 @@ impl Asked {
     }
 }
 
-/// A body with its last line.
+/// Returns the text with a last line that has its row count and checksum.
 fn sealed(body: &str) -> String {
     let rows = body.lines().filter(|line| !line.starts_with('#')).count().saturating_sub(1);
     format!("{body}# end {rows} {:08x}\n", crc32fast::hash(body.as_bytes()))
 }
 
-/// A file of results without its last line, changed, and sealed again.
+/// Changes a file of results and replaces its last line with a correct one.
 fn changed(path: &Path, change: impl Fn(&str) -> String) {
     let text = fs::read_to_string(path).unwrap();
     let body = &text[..text.rfind("# end").unwrap()];
@@ -110,7 +110,7 @@ fn changed(path: &Path, change: impl Fn(&str) -> String) {
     fs::write(path, sealed(&body)).unwrap();
 }
 
-/// The row of product whose first operand is 100 and second 200, whose result is 78.
+/// Replaces the result of the first row of product whose result is 78.
 fn with_product(asked: &Asked, found: &str) {
     changed(&asked.path("product"), |body| {
         let row = body.lines().find(|line| line.contains("\t78\t")).unwrap();
@@ -131,7 +131,7 @@ fn what_agrees_is_exact() {
     assert!(String::from_utf8(output.stdout).unwrap().contains("everything that was asked is exact"));
 }
 
-/// A card that follows another value of a policy is found out by name.
+/// If a card follows another value of a policy, the comparison names it.
 #[test]
 fn the_policy_that_a_card_follows_is_named() {
     let asked = Asked::new();
@@ -188,7 +188,7 @@ fn differences_are_told_with_intermediates_and_waived_by_name_only() {
     assert_eq!(value["comparison"]["units"][1]["worse"], 1);
 }
 
-/// Every way to spoil a file of results has its code.
+/// Every kind of damage to a file of results has its code.
 #[test]
 fn spoiled_results_are_refused() {
     let asked = Asked::new();
@@ -225,7 +225,7 @@ fn spoiled_results_are_refused() {
     assert_eq!(parse(&good, &path).unwrap().rows.len(), 1000);
 }
 
-/// The chip cannot show a unit's results, so none of its rows was asked: a table without observed columns and without rows.
+/// If the chip cannot show the results of a unit, none of its rows was asked. Its table has neither observed columns nor rows.
 #[test]
 fn a_unit_that_a_card_cannot_show_was_not_asked() {
     let asked = Asked::new();
@@ -248,7 +248,7 @@ fn a_unit_that_a_card_cannot_show_was_not_asked() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(!asked.folder.path().join("adopted/geforce-256/product.tsv").exists(), "nothing was asked of it");
 
-    // A row that shows nothing confirms nothing.
+    // A row without results confirms nothing.
     let id =
         asked.tables.iter().find(|table| table.writer.contents().unit.name() == "product").unwrap().rows[0].id.clone();
     for (columns, row) in [
@@ -266,7 +266,7 @@ fn a_unit_that_a_card_cannot_show_was_not_asked() {
     }
 }
 
-/// What only the folder as a whole shows.
+/// Tests errors that only the folder as a whole shows.
 #[test]
 fn results_of_something_else_are_refused() {
     let asked = Asked::new();
@@ -303,7 +303,7 @@ fn results_of_something_else_are_refused() {
     refused("NB1001", 4);
 }
 
-/// Batches ask rows of their table, and point to bytes that are there.
+/// Batches ask rows of their table, and refer to bytes that exist.
 #[test]
 fn batches_ask_rows_of_their_table() {
     let folder = tempfile::tempdir().unwrap();
@@ -347,7 +347,7 @@ fn batches_ask_rows_of_their_table() {
     }
 }
 
-/// Records whose truth the model does not follow yet, or whose files were changed.
+/// Returns the adopted records that contradict the current model, or whose files were changed.
 fn owed(folder: &Path) -> Vec<String> {
     use sha2::{Digest, Sha256};
     let mut owed = Vec::new();
@@ -380,7 +380,7 @@ fn cards_are_adopted_and_the_model_owes_what_they_contradict() {
     assert_eq!((record.grade.as_str(), record.behaviour_rev, record.units.len()), ("SILICON", BEHAVIOUR, 3));
     assert_eq!(owed(&adopted), [""; 0]);
 
-    // The same device again is refused, another name is not; what contradicts the model is owed.
+    // The same device is refused a second time, but another name is not. Results that contradict the model are listed as owed.
     assert_eq!(asked.run(&["adopt", "pack", "results", "-o", "adopted"]).status.code(), Some(3));
     with_product(&asked, "79");
     let output = asked.run(&["adopt", "pack", "results", "-o", "adopted", "--device", "geforce-256-ddr"]);

@@ -1,4 +1,4 @@
-//! The document of the scene format, checked; and what scenes become.
+//! Checks the document of the scene format, and the scenes that texts become.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -21,7 +21,7 @@ fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A scene of one draw with these fields beside a triangle.
+/// Returns a scene with one draw of a triangle, which has the given fields.
 fn draw(profile: &str, top: &str, fields: &str) -> Loaded {
     parse(&format!(
         "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
@@ -38,7 +38,7 @@ fn every_example_of_the_document_is_accepted_without_warnings() {
     for example in examples {
         let loaded = parse(example);
         assert_eq!(loaded.render_warnings(false), "");
-        // Every example shows something.
+        // Every example draws something visible.
         let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
         let frames = engine::render(&plan, &RenderOptions::default());
         let words = &frames.surfaces[0].words;
@@ -46,8 +46,8 @@ fn every_example_of_the_document_is_accepted_without_warnings() {
     }
 }
 
-/// The tables of fields are made from the declarations that the reader reads: their markers name the structure, or several with what each is called in
-/// a scene. `BLESS=1` writes them anew.
+/// The tables of fields are generated from the declarations that the reader uses. The markers of a table name the structure, or several
+/// structures with the names that they have in a scene. `BLESS=1` rewrites the tables.
 #[test]
 fn the_tables_of_fields_are_those_of_the_declarations() {
     const PAGE: &str = "docs/scene-format.md";
@@ -74,7 +74,7 @@ fn the_tables_of_fields_are_those_of_the_declarations() {
     assert_eq!(structures, declared, "each structure has its place in the page, once");
 }
 
-/// Scenes with a place, `@`, for a field of a structure.
+/// Parts of scenes with `@` at a place where a field of the structure can be inserted.
 const PLACES: &[(&str, &str)] = &[
     ("Target", "top: targets: [(@ name: \"t\")],"),
     ("Clear", "top: targets: [(clear: (@), depth: Z24S8)],"),
@@ -149,7 +149,7 @@ const PLACES: &[(&str, &str)] = &[
     ("HemisphereNormals", "truth: normal: Hemisphere(@), lights: [(direction: (0, 0, 1))]"),
 ];
 
-/// A scene with the place filled.
+/// Returns a scene with `field` inserted at the place.
 fn with_field(place: &str, field: &str) -> String {
     const WINDOW: &str = "vertices: Window([(position: (0, 0)), (position: (0, 9)), (position: (9, 9))])";
     const MESH: &str = "Matrix(matrix: Identity, mesh: Grid(columns: 1, rows: 1))";
@@ -180,7 +180,7 @@ fn with_field(place: &str, field: &str) -> String {
     format!("(version: 1, profile: Nv2a, {inside})")
 }
 
-/// What the page says of a field that is not written is what the reader does then: written in full it makes the same scene.
+/// A scene without a field equals the scene in which the field has the default that the page states.
 #[test]
 fn the_defaults_of_the_tables_are_those_of_the_reader() {
     let made = |text: &str| {
@@ -199,7 +199,7 @@ fn the_defaults_of_the_tables_are_those_of_the_reader() {
         for row in rows.skip(1) {
             let quoted = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
             let (names, values) = (quoted(&row[column("field").unwrap()]), quoted(&row[default]));
-            // Nothing but values: no words around them, no name of another field.
+            // Only defaults that are plain values are tested, without other words or names of other fields.
             let list = values.iter().map(|value| format!("`{value}`")).collect::<Vec<_>>().join(", ");
             let is_value =
                 |value: &String| !value.starts_with(char::is_lowercase) || ["true", "false"].contains(&value.as_str());
@@ -217,7 +217,7 @@ fn the_defaults_of_the_tables_are_those_of_the_reader() {
                     match (made(&with_field(place, "")), made(&with_field(place, &format!("{name}: {value}, ")))) {
                         (Ok(absent), Ok(written)) if absent == written => findings.clear(),
                         (Ok(_), Ok(_)) => wrong.push(format!("{structure}: `{name}: {value}` changes the scene")),
-                        // Another place may take it.
+                        // Another place of the same structure may accept the field.
                         (Err(error), _) | (_, Err(error)) => {
                             findings.iter_mut().for_each(|last| last.clone_from(&error))
                         }
@@ -232,7 +232,7 @@ fn the_defaults_of_the_tables_are_those_of_the_reader() {
     assert!(held > 150, "{held}");
 }
 
-/// The words that the help of a wrong one, in a scene that is wrong there alone, says are known.
+/// Returns the words that the help of an error lists, for a scene whose only error is an unknown word.
 fn known_words(place: &str) -> Vec<String> {
     let error = scene::parse(place, Path::new("x.ron"), &Limits::default()).unwrap_err();
     let mut help = error.diagnostics.iter().filter_map(|finding| finding.help.as_deref());
@@ -245,7 +245,7 @@ fn known_words(place: &str) -> Vec<String> {
 #[test]
 fn the_document_names_every_limit_field_and_word() {
     let document = fs::read_to_string(at("docs/scene-format.md")).unwrap();
-    // The help of an unknown field lists the fields of its place: each of them must be described.
+    // The help for an unknown field lists all fields of its structure, so each of them must be described.
     let places = [
         "(x: 1)",
         "(version: 1, profile: Nv2a, names: (x: 1))",
@@ -285,7 +285,7 @@ fn the_document_names_every_limit_field_and_word() {
     for word in &all {
         assert!(document.contains(word), "docs/scene-format.md says nothing of `{word}`");
     }
-    // Rows that are written by hand are of words that there are.
+    // Rows that are written by hand describe only words that exist.
     for held in document.split("<!-- held by tests/scene_format.rs: begin -->\n").skip(1) {
         let rows = held.lines().take_while(|line| line.starts_with('|')).skip(2);
         let words = rows.map(|row| row.split_once('`').unwrap().1);
@@ -332,7 +332,7 @@ fn what_is_left_out_has_its_default() {
     assert!(loaded.warnings.is_empty());
 }
 
-/// A texture register is a register: what a stage has written needs no texture.
+/// A texture register that a stage has written needs no texture.
 #[test]
 fn written_texture_registers_are_not_unbound() {
     let program = |first: &str| {
@@ -387,7 +387,7 @@ fn targets_and_raster_operations() {
     assert_eq!((scissor.x, scissor.y, scissor.width, scissor.height), (1, 0, 2, 3));
 }
 
-/// Bytes, floats, and words of which the low eight bits count.
+/// References may be bytes, floats, or words of which only the low eight bits count.
 #[test]
 fn alpha_references_of_every_form() {
     for (written, byte, warns) in [
@@ -426,7 +426,7 @@ fn texels_are_packed_by_cutting_off() {
     assert_eq!(words("L8", "Checker(width: 4, height: 2, cell: 2)"), [255, 255, 0, 0, 255, 255, 0, 0]);
 }
 
-/// Words as they are, unused bits too, until a draw writes them.
+/// The words of a texture become the contents of a target, unused bits included, until a draw overwrites them.
 #[test]
 fn targets_begin_as_textures() {
     let loaded = parse(
@@ -507,7 +507,7 @@ fn texture_shaders() {
     assert_eq!(
         draws[0].texture_shader,
         [
-            // The unit's coordinates hold unless the stage names others.
+            // The coordinates of the unit apply unless the stage names others.
             stage(ShaderOperation::Sample, 2, 0, zero_to_one),
             stage(ShaderOperation::DotProduct, 1, 0, DotMapping::HiloHemisphere),
             stage(ShaderOperation::DotProduct2D, 3, 0, zero_to_one),

@@ -1,4 +1,4 @@
-//! No text makes the scene reader panic, hang or take memory without end.
+//! Checks that no text makes the scene reader panic, hang, or use memory without limit.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -9,7 +9,7 @@ use ninebit::limits::Limits;
 use ninebit_scene::{self as scene, SceneError};
 use proptest::prelude::*;
 
-/// What parsing says; rendering is part of the test.
+/// Returns the error of a text. Rendering the error is part of the test.
 fn refuse(text: &str) -> SceneError {
     let error = scene::parse(text, Path::new("hostile.ron"), &Limits::default()).unwrap_err();
     let rendered = error.render(false);
@@ -150,7 +150,7 @@ proptest! {
     }
 }
 
-/// Findings that are only counted need no suggestion: the time grows with the text, not with its square.
+/// Findings that are only counted need no suggestion, so the time grows linearly with the text, not quadratically.
 #[test]
 fn thousands_of_misspelt_names_are_refused() {
     let list = |line: &dyn Fn(usize) -> String| (0..8000).map(line).collect::<String>();

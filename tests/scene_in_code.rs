@@ -1,7 +1,7 @@
-//! Scenes that were built in code: whatever stands in them, `Plan::compile` plans them or says why not, and what it plans is drawn.
+//! Tests scenes that are built in code. `Plan::compile` plans any scene or says why it cannot, and every plan can be drawn.
 //!
-//! The normal run takes 1,500 valid random scenes and breaks them in one to four places. `NINEBIT_CODE_SCENES` says how many instead,
-//! `NINEBIT_CODE_SEED` chooses others.
+//! A normal run takes 1,500 valid random scenes and breaks each in one to four places. `NINEBIT_CODE_SCENES` sets another number,
+//! `NINEBIT_CODE_SEED` selects others.
 use crate::settings;
 use ninebit_test_support::random_scene;
 
@@ -15,7 +15,7 @@ fn compile(scene: &Scene) -> Result<Plan, Vec<PlanError>> {
     Plan::compile(scene, &PlanOptions::default())
 }
 
-/// A texture of one colour, 4 x 4.
+/// Returns a texture of 4 x 4 texels of one colour.
 fn texture() -> Texture {
     let texels =
         Texels { width: 4, height: 4, levels: 1, layers: 1, border: false, words: vec![0xff80_4020; 16].into() };
@@ -33,7 +33,7 @@ const STENCIL_TEST: StencilTest = StencilTest {
     pass: StencilOperation::Increment,
 };
 
-/// A triangle, textured, on 8 x 8 pixels.
+/// Returns a scene with a textured triangle on 8 x 8 pixels.
 fn plain(profile: Profile) -> Scene {
     let depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 });
     let target = |name: &str| Target { name: name.to_owned(), depth, ..Target::new(8, 8, SurfaceFormat::A8R8G8B8) };
@@ -72,7 +72,7 @@ fn plain(profile: Profile) -> Scene {
     }
 }
 
-/// What one change of the plain scene is called in the error.
+/// A part of the expected error, and the change of the plain scene that causes it.
 type Case = (&'static str, fn(&mut Scene));
 
 fn texels(scene: &mut Scene) -> &mut Texels {
@@ -86,7 +86,7 @@ fn unit(scene: &mut Scene) -> &mut TextureUnit {
     scene.draws[0].textures[0].as_mut().unwrap()
 }
 
-/// Puts a vertex somewhere.
+/// Moves the first vertex.
 fn put(scene: &mut Scene, position: [f32; 4]) {
     scene.draws[0].vertices.update(|index, vertex| {
         if index == 0 {
@@ -99,7 +99,7 @@ fn set(scene: &mut Scene, coordinates: [f32; 4]) {
     scene.draws[0].vertices.update(|_, vertex| vertex.texture_coordinates[0] = coordinates);
 }
 
-/// Every invariant of a scene, broken alone.
+/// Changes that each break one invariant of a scene.
 const CASES: &[Case] = &[
     ("NB0212: draw 0: the draw goes into target 0 of 0", |s| s.targets.clear()),
     ("the fog factor of vertex 1 is no number", |s| {
@@ -242,7 +242,7 @@ const CASES: &[Case] = &[
     ("is more than 65536 texels", |s| set(s, [65536.0, 0.0, 0.0, 1.0])),
 ];
 
-/// What nv10 lacks.
+/// Changes that use features which nv10 lacks.
 const CASES_OF_NV10: &[Case] = &[
     ("surface format G8B8 does not exist on Nv10", |s| s.targets[1].format = SurfaceFormat::G8B8),
     ("texture `grey`: texture format A8B8G8R8 does not exist on Nv10", |s| {
@@ -287,7 +287,7 @@ fn every_invariant_is_refused_by_name() {
 
 // ---- hostile scenes ----
 
-/// Numbers from a seed.
+/// A source of numbers from a seed.
 struct Random(ninebit::random::Random);
 
 impl Random {
@@ -350,7 +350,7 @@ impl Random {
     }
 }
 
-/// Breaks something of a scene, or leaves it legal.
+/// Makes a random change to a scene, which usually breaks it.
 fn hurt(scene: &mut Scene, r: &mut Random) {
     let (targets, textures, palettes, draws) =
         (scene.targets.len(), scene.textures.len(), scene.palettes.len(), scene.draws.len());
@@ -525,7 +525,7 @@ fn hurt_draw(draw: &mut Draw, r: &mut Random) {
     }
 }
 
-/// Frames of more pixels are not drawn here: the definition takes too long.
+/// Scenes with more pixels are planned but not drawn, because the scalar engine would take too long.
 const MAX_PIXELS: u64 = 1 << 17;
 
 #[test]
@@ -541,7 +541,7 @@ fn hostile_scenes_are_planned_or_refused() {
         for _ in 0..=random.below(4) {
             hurt(&mut scene, &mut random);
         }
-        // A panic names the scene by its number.
+        // A failing scene is named by its number.
         let drawing = format!("scene {number} of seed {seed}");
         let told = std::panic::catch_unwind(|| {
             let plan = match compile(&scene) {
@@ -572,7 +572,7 @@ fn hostile_scenes_are_planned_or_refused() {
     assert!(drawn > count / 20 && drawn < count, "{drawn} of {count}");
 }
 
-/// What a text is told at its place, a scene without one is told as well: the bound, and the rule.
+/// A scene that has no text gets the bound and the rule in its error, as one with text does.
 #[test]
 fn a_texture_that_is_too_large_is_told_its_bound() {
     let mut scene = plain(Profile::Nv10);

@@ -1,4 +1,4 @@
-//! The tests that need no binary of their own, in one: linking forty binaries would take longer than running them.
+//! All tests that need no binary of their own, in one binary, because linking forty binaries would take longer than running them.
 //!
 //! `cargo test --test suite trace::` runs those of `tests/trace.rs`.
 #![allow(

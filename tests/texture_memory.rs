@@ -1,4 +1,4 @@
-//! How much memory textures take: levels on top of their texels, and nothing twice.
+//! Tests how much memory textures take: levels in addition to level 0, and no second copy.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test binary")]
 
 use ninebit::limits::Limits;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const SIDE: u32 = 2048;
 
-/// All levels of any format take at most 1.34 times level 0, and the padding of the last blocks.
+/// All levels of any format take at most 1.34 times level 0, plus the padding of the last blocks.
 #[test]
 fn levels_take_a_third_more() {
     for format in TextureFormat::ALL {
@@ -21,7 +21,7 @@ fn levels_take_a_third_more() {
     }
 }
 
-/// A texture of 2048 x 2048 with all levels, read from a scene: the plan holds the same words as the scene.
+/// The plan of a scene with a texture of 2048 x 2048 and all levels shares the words with the scene.
 #[test]
 fn plans_share_the_words() {
     let text = "(version: 1, profile: Nv2a, textures: {\"t\": (levels: All, source: Checker(width: 2048, height: 2048, cell: 3))}, \

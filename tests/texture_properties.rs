@@ -1,4 +1,4 @@
-//! What holds for texture units at large: faces of cubes, addressing, scaled coordinates, filter weights.
+//! Tests general properties of texture units: faces of cube maps, addressing, scaled coordinates, filter weights.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test binary")]
 
 use ninebit::raster::interpolate::Sample;
@@ -11,18 +11,18 @@ use proptest::prelude::*;
 
 // ---- cube maps ----
 
-/// Every direction of 33 x 33 x 33.
+/// Returns all directions of a lattice of 33 x 33 x 33 points.
 fn lattice() -> impl Iterator<Item = [i32; 3]> {
     (0..33_i32.pow(3)).map(|n| [n % 33 - 16, n / 33 % 33 - 16, n / 1089 - 16])
 }
 
-/// The face that a direction meets, with sc, tc and ma.
+/// Returns the face that a direction meets, with sc, tc and ma.
 fn meets(d: [i32; 3]) -> (Face, [i32; 3]) {
     let face = Face::from_direction(d, d.map(i32::abs), 0);
     (face, face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] }))
 }
 
-/// TEX-12 as a table of matrices: the rows give sc, tc and ma of each face.
+/// TEX-12 as a table of matrices, whose rows yield sc, tc and ma of each face.
 const TABLE: [[[i32; 3]; 3]; 6] = [
     [[0, 0, -1], [0, -1, 0], [1, 0, 0]],
     [[0, 0, 1], [0, -1, 0], [-1, 0, 0]],
@@ -36,7 +36,7 @@ fn times(row: [i32; 3], d: [i32; 3]) -> i32 {
     row[0] * d[0] + row[1] * d[1] + row[2] * d[2]
 }
 
-/// TEX-12, TEX-13: the first face of the table whose axis is as long as any other component.
+/// TEX-12, TEX-13: a direction meets the first face of the table whose component is at least as large as all others.
 #[test]
 fn faces_of_the_lattice_are_those_of_the_table() {
     let mut met = [0; 6];
@@ -45,16 +45,16 @@ fn faces_of_the_lattice_are_those_of_the_table() {
         let wanted = TABLE.iter().position(|rows| d.iter().all(|c| times(rows[2], d) >= c.abs())).unwrap();
         assert_eq!(face as usize, wanted, "{d:?}");
         assert_eq!([s, t, m], TABLE[wanted].map(|row| times(row, d)), "{d:?}");
-        // u and v stay on the image.
+        // u and v lie on the image.
         assert!(m >= s.abs() && m >= t.abs());
         met[wanted] += 1;
     }
     assert_eq!(met.iter().sum::<i32>(), 33 * 33 * 33);
-    // X wins every tie, Y those with Z.
+    // X wins every tie, and Y wins ties with Z.
     assert!(met[0] > met[2] && met[2] > met[4] && met.iter().all(|n| *n > 4000), "{met:?}");
 }
 
-/// A direction and its negation meet opposite faces, at places that mirror each other in one of the two axes.
+/// A direction and its negation meet opposite faces, at positions that are mirrored along one of the two axes.
 #[test]
 fn opposite_directions_meet_opposite_faces() {
     for d in lattice().filter(|d| *d != [0; 3]) {
@@ -67,7 +67,7 @@ fn opposite_directions_meet_opposite_faces() {
     }
 }
 
-/// Turning the cube a quarter about y takes each side face to the next, with the same place on it.
+/// A quarter turn about y moves a direction to the next side face, at the same position.
 #[test]
 fn quarter_turns_carry_side_faces_on() {
     for [x, y, z] in lattice().filter(|[x, y, z]| x.abs() != z.abs() && y.abs() < x.abs().max(z.abs())) {
@@ -85,13 +85,13 @@ fn quarter_turns_carry_side_faces_on() {
 
 // ---- addresses ----
 
-/// Every mode for every size from 1 to 64, against a walk along the texels, one step at a time.
+/// Compares every mode, for every size from 1 to 64, with a walk along the texels one step at a time.
 #[test]
 fn addresses_are_those_of_a_walk() {
     for n in 1..=64_i64 {
         for direction in [1, -1] {
             let (mut wrapped, mut mirrored, mut step) = (0, 0, direction);
-            // A mirrored walk to the left starts by standing still: the edge texel is doubled.
+            // The edge texel occurs twice in a mirrored walk, so a walk to the left stays on it for the first step.
             for k in 0..=4096 {
                 let i = direction * k;
                 let at = |mode, border| address(mode, i, n as u32, border);
@@ -105,7 +105,7 @@ fn addresses_are_those_of_a_walk() {
                 let (first, last) = (-4, n + 3);
                 let with_border = if direction > 0 { i.min(last) } else { i.max(first) };
                 assert_eq!(at(AddressMode::ClampToBorder, true), Some(with_border));
-                // Border texels change nothing for the others.
+                // A texture border has no effect on the other modes.
                 for mode in [AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp] {
                     assert_eq!(at(mode, true), at(mode, false));
                 }
@@ -118,7 +118,7 @@ fn addresses_are_those_of_a_walk() {
                 if (0..n).contains(&(mirrored + step)) {
                     mirrored += step;
                 } else {
-                    // Stands still for one step, then goes back.
+                    // Stays on the edge texel for one step, then goes back.
                     step = -step;
                 }
             }
@@ -126,14 +126,14 @@ fn addresses_are_those_of_a_walk() {
     }
 }
 
-/// A row of texels, filtered at u as TEX-6 says.
+/// TEX-6: returns a row of texels filtered at u.
 fn filtered(row: &[i32], mode: AddressMode, u: i64) -> i32 {
     let (x, w) = linear(u);
     let texel = |x| row[address(mode, x, row.len() as u32, false).unwrap() as usize];
     lerp(texel(x), texel(x + 1), w)
 }
 
-/// A mirrored texture looks the same from both sides, filtered, at every 1/256 texel; nearest but for the texels' edges.
+/// A filtered mirrored texture is symmetric at every 1/256 texel. With the nearest filter the edges of texels are an exception.
 #[test]
 fn mirrored_coordinates_look_the_same() {
     for n in 1..=64_i64 {
@@ -150,7 +150,7 @@ fn mirrored_coordinates_look_the_same() {
     }
 }
 
-/// Whole repeats change nothing.
+/// Whole repeats of the texture do not change the result.
 #[test]
 fn repeats_look_the_same() {
     for n in 1..=64_i64 {
@@ -167,7 +167,8 @@ fn repeats_look_the_same() {
 
 // ---- filters ----
 
-/// Every pair of weights, on footprints that round either way, against the formula; in both lanes, and with signed texels.
+/// Compares every pair of weights with the formula, in both types of lane, with signed texels, and with texels that need rounding in either
+/// direction.
 #[test]
 fn bilinear_by_its_formula_for_every_pair_of_weights() {
     let footprints = [
@@ -191,7 +192,7 @@ fn bilinear_by_its_formula_for_every_pair_of_weights() {
                     let lanes = [a, b, c, d].map(|t| t as u16);
                     assert_eq!(i32::from(bilinear(lanes, u as u16, v as u16, |v| v)), want);
                 }
-                // The order of the axes is part of the rule, but not the side that a pair is seen from.
+                // The order of the axes matters to the rule, but the order of the two texels along an axis does not.
                 if u > 0 {
                     assert_eq!(bilinear([b, a, d, c], 256 - u, v, |v| v), want);
                 }
@@ -204,7 +205,7 @@ fn bilinear_by_its_formula_for_every_pair_of_weights() {
 
 // ---- coordinates ----
 
-/// A triangle within the guard band, in perspective, and a point of it as edge functions.
+/// Returns a triangle in perspective within the guard band, and the edge functions of a point that it covers.
 fn triangle() -> impl Strategy<Value = (Triangle, [i64; 3])> {
     let place = || prop_oneof![-64.0..64.0_f32, (-64..64_i8).prop_map(f32::from)];
     let w = prop_oneof![Just(1.0), Just(2.0), 0.1..50.0_f32];
@@ -217,7 +218,7 @@ fn triangle() -> impl Strategy<Value = (Triangle, [i64; 3])> {
     })
 }
 
-/// Numbers of a few bits, so that ties occur, and any.
+/// Returns numbers of few bits, so that ties occur, and arbitrary ones.
 fn component() -> impl Strategy<Value = f32> {
     prop_oneof![(-64..64_i8).prop_map(|n| f32::from(n) / 16.0), -4.0..4.0_f32, Just(0.0)]
 }
@@ -225,7 +226,8 @@ fn component() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, max_global_rejects: 1_000_000, ..ProptestConfig::default() })]
 
-    /// Only ratios of s, t and q count, and of the parts of a direction: a power of two in all of them changes nothing.
+    /// Coordinates depend only on the ratios of s, t and q, and on those of the parts of a direction. A power of two in all components
+    /// changes nothing.
     #[test]
     fn powers_of_two_in_all_components_change_nothing(
         (triangle, e) in triangle(),
@@ -258,7 +260,7 @@ proptest! {
         }
     }
 
-    /// A coordinate shifted by whole texels moves by them exactly, ties included.
+    /// A shift by whole repeats moves the coordinate exactly, ties included.
     #[test]
     fn whole_texels_move_coordinates_exactly(
         (triangle, e) in triangle(),
@@ -275,7 +277,7 @@ proptest! {
     }
 }
 
-/// The names of the faces are those of the table's rows.
+/// The names of the faces are in the order of the table's rows.
 #[test]
 fn faces_are_named_in_order() {
     assert_eq!(Face::NAMES, ["PositiveX", "NegativeX", "PositiveY", "NegativeY", "PositiveZ", "NegativeZ"]);

@@ -1,4 +1,4 @@
-//! What textures of a scene become, by kind, source, levels and palette.
+//! Tests the textures that scenes describe, by kind, source, levels and palette.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::dds;
@@ -12,7 +12,7 @@ use ninebit_scene::{self as scene, Loaded, SceneError};
 use std::fs;
 use std::path::PathBuf;
 
-/// A folder with files for scenes.
+/// A temporary folder with files for scenes.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -28,7 +28,7 @@ impl Folder {
         self.0.path().join("scene.ron")
     }
 
-    /// A scene with this at its top and one draw with these units.
+    /// Loads a scene with `top` at its beginning and one draw with `units`.
     fn load(&self, profile: &str, top: &str, units: &str) -> Result<Loaded, SceneError> {
         let text = format!(
             "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
@@ -37,7 +37,7 @@ impl Folder {
         scene::parse(&text, &self.origin(), &Limits::default())
     }
 
-    /// The one texture of a scene.
+    /// Returns the only texture of a scene.
     fn texture(&self, profile: &str, fields: &str) -> (TextureKind, TextureFormat, Texels) {
         let loaded = self.load(profile, &format!("textures: {{ \"t\": ({fields}) }},"), "\"t\"");
         let texture = loaded.unwrap_or_else(|error| panic!("{error}")).scene.textures.remove(0);
@@ -61,7 +61,7 @@ fn dds_files_bring_format_levels_and_faces() {
     let (kind, format, texels) = folder.texture("Nv10", "source: File(\"blocks.dds\")");
     assert_eq!((kind, format), (TextureKind::TwoDimensional, TextureFormat::Dxt3));
     assert_eq!((texels.width, texels.height, texels.levels, texels.words.len()), (8, 2, 4, 20));
-    // Fewer of them, but whole blocks of each.
+    // Only two levels are read, of which each has whole blocks.
     assert_eq!(folder.words("source: File(\"blocks.dds\"), levels: 2").len(), 12);
     let (kind, format, texels) = folder.texture("Nv10", "source: File(\"cube.dds\")");
     assert_eq!((kind, format, texels.levels), (TextureKind::Cube, TextureFormat::L8, 2));
@@ -69,7 +69,7 @@ fn dds_files_bring_format_levels_and_faces() {
     // The first level of each face.
     let first: Vec<u32> = (0..30).filter(|n| n % 5 < 4).collect();
     assert_eq!(folder.words("source: File(\"cube.dds\"), levels: 1"), first);
-    // The same bits read in another way.
+    // The same bytes are read in another format.
     assert_eq!(folder.texture("Nv10", "format: I8, source: File(\"cube.dds\")").1, TextureFormat::I8);
 }
 
@@ -91,7 +91,7 @@ fn levels_are_made_by_a_box_filter() {
     // (0 + 1 + 0 + 0 + 2) >> 2 = 0, (16 + 32 + 48 + 65 + 2) >> 2 = 40; (0 + 40 + 1) >> 1 = 20.
     assert_eq!(words, [0, 1, 0x10, 0x20, 0, 0, 0x30, 0x41, 0, 40, 20]);
     assert_eq!(folder.words(&format!("format: L8, levels: 2, {rows}")).len(), 10);
-    // What a narrow format has lost is not found again: 255 and 0 make 128, which is 16 of 31.
+    // Levels are computed from the stored texels. 255 and 0 yield 128, which is stored as 16 of 31.
     let two = "source: Texels(width: 2, height: 1, rows: [\"001f 0000\"])";
     assert_eq!(folder.words(&format!("format: R5G6B5, levels: All, {two}")), [0x1f, 0, 16]);
     let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
@@ -107,7 +107,7 @@ fn levels_are_listed() {
     let solid = |w: u32, h: u32, c: u32| format!("Solid(width: {w}, height: {h}, color: ({c}, 0, 0))");
     let mips = [solid(2, 1, 2), solid(1, 1, 3)].join(", ");
     assert_eq!(folder.words(&format!("format: L8, source: {}, mips: [{mips}]", solid(4, 1, 1))), [1, 1, 1, 1, 2, 2, 3]);
-    // Eight columns and rows more at every level.
+    // Every level has eight more columns and rows.
     let (_, _, texels) = folder.texture(
         "Nv2a",
         &format!("format: L8, border: true, source: {}, mips: [{}]", solid(10, 12, 1), solid(9, 10, 2)),
@@ -193,7 +193,7 @@ fn chips_hold_different_sizes() {
     }
 }
 
-/// All textures together count, made levels and faces included.
+/// The limit applies to all textures together, including generated levels and faces.
 #[test]
 fn memory_is_limited() {
     let limits = Limits { texture_bytes: 4 * (64 + 16 + 4 + 1), ..Limits::default() };
@@ -209,7 +209,7 @@ fn memory_is_limited() {
     assert!(parse("3", &less).is_ok());
 }
 
-/// A DXT1 texture drawn texel by texel is what the decoder says: dithered on nv2a, not on nv10.
+/// A DXT1 texture that is drawn texel by texel has the colours of the decoder, dithered on nv2a and not on nv10.
 #[test]
 fn blocks_reach_the_frame() {
     let block = [0x1234_u16.to_le_bytes(), 0x9876_u16.to_le_bytes(), [0x1b, 0xe4], [0x4e, 0xb1]].concat();

@@ -1,5 +1,5 @@
-//! The harness for cases of public test suites, itself: every form of a case is put as a scene, one that is right passes, and the same with a
-//! planted error fails.
+//! Tests the harness for cases of public test suites. A case of every form becomes a scene, passes if it is right, and fails if an error is
+//! planted in it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::third_party::judge;
@@ -11,12 +11,12 @@ use serde_json::{Value, json};
 
 type Problem = fn(&Value, &str) -> Option<String>;
 
-/// Holds a case to what it expects, and to what it must not show.
+/// Checks that a case passes with the right expectation and fails with the planted one.
 fn told_apart(problem: Problem, inputs: Value, right: Value, planted: Value) {
     told_apart_by(problem, "expected", inputs, right, planted);
 }
 
-/// The same for an expectation under another name.
+/// Like [`told_apart`], for an expectation in another field.
 fn told_apart_by(problem: Problem, field: &str, inputs: Value, right: Value, planted: Value) {
     let case = |id: &str, expected: Value| {
         let mut case =
@@ -45,7 +45,7 @@ fn a_framebuffer_holds_a_colour_before_the_draw() {
     let mut floats = json!({ "func": "NEVER", "ref": 0, "fragment": [0, 255, 0, 128] });
     floats["framebuffer_f"] = json!([1, 0.2, 0.4, null]);
     told_apart(alpha_test, floats, json!([255, 51, 102, 255]), json!([255, 51, 102, 0]));
-    // What was there is expected by its name.
+    // The name of an input as the expectation means its value.
     told_apart(alpha_test, inputs("framebuffer"), json!("framebuffer"), json!("fragment"));
 }
 
@@ -81,7 +81,7 @@ fn a_set_of_tied_faces_takes_any_of_them_and_no_other() {
     ] {
         told_apart_by(cube_face, "expected_face", inputs.clone(), right, planted);
     }
-    // The colours of either face.
+    // With several tied faces the colour of each is acceptable.
     told_apart(
         cube_face,
         {
@@ -96,7 +96,7 @@ fn a_set_of_tied_faces_takes_any_of_them_and_no_other() {
 
 #[test]
 fn places_on_tied_faces_go_with_their_face() {
-    // (1, 1, 0): in the middle of the far edges of either face.
+    // (1, 1, 0) is the middle of the far edge on both faces.
     let judged = |face: Value, place: Value| {
         let case = json!({
             "id": "suite.case", "profile": "nv10", "inputs": { "direction": [1.0, 1.0, 0.0] },
@@ -135,7 +135,7 @@ fn a_bumped_texture_is_moved_by_its_matrix() {
         inputs
     };
     let plain = pixel_shader;
-    // At a quarter from the left V is -1/2 and U is 0: a matrix of a half moves the second coordinate by a quarter.
+    // In Wine's map, V is -1/2 and U is 0 at a quarter from the left. With 1/2 in the matrix the second coordinate moves by a quarter.
     told_apart(
         plain,
         inputs(json!([0.5, 0.0, 0.0, 0.5]), Value::Null),
@@ -148,14 +148,14 @@ fn a_bumped_texture_is_moved_by_its_matrix() {
         json!([64, 128, 0, null]),
         json!([64, 64, 0, null]),
     );
-    // The luminance of a texel of Wine's map is its red, 0: the offset alone.
+    // The luminance of a texel of Wine's map is its red, which is 0, so only the offset remains.
     told_apart(
         plain,
         inputs(json!([0.0, 0.0, 0.0, 0.0]), json!({ "lscale": 1.0, "loffset": 0.5 })),
         json!([32, 64, 0, null]),
         json!([64, 128, 0, null]),
     );
-    // The same displacement, of a texel and as numbers, under the unit's own matrix.
+    // The same displacement as a texel and as numbers, with the matrix of the unit itself.
     for displacement in [json!({ "tex0": { "V8U8": [0, -64] } }), json!({ "du_dv_0": [0, -64] })] {
         let mut own = inputs(Value::Null, Value::Null);
         let fields = own.as_object_mut().unwrap();
@@ -178,7 +178,7 @@ fn a_killed_pixel_shows_the_clear_colour() {
     told_apart(pixel_shader, inputs(1.0), json!([255, 255, 255, 255]), json!("clear"));
 }
 
-/// What cannot be put as a scene is wrong by name, and the cases after it are run.
+/// A case that cannot become a scene fails by name, and the cases after it still run.
 #[test]
 fn a_case_that_cannot_be_read_fails_alone() {
     let good = json!({

@@ -1,5 +1,5 @@
-//! Cases of public test suites for everything around the combiners: coordinates, texture units, fog, raster operations. Each is drawn as
-//! a scene in the words of the interface that it names; see `common/third_party.rs` for how they are run.
+//! Runs cases of public test suites for everything around the combiners: coordinates, texture units, fog, raster operations. Each case is
+//! drawn as a scene with the terms of the interface that it names. `common/third_party.rs` describes how cases are run.
 #![allow(
     clippy::unwrap_used,
     clippy::float_arithmetic,
@@ -21,7 +21,7 @@ use crate::third_party;
 
 use serde_json::Value;
 
-/// Four corners of a quad over a target of so many pixels, each with fields of its own.
+/// Returns the fields of a quad over a target of the given size. Each corner has fields of its own.
 fn quad(width: f64, height: f64, fields: [String; 4]) -> String {
     let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
     let vertex = |((x, y), fields): ((f64, f64), String)| format!("(position: ({x:?}, {y:?}), {fields})");
@@ -29,22 +29,22 @@ fn quad(width: f64, height: f64, fields: [String; 4]) -> String {
     format!("topology: Quads, vertices: Window([{}])", vertices.join(", "))
 }
 
-/// A scene of one draw over one target; `head` holds further fields of the scene.
+/// Returns a scene of one draw on one target. `head` has further fields of the scene.
 fn scene(profile: &str, target: &str, head: &str, draw: &str) -> String {
     format!("(version: 1, profile: {profile}, {head} targets: [({target})], draws: [({draw})])")
 }
 
-/// A number of a case.
+/// Returns a number of a case.
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
-/// Numbers of a case.
+/// Returns a list of numbers of a case.
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(number).collect()
 }
 
-/// At most one case in twenty of all that can be asked of the chips may differ.
+/// Of all cases that apply to the chips, at most one in twenty may be listed as different.
 #[test]
 fn few_cases_are_listed_as_different() {
     let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();

@@ -1,7 +1,7 @@
-//! Cases of public test suites for pixel shaders, brought through the front end whole: a scene text for each, drawn, one pixel looked at within
-//! the suite's own tolerance.
+//! Runs cases of public test suites for pixel shaders. Each case becomes the text of a scene, which is read and drawn, and one pixel is
+//! compared within the tolerance of the suite.
 //!
-//! See `common/third_party.rs` for how they are run.
+//! `common/third_party.rs` describes how cases are run.
 #![allow(
     clippy::unwrap_used,
     clippy::float_arithmetic,
@@ -18,7 +18,7 @@ fn every_case_of_pixel_shaders() {
     run(&Kind { file: "pixel-shader", name: "ps11" }, pixel_shader);
 }
 
-/// What is wrong with the pixel, if anything. Pixel shaders are Nv2a's, whatever the case says.
+/// Returns how the pixel differs, if it does. Pixel shaders need nv2a, whatever profile the case names.
 pub(crate) fn pixel_shader(case: &Value, _profile: &str) -> Option<String> {
     match scene_of(&case["inputs"]) {
         Ok(text) => differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}")),
@@ -31,7 +31,7 @@ fn numbers(value: &Value) -> String {
     format!("({})", parts.join(", "))
 }
 
-/// A case as one quad over one pixel.
+/// Returns the scene of a case: a quad of one pixel.
 fn scene_of(inputs: &Value) -> Result<String, String> {
     let shader = shader(inputs)?;
     let mut textures = [const { None }; 4];
@@ -58,7 +58,7 @@ fn scene_of(inputs: &Value) -> Result<String, String> {
     let (diffuse, specular) = (color("v0", "(255, 255, 255, 255)"), color("v1", "(0, 0, 0, 0)"));
     let sets: Vec<String> = (0..4)
         .map(|set| {
-            // Of one set, or of all under either name.
+            // The coordinates are those of one set, or of all sets under one of two names.
             let own = [format!("t{set}"), "t".to_owned(), "uv".to_owned()];
             let given = own.iter().map(|name| &inputs[name]).find(|value| !value.is_null());
             format!("t{set}: {}", given.map_or("(0, 0)".to_owned(), numbers))
@@ -78,7 +78,7 @@ fn scene_of(inputs: &Value) -> Result<String, String> {
     ))
 }
 
-/// The text of the shader.
+/// Returns the text of the shader.
 fn shader(inputs: &Value) -> Result<String, String> {
     let version = inputs["version"].as_str().unwrap();
     if version == "atifs" {
@@ -96,7 +96,7 @@ fn shader(inputs: &Value) -> Result<String, String> {
     Ok(text)
 }
 
-/// An operation of ATI_fragment_shader, whose first colour is v0, as an instruction.
+/// Returns an instruction for an operation of ATI_fragment_shader, whose first colour becomes v0.
 fn operation(text: &str) -> Result<String, String> {
     let (name, operands) = text.split_once(' ').ok_or(text)?;
     let mut scale = "";
@@ -128,8 +128,8 @@ fn constants(inputs: &Value) -> String {
     if entries.is_empty() { String::new() } else { format!("constants: {{ {} }}, ", entries.join(", ")) }
 }
 
-/// BUMPENVMAT00, 01, 10, 11 of texture stages, scale and offset of the luminance: each with the number of its unit, or without one for
-/// every unit that is bumped.
+/// Returns the bump matrices of texture stages (BUMPENVMAT00, 01, 10, 11), and the scale and offset of luminance. Each has the number of
+/// its unit, or no number, and then applies to every bumped unit.
 fn bumps(inputs: &Value) -> String {
     let bumped = |unit: usize| {
         let register = format!("t{unit}");
@@ -153,7 +153,7 @@ fn bumps(inputs: &Value) -> String {
     if entries.is_empty() { String::new() } else { format!("bump: {{ {} }}, ", entries.join(", ")) }
 }
 
-/// What a unit's texture is made of, and which of its channels are signed.
+/// Returns the source of a unit's texture, and which of its channels are signed.
 fn texture(inputs: &Value, unit: usize) -> Result<Option<(String, String)>, String> {
     let unsigned = "(false, false, false, false)".to_owned();
     if let Some(pair) = inputs.get(format!("du_dv_{unit}")) {
@@ -188,8 +188,8 @@ fn texture(inputs: &Value, unit: usize) -> Result<Option<(String, String)>, Stri
     let format = texture["format"].as_str().ok_or_else(|| format!("tex{unit} is {texture}"))?;
     let texel = texture["texel"].as_u64().ok_or_else(|| format!("tex{unit} has no texel"))?;
     let byte = |shift: u32| (texel >> shift) as u8;
-    // Five bits with a sign as the API has them, negative ones over 16 and positive ones over 15. The chip's own format of such bits is
-    // widened by replication, which no suite of an API knows.
+    // The API defines five signed bits as divided by 16 if negative and by 15 if positive. The chip's own format widens them by repetition,
+    // which no suite of an API expects.
     let five = |shift: u32| match byte(shift) & 31 {
         n @ 0..16 => (u32::from(n) * 127 / 15) as u8,
         n => n << 3,
@@ -210,7 +210,7 @@ fn texture(inputs: &Value, unit: usize) -> Result<Option<(String, String)>, Stri
     Ok(Some((format!("source: Solid(width: 1, height: 1, color: ({r}, {g}, {b}, {a}))"), signed)))
 }
 
-/// "8x8: texel(col 6,row 4)=ff0000, ..., all others 0000ff; ..."
+/// Returns the source of texels that are described as "8x8: texel(col 6,row 4)=ff0000, ..., all others 0000ff; ...".
 fn texels(text: &str) -> Result<String, String> {
     let word = |text: &str| text.split(|c: char| !c.is_ascii_alphanumeric()).next().map(str::to_owned);
     let others = text.split("others ").nth(1).and_then(word).ok_or(text)?;

@@ -1,4 +1,5 @@
-//! Register words of `vectors/third-party`, every one: what the chip takes, what it makes of older interfaces' states, what comes out.
+//! Tests all register words of `vectors/third-party`: which ones the chip accepts, which ones it derives from the state of older
+//! interfaces, and their results.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -15,7 +16,7 @@ use ninebit_program::text::words::Words;
 use ninebit_program::text::{print, read};
 use ninebit_scene as scene;
 
-/// The rows of a table, by column.
+/// Returns the rows of a table as lists of columns.
 fn rows(name: &str) -> Vec<Vec<String>> {
     let text = std::fs::read_to_string(at("vectors/third-party").join(name)).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
@@ -38,7 +39,7 @@ fn word(name: &str) -> Word {
     }
 }
 
-/// One stage that shows SPARE0.
+/// Returns the words of one stage that shows SPARE0.
 fn one_stage() -> RegisterWords {
     let mut words = RegisterWords::new(Profile::Nv10);
     words.set(Word::RcOutRgb, 1, 0x1800_0000);
@@ -71,7 +72,7 @@ fn words_are_taken_and_kept_as_the_chip_does() {
         if found.is_some() {
             continue;
         }
-        // A program with the word: what it says is kept to the bit.
+        // A program with this word keeps all of its bits.
         let mut words = one_stage();
         words.set(word, index, value);
         if word == Word::RcInAlpha || word == Word::RcInRgb {
@@ -88,7 +89,7 @@ fn words_are_taken_and_kept_as_the_chip_does() {
     assert_eq!(refused, listed, "docs/known-differences.md lists what is refused as a program");
 }
 
-/// The program of a Direct3D 5 texture blend: what its page says, in the combiner language.
+/// Returns the statements, in the combiner language, of a Direct3D 5 texture blend as its documentation defines it: RGB, then alpha.
 fn direct3d5(mode: u32) -> (&'static str, &'static str) {
     match mode {
         1 | 7 => ("unsigned(tex0) * unsigned_invert(zero);", "unsigned(tex0.a) * unsigned_invert(zero.b);"),
@@ -114,7 +115,7 @@ fn direct3d5(mode: u32) -> (&'static str, &'static str) {
     }
 }
 
-/// The stage of a Direct3D 5 texture blend.
+/// Returns the stage of a Direct3D 5 texture blend.
 fn direct3d5_stage(mode: u32) -> GeneralStage {
     let (rgb, alpha) = direct3d5(mode);
     let third = if matches!(mode, 5 | 6) { "mux" } else { "sum" };
@@ -122,7 +123,7 @@ fn direct3d5_stage(mode: u32) -> GeneralStage {
         "{{ rgb {{ discard = {rgb} spare0 = {third}(); }} alpha {{ discard = {alpha} spare0 = {third}(); }} }}"
     );
     let mut stage = read(&text).unwrap().combiners.stages[0];
-    // What the words leave 0 in the alpha portion is the blue of ZERO.
+    // Inputs that are 0 in the words of the alpha portion mean the blue of ZERO.
     for input in &mut stage.alpha.inputs {
         if *input == CombinerInput::zero(Component::Alpha) {
             input.component = Component::Blue;
@@ -131,7 +132,7 @@ fn direct3d5_stage(mode: u32) -> GeneralStage {
     stage
 }
 
-/// A portion of a Direct3D 6 combine word: four arguments of a byte each, then the operation.
+/// Returns a portion of a Direct3D 6 combine word, which has four arguments of a byte each, then the operation.
 fn direct3d6(state: u32, stage: u32, alpha: bool) -> Portion {
     let inputs = [0, 8, 16, 24].map(|shift| {
         let byte = state >> shift & if shift == 24 { 0x1f } else { 0xff };
@@ -145,7 +146,7 @@ fn direct3d6(state: u32, stage: u32, alpha: bool) -> Portion {
             6 => Register::Texture1,
             other => panic!("argument {other}"),
         };
-        // The alpha portion takes alpha, whatever the argument says.
+        // The alpha portion reads alpha whatever the argument says.
         let component = if alpha || byte >> 1 & 1 == 1 { Component::Alpha } else { Component::Rgb };
         let mapping = [InputMapping::UnsignedIdentity, InputMapping::UnsignedInvert][(byte & 1) as usize];
         CombinerInput { register, component, mapping }
@@ -189,7 +190,7 @@ fn states_of_older_interfaces_become_the_chips_words_and_back() {
     }
 }
 
-/// The words that are known for all Direct3D 5 modes: mode, inputs of alpha and RGB, outputs of both.
+/// The words that are known for all Direct3D 5 modes: the mode, the inputs of alpha and of RGB, and the output word of both.
 const DIRECT3D5: [(u32, u32, u32, u32); 8] = [
     (1, 0x1820_0000, 0x0820_0000, 0xc00),
     (2, 0x1820_0000, 0x0804_0000, 0xc00),
@@ -257,7 +258,7 @@ fn words_make_of_colours_what_is_expected() {
     }
 }
 
-/// Operations of NV20's texture shader by their codes: in a scene, and the texture that the unit needs.
+/// Operations of NV20's texture shader: the code, the operation in a scene, and the texture that the unit needs.
 const SHADER_OPERATIONS: [(u32, &str, &str); 19] = [
     (0x00, "None", "Unbound"),
     (0x01, "Sample", "\"flat\""),
@@ -298,7 +299,7 @@ fn texture_shaders_are_taken_as_the_chip_does() {
             "(version: 1, profile: Nv2a, textures: {{ \"flat\": (source: {solid}), \
              \"cube\": (kind: Cube, source: Faces({faces})) }}, draws: [(vertices: Window([]), textures: [{}], texture_shader: [{}])])",
             operations.map(|(_, _, texture)| *texture).join(", "),
-            // Which earlier unit is read is another register's matter: the first suits all.
+            // Another register selects the earlier unit that is read. The first unit is suitable for all of these.
             operations
                 .map(|(code, operation, _)| match code {
                     0x00..=0x05 | 0x08 | 0x0a | 0x0d => (*operation).to_owned(),

@@ -1,7 +1,7 @@
-//! Cases of public test suites for Direct3D texture stages and the OpenGL texture environment, brought through the front end whole: a scene
-//! text for each, drawn, one pixel looked at within the suite's own tolerance.
+//! Runs cases of public test suites for Direct3D texture stages and the OpenGL texture environment. Each case becomes the text of a scene,
+//! which is read and drawn, and one pixel is compared within the tolerance of the suite.
 //!
-//! See `common/third_party.rs` for how they are run.
+//! `common/third_party.rs` describes how cases are run.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::third_party;
@@ -29,12 +29,12 @@ fn problem(case: &Value, text: String) -> Option<String> {
     differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}"))
 }
 
-/// What is wrong with a case of Direct3D texture stages.
+/// Returns how a case of Direct3D texture stages differs, if it does.
 pub(crate) fn stages(case: &Value, profile: &str) -> Option<String> {
     problem(case, stages_scene(&case["inputs"], profile))
 }
 
-/// One quad over one pixel of a target with these further fields.
+/// Returns a scene with a quad of one pixel, on a target with further fields.
 fn scene_text(
     profile: &str,
     target: &str,
@@ -65,7 +65,7 @@ fn scene_text(
     )
 }
 
-/// The blend after the stages, and what the target holds before: a colour of the blend's own, or of the case's.
+/// Returns the blend after the stages, and the clear colour of the target, which belongs to the blend or to the case.
 fn blend(inputs: &Value, name: &str) -> (String, String) {
     let blend = &inputs[name];
     if !blend.is_object() {
@@ -76,7 +76,7 @@ fn blend(inputs: &Value, name: &str) -> (String, String) {
     (format!("blend: (equation: Add, source: {source}, destination: {destination}), "), before)
 }
 
-/// A Direct3D case.
+/// Returns the scene of a Direct3D case.
 fn stages_scene(inputs: &Value, profile: &str) -> String {
     let mut textures = Vec::new();
     for (unit, texture) in inputs["textures"].as_object().into_iter().flatten() {
@@ -124,7 +124,7 @@ fn stages_scene(inputs: &Value, profile: &str) -> String {
     scene_text(profile, &target, &textures, &diffuse, &specular, &rest)
 }
 
-/// `CURRENT|ALPHAREPLICATE`.
+/// Returns an argument in scene notation. Suites write it as `CURRENT|ALPHAREPLICATE`.
 fn argument(text: &str) -> String {
     let words: Vec<&str> = text
         .split('|')
@@ -138,7 +138,7 @@ fn argument(text: &str) -> String {
     if words.len() == 1 { words[0].to_owned() } else { format!("({})", words.join(", ")) }
 }
 
-/// An OpenGL case.
+/// Returns the scene of an OpenGL case.
 fn environment_scene(inputs: &Value, profile: &str) -> String {
     let several = |value: &Value| match value[0].is_array() {
         true => value.as_array().unwrap().clone(),
@@ -168,7 +168,8 @@ fn environment_scene(inputs: &Value, profile: &str) -> String {
     scene_text(profile, &target, &textures, &floats(&inputs["primary_f"]), "(0, 0, 0, 0)", &rest)
 }
 
-/// A texture of one texel whose channels are those that the base format takes of the colour, and the base format if no texel format says it.
+/// Returns a texture of one texel with those channels of the colour that the base format keeps, and the base format itself if no texel
+/// format implies it.
 fn texture(color: &Value, format: Option<&str>) -> (String, Option<&'static str>) {
     let [r, _, _, a] = [0, 1, 2, 3].map(|n| color[n].as_f64().unwrap());
     let plain = floats(color);
@@ -184,7 +185,7 @@ fn texture(color: &Value, format: Option<&str>) -> (String, Option<&'static str>
     (format!("format: {texel}, source: Solid(width: 1, height: 1, color: {color})"), base)
 }
 
-/// One list of sources and operands for both halves.
+/// Returns the fields of a unit whose sources and operands are the same for colour and alpha.
 fn four(inputs: &Value) -> Vec<String> {
     let function = named::<Function>(inputs["combine"].as_str().unwrap());
     let list = |value: &Value, name: fn(&str) -> String| {
@@ -210,7 +211,7 @@ fn operand(name: &str) -> &'static str {
     }
 }
 
-/// What is not given has the API's default.
+/// Returns the fields of a combining unit. What a case does not state has the default of the API.
 fn combine(unit: &Value) -> Vec<String> {
     let mut fields = Vec::new();
     for (half, color) in [("RGB", true), ("ALPHA", false)] {

@@ -1,4 +1,4 @@
-//! Traces: a stored word follows from the numbers of its trace alone, and equals what the engine stores.
+//! Tests traces: the stored word follows from the numbers of the trace alone, and equals the word that the engine stores.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::bench::Bench;
@@ -14,7 +14,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
 
-/// Pixels with at least one fragment that the test recomputes.
+/// Number of pixels with at least one fragment that the test recomputes.
 const PIXELS: usize = 200;
 
 #[test]
@@ -25,7 +25,7 @@ fn stored_words_follow_from_the_trace_alone() {
         let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
         let frames = engine::render(&plan, &RenderOptions::default());
-        // A few pixels of each target, wherever the generator points.
+        // Tests a few random pixels of each target.
         for (target, surface) in frames.surfaces.iter().enumerate() {
             for _ in 0..4 {
                 let [x, y] = [surface.width, surface.height].map(|side| random.below(side.into()) as u32);
@@ -63,7 +63,7 @@ fn pixels_and_draws_that_do_not_exist_are_refused() {
     assert!(matches!(engine::trace(&plan, 0, (0, 0), Some(plan.draws.len())), Err(TraceError::Draw { .. })));
 }
 
-/// So many triangles over the first pixel, neighbours of different colours.
+/// Returns a scene with this number of triangles over the first pixel. Consecutive ones have different colours.
 fn piled(triangles: usize) -> String {
     let vertices: String = (0..triangles)
         .map(|n| {
@@ -152,7 +152,7 @@ fn long_names_and_formulas_do_not_move_the_numbers() {
     assert!(text.lines().any(|line| line.trim() == long), "{text}");
 }
 
-/// The line in which a text stands, the last one, and its column.
+/// Returns the last line that contains a text, and the column of the text.
 fn line_with<'t>(text: &'t str, part: &str) -> (&'t str, usize) {
     text.lines().rev().find_map(|line| Some((line, line.rfind(part)?))).unwrap_or_else(|| panic!("{part}: {text}"))
 }

@@ -1,5 +1,5 @@
-//! The vocabulary, which `docs/trace-format.md` shows, and the traces have the same fields, names and operations, in both directions; and what
-//! it says of the operations is enough to recompute a trace under any policy.
+//! Checks that the vocabulary, which `docs/trace-format.md` shows, has exactly the fields, names and operations that occur in traces, and
+//! that the definitions of the operations are sufficient to recompute a trace under any policy.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::architecture;
@@ -23,12 +23,12 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Random scenes whose traces are looked at.
+/// Number of random scenes whose traces are tested.
 const SCENES: usize = 1000;
 
 type Words = BTreeSet<String>;
 
-/// What the page says: its text, and the vocabulary that its tables show.
+/// The text of the page, and the vocabulary of its tables.
 struct Page {
     text: String,
     document: Words,
@@ -37,12 +37,12 @@ struct Page {
     input: Words,
     texel: Words,
     operations: Words,
-    /// Block and name of steps, with placeholders.
+    /// Block and name of each kind of step, with placeholders.
     names: Vec<[String; 2]>,
     placeholders: BTreeMap<String, Vec<String>>,
 }
 
-/// The words in backticks.
+/// Returns the words in backticks.
 fn quoted(cell: &str) -> Vec<String> {
     cell.split('`').skip(1).step_by(2).map(str::to_string).collect()
 }
@@ -50,7 +50,7 @@ fn quoted(cell: &str) -> Vec<String> {
 impl Page {
     fn read() -> Page {
         let text = std::fs::read_to_string(at("docs/trace-format.md")).unwrap();
-        // The words in backticks of the first two cells of each row.
+        // Returns the words in backticks in the first two cells of each row.
         let rows = |name: &str| -> Vec<[Vec<String>; 2]> {
             let tables = vocabulary::tables().into_iter().filter(|table| table.name.starts_with(name));
             let rows: Vec<_> =
@@ -76,7 +76,7 @@ impl Page {
         }
     }
 
-    /// Whether `text` is of the form `pattern`.
+    /// Returns whether `text` matches `pattern`.
     fn fits(&self, pattern: &str, text: &str) -> bool {
         match pattern.find('{') {
             None => pattern == text,
@@ -91,16 +91,16 @@ impl Page {
     }
 }
 
-/// What traces have shown.
+/// What has occurred in traces.
 #[derive(Default)]
 struct Seen {
     operations: Words,
-    /// By block.
+    /// Names of steps by block.
     names: BTreeMap<String, Words>,
     fragments: usize,
 }
 
-/// All fields of the page are there, of the optional ones those that are said to be.
+/// Checks that a value has all fields of the page. `optional` states which of the optional fields it has to have.
 fn fields(value: &Value, page: &Words, optional: &[(&str, bool)]) {
     let left_out = |name: &str| optional.iter().any(|(optional, there)| *optional == name && !there);
     assert!(optional.iter().all(|(name, _)| page.contains(*name)), "not all on the page: {optional:?}");
@@ -114,14 +114,14 @@ fn fields(value: &Value, page: &Words, optional: &[(&str, bool)]) {
     panic!("without {missing:?}, with {more:?}: {value:#}");
 }
 
-/// The same of what has a value, and a text of it where it is too large to be a number everywhere.
+/// Checks the fields of a value that may be too large for all readers of JSON, and then has a text as well.
 fn fields_with_value(value: &Value, page: &Words, optional: (&str, bool)) {
     let text = value_text(value);
     fields(value, page, &[("value_text", text.is_some()), optional]);
     assert!(text.is_none_or(|text| value["value_text"] == text), "{value:#}");
 }
 
-/// A value that 31 bits and a sign do not hold, as text.
+/// Returns the text of a value that does not fit a signed number of 32 bits.
 fn value_text(value: &Value) -> Option<String> {
     let integer = value["value"].as_i64().unwrap();
     let text = || if value["per_one"] == 0 { format!("{integer:#010x}") } else { integer.to_string() };
@@ -129,7 +129,7 @@ fn value_text(value: &Value) -> Option<String> {
 }
 
 impl Seen {
-    /// What other traces have shown, too.
+    /// Adds what has occurred in other traces.
     fn add(&mut self, other: Seen) {
         self.operations.extend(other.operations);
         self.fragments += other.fragments;
@@ -138,7 +138,7 @@ impl Seen {
         }
     }
 
-    /// A document: its fields against the page, its operations and names for later.
+    /// Compares the fields of a document with the page, and records its operations and names.
     fn document(&mut self, page: &Page, document: &Value) {
         let word = document["word"].as_u64().unwrap();
         let long = word >> 31 != 0;
@@ -147,7 +147,7 @@ impl Seen {
         assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
-            // Only pieces of clipped triangles say of what they are pieces.
+            // Only pieces of clipped triangles have this field.
             fields(draw, &page.fragment, &[("clipped", draw.get("clipped").is_some())]);
             let mut made = BTreeMap::new();
             for (number, step) in draw["steps"].as_array().unwrap().iter().enumerate() {
@@ -158,13 +158,13 @@ impl Seen {
                 if fetched {
                     fields(&step["texel"], &page.texel, &[]);
                     assert_eq!(step["texel"]["word"], format!("{:#010x}", step["value"].as_u64().unwrap()));
-                    // The place is that of the operands, if they are coordinates.
+                    // The texel has the position that the operands give, if they are coordinates.
                     for (axis, input) in ["x", "y"].into_iter().zip(inputs) {
                         assert_eq!(step["texel"][axis], input["value"], "{step:#}");
                     }
                 }
                 for input in inputs {
-                    // What no step makes is a parameter.
+                    // An input that no step yields is a parameter.
                     let maker = made.get(input["name"].as_str().unwrap());
                     assert_eq!(input.get("step").and_then(Value::as_u64), maker.map(|step: &usize| *step as u64));
                     fields_with_value(input, &page.input, ("step", maker.is_some()));
@@ -183,12 +183,12 @@ impl Seen {
     }
 }
 
-/// The document of a pixel.
+/// Returns the trace of a pixel as a document.
 fn trace(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
     trace_value(plan, &engine::trace(plan, target, pixel, None).unwrap())
 }
 
-/// The same, as its text says it.
+/// Like [`trace`], read back from the printed text.
 fn trace_of_text(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
     serde_json::from_str(&trace_json(plan, &engine::trace(plan, target, pixel, None).unwrap())).unwrap()
 }
@@ -209,7 +209,7 @@ fn the_page_shows_the_vocabulary() {
     }
 }
 
-/// Traces of random scenes, recomputed and held against the page.
+/// Recomputes traces of random scenes and compares them with the page.
 fn random_traces(page: &Page) -> Seen {
     let mut seen = Seen::default();
     let mut runner = TestRunner::deterministic();
@@ -242,7 +242,7 @@ fn random_traces(page: &Page) -> Seen {
     seen
 }
 
-/// Traces of the scenes of the repository, held against the page.
+/// Compares traces of the scenes of the repository with the page.
 fn repository_traces(page: &Page) -> Seen {
     let mut seen = Seen::default();
     let files = scene_files::below(&at("vectors/scenes"));
@@ -260,7 +260,7 @@ fn repository_traces(page: &Page) -> Seen {
 #[test]
 fn traces_and_the_page_agree() {
     let page = Page::read();
-    // Two at a time: one alone would be the last to end.
+    // Both run at the same time, because one alone would take longest of all tests.
     let seen = std::thread::scope(|scope| {
         let random = scope.spawn(|| random_traces(&page));
         let mut seen = repository_traces(&page);
@@ -295,7 +295,7 @@ fn the_example_is_a_step_of_its_trace() {
     assert!(document["draws"][0]["steps"].as_array().unwrap().contains(&example), "{example:#}");
 }
 
-/// Operations that stand in the page stand in the sources, and the recomputation of the tests knows the same ones.
+/// The operations of the page occur in the sources, and are exactly those that the tests can recompute.
 #[test]
 fn the_page_lists_what_the_sources_have() {
     let page = Page::read();
@@ -307,7 +307,7 @@ fn the_page_lists_what_the_sources_have() {
     }
     let recompute = std::fs::read_to_string(at("tests/common/recompute.rs")).unwrap();
     let arms = recompute.split("Some(match operation {").nth(1).unwrap().split("_ => return None,").next().unwrap();
-    // The arms of the outermost match: eight spaces, then the names before the arrow.
+    // The arms of the outermost match begin with eight spaces, followed by the names in front of the arrow.
     let mut known: Words = arms
         .lines()
         .filter_map(|line| line.strip_prefix("        \"")?.split_once("=>").map(|(names, _)| names))

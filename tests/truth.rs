@@ -1,4 +1,4 @@
-//! What pictures ought to show, and how far they are from it.
+//! Tests the ground truth of pictures, and the measurement of their errors.
 
 use crate::repository::at;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A scene of 64 x 64 with this truth and these fields of its draw, seen from straight above; the square is -1 to 1.
+/// Returns a scene of 64 x 64 pixels with the given truth and draw, seen from above. The square spans -1 to 1.
 fn square(truth: &str, mesh: &str, draw: &str) -> String {
     format!(
         "(version: 1, profile: Nv2a, targets: [(width: 64, height: 64)], truth: ({truth}), draws: [(vertices: Matrix(matrix: \
@@ -30,7 +30,7 @@ fn accuracy(loaded: &Loaded) -> Accuracy {
     measure(&loaded.scene, &loaded.plan, loaded.truth.as_ref().unwrap()).unwrap()
 }
 
-/// Where the centre of a pixel is on the square.
+/// Returns the position of a pixel's centre on the square.
 fn place(at: usize) -> [f64; 2] {
     let along = |index: usize| (index as f64 + 0.5) / 32.0 - 1.0;
     [along(at % 64), -along(at / 64)]
@@ -50,14 +50,14 @@ fn a_hemisphere_is_lit_as_it_is() {
 
 #[test]
 fn points_are_interpolated_in_perspective() {
-    // A floor seen at a slant, lit by a lamp: every pixel's point is where the line of sight meets the floor.
+    // A floor seen at an angle and lit by a lamp. The point of a pixel is where its line of sight meets the floor.
     let text = "(version: 1, profile: Nv10, targets: [(width: 64, height: 48)], truth: (lights: [(position: (0.3, 0.2, 0.5))]), \
         draws: [(vertices: Matrix(matrix: Product(Frustum(left: -0.5, right: 0.5, bottom: -0.4, top: 0.4, near: 1, far: 20), \
         LookAt(eye: (0, -3, 1), center: (0, 0, 0), up: (0, 0, 1))), mesh: Grid(columns: 3, rows: 2, size: (4, 4))))])";
     let loaded = parse(text);
     let pixels = pixels(&loaded);
     assert!(pixels.iter().flatten().count() > 500);
-    // The viewer's axes: right, up, back.
+    // Up and back axes of the viewer; the right axis is x.
     let length = 10.0_f64.sqrt();
     let (up, back) = ([0.0, 1.0 / length, 3.0 / length], [0.0, -3.0 / length, 1.0 / length]);
     for (at, pixel) in pixels.iter().enumerate() {
@@ -74,7 +74,7 @@ fn points_are_interpolated_in_perspective() {
 
 #[test]
 fn what_is_hidden_has_no_say() {
-    // Two squares, the nearer one drawn first and left out of the truth's normals by its depth.
+    // A triangle in front of a square, drawn first. Where it hides the square, the truth has its normals.
     let text = "(version: 1, profile: Nv10, targets: [(width: 8, height: 8, depth: Z16)], truth: (lights: [(direction: (0, 0, 1))], \
         normal: Radial()), draws: [\
         (vertices: Matrix(matrix: Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -4, far: 4), mesh: Triangles(vertices: \
@@ -82,7 +82,7 @@ fn what_is_hidden_has_no_say() {
         (vertices: Matrix(matrix: Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -4, far: 4), mesh: Grid(columns: 1, rows: 1)), \
         depth_test: ()), ])";
     let pixels = pixels(&parse(text));
-    // Lower left: the triangle at z = 2, upper right: the square at z = 0, whose radial normals lie in it.
+    // Lower left is the triangle at z = 2. Upper right is the square at z = 0, whose radial normals lie in its plane.
     assert!(pixels[7 * 8].unwrap().normal[2] > 0.7);
     assert_eq!(pixels[7].unwrap().normal[2], 0.0);
 }
@@ -102,7 +102,7 @@ fn other_equations() {
     assert!((value("SignedProduct", 0.9, 0.8) - (2.0 * s - 1.0) * (2.0 * centre(0.8) - 1.0)).abs() < 1e-6);
     let mesh = "mesh: Grid(columns: 1, rows: 1), diffuse: (255, 0, 0), t1: (0.5, 0.25, 9)";
     let loaded = parse(&square("equation: DotProduct(PrimaryColor, T1)", mesh, ""));
-    // (1, -1, -1) . (0.5, 0.25, 9), limited.
+    // (1, -1, -1) . (0.5, 0.25, 9), limited to 0.
     assert_eq!(pixels(&loaded)[99].unwrap().color, [0.0; 3]);
 }
 
@@ -121,7 +121,8 @@ fn errors_are_split_and_add_up() {
     assert_eq!((accuracy.pixels, accuracy.without), (64 * 64, 0));
     let mean: f64 = accuracy.causes.iter().map(|cause| cause.errors.bias()).sum();
     assert!((mean - accuracy.errors.bias()).abs() < 1e-3, "{mean} {}", accuracy.errors.bias());
-    // Bytes of 128 + 127 n are a fraction of a degree off; at the outline, where the filter mixes in the flat surface, much more.
+    // Normals in bytes 128 + 127 n are a fraction of a degree off. At the outline, where the filter mixes in the flat surface, the error is
+    // much larger.
     let normals = accuracy.normals.unwrap();
     assert!(normals.degrees.mean() > 0.05 && normals.degrees.mean() < 1.0, "{:?}", normals.degrees);
     assert!(accuracy.errors.mean() > 0.5 && accuracy.errors.mean() < 2.0, "{:?}", accuracy.errors);
@@ -133,7 +134,7 @@ fn errors_are_split_and_add_up() {
     assert_eq!(accuracy_value(&accuracy)["pixels"], 4096);
 }
 
-/// A square of one colour whose truth is that colour is exact.
+/// A square of one colour whose truth has the same colour has no error.
 #[test]
 fn nothing_is_off_where_nothing_is_rounded() {
     let truth = "hemisphere: (sky: (51, 102, 255), ground: (51, 102, 255))";
@@ -149,7 +150,7 @@ fn nothing_drawn_is_nothing_measured() {
     assert!(measure(&loaded.scene, &loaded.plan, loaded.truth.as_ref().unwrap()).is_none());
 }
 
-/// A folder of a scene and its family.
+/// Writes a scene and its family to a temporary folder. Returns the folder and the path of the scene.
 fn with_family(scene: &str, family: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("outside.family.ron"), family).unwrap();

@@ -1,4 +1,4 @@
-//! Packs of vectors: what is written is read back, what was tampered with is refused, what the model says otherwise is found.
+//! Tests packs of vectors: they survive writing and reading, changed files are refused, and rows that contradict the model are found.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn options(units: &[&str]) -> Options {
     }
 }
 
-/// A whole table.
+/// Returns a whole table as text.
 fn text(writer: &Writer) -> String {
     let mut text = writer.head();
     let rows = writer.each(false, |row| {
@@ -40,7 +40,7 @@ fn vectors(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ninebit")).arg("vectors").args(arguments).output().unwrap()
 }
 
-/// Every unit on every chip that has it: numbers fit their columns, rows do not repeat, the table is what it was told to be.
+/// Tests the tables of every unit on every chip that has it: they can be read, agree with the model, and have the right number of rows.
 #[test]
 fn tables_of_all_units_are_sound() {
     for unit in units::all() {
@@ -56,7 +56,7 @@ fn tables_of_all_units_are_sound() {
     }
 }
 
-/// More rows, for what a thousand do not meet.
+/// Checks the range of every number in more rows than a table has.
 #[test]
 fn numbers_fit_their_columns() {
     for unit in units::all() {
@@ -79,7 +79,7 @@ fn numbers_fit_their_columns() {
     }
 }
 
-/// Every operation of an API has a form on the chip: rows of it that are not black.
+/// Every operation of an API has a program on the chip, and at least one row that is not black.
 #[test]
 fn programs_of_every_operation_run() {
     for (name, column) in
@@ -101,7 +101,7 @@ fn programs_of_every_operation_run() {
     }
 }
 
-/// Each policy that a unit's rules name changes some row of it, and no other does.
+/// Each policy that a unit's rules name changes a row of the unit, and no other policy does.
 #[test]
 fn policies_change_the_units_of_their_rules() {
     let mut found: Vec<(String, &str)> = Vec::new();
@@ -217,7 +217,7 @@ fn tables_that_were_tampered_with_are_refused() {
         let error = parse(&text, Path::new("table")).unwrap_err();
         assert_eq!(error.code(), code, "{error}");
     }
-    // A wrong result is no broken table: it is what a table is for.
+    // A wrong result does not make a table invalid, because finding it is the purpose of the table.
     let wrong = with(4, if fields[4] == "7" { "8" } else { "7" });
     let table = parse(&wrong, Path::new("table")).unwrap();
     let differences = table.differences();
@@ -228,7 +228,7 @@ fn tables_that_were_tampered_with_are_refused() {
     );
 }
 
-/// Files that were cut off, put in another order or exchanged after the export are not those of the manifest; nor is a table of another pack.
+/// Files that were truncated, reordered or exchanged after the export do not match the manifest. Nor does a table of another pack.
 #[test]
 fn files_that_were_changed_after_the_export_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -248,7 +248,7 @@ fn files_that_were_changed_after_the_export_are_refused() {
     }
     std::fs::write(&table, text).unwrap();
     pack::open(&pack).unwrap();
-    // What the manifest says of the pack is what its tables say.
+    // The manifest and the tables have to agree on the properties of the pack.
     let manifest = std::fs::read_to_string(pack.join("MANIFEST.json")).unwrap();
     for (from, to) in [
         ("\"behaviour_rev\": 1", "\"behaviour_rev\": 7"),
@@ -261,7 +261,7 @@ fn files_that_were_changed_after_the_export_are_refused() {
         std::fs::write(pack.join("MANIFEST.json"), manifest.replace(from, to)).unwrap();
         assert_eq!(pack::open(&pack).map(|_| ()).unwrap_err().code(), "NB1011", "{to}");
     }
-    // The other's manifest says which pack it is: neither files nor root fit.
+    // The manifest of another pack names that pack, so neither the files nor the root match.
     std::fs::copy(other.join("MANIFEST.json"), pack.join("MANIFEST.json")).unwrap();
     assert_eq!(pack::open(&pack).unwrap_err().code(), "NB1011");
     std::fs::remove_dir_all(pack.join("schema")).unwrap();
@@ -271,7 +271,7 @@ fn files_that_were_changed_after_the_export_are_refused() {
     }
 }
 
-/// A pack with one wrong row, the digests made to fit.
+/// Returns a pack with one wrong row and matching digests.
 fn with_a_wrong_row(folder: &Path) -> PathBuf {
     use sha2::{Digest, Sha256};
     let pack = folder.join("wrong");
@@ -325,7 +325,7 @@ fn the_command_line_tells_packs_apart() {
     }
 }
 
-/// The packed view has the bits of the table.
+/// The packed view has the same bits as the table.
 #[test]
 fn packed_rows_are_the_rows() {
     use ninebit_vectors::view::{Layout, packed};

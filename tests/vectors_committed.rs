@@ -1,4 +1,4 @@
-//! What is committed under `vectors` beside scenes: packs, schemas, the list of mutations.
+//! Tests the files under `vectors` other than scenes: packs, schemas, the list of mutations.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -17,7 +17,7 @@ fn json(path: impl AsRef<Path>) -> Value {
     serde_json::from_str(&std::fs::read_to_string(at(path)).unwrap()).unwrap()
 }
 
-/// The packs are, byte for byte, what an export writes: all units of nv2a, and of nv10 those in which it differs.
+/// The packs are byte for byte what an export writes: all units for nv2a, and for nv10 the units in which it differs.
 #[test]
 fn committed_packs_are_what_the_model_says() {
     let folder = tempfile::tempdir().unwrap();
@@ -45,7 +45,7 @@ fn committed_packs_are_what_the_model_says() {
     }
 }
 
-/// Inputs and results of a chip.
+/// Returns the rows of a unit on a chip, with inputs and results.
 fn rows(profile: Profile, unit: &'static dyn ninebit_vectors::Unit) -> Vec<Vec<i64>> {
     let conditions = Conditions { profile, policies: Policies::DEFAULT };
     let (columns, mut rows) = (unit.results().len(), Vec::new());
@@ -68,7 +68,7 @@ fn the_pack_of_nv10_has_the_units_that_differ() {
     assert_eq!(committed, different);
 }
 
-/// A document has the properties of its schema, level by level, and nothing else.
+/// Checks that a document has exactly the properties of its schema, on every level.
 fn fits(schema: &Value, value: &Value, place: &str) {
     if let (Some(properties), Some(object)) = (schema["properties"].as_object(), value.as_object()) {
         let patterns: Vec<&String> =
@@ -107,7 +107,7 @@ fn fits(schema: &Value, value: &Value, place: &str) {
     }
 }
 
-/// `vectors/schema/check` validates the same documents with a whole validator.
+/// Tests the names of properties. `vectors/schema/check` validates the same documents with a complete validator.
 #[test]
 fn documents_have_the_properties_of_their_schemas() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,7 +132,7 @@ fn documents_have_the_properties_of_their_schemas() {
     }
 }
 
-/// Each mutation still has its place: `vectors/mutation/run` plants them all.
+/// Each mutation still has exactly one place in the sources. `vectors/mutation/run` applies all of them.
 #[test]
 fn mutations_are_of_texts_that_occur_once() {
     let mutants = json("vectors/mutation/mutants.json");

@@ -1,5 +1,5 @@
-//! The table of operations has every operation of every unit, and every operation of up to 2^32 inputs has its digest tree; what the table takes apart
-//! may be taken apart. `docs/operations.md` shows the table.
+//! Checks that the table of operations has every operation of every unit, that every operation with up to 2^32 inputs has a digest tree,
+//! and that operations which the table splits are independent. `docs/operations.md` shows the table.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::operations::OPERATIONS;
@@ -17,7 +17,7 @@ use ninebit_vectors::tree::Tree;
 use ninebit_vectors::unit::{Conditions, Unit};
 use ninebit_vectors::units;
 
-/// An operation of a unit.
+/// An operation of a unit, as the table has it.
 struct Row {
     unit: String,
     operation: String,
@@ -25,7 +25,7 @@ struct Row {
     trees: Vec<String>,
 }
 
-/// All trees under `vectors/digests`, by their name: the path without the ending.
+/// Returns all trees under `vectors/digests` by name, which is the path without the extension.
 fn trees() -> BTreeMap<String, Exhaustive> {
     let folder = &at("vectors/digests");
     let list = |folder: &Path| -> Vec<PathBuf> {
@@ -39,7 +39,7 @@ fn trees() -> BTreeMap<String, Exhaustive> {
     named.collect()
 }
 
-/// The operations with the names of their trees.
+/// Returns the operations with the names of their trees.
 fn table(trees: &BTreeMap<String, Exhaustive>) -> Vec<Row> {
     let named = |name: &&str| match name.strip_suffix('*') {
         Some(folder) => trees.keys().filter(|tree| tree.starts_with(folder)).cloned().collect(),
@@ -65,7 +65,7 @@ fn the_page_has_the_table() {
     pages::hold("docs/operations.md", "tests/vectors_operations.rs", &table);
 }
 
-/// How many bits the inputs of these columns take, rounded up, configuration not among them.
+/// Returns the number of bits of the inputs among these columns, rounded up. Configuration does not count.
 fn bits(columns: &[Column]) -> u32 {
     let inputs = columns.iter().filter(|column| column.name.starts_with("in."));
     inputs.map(|column| (column.size() as f64).log2()).sum::<f64>().ceil() as u32
@@ -88,7 +88,7 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
             assert_eq!(sweep.unit().name(), unit, "{name}");
             bits(sweep.part().columns())
         });
-        // A name of an operation stands for what one number of its configuration does.
+        // The number of bits is that of the largest tree, whose configuration is fixed.
         assert!(most.max().is_none_or(|most| most == *said), "{unit}: {operation}");
     }
     let unnamed: Vec<&String> = trees.keys().filter(|name| !named.contains(name)).collect();
@@ -106,14 +106,14 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
             continue;
         }
         for (n, column) in unit.inputs().into_iter().enumerate() {
-            // Every choice that the unit has occurs in some tree: an operation that comes to be has none, and fails here.
+            // Every choice of a unit occurs in a tree. A new operation does not, and fails here.
             if let Kind::Name(names) = column.kind {
                 let taken: BTreeSet<i64> = swept.iter().flat_map(|sweep| numbers(&sweep.part().columns()[n])).collect();
                 let missing: Vec<&str> =
                     numbers(&column).filter(|n| !taken.contains(n)).map(|n| names[n as usize]).collect();
                 assert!(missing.is_empty(), "{} {}: no tree has {missing:?}", unit.name(), column.name);
             } else if column.name.starts_with("in.") {
-                // And so does every input, unless it is one more channel of what another is.
+                // Every input varies in a tree as well, unless it is one of several channels that are computed alike.
                 let varies =
                     swept.iter().any(|sweep| sweep.part().columns()[n].size() > 1 || sweep.part().is_followed(n));
                 let channel = [".g", ".b", ".r"].iter().any(|end| column.name.ends_with(end));
@@ -133,7 +133,7 @@ fn evaluate(unit: &dyn Unit, inputs: &[i64]) -> Vec<i64> {
     results
 }
 
-/// A tree of Nv2a is one of Nv10 too; compressed blocks have trees of their own.
+/// Trees of nv2a are also valid for nv10. Compressed blocks are excluded, because they have trees of their own.
 #[test]
 fn both_chips_have_the_same_trees() {
     let mut count = 0;
@@ -153,8 +153,8 @@ fn both_chips_have_the_same_trees() {
     assert!(count > 50);
 }
 
-/// A channel with any factors is what red with the constant's red and alpha as factors is: blending is one operation of four bytes, and a factor
-/// another of what it reads.
+/// A channel with any factors has the same result as red with the constant's red and alpha as factors. Blending is thus one operation of
+/// four bytes, and computing a factor is another.
 #[test]
 fn a_blend_depends_on_its_factors_by_their_values() {
     let unit = units::by_name("blend").unwrap();
@@ -177,8 +177,8 @@ fn a_blend_depends_on_its_factors_by_their_values() {
     }
 }
 
-/// Every pair of end points of one channel, with each code, at each texel, among two sets of other channels: only which of the end points is larger, taken
-/// as one number of sixteen bits, reaches across.
+/// Tests every pair of end points of one channel, with each code, at each texel, with several values of the other channels. The other
+/// channels have an effect only through the comparison of the end points as 16-bit numbers.
 #[test]
 fn channels_of_a_block_meet_in_nothing_but_the_comparison() {
     let fields = [(11, 32), (5, 64), (0, 32)];
@@ -186,7 +186,7 @@ fn channels_of_a_block_meet_in_nothing_but_the_comparison() {
         let mask = (levels - 1) << shift;
         for (first, second) in (0..levels).flat_map(|a| (0..levels).map(move |b| (a << shift, b << shift))) {
             for code in [0, 0x5555_5555, 0xaaaa_aaaa, 0xffff_ffff_u32] {
-                // Other channels that leave the comparison to this one, or decide it.
+                // Other channels that leave the comparison to this channel, or decide it.
                 let others = [[0x1234, 0x1234], [0xffff, 0x0000], [0x0000, 0xffff]];
                 let word = |[a, b]: [u32; 2]| (second | b & !mask) << 16 | first | a & !mask;
                 let four = |[a, b]: [u32; 2]| (first | a & !mask) > (second | b & !mask);

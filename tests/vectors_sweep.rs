@@ -1,5 +1,5 @@
-//! Sweeps: the same root whoever computes the leaves; what is missing, changed, there twice or of another sweep is refused; the committed trees are
-//! what the model says.
+//! Tests sweeps: the root does not depend on who computes the leaves; leaves that are missing, changed, duplicated or of another sweep are
+//! refused; and the committed trees agree with the model.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::repository::at;
@@ -37,7 +37,7 @@ static LEAVES: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     folder
 });
 
-/// Copies leaf files of one folder to `count` shards' folders and returns these in a drawn order.
+/// Copies the leaves of a folder to the folders of `count` shards, and returns these in random order.
 fn dealt(leaves: &Path, folder: &Path, count: u64, random: &mut Random) -> Vec<PathBuf> {
     let mut shards: Vec<PathBuf> = (0..count).map(|n| folder.join(format!("{count}-{n}"))).collect();
     shards.iter().for_each(|shard| std::fs::create_dir(shard).unwrap());
@@ -64,7 +64,7 @@ fn the_root_depends_on_neither_shards_nor_order_nor_deaths() {
         assert_eq!(tree::merge(&shards).unwrap(), root, "{count} shards");
     }
 
-    // A worker that is killed at any time leaves whole leaves or none; the one after it computes what is missing.
+    // A worker that is killed leaves only whole leaves. The next worker computes those that are missing.
     let worker = || {
         let shard = ["vectors", "sweep", "--unit", "linear-step", "--shard", "2/2", "-o", shared.to_str().unwrap()];
         Command::new(env!("CARGO_BIN_EXE_ninebit")).args(shard).stdout(std::process::Stdio::null()).spawn().unwrap()
@@ -82,7 +82,7 @@ fn the_root_depends_on_neither_shards_nor_order_nor_deaths() {
     assert_eq!(tree::merge(&[shared]).unwrap(), root);
 }
 
-/// A folder of leaves, by `change`, and what `merge` says of it.
+/// Copies the leaves to a folder, applies `change`, and returns status and message of `merge`.
 fn merged(change: impl Fn(&Path)) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
     let leaves = folder.path().join("a");
@@ -124,7 +124,7 @@ fn merging_refuses_what_is_not_one_whole_sweep() {
         tree::work(folder, &sweep("mux"), 0).unwrap();
     };
     expected(&other, 3, "NB1021");
-    // A part has other leaves than the whole, and than another part.
+    // The leaves of a part differ from those of the whole and of another part.
     let some = part("linear-step", &["in.first=0..127"]);
     expected(&|folder| assert!(tree::work(folder, &some, 0).unwrap()), 3, "NB1021");
     let folder = tempfile::tempdir().unwrap();
@@ -132,7 +132,7 @@ fn merging_refuses_what_is_not_one_whole_sweep() {
     let error = tree::work(folder.path(), &part("linear-step", &["in.first=128..255"]), 0).unwrap_err();
     assert_eq!(error.code(), "NB1021");
     assert!(error.to_string().contains("linear-step in.first=0..127 on Nv2a"), "{error}");
-    // Nor does a worker add to the leaves of another sweep.
+    // A worker does not add to the leaves of another sweep either.
     let folder = tempfile::tempdir().unwrap();
     other(folder.path());
     let error = tree::work(folder.path(), &sweep("product"), 0).unwrap_err();
@@ -171,7 +171,7 @@ fn places_that_cannot_be_written_are_refused() {
 
 #[test]
 fn a_part_has_the_rows_of_the_whole_that_it_allows() {
-    // Rows of one value of the first column lie together in the whole.
+    // Rows with the same value in the first column are adjacent in the whole.
     let whole = sweep("alpha-test");
     let functions = ["Never", "Less", "Equal", "LessOrEqual", "Greater", "NotEqual", "GreaterOrEqual", "Always"];
     for (place, function) in (0..).zip(functions) {
@@ -179,7 +179,7 @@ fn a_part_has_the_rows_of_the_whole_that_it_allows() {
         assert_eq!(some.size(), 1 << 16);
         assert_eq!(some.digest(0..1 << 16), whole.digest(place << 16..(place + 1) << 16), "{function}");
     }
-    // In block lanes as row by row.
+    // Parts that are computed in block lanes have the same rows as well.
     let some = part("sum", &["in.a=-256", "in.b=3..4", "in.c=255..256", "in.d=-100..200"]);
     let rows = |b: u64, c: u64| (b * 513 + c) * 513 + 156..(b * 513 + c) * 513 + 457;
     assert_eq!(some.size(), 4 * 301);
@@ -222,7 +222,7 @@ fn a_part_is_swept_merged_and_digested_by_name() {
     assert!(text.contains("`blend cfg.equation=Add` has more than"), "{text}");
 }
 
-/// The trees under `vectors/digests`: of units, and of parts in folders of their unit's name.
+/// Returns the paths of the trees under `vectors/digests`: those of units, and those of parts in a folder with the name of their unit.
 fn trees() -> Vec<PathBuf> {
     let list = |folder: &Path| -> Vec<PathBuf> {
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
@@ -233,11 +233,11 @@ fn trees() -> Vec<PathBuf> {
     paths
 }
 
-/// Units of which a leaf of eight million rows takes no longer than a test may: `ninebit vectors digest` computes those of the others again.
+/// Units for which a leaf of eight million rows is fast enough for a test. `ninebit vectors digest` recomputes those of the other units.
 const QUICK: [&str; 6] =
     ["blend", "dependent-coordinate", "shader-remap", "surface-load", "surface-store", "texel-expansion"];
 
-/// Trees of parts: those of a few rows whole, and a leaf of one of the others of each unit.
+/// Recomputes small trees of parts as a whole, and one leaf of one larger tree for each of the quick units.
 #[test]
 fn committed_trees_of_parts_are_what_the_model_says() {
     let mut large: BTreeMap<String, Vec<(Tree, Exhaustive)>> = BTreeMap::new();
@@ -262,7 +262,7 @@ fn committed_trees_of_parts_are_what_the_model_says() {
     });
 }
 
-/// Units of up to 2^32 rows with their configuration fixed, and the column of that. Each has a tree for each of its values.
+/// Units with up to 2^32 rows once their configuration is fixed, and the column of the configuration. Each has a tree for each value of it.
 const BY_CONFIGURATION: [(&str, &str); 4] = [
     ("shader-remap", "cfg.mapping"),
     ("surface-load", "cfg.format"),
@@ -270,7 +270,7 @@ const BY_CONFIGURATION: [(&str, &str); 4] = [
     ("texel-expansion", "cfg.format"),
 ];
 
-/// What these parts leave out is never read: a row of the whole has the results of the one that the part has in its place.
+/// Columns that a part fixes are not read: every row of the whole has the results of the row that the part has in its place.
 #[test]
 fn parts_by_configuration_are_whole() {
     let outputs = |unit: &dyn Unit, inputs: &[i64]| {
@@ -301,7 +301,7 @@ fn parts_by_configuration_are_whole() {
             }
         }
     }
-    // And no unit is left out.
+    // No unit is missing from the list.
     for unit in units::all().into_iter().filter(|unit| cases::size(&unit.inputs()) > 1 << 32) {
         let inputs = unit.inputs().into_iter().filter(|column| column.name.starts_with("in.")).collect::<Vec<_>>();
         let has = BY_CONFIGURATION.iter().any(|(name, _)| *name == unit.name()) || unit.name() == "depth";
@@ -309,7 +309,7 @@ fn parts_by_configuration_are_whole() {
     }
 }
 
-/// Small trees whole; of the others leaves drawn by a seed. None of these units differs between the chips.
+/// Recomputes small trees as a whole, and a random leaf of each other tree. None of these units differs between the chips.
 #[test]
 fn committed_trees_are_what_the_model_says() {
     let mut names = Vec::new();
@@ -331,7 +331,7 @@ fn committed_trees_are_what_the_model_says() {
             }
         });
     }
-    // Every unit of at most 2^32 rows has one, and the product sum.
+    // Every unit with at most 2^32 rows has a tree, and so have depth and the product sum.
     let mut expected: Vec<&str> = vec!["depth", "sum"];
     let all = units::all().into_iter().filter_map(|unit| Exhaustive::new(unit, Profile::Nv2a));
     expected.extend(all.filter(|sweep| sweep.size() <= 1 << 32).map(|sweep| sweep.unit().name()));
@@ -372,7 +372,7 @@ fn trees_that_were_changed_are_refused() {
         assert_eq!(code(&text.replacen(from, to, 1)), "NB1005", "{from} {to}");
     }
     let text = std::fs::read_to_string(at("vectors/digests/mux.json")).unwrap();
-    // A wrong digest with a fitting root is what `digest` finds.
+    // `digest` finds a wrong digest even if the root matches it.
     let mut tree: Tree = serde_json::from_str(&text).unwrap();
     tree.leaf[0].sha256 = tree.leaf[0].sha256.replace(|c: char| c.is_ascii_digit(), "a");
     let line = format!("0 {} {} {} {}\n", tree.rows, tree.leaf[0].low, tree.leaf[0].high, tree.leaf[0].sha256);

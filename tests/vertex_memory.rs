@@ -1,4 +1,4 @@
-//! How much memory vertices take: what a scene holds for each, and the most that the program holds at once.
+//! Tests how much memory vertices take: what a scene holds for each of them, and the peak of the program.
 
 use super::bench::Bench;
 use ninebit::limits::Limits;
@@ -6,7 +6,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit_scene as scene;
 use std::path::Path;
 
-/// A mesh over a frame: its vertices differ in x, y, s, t and two channels of the diffuse colour.
+/// Returns a scene with a mesh over the whole frame. Its vertices differ in x, y, s, t and two channels of the diffuse colour.
 fn text(columns: u32, rows: u32, width: u32, height: u32) -> String {
     format!(
         "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: {width}, height: {height})], \
@@ -16,7 +16,7 @@ fn text(columns: u32, rows: u32, width: u32, height: u32) -> String {
     )
 }
 
-/// Six columns of floats, in the plan as well: what its triangles are made of beside them are corners.
+/// The scene and the plan each hold six columns of floats. Beyond that, the triangles of the plan hold only their corners.
 #[test]
 fn what_vertices_have_in_common_is_held_once() {
     let loaded = scene::parse(&text(100, 50, 64, 64), Path::new("."), &Limits::default()).unwrap();
@@ -28,7 +28,8 @@ fn what_vertices_have_in_common_is_held_once() {
     assert!(size_of_val(&assembly.corners[..]) <= 20 * draw.vertices.len());
 }
 
-/// A million triangles fit into 64 MB beside the frame, from the text to the picture; where the system does not tell, nothing is known.
+/// A million triangles need at most 64 MB besides the frame, from the text to the picture. On systems that do not report the peak nothing
+/// is tested.
 #[test]
 fn a_million_triangles_fit_into_64_megabytes() {
     let bench = Bench::new();

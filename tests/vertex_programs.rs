@@ -1,4 +1,5 @@
-//! Vertex programs: the text reads, prints and is refused as documented; every instruction against one written here.
+//! Tests vertex programs: texts are read, printed and refused as documented, and every instruction is compared with an implementation in
+//! this file.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::pages;
@@ -28,7 +29,7 @@ fn accepted(body: &str) -> VertexShader {
     written.shader
 }
 
-/// Of the body with a position, whose lines would be right by themselves.
+/// Returns the codes of the warnings for a program that is otherwise valid.
 #[track_caller]
 fn warned(body: &str) -> Vec<&'static str> {
     let written = read(body).unwrap_or_else(|findings| panic!("{body}\n{findings:?}"));
@@ -47,14 +48,15 @@ fn vector() -> impl Strategy<Value = [f32; 4]> {
     prop::array::uniform4(number())
 }
 
-/// The language's text for one instruction, written without a look at the program: components of swizzled and negated sources.
+/// Returns the result of one instruction as the language defines it, written independently of the program. The sources are already swizzled
+/// and negated.
 fn expected(opcode: Opcode, s: [f32; 4], t: [f32; 4], u: [f32; 4], rows: &[[f32; 4]]) -> [f32; 4] {
     let times = |a: f32, b: f32| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
     let by = |f: &dyn Fn(usize) -> f32| [f(0), f(1), f(2), f(3)];
     let three = |v: [f32; 4]| times(s[0], v[0]) + times(s[1], v[1]) + times(s[2], v[2]);
     let four = |v: [f32; 4]| three(v) + times(s[3], v[3]);
     let w = s[3];
-    // Powers and logarithms as f64 has them, rounded.
+    // Powers and logarithms are computed in f64 and rounded.
     let exp2 = |x: f32| f64::from(x).exp2() as f32;
     let log2 = |x: f32| f64::from(x).abs().log2() as f32;
     match opcode {
@@ -103,7 +105,7 @@ fn expected(opcode: Opcode, s: [f32; 4], t: [f32; 4], u: [f32; 4], rows: &[[f32;
     }
 }
 
-/// Equal, or of powers and logarithms one step apart at most where the last bit of f64 decides.
+/// Returns whether two results are equal. Results of powers and logarithms may differ by one step, where the last bit of f64 decides.
 fn same(opcode: Opcode, found: f32, want: f32) -> bool {
     if found.is_nan() || want.is_nan() {
         return found.is_nan() && want.is_nan();
@@ -119,7 +121,7 @@ proptest! {
     fn instructions_compute_what_their_text_says(
         mut instruction in instruction(), vectors in prop::collection::vec(vector(), 16), into in 0..TEMPORARIES,
     ) {
-        // Every register is one of sixteen vectors.
+        // Every register holds one of sixteen vectors.
         let inputs: Inputs = std::array::from_fn(|k| vectors[k]);
         let constants: Constants = std::array::from_fn(|k| vectors[k % 16]);
         for source in &mut instruction.sources {
@@ -196,7 +198,7 @@ proptest! {
     }
 }
 
-/// Programs and their inputs.
+/// A stream of random programs and their inputs.
 struct Stream(Random);
 
 impl Stream {
@@ -314,7 +316,7 @@ fn what_is_not_the_language_is_said() {
 
 #[test]
 fn unwritten_components_count_where_they_matter() {
-    // The fourth component of a cross product in a basis of three is nobody's.
+    // Nothing reads the fourth component of a cross product in a basis of three vectors.
     accepted(
         "m3x3 r3, v8, c0\nm3x3 r5, v3, c0\nmul r0, r3.zxyw, r5.yzxw\nmad r4, r3.yzxw, r5.zxyw, -r0\ndp3 oD0.x, r4, c12\nmov oPos, v0",
     );
@@ -323,7 +325,7 @@ fn unwritten_components_count_where_they_matter() {
     assert!(found[0].message.contains("r3.w"), "{found:?}");
     accepted("mov r0.x, v0\nrcp r0.y, r0.x\nmov oPos, r0.xyxy");
     assert_eq!(codes("rcp r0.y, r0.w\nmov oPos, r0.y"), ["NB0383"]);
-    // What nothing needs is not said.
+    // Reading an unwritten register is not reported if nothing depends on the result.
     accepted("mov r1, r2\nmov oPos, v0");
 }
 
@@ -335,11 +337,11 @@ fn doubtful_programs_are_warned_of() {
     assert_eq!(warned("m4x4 oPos, v0, c8\nmov oD0, c10"), ["NB0911"]);
     assert_eq!(warned("m4x4 oPos, v0, c8\ndp3 oD0, v3, -c10"), ["NB0911"]);
     assert_eq!(warned("m4x4 oPos, v0, c8\nm3x3 oD0.xyz, v3, c10"), ["NB0911"]);
-    // Rows by themselves, the upper part of the same matrix, and the constant behind it are as they should be.
+    // Single rows, the upper part of the same matrix, and the constant after it are no reason for a warning.
     accepted("m4x4 oPos, v0, c8\ndp4 oD0.x, v0, c10\nm3x3 oT0.xyz, v3, c8\nmov oT1, c12\nm3x3 oT2.xyz, v3, c13");
 }
 
-/// What the comments on the instructions say, as the table of the page.
+/// The table of the page is generated from the comments on the instructions.
 #[test]
 fn the_document_lists_the_instructions() {
     let source = std::fs::read_to_string(at("src/model/vertex/shader/mod.rs")).unwrap();
@@ -358,7 +360,7 @@ fn the_document_lists_the_instructions() {
     pages::hold("docs/vertex-shader.md", "tests/vertex_programs.rs", &table);
 }
 
-/// The program of `docs/vertex-shader.md` is one.
+/// The program in `docs/vertex-shader.md` is valid.
 #[test]
 fn the_document_is_about_this_language() {
     let document = std::fs::read_to_string(at("docs/vertex-shader.md")).unwrap();

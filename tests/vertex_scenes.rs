@@ -1,4 +1,4 @@
-//! Vertex programs and meshes in scenes: what reaches the rasteriser.
+//! Tests vertex programs and meshes in scenes by what reaches the rasteriser.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use ninebit::engine::{RenderOptions, render, trace};
@@ -19,7 +19,7 @@ fn refused(text: &str) -> Vec<&'static str> {
     error.diagnostics.iter().map(|finding| finding.code).collect()
 }
 
-/// A scene whose draw has these fields.
+/// Returns a scene whose draw has these fields.
 fn scene(profile: &str, fields: &str) -> String {
     format!("(version: 1, profile: {profile}, targets: [(width: 64, height: 64)], draws: [({fields})])")
 }

@@ -1,4 +1,4 @@
-//! What is changed, and the commands that read it.
+//! The files that the campaign corrupts, and the commands that read them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,23 +9,23 @@ use sha2::{Digest, Sha256};
 
 use super::mutate::mutated;
 
-/// A file of the corpus, by its place in the working folder.
+/// A file of the corpus. The path is relative to the working folder.
 #[derive(Clone, Debug)]
 struct Entry {
     path: PathBuf,
     bytes: Vec<u8>,
 }
 
-/// Everything that is changed, copied into a folder to work in.
+/// The corpus: the original of each file, copied to a working folder.
 #[derive(Debug)]
 pub struct Corpus {
     folder: PathBuf,
     scenes: Vec<Entry>,
     expectations: Vec<Entry>,
-    /// Images, meshes, programs, families, raw texels, and a scene that names each.
+    /// Images, meshes, programs, families and raw texels, each with a scene that refers to it.
     assets: Vec<(Entry, PathBuf)>,
     images: Vec<Entry>,
-    /// Files of packs and of results.
+    /// Files of vector packs and of results.
     vectors: Vec<Entry>,
     leaves: Vec<Entry>,
     tree: Entry,
@@ -33,11 +33,11 @@ pub struct Corpus {
     tables: Vec<(&'static str, Entry)>,
 }
 
-/// A run: the command, and the files that are put back after it.
+/// A run: a command, and the files that have to be restored after it.
 #[derive(Debug)]
 pub struct Case {
     pub arguments: Vec<String>,
-    /// The scene that it draws, if any.
+    /// The scene that the command draws, if it draws one.
     pub scene: Option<PathBuf>,
     restore: Vec<Entry>,
     remove: Vec<PathBuf>,
@@ -46,7 +46,7 @@ pub struct Case {
 const SCENES: [&str; 2] = ["vectors/scenes", "tests/bad"];
 const WAIVERS: &str = r#"[{"unit": "product", "maximum": 1, "count": 7, "reason": "known"}, {"unit": "scale-bias", "maximum": 2, "count": 900, "reason": "known"}]"#;
 
-/// Operations, and a table that each reads.
+/// Arguments of `ninebit op`, each with a table that the operation reads.
 const TABLES: [(&str, &str); 6] = [
     (
         "combiner --a tex0:expand --b tex1 --c primary:half_bias --d const0",
@@ -79,7 +79,8 @@ fn write(folder: &Path, entry: &Entry) {
     fs::write(path, &entry.bytes).expect("a file");
 }
 
-/// The largest part of the corpus' frames is 640 x 480: a small one says the same of the readers, and takes less time.
+/// Reduces the frame size of a scene. Most frames of the corpus are 640 x 480; smaller ones test the readers equally well and take less
+/// time.
 fn small(text: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(text);
     let text = text.replace("width: 640", "width: 64").replace("height: 480", "height: 48");
@@ -87,8 +88,8 @@ fn small(text: &[u8]) -> Vec<u8> {
 }
 
 impl Corpus {
-    /// Copies the corpus from the repository into `folder`, and makes the packs, results and leaves that commands there write. `run` is the
-    /// program.
+    /// Copies the corpus from the repository into `folder`, and creates the packs, results and leaves by running commands there. `run` runs
+    /// the program.
     pub fn new(repository: &Path, folder: &Path, run: &dyn Fn(&[String])) -> Corpus {
         let mut all = Vec::new();
         for place in SCENES {
@@ -190,7 +191,7 @@ impl Corpus {
         self.tree.bytes = fs::read(self.folder.join("tree.json")).expect("the tree that was merged");
     }
 
-    /// The case of a run: its files are written.
+    /// Returns a random case, whose corrupted files have been written.
     pub fn case(&self, random: &mut Random) -> Case {
         match random.below(100) {
             0..=54 => self.scene(random),
@@ -202,7 +203,7 @@ impl Corpus {
         }
     }
 
-    /// Puts everything back.
+    /// Restores the files of a case and removes its outputs.
     pub fn restore(&self, case: &Case) {
         case.restore.iter().for_each(|entry| write(&self.folder, entry));
         for path in &case.remove {
@@ -211,7 +212,7 @@ impl Corpus {
         }
     }
 
-    /// A command on a scene.
+    /// Returns a random command that reads a scene.
     fn command(&self, random: &mut Random, scene: &Path) -> Vec<String> {
         let name = scene.display().to_string();
         let mut words: Vec<String> = Vec::new();
@@ -380,7 +381,7 @@ impl Corpus {
                 let (entry, other) = (pick(random, &self.vectors), pick(random, &self.vectors));
                 let mut bytes = mutated(random, &entry.bytes, &other.bytes);
                 let mut case = plain("", entry.clone(), vec!["adopted".into()]);
-                // What is sealed is sealed again, so that what lies behind the seals is reached.
+                // Half of the corrupted files get a correct checksum, so that the checks behind the checksum are reached.
                 if random.once_in(2) {
                     if entry.path.starts_with("results") {
                         bytes = sealed(&bytes);
@@ -415,7 +416,7 @@ impl Corpus {
     }
 }
 
-/// A table of results with the last line that its own lines call for.
+/// Returns a table of results whose last line has the correct row count and checksum.
 fn sealed(bytes: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(bytes);
     let mut body: String =
@@ -430,7 +431,7 @@ fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A manifest that lists the changed file as it is; `None` if it does not list it.
+/// Returns a manifest with size and checksum of the changed file, or `None` if the manifest does not list the file.
 fn relisted(manifest: &[u8], path: &Path, bytes: &[u8]) -> Option<Vec<u8>> {
     let mut value: serde_json::Value = serde_json::from_slice(manifest).ok()?;
     let name = path.strip_prefix("pack").ok()?.to_string_lossy().into_owned();

@@ -1,11 +1,13 @@
-//! Runs every command that reads on changed files: scenes, expectations, programs, images, meshes, packs, results, leaves, trees, waivers, tables.
+//! Runs every command that reads files on corrupted ones: scenes, expectations, programs, images, meshes, packs, results, leaves, trees,
+//! waivers, tables.
 //!
-//! `cargo test --test campaign -- --runs 200000 --seed 1`; `--only N` does run N alone and keeps its files. Without `--runs` it is a short run
-//! for the test suite.
+//! `cargo test --test campaign -- --runs 200000 --seed 1` runs a campaign. `--only N` runs only run N and keeps its files. Without `--runs`
+//! the number is small enough for the test suite.
 //!
-//! A run is a finding if it panics (NB0801), if a signal or a failed allocation ends it, if it takes more than 1 GB, or if it takes more than ten
-//! seconds which its shaded pixels do not explain at 500 ns each. Workers run commands in their own process, one after the other, so that
-//! thousands of runs a minute are possible; one run in a hundred is a process of its own. A worker that dies is replaced and its run is a finding.
+//! A run is a finding if it panics (NB0801), if a signal or a failed allocation ends it, if it needs more than 1 GB, or if it takes more
+//! than ten seconds in addition to 500 ns for each pixel that it shades. Workers run commands in their own process, one after the other,
+//! which allows thousands of runs a minute. One run in a hundred has a process of its own. A worker that dies is replaced, and its run is a
+//! finding.
 #![allow(
     clippy::unwrap_used,
     clippy::float_arithmetic,
@@ -33,21 +35,21 @@ use ninebit::engine::fragments;
 use ninebit::limits::Limits;
 use ninebit::random::Random;
 
-/// Runs in the test suite.
+/// Number of runs in the test suite.
 const RUNS: u64 = 300;
-/// Memory of a run, KiB.
+/// Largest memory of a run, in KiB.
 const MAX_MEMORY: u64 = 1_000_000;
-/// Time of a run.
+/// Largest time of a run, besides the time for its pixels.
 const MAX_TIME: Duration = Duration::from_secs(10);
-/// Time after which a worker is ended.
+/// Time after which a worker that is still in the same run is killed.
 const LAST_TIME: Duration = Duration::from_secs(120);
-/// For each shaded pixel.
+/// Time that a run may take for each shaded pixel.
 const PIXEL: Duration = Duration::from_nanos(500);
-/// Runs in a process of its own: one in so many.
+/// One in this many runs of a worker has a process of its own.
 const PROCESSES: u64 = 100;
-/// A worker of which so many KiB stay resident is replaced: what the allocator keeps is not the next run's.
+/// Resident memory, in KiB, above which a worker is replaced. Memory that the allocator keeps must not count against the next run.
 const STALE: u64 = 300_000;
-/// Exit status of a worker that wants to be replaced.
+/// Exit status of a worker that asks to be replaced.
 const REPLACE: i32 = 17;
 
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +58,7 @@ struct Options {
     seed: u64,
     workers: u64,
     only: Option<u64>,
-    /// Of a worker: the first run, and its place among the workers.
+    /// For a worker: the first run, and the worker's index.
     worker: Option<(u64, u64)>,
 }
 
@@ -71,7 +73,7 @@ fn options() -> Option<Options> {
             "--workers" => options.workers = number(),
             "--only" => options.only = Some(number()),
             "--worker" => options.worker = Some((number(), number())),
-            // As test binaries do: a filter that does not mean this one leaves it out.
+            // Like other test binaries, this one does nothing if the filter does not match its name.
             filter if !filter.starts_with('-') && !"campaign".contains(filter) => return None,
             "--list" => return None,
             _ => {}
@@ -89,20 +91,20 @@ fn main() -> ExitCode {
     }
 }
 
-/// In memory where the system has such a place.
+/// Returns the path of a folder, in memory if the system has `/dev/shm`.
 fn place(name: &str) -> PathBuf {
     let base = if Path::new("/dev/shm").is_dir() { PathBuf::from("/dev/shm") } else { std::env::temp_dir() };
     base.join(format!("ninebit-campaign-{name}"))
 }
 
-/// What ended a run.
+/// The result of a run.
 #[derive(Debug)]
 struct Outcome {
     exit: Option<u8>,
-    /// Of the first panic, wherever it was caught.
+    /// Message of the first panic, even if the panic was caught.
     panic: Option<String>,
     time: Duration,
-    /// KiB.
+    /// Peak of resident memory in KiB, 0 if it is not known.
     peak: u64,
 }
 
@@ -114,19 +116,19 @@ fn status(field: &str) -> u64 {
     line.and_then(|line| line.trim().strip_suffix("kB")?.trim().parse().ok()).unwrap_or(0)
 }
 
-/// Runs the program's text in this process.
+/// Runs a command in this process.
 fn inside(arguments: &[String]) -> Outcome {
     let arguments: Vec<OsString> =
         ["ninebit"].into_iter().chain(arguments.iter().map(String::as_str)).map(OsString::from).collect();
     *PANIC.lock().unwrap() = None;
-    // The peak of resident memory begins anew, where the system allows it.
+    // Resets the peak of resident memory, on systems that can.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let begin = Instant::now();
     let exit = catch_unwind(AssertUnwindSafe(|| ninebit_cli::run(&arguments))).ok();
     Outcome { exit, panic: PANIC.lock().unwrap().take(), time: begin.elapsed(), peak: status("VmHWM:") }
 }
 
-/// Runs the program in a process of its own, which may not take more than 2 GB of addresses.
+/// Runs a command in a process of its own, whose address space is limited to 2 GB.
 fn outside(folder: &Path, arguments: &[String]) -> Outcome {
     let begin = Instant::now();
     let output = Command::new("sh")
@@ -143,7 +145,7 @@ fn outside(folder: &Path, arguments: &[String]) -> Outcome {
     Outcome { exit: exit.filter(|code| *code <= 7), panic: ended.then_some(stderr), time: begin.elapsed(), peak: 0 }
 }
 
-/// How long the shaded pixels of a scene may take.
+/// Returns the time that the shaded pixels of a scene account for.
 fn explained(folder: &Path, case: &Case) -> Duration {
     let Some(scene) = &case.scene else { return Duration::ZERO };
     let Ok(loaded) = ninebit_scene::load(&folder.join(scene), &Limits::default()) else { return Duration::ZERO };
@@ -151,7 +153,7 @@ fn explained(folder: &Path, case: &Case) -> Duration {
     PIXEL.saturating_mul(u32::try_from(pixels).unwrap_or(u32::MAX))
 }
 
-/// Why a run is a finding, if it is.
+/// Returns why a run is a finding, or `None` if it is not.
 fn finding(outcome: &Outcome, folder: &Path, case: &Case) -> Option<String> {
     if let Some(panic) = &outcome.panic {
         return Some(format!("panic: {panic}"));
@@ -183,14 +185,16 @@ fn prepared(folder: &Path) -> Corpus {
     })
 }
 
-/// A panic is noted, and nothing is printed. Decoders' panics that the program expects do not come here: `catch_panic` silences them.
+/// Installs a hook that records the first panic and prints nothing. Panics that the program expects from decoders do not reach the hook,
+/// because `catch_panic` silences them.
 fn note_panics() {
     std::panic::set_hook(Box::new(|info| {
         PANIC.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert_with(|| info.to_string());
     }));
 }
 
-/// Every run of a worker from `from` on. Lines of its log: run, exit status, microseconds, KiB; then what is found.
+/// Runs the share of one worker, beginning with run `from`. Each line of the log has the run, the exit status, microseconds and KiB, and
+/// then the finding, if there is one.
 fn work(from: u64, place_of: u64, options: &Options) -> ExitCode {
     note_panics();
     let folder = place(&format!("{}-{place_of}", options.seed));
@@ -213,7 +217,7 @@ fn work(from: u64, place_of: u64, options: &Options) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// One run, its files kept.
+/// Runs a single run and keeps its files.
 fn only(run: u64, options: &Options) -> ExitCode {
     note_panics();
     let folder = place(&format!("{}-only", options.seed));
@@ -226,7 +230,7 @@ fn only(run: u64, options: &Options) -> ExitCode {
     if found.is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// A worker and what it is at.
+/// A worker process, with the run that it was last seen at.
 struct Worker {
     place: u64,
     child: Child,
@@ -250,7 +254,7 @@ impl Worker {
         place(&format!("{}-{}", options.seed, self.place))
     }
 
-    /// The run that it is at, and its command.
+    /// Returns the current run and its command.
     fn at(&self, options: &Options) -> (Option<u64>, String) {
         let text = fs::read_to_string(self.folder(options).with_extension("run")).unwrap_or_default();
         let (run, command) = text.split_once(' ').unwrap_or_default();
@@ -258,7 +262,7 @@ impl Worker {
     }
 }
 
-/// All runs, on workers; prints what was found.
+/// Distributes all runs over workers, and prints the findings.
 fn campaign(options: &Options) -> ExitCode {
     let begin = Instant::now();
     let mut findings = Vec::new();

@@ -1,8 +1,8 @@
-//! Changes of bytes and of texts, all by one seed.
+//! Random changes of binary data and of text, determined by a seed.
 
 use ninebit::random::Random;
 
-/// Numbers at which sizes, integers and floats end.
+/// Numbers at the limits of sizes, integers and floats.
 const NUMBERS: [&str; 40] = [
     "0",
     "-0",
@@ -50,13 +50,13 @@ fn below(random: &mut Random, end: usize) -> usize {
     random.below(end.max(1) as u128) as usize
 }
 
-/// A part of at most `most` bytes.
+/// Returns a random range of at most `most` bytes.
 fn part(random: &mut Random, length: usize, most: usize) -> std::ops::Range<usize> {
     let start = below(random, length);
     start..(start + 1 + below(random, most)).min(length)
 }
 
-/// The words, numbers and signs of a text, white space left out.
+/// Returns the ranges of words, numbers and punctuation in a text, without white space.
 fn tokens(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let word = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.' | b'-' | b'+');
     let (mut all, mut at) = (Vec::new(), 0);
@@ -79,7 +79,7 @@ fn replace(data: &mut Vec<u8>, part: std::ops::Range<usize>, with: &[u8]) {
     data.splice(part, with.iter().copied());
 }
 
-/// One change of bytes.
+/// Makes one random change of binary data.
 fn bytes(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
     if data.is_empty() {
         data.extend_from_slice(&other[..other.len().min(64)]);
@@ -107,7 +107,7 @@ fn bytes(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
             data[at..end].fill(value);
         }
         7 => {
-            // A 32-bit number, low byte first, at a place where headers have them.
+            // Replaces an aligned 32-bit little-endian word, mostly within the header.
             let at = below(random, (length / 4).clamp(1, 40)) * 4;
             let value = [0_u32, 1, 4, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x1_0000, 4096, 4097][below(random, 9)];
             let end = (at + 4).min(length);
@@ -121,7 +121,7 @@ fn bytes(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
     }
 }
 
-/// One change of a text.
+/// Makes one random change of a text.
 fn text(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
     let tokens = tokens(data);
     if tokens.is_empty() {
@@ -152,7 +152,7 @@ fn text(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
         }
         7 => replace(data, any(random), b""),
         8 => {
-            // A run of tokens again: lists grow, brackets nest.
+            // Repeats a range of tokens, which makes lists longer and brackets deeper.
             let first = below(random, tokens.len());
             let last = (first + below(random, 24)).min(tokens.len() - 1);
             let run = data[tokens[first].start..tokens[last].end].to_vec();
@@ -175,14 +175,14 @@ fn text(random: &mut Random, data: &mut Vec<u8>, other: &[u8]) {
     }
 }
 
-/// One to four changes; `other` is a file of the same kind.
+/// Returns the data with one to four changes. `other` is a file of the same kind, from which parts are taken.
 pub fn mutated(random: &mut Random, data: &[u8], other: &[u8]) -> Vec<u8> {
     let mut data = data.to_vec();
     let is_text = std::str::from_utf8(&data).is_ok();
     for _ in 0..1 + below(random, 4) {
         if is_text { text(random, &mut data, other) } else { bytes(random, &mut data, other) }
     }
-    // What is large in itself is no finding: repeated runs of tokens may not add up.
+    // Repeated ranges of tokens must not add up, because a large file that takes long is no error.
     data.truncate(1 << 20);
     data
 }

@@ -1,4 +1,5 @@
-//! Any text is OpenGL's calls or a list of findings with places inside it; what is read becomes combiners or is refused.
+//! Checks that any text is either read as OpenGL calls or refused with findings that point into the text, and that a program which is read
+//! either becomes combiners or is refused.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! Any text is a combiner program or a list of errors; what is read prints, reads back and survives its register words.
+//! Checks that any text is either a combiner program or refused with errors, and that a program which is read survives printing and
+//! register words.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

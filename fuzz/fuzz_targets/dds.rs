@@ -1,4 +1,5 @@
-//! Any bytes after a DDS signature are a texture or an error, never a panic; a texture has all its texels, and each can be decoded.
+//! Checks that any bytes after a DDS signature yield a texture or an error, never a panic, and that every texel of a texture can be
+//! decoded.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,5 @@
-//! Any text is a pixel shader or a list of findings with places inside it; what is read comes back from its print, and becomes combiners or is
-//! refused.
+//! Checks that any text is either a pixel shader or refused with findings that point into the text, and that a shader which is read
+//! survives printing and either becomes legal combiners or is refused.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! Any text is a table of results or an error, sealed or not; what is read has a number a column.
+//! Checks that any text, with or without a valid checksum, is either a table of results or an error, and that each row of a table has one
+//! number for each column.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +9,7 @@ use std::path::Path;
 fuzz_target!(|text: &str| {
     let path = Path::new("results.tsv");
     let _ = parse(text, path);
-    // With the last line that its own lines call for, so that what comes after the checksum is reached.
+    // A correct last line lets the text past the checksum, so that the checks after it are reached.
     let body = format!("# ninebit-results 1\n# unit product\n{text}\n");
     let rows = body.lines().filter(|line| !line.starts_with('#')).count().saturating_sub(1);
     let sealed = format!("{body}# end {rows} {:08x}\n", crc32fast::hash(body.as_bytes()));

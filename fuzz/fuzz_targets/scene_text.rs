@@ -1,4 +1,4 @@
-//! Any text is a scene or a list of errors, never a panic; a small scene also renders, the same with and without pruning.
+//! Checks that any text yields a scene or errors, never a panic, and that a small scene renders the same frame with and without pruning.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

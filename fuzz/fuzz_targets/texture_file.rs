@@ -1,4 +1,4 @@
-//! Any bytes are an image or an error, never a panic, as PNG and as TGA.
+//! Checks that any bytes, read as PNG and as TGA, yield an image or an error, never a panic.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

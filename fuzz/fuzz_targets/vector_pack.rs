@@ -1,4 +1,4 @@
-//! Any bytes as the manifest of a pack, the leaf of a sweep and a tree are that or an error, never a panic.
+//! Checks that any bytes, read as the manifest of a pack, as the leaf of a sweep and as a tree, yield a value or an error, never a panic.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -6,7 +6,7 @@ use ninebit_vectors::{pack, tree};
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// A folder of this process, in memory where the system has such a place.
+/// A folder for this process, in memory if the system has `/dev/shm`.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let base = if std::path::Path::new("/dev/shm").is_dir() { PathBuf::from("/dev/shm") } else { std::env::temp_dir() };
     let folder = base.join(format!("ninebit-fuzz-{}", std::process::id()));

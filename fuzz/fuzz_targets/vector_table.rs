@@ -1,4 +1,5 @@
-//! Any text is a table of vectors or an error; what is read is written as it was, and the model has an answer to every row.
+//! Checks that any text is either a table of vectors or an error, that each row of a table has the id which follows from its inputs, and
+//! that the model can compute every row.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

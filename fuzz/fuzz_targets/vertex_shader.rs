@@ -1,4 +1,5 @@
-//! Any text is a vertex program or a list of findings with places inside it; what is read prints, reads back and runs.
+//! Checks that any text is either a vertex program or refused with findings that point into the text, and that a program which is read
+//! survives printing and runs.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

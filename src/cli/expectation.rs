@@ -58,7 +58,7 @@ pub struct Expectation {
     pub needs: Vec<String>,
 }
 
-/// Accepted differences.
+/// Differences from a picture that are accepted, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Allowance {

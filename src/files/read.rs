@@ -12,7 +12,7 @@ use thiserror::Error;
 use crate::files;
 use ninebit::limits::{FileLimit, PAGE};
 
-/// What a file is allowed to be.
+/// The kinds of file that may be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A regular file only.

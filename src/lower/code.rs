@@ -162,7 +162,7 @@ pub type Range = (i64, i64);
 /// A line of code: an operation and what is known of its result.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// The operation.
+    /// The operation, with its operands.
     pub(crate) operation: Operation,
     /// Range of the result.
     pub range: Range,

@@ -55,7 +55,7 @@ pub enum Result {
 pub struct Function {
     /// The operations in order; the result depends on all of them.
     pub lines: Vec<Line>,
-    /// The result.
+    /// The lines that hold the result.
     pub result: Result,
     /// Whether constants of the draw are inputs.
     pub uniform: bool,

@@ -39,7 +39,7 @@ pub struct Diagnostic {
     pub code: &'static str,
     /// Whether it is an error or a warning.
     pub severity: Severity,
-    /// What is wrong, in one line.
+    /// Description of the error, in one line.
     pub message: String,
     /// The bytes of [`Source::text`] that are marked. `None` if no text is to blame.
     pub span: Option<Span>,

@@ -1,7 +1,6 @@
-//! What the chip allows in a program (CMB-12 and related rules), checked on the state alone.
+//! Checks that a program is legal on a chip (CMB-12 and related rules), from the state alone.
 //!
-//! Every language of programs is checked here. Its front end records the places of what it read, and names registers in
-//! its own terms.
+//! Every language of programs is checked here. Its front end records the places of what it read, and names registers in its own terms.
 
 pub mod surface;
 pub mod texture;

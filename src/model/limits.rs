@@ -12,7 +12,7 @@ pub struct FileLimit {
     pub name: &'static str,
     /// Largest size in bytes.
     pub bytes: u64,
-    /// What the limit counts.
+    /// Name of the things that the limit counts.
     pub counted: &'static str,
 }
 

@@ -74,7 +74,7 @@ impl Argument {
 /// The mapping of an argument in a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Use {
-    /// x.
+    /// The value x itself.
     Plain,
     /// 2x - 1.
     Expanded,

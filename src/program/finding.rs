@@ -6,7 +6,7 @@ use ninebit::diagnostic::Diagnostic;
 /// A value with its place in the text of the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// The value.
+    /// The value that was read.
     pub value: T,
     /// Its range of bytes; empty if it was not written.
     pub span: Span,

@@ -11,7 +11,7 @@ pub(super) enum Kind {
     Number,
     /// A text in quotes, including the quotes.
     Text,
-    /// `->`
+    /// The two characters `->`.
     Arrow,
     /// Any other character.
     Sign(char),

@@ -32,7 +32,7 @@ pub enum VectorError {
     TooLarge {
         /// The file that was opened.
         path: PathBuf,
-        /// The limit.
+        /// The limit that the file exceeds.
         limit: FileLimit,
     },
     /// The content of a file is not valid.
@@ -44,7 +44,7 @@ pub enum VectorError {
         path: PathBuf,
         /// Line number from 1; 0 means the file as a whole.
         line: usize,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
         /// Advice to the user.
         help: &'static str,

@@ -33,7 +33,7 @@ pub(crate) const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 /// The unit, chip, level and seed that determine a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents {
-    /// The unit.
+    /// The unit whose rows the table has.
     pub unit: &'static dyn Unit,
     /// The chip whose rules they follow.
     pub profile: Profile,

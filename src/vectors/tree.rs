@@ -129,7 +129,7 @@ pub fn work(folder: &Path, sweep: &Exhaustive, index: u64) -> Result<bool, Vecto
 pub struct Tree {
     /// Version of the format: `ninebit-sweep-1`.
     pub format: String,
-    /// The sweep.
+    /// The properties of the sweep.
     #[serde(flatten)]
     pub header: SweepHeader,
     /// Number of rows that the unit accepts.

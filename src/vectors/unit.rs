@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Column;
 use super::digest::Digesting;
 use ninebit::state::{POLICIES, Policies, Policy, Profile, named};
-use ninebit::trace::Recorder;
+use ninebit::trace::{Observer, Recorder};
 
 /// The conditions of a table, besides the numbers of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +96,18 @@ pub trait Unit: Sync {
     fn reach(&self, _inputs: &[i64], _results: &[i64]) -> Reach {
         Reach::Inside
     }
+}
+
+/// Returns the results of a row. The observer receives the steps.
+pub fn observed<O: Observer>(unit: &dyn Unit, inputs: &[i64], conditions: &Conditions, observer: &mut O) -> Vec<i64> {
+    if O::ON {
+        let mut recorder = Recorder::default();
+        unit.trace(inputs, conditions, &mut recorder);
+        recorder.steps.into_iter().for_each(|step| observer.step(step));
+    }
+    let mut results = vec![0; unit.results().len()];
+    unit.evaluate(inputs, conditions, &mut results);
+    results
 }
 
 impl std::fmt::Debug for dyn Unit {

@@ -63,7 +63,7 @@ impl View {
 /// The bits of a column in a packed row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slice {
-    /// The column.
+    /// The column that the bits hold.
     pub column: Column,
     /// Most significant bit.
     pub high: u32,

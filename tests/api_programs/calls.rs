@@ -1,4 +1,4 @@
-//! OpenGL's calls as pasted text: register combiners and the texture environment.
+//! Tests OpenGL calls as pasted text: register combiners and the texture environment.
 
 use ninebit::diagnostic::Severity;
 use ninebit::legality::check;
@@ -16,7 +16,7 @@ fn environment(text: &str) -> TextureEnvironment {
     parse_environment(text).unwrap_or_else(|findings| panic!("{text}: {findings:?}")).program
 }
 
-/// NV_register_combiners, tables 5 and 6.
+/// The initial state is that of NV_register_combiners, tables 5 and 6.
 #[test]
 fn without_calls_it_is_the_initial_state() {
     let initial = Combiners {
@@ -32,7 +32,7 @@ fn without_calls_it_is_the_initial_state() {
     assert_eq!(environment(""), TextureEnvironment::default());
 }
 
-/// The calls and the combiner language say the same.
+/// The same program, written as calls and in the combiner language, yields the same combiners.
 #[test]
 fn combiners_by_calls_are_those_of_the_language() {
     let calls = r#"
@@ -282,7 +282,8 @@ const WORDS: &[&str] = &[
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any heap of tokens is read or refused, with places inside the text; what is read becomes combiners or is refused.
+    /// Any sequence of tokens is either read or refused with places inside the text, and a program that is read either becomes combiners or
+    /// is refused.
     #[test]
     fn nothing_makes_them_fail(words in prop::collection::vec(prop::sample::select(WORDS), 0..60), space in prop::sample::select(vec![" ", ""])) {
         let text = words.join(space);

@@ -1,4 +1,4 @@
-//! Texture stages, from the text of Direct3D.
+//! Tests texture stages against the formulas of Direct3D.
 
 use super::Choices;
 use super::run::{Pixel, agrees, run};
@@ -9,7 +9,7 @@ use ninebit_program::texture_stages::{
 };
 use proptest::prelude::*;
 
-/// A random argument of a stage, which has a texture or not.
+/// Returns a random argument of a stage. It names the texture only if the stage has one.
 fn argument(choices: &mut Choices, texture: bool) -> Spanned<StageArgument> {
     let source = match choices.of(ArgumentSource::ALL) {
         ArgumentSource::Texture if !texture => ArgumentSource::Temp,
@@ -19,7 +19,7 @@ fn argument(choices: &mut Choices, texture: bool) -> Spanned<StageArgument> {
     Spanned::default_of(StageArgument { source, complement, alpha_replicate })
 }
 
-/// Stage `index` of which the first four have textures.
+/// Returns a random operation for colour or alpha of stage `index`, with its arguments. Only stages with a texture unit have textures.
 fn half(choices: &mut Choices, index: usize, alpha: bool) -> Half {
     let units = Profile::Nv2a.texture_units();
     let possible = |op: &Operation| match op {
@@ -35,7 +35,7 @@ fn half(choices: &mut Choices, index: usize, alpha: bool) -> Half {
     }
 }
 
-/// A random cascade.
+/// Returns a random cascade of at most `most` stages.
 pub(super) fn stages(choices: &mut Choices, most: usize) -> TextureStages {
     let count = 1 + choices.below(most);
     let stages = (0..count)
@@ -50,7 +50,7 @@ pub(super) fn stages(choices: &mut Choices, most: usize) -> TextureStages {
     TextureStages { stages, texture_factor: choices.color(), specular_enable: choices.flag() }
 }
 
-/// The API's result.
+/// Returns the colour that Direct3D defines for a pixel, R, G, B, A in 0..1.
 fn reference(program: &TextureStages, context: &Context, pixel: &Pixel) -> [f64; 4] {
     let white = [1.0; 4];
     let texture = |unit: usize| match context.bound.get(unit) {
@@ -128,7 +128,7 @@ fn reference(program: &TextureStages, context: &Context, pixel: &Pixel) -> [f64;
     finish(current, program.specular_enable, context.fog, pixel)
 }
 
-/// Specular addition, then fog.
+/// Adds the specular colour and applies fog.
 pub(super) fn finish(color: [f64; 4], specular: bool, fog: bool, pixel: &Pixel) -> [f64; 4] {
     let [add, mist] = [pixel.specular, pixel.fog].map(Pixel::real);
     let mut result = color;
@@ -152,13 +152,14 @@ fn context(choices: &mut Choices, profile: Profile) -> Context {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A cascade gives what the API says, in real numbers; and integers within the bound of their rounding.
+    /// Combiners of a random cascade yield the colour that the API defines if they run in real numbers. In integers they stay within the
+    /// bound of their rounding.
     #[test]
     fn cascades_are_what_the_api_says(seed in any::<u64>(), nv10 in any::<bool>()) {
         let mut choices = Choices::new(seed);
         let profile = if nv10 { Profile::Nv10 } else { Profile::Nv2a };
         let context = context(&mut choices, profile);
-        // Nv10 has room for two stages, Nv2a for all that the API has.
+        // Nv10 has room for two stages. Nv2a has room for all stages of the API.
         let program = stages(&mut choices, if nv10 { 2 } else { STAGES });
         match lower(&program, &context) {
             Ok(lowered) => {
@@ -171,7 +172,7 @@ proptest! {
                     prop_assert!(said.is_ok(), "{:?}\n{program:?}\n{pixel:?}\n{:?}", said, lowered.combiners);
                 }
             }
-            // Nv10 has two constants, no alpha of the secondary colour, and no texture shader.
+            // Nv10 has only two constants, and neither the alpha of the secondary colour nor texture shaders.
             Err(findings) => {
                 prop_assert!(nv10, "{findings:?}");
                 for finding in &findings {
@@ -182,7 +183,8 @@ proptest! {
     }
 }
 
-/// The operation in the middle of a cascade whose arguments, current colour and textures all differ.
+/// Returns the combiners of a cascade with the given operations in the middle, and whether a unit scales by luminance. Arguments, current
+/// colour and textures all differ, so that no two operations yield the same.
 fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
     let argument = |source| Spanned::default_of(StageArgument::new(source));
     let select =
@@ -211,7 +213,7 @@ fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
     (lowered.combiners, luminance)
 }
 
-/// Whether some pixel shows more than three steps between two programs.
+/// Returns whether two programs differ by more than three steps at some pixel.
 pub(super) fn told_apart(a: &Combiners, b: &Combiners) -> bool {
     let mut choices = Choices::new(7);
     (0..256).any(|_| {
@@ -226,7 +228,7 @@ fn every_two_color_operations_differ_somewhere() {
     let programs: Vec<_> = Operation::ALL.iter().map(|op| (op, around(*op, Operation::SelectArg1))).collect();
     for (n, (a, (first, first_luminance))) in programs.iter().enumerate() {
         for (b, (second, second_luminance)) in &programs[..n] {
-            // A bump environment map changes no colour: the stage after it samples elsewhere.
+            // A bump environment map does not change the colour; it changes where the next stage samples.
             if a.is_bump() && (b.is_bump() || **b == Operation::Disable) {
                 let bump = a.is_bump() && b.is_bump();
                 assert!(!bump || first_luminance != second_luminance, "{a:?} and {b:?}");
@@ -303,7 +305,7 @@ fn a_bump_environment_map_moves_the_next_lookup() {
     let context = Context { profile: Profile::Nv2a, bound: [true; 4], signed: [false; 4], fog: false };
     let lowered = lower(&program, &context).unwrap();
     assert_eq!(lowered.combiners.stages.len(), 1);
-    // In the order of the registers: M00, M01, M11, M10.
+    // The registers have the order M00, M01, M11, M10.
     let operation = ShaderOperation::BumpEnvironment { matrix: [1.0, 2.0, 4.0, 3.0], luminance: Some([0.5, 0.25]) };
     assert_eq!(lowered.units[1].operation.as_ref().map(|at| at.value), Some(operation));
 }

@@ -1,6 +1,7 @@
-//! Programs of APIs, against the formulas of the APIs: Direct3D texture stages and pixel shaders, and the OpenGL texture environment.
+//! Tests programs of other APIs against the formulas of these APIs: Direct3D texture stages, pixel shaders, and the OpenGL texture
+//! environment.
 //!
-//! The formulas stand here a second time, in float64 and from the APIs' own text, and know nothing of combiners.
+//! The tests have formulas of their own in float64, written from the APIs' specifications without reference to combiners.
 
 mod calls;
 mod direct3d;
@@ -13,7 +14,7 @@ mod scenes;
 
 use ninebit::random::Random;
 
-/// Choices of a seed.
+/// A source of random choices.
 struct Choices(Random);
 
 impl Choices {
@@ -37,7 +38,7 @@ impl Choices {
         self.number() & 1 != 0
     }
 
-    /// Bytes, the ends of the range more often.
+    /// Returns four random bytes. The ends of the range are more frequent.
     fn color(&mut self) -> [u8; 4] {
         std::array::from_fn(|_| match self.below(6) {
             0 => 0,

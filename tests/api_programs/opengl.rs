@@ -1,4 +1,4 @@
-//! The texture environment, from the text of OpenGL.
+//! Tests the texture environment against the formulas of OpenGL.
 
 use super::Choices;
 use super::direct3d::{finish, told_apart};
@@ -43,7 +43,7 @@ fn environment(choices: &mut Choices, units: usize) -> TextureEnvironment {
     TextureEnvironment { units: (0..units).map(|_| unit(choices)).collect(), color_sum: choices.flag() }
 }
 
-/// A texture's colour as its base format gives it.
+/// Returns the colour of a texture after the swizzle of its base format.
 fn sampled(pixel: &Pixel, unit: usize, format: BaseFormat) -> [f64; 4] {
     let [r, g, b, a] = Pixel::real(pixel.textures[unit]);
     match format {
@@ -54,7 +54,7 @@ fn sampled(pixel: &Pixel, unit: usize, format: BaseFormat) -> [f64; 4] {
     }
 }
 
-/// What textures of these formats really hold: equal channels where the format has one.
+/// Makes the texture colours of a pixel possible for their formats, with equal channels where the format stores only one.
 fn held(pixel: &mut Pixel, textures: &[Option<BaseFormat>; 4]) {
     for (color, format) in pixel.textures.iter_mut().zip(textures) {
         let [r, .., a] = *color;
@@ -88,7 +88,8 @@ fn reference(program: &TextureEnvironment, context: &Context, pixel: &Pixel) -> 
     finish(previous, program.color_sum, context.fog, pixel)
 }
 
-/// The table of the classic modes: what becomes of the colour and of the alpha by base format.
+/// Returns the colour of a unit in a mode without combining, by the table of base formats: `t` is the texture, `f` the incoming fragment,
+/// `c` the environment colour.
 fn classic(mode: Mode, format: BaseFormat, t: [f64; 4], f: [f64; 4], c: [f64; 4]) -> [f64; 4] {
     let alpha = t[3];
     let color = |formula: &dyn Fn(usize) -> f64| [formula(0), formula(1), formula(2)];
@@ -125,7 +126,7 @@ fn factor(scale: Scale) -> f64 {
     }
 }
 
-/// A combining unit; `None` if the crossbar disables it.
+/// Returns the colour of a combining unit, or `None` if it refers to a texture that is not there and is therefore disabled (crossbar).
 fn combined(
     unit: &Unit,
     index: usize,
@@ -197,7 +198,8 @@ fn combined(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// An environment gives what the API says, in real numbers; and integers within the bound of their rounding.
+    /// Combiners of a random environment yield the colour that the API defines if they run in real numbers. In integers they stay within
+    /// the bound of their rounding.
     #[test]
     fn environments_are_what_the_api_says(seed in any::<u64>(), nv10 in any::<bool>()) {
         let mut choices = Choices::new(seed);
@@ -216,7 +218,7 @@ proptest! {
                 let said = agrees(&lowered.combiners, profile, &pixel, expected);
                 prop_assert!(said.is_ok(), "{:?}\n{program:?}\n{pixel:?}\n{:?}", said, lowered.combiners);
             },
-            // Scales that need stages of their own.
+            // Some scales need stages of their own, for which nv10 has no room.
             Err(findings) => prop_assert!(nv10 && findings.iter().all(|finding| finding.code == "NB0350"), "{findings:?}"),
         }
     }
@@ -269,7 +271,7 @@ fn a_unit_that_reads_a_disabled_texture() {
     unit.mode = Mode::Combine4;
     unit.rgb.function.value = Function::Add;
     unit.alpha.function.value = Function::Add;
-    // 1 times the previous colour, and nothing.
+    // The last product is 1 times the previous colour, and the other is 0.
     unit.rgb.operands[3].value = Operand::SourceColor;
     assert_eq!(alone(unit).stages[0].rgb.inputs[0].register, ninebit::state::Register::Zero);
 }

@@ -1,5 +1,5 @@
-//! The tables of `docs/programs.md`, `docs/pixel-shader.md` and `docs/registers.md`: what becomes of each operation, as the lowering itself gives it, and
-//! the words of the chips.
+//! Writes the tables of `docs/programs.md`, `docs/pixel-shader.md` and `docs/registers.md`: the combiners that each operation becomes, as
+//! the lowering yields them, and the register words of the chips.
 
 use crate::repository::at;
 use std::fs;
@@ -15,7 +15,7 @@ use ninebit_program::texture_environment::{
 };
 use ninebit_program::texture_stages::{self as stages, ArgumentSource, Half, Operation, StageArgument, TextureStage};
 
-/// The RGB portion of a general stage as statements of the combiner language.
+/// Returns the RGB portion of a general stage as statements of the combiner language.
 fn portion(combiners: &Combiners, stage: usize) -> String {
     let text = print(combiners);
     let inside =
@@ -24,10 +24,10 @@ fn portion(combiners: &Combiners, stage: usize) -> String {
     format!("`{}`", lines.join(" "))
 }
 
-/// The comments on the variants of an enumeration, in their order, without the full stop.
+/// Returns the doc comments on the variants of an enumeration, in order, without the full stop.
 fn comments(file: &str, enumeration: &str) -> Vec<String> {
     let source = fs::read_to_string(at(file)).unwrap();
-    // What may stand between is a value of each variant, with a comment of its own.
+    // The line of a variant may be followed by values of its own with their comments.
     let (_, rest) = source.split_once(&format!("pub enum {enumeration} ")).unwrap();
     let body = rest.split_once("{\n").unwrap().1.split("\n    }").next().unwrap();
     let lines = body.lines().filter_map(|line| line.trim().strip_prefix("/// "));
@@ -38,7 +38,8 @@ fn written<T>(value: T) -> Spanned<T> {
     Spanned::default_of(value)
 }
 
-/// What the stage of a Direct3D operation computes: a0 is the specular colour, a1 the texture, a2 the diffuse colour.
+/// Returns the statements that the stage of a Direct3D operation becomes. The arguments are the specular colour (a0), the texture (a1) and
+/// the diffuse colour (a2).
 fn direct3d(operation: Operation) -> String {
     if operation == Operation::Disable || operation.is_bump() {
         return String::new();
@@ -66,8 +67,8 @@ fn direct3d_operations() {
     hold("docs/programs.md", "tests/api_programs (Direct3D)", &table);
 }
 
-/// What the unit of a function computes: a0 is the texture, a1 the primary colour, a2 the alpha of the environment colour, and a3, of `Combine4`, the
-/// texture.
+/// Returns the statements that the unit of an OpenGL function becomes. The arguments are the texture (a0), the primary colour (a1), the
+/// alpha of the environment colour (a2) and, for `Combine4`, the texture again (a3).
 fn opengl(mode: Mode, function: Function) -> String {
     let sources = [
         EnvironmentSource::Texture,
@@ -123,7 +124,7 @@ fn pixel_shader_instructions() {
     hold("docs/pixel-shader.md", "tests/api_programs (arithmetic)", &table);
 }
 
-/// A shader that ends with a texture instruction, and the register that this loads.
+/// Returns a shader that ends with the given texture instruction, and the number of the register that the instruction loads.
 fn texture_shader(name: &str) -> (String, usize) {
     let (before, operands, register) = match name {
         "tex" | "texcoord" | "texkill" => ("", "t0", 0),
@@ -161,7 +162,7 @@ fn texture_instructions() {
     hold("docs/pixel-shader.md", "tests/api_programs (textures)", &table);
 }
 
-/// What a unit of a mode that is older than combining computes, of colour and alpha; the environment colour is const0.
+/// Returns the statements for colour and alpha that a unit in a mode without combining becomes. The environment colour is const0.
 fn classic(mode: Mode, format: BaseFormat) -> [String; 2] {
     let unit = environment::Unit { mode, color: [255, 128, 64, 128], ..environment::Unit::initial() };
     let program = environment::TextureEnvironment { units: vec![unit], color_sum: false };

@@ -1,4 +1,4 @@
-//! Texture stages as pasted text.
+//! Tests texture stages as pasted text.
 
 use super::Choices;
 use super::direct3d::stages;
@@ -7,7 +7,7 @@ use ninebit_program::texture_stages::{ArgumentSource, Operation, ResultArgument,
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// How a text is written.
+/// The notation of a text: calls with names, calls with numbers, or an effect file.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     Calls,
@@ -95,7 +95,7 @@ fn text(program: &TextureStages, form: Form) -> String {
     text
 }
 
-/// The program without its places.
+/// Returns the program without the places in its text, so that programs from different texts compare equal.
 fn bare(mut program: TextureStages) -> TextureStages {
     for stage in &mut program.stages {
         stage.span = 0..0;
@@ -120,7 +120,7 @@ proptest! {
         }
     }
 
-    /// Anything is read or refused, with places inside the text.
+    /// Any text is either read or refused with places inside the text.
     #[test]
     fn nothing_makes_it_fail(text in "(?s)([A-Za-z_0-9x.,;()\\[\\]|= \n-]|SetTextureStageState\\(|SetRenderState\\(|FAILED\\(|if|\\{|\\}|<t>|#define |\"|D3DRS_SRCBLEND|CullMode = |D3DTSS_COLOROP|ColorOp\\[0\\]|/\\*|//|->|\\PC){0,40}") {
         let findings = match parse(&text) {
@@ -136,7 +136,7 @@ proptest! {
     }
 }
 
-/// Code, marked text and help of every finding.
+/// Returns the code, the marked text and the help of every finding.
 fn said(text: &str) -> Vec<(&'static str, String, String)> {
     let findings = parse(text).unwrap_err();
     findings
@@ -189,14 +189,15 @@ fn bump_states_are_floats_or_their_bits() {
     assert_eq!(stage.coordinate_index.as_ref().unwrap().value.set, 1);
 }
 
-/// Marked text, code and help of everything that is passed over.
+/// Returns the marked text, the code and the help of everything that is skipped.
 fn aside(text: &str) -> Vec<(String, &'static str, String)> {
     let pasted = parse(text).unwrap_or_else(|findings| panic!("{text}: {findings:?}"));
     let findings = pasted.asides.into_iter().map(|aside| aside.finding);
     findings.map(|found| (text[found.span.unwrap()].to_owned(), found.code, found.help.unwrap_or_default())).collect()
 }
 
-/// A function as it stood in programs of the time: what is the cascade is read, the rest is told, once for each name.
+/// Reads a whole function as programs of the time contain it. The texture stages in it are read, and everything else is reported once for
+/// each name.
 #[test]
 fn a_whole_block_is_read() {
     let text = r#"
@@ -294,7 +295,7 @@ fn states_of_the_draw_are_pointed_at() {
             "{text}"
         );
     }
-    // What the draw is without any field.
+    // These settings are the defaults of a draw, so there is nothing to report.
     let text = "AlphaBlendEnable = False; SetRenderState(D3DRS_FOGENABLE, FALSE); CullMode = None; ShadeMode = Gouraud; ZEnable = 0;";
     assert_eq!(aside(text), []);
     let sampler = aside(

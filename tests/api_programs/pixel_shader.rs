@@ -1,4 +1,4 @@
-//! Pixel shaders, from the text of Direct3D.
+//! Tests pixel shaders against the definitions of Direct3D.
 
 use super::Choices;
 use super::direct3d::told_apart;
@@ -12,7 +12,7 @@ use ninebit_program::pixel_shader::{
 };
 use proptest::prelude::*;
 
-/// A number in 255ths, as a constant's.
+/// Returns a random multiple of 1/255 from -1 to 1.
 fn constant(choices: &mut Choices) -> f32 {
     (choices.below(511) as f32 - 255.0) / 255.0
 }
@@ -58,7 +58,8 @@ fn registers(bank: Bank, count: u8) -> Vec<ShaderRegister> {
     (0..count).map(|index| ShaderRegister { bank, index }).collect()
 }
 
-/// A shader of so many slots that reads only what is there; it may read too many registers at once.
+/// Returns a random shader with `slots` arithmetic slots, which reads only registers that have a value. An instruction may still read more
+/// registers than the language allows.
 fn shader(choices: &mut Choices, textures: u8, slots: usize) -> PixelShader {
     let mut known = registers(Bank::Texture, textures);
     known.extend(registers(Bank::Color, 2));
@@ -112,7 +113,7 @@ fn texture(operation: TextureOperation, unit: u8, source: Option<TextureSource>)
     }
 }
 
-/// The shader without its places.
+/// Returns the shader without the places in its text, so that shaders from different texts compare equal.
 fn bare(mut program: PixelShader) -> PixelShader {
     program.definitions.iter_mut().for_each(|definition| definition.span = 0..0);
     for texture in &mut program.textures {
@@ -127,10 +128,10 @@ fn bare(mut program: PixelShader) -> PixelShader {
     program
 }
 
-/// The registers of the language.
+/// The registers of the language while a shader runs.
 struct State {
     banks: [Vec<[f64; 4]>; 4],
-    /// A condition was so near to one half that rounding may decide it.
+    /// Whether a condition was so close to one half that rounding may decide it.
     close: bool,
 }
 
@@ -140,7 +141,7 @@ impl State {
         for definition in &program.definitions {
             constants[usize::from(definition.index)] = definition.value;
         }
-        // As the chip holds them: in 255ths.
+        // The chip stores constants as multiples of 1/255.
         let held = |c: f32| (f64::from(c.clamp(-1.0, 1.0)) * 255.0).round() / 255.0;
         let constants = constants.map(|color| color.map(held)).to_vec();
         let textures = pixel.textures.map(Pixel::real).to_vec();
@@ -199,7 +200,7 @@ impl State {
         [0, 1, 2, 3].map(|n| (value(n) * factor).clamp(least, 1.0))
     }
 
-    /// The pixel.
+    /// Runs the shader for one pixel and returns its colour, R, G, B, A in 0..1.
     fn run(&mut self, program: &PixelShader) -> [f64; 4] {
         for slot in program.slots() {
             let results: Vec<[f64; 4]> = slot.iter().map(|instruction| self.result(instruction)).collect();
@@ -225,7 +226,8 @@ fn lowered(text: &str, profile: Profile) -> Lowered {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 6000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A shader gives what the language says, in real numbers; and integers within the bound of their rounding.
+    /// Combiners of a random shader yield the colour that the language defines if they run in real numbers. In integers they stay within
+    /// the bound of their rounding.
     #[test]
     fn shaders_are_what_the_language_says(seed in any::<u64>(), nv10 in any::<bool>()) {
         let mut choices = Choices::new(seed);
@@ -236,7 +238,8 @@ proptest! {
         let parsed = match parse(&text) {
             Ok(parsed) => parsed,
             Err(findings) => {
-                // The generator does not count what an instruction reads, and two of a pair may name one register.
+                // The generator does not limit the registers that an instruction reads, and both instructions of a pair may write the same
+                // register.
                 for finding in findings.iter().filter(|finding| finding.severity == Severity::Error) {
                     prop_assert_eq!(finding.code, "NB0372", "{:?}\n{}", finding, text);
                 }
@@ -264,7 +267,7 @@ proptest! {
                     for n in 0..4 {
                         let off = (ideal[n] / 255.0 - expected[n]).abs();
                         prop_assert!(off < 1e-12, "{n}: {} is not {}\n{text}{pixel:?}\n{lowered:#?}", ideal[n] / 255.0, expected[n]);
-                        // Where a condition decides, integers may decide otherwise.
+                        // If the shader has a condition, the integers may decide it the other way, and no bound applies.
                         let bound = if n < 3 { rgb } else { alpha };
                         let off = (f64::from(fixed[n]) - ideal[n]).abs();
                         prop_assert!(selects || off <= bound + 1e-9, "{n}: {} further than {bound} from {}\n{text}", fixed[n], ideal[n]);
@@ -272,7 +275,7 @@ proptest! {
                 }
             }
             Err(findings) => {
-                // Room: stages beside the eight, two constants and no alpha of v1 on nv10.
+                // The shader may need more than the eight stages, or on nv10 more than two constants, or the alpha of v1.
                 for finding in findings {
                     let room = if nv10 { &["NB0309", "NB0350", "NB0351", "NB0379"][..] } else { &["NB0350", "NB0379"] };
                     prop_assert!(room.contains(&finding.code), "{finding:?}\n{text}");
@@ -281,7 +284,7 @@ proptest! {
         }
     }
 
-    /// Texture instructions, pairs and constants come back from their text.
+    /// Texture instructions, pairs and constants survive printing and reading.
     #[test]
     fn what_is_printed_is_read(seed in any::<u64>()) {
         let mut choices = Choices::new(seed);
@@ -312,7 +315,7 @@ proptest! {
         let text = print(&program);
         match parse(&text) {
             Ok(parsed) => prop_assert_eq!(bare(parsed.program), program, "{}", text),
-            // What the pads and texkill leave is not read.
+            // A shader must not read registers that the pad instructions and texkill leave without a value.
             Err(findings) => {
                 for finding in findings.iter().filter(|finding| finding.severity == Severity::Error) {
                     prop_assert!(["NB0372", "NB0375"].contains(&finding.code), "{finding:?}\n{text}");
@@ -321,7 +324,7 @@ proptest! {
         }
     }
 
-    /// Anything is read or refused, with places inside the text; what is read can be printed and lowered.
+    /// Any text is either read or refused with places inside the text, and a shader that is read survives printing.
     #[test]
     fn nothing_makes_it_fail(
         text in "(?s)(ps\\.1\\.1|tex t0|mov|dp3|lrp_sat|_x2|_bx2|_bias|[rtvc][0-9]|r0|\\.a|\\.rgb|,|\\+|-|1-|def c0,1,0,0,1|texm3x2pad|;|//|\n| |[0-9.e]|\\PC){0,40}"
@@ -342,7 +345,7 @@ proptest! {
     }
 }
 
-/// Shaders with one instruction of each kind, and each modifier, in the middle.
+/// Returns shaders that differ in the instruction in the middle: one for each kind of instruction and each modifier.
 fn variants() -> Vec<String> {
     let mut texts = Vec::new();
     let around = |instruction: &str| {
@@ -401,7 +404,7 @@ fn every_texture_instruction_has_its_operation() {
     assert_eq!(of("tex t2", 0), None);
     assert_eq!(of("texcoord t0", 0), Some((Op::PassThrough, 0, none)));
     assert_eq!(of("texkill t3", 3), Some((Op::CullFragment { drops_not_negative: [false; 4] }, 2, none)));
-    // In the order of the registers: M00, M01, M11, M10.
+    // The registers have the order M00, M01, M11, M10.
     let matrix = [1.0, 2.0, 4.0, 3.0];
     let moved = |luminance| Some((Op::BumpEnvironment { matrix, luminance }, 0, none));
     assert_eq!(of("tex t0\ntexbem t3, t0", 3), moved(None));
@@ -424,7 +427,7 @@ fn every_texture_instruction_has_its_operation() {
     assert_eq!(units[2].as_ref().map(|unit| unit.mapping.name()), Some("MinusOneToOne"));
 }
 
-/// The shape of the three shaders that everybody starts with, and what becomes of them on both chips.
+/// Three common shaders, and the number of stages that they need on both chips: diffuse light, a highlight, and a sky.
 #[test]
 fn light_as_people_write_it() {
     let diffuse =
@@ -440,7 +443,7 @@ fn light_as_people_write_it() {
     assert_eq!(refused.len(), 1);
     assert_eq!(refused[0].message, "this pixel shader needs 4 general stages; nv10 has 2");
     assert!(refused[0].notes[0].contains("DotProduct3"), "{refused:?}");
-    // Without a version, and with a limit that its reader applies.
+    // This shader has no version line, and the instruction that reads a saturated result limits it.
     let sky = "tex t0\ntex t1\ndp3_d2_sat r0, v0_bx2, t0_bx2\nadd r0, r0, c5\nlrp r0, r0, c1, c2\nmul r0, r0, t1";
     let parsed = parse(sky).unwrap();
     assert_eq!(parsed.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>(), ["NB0906"]);
@@ -474,7 +477,7 @@ fn cnd_takes_its_second_source_above_one_half() {
 
 #[test]
 fn a_saturated_result_is_never_negative_to_a_reader() {
-    // The negative of a limited register takes a stage of its own; every other reading none.
+    // Only the negative of a saturated register needs an additional stage.
     for (reader, stages) in [
         ("mov r0, r1", 2),
         ("mul r0, r1_bx2, v0", 2),
@@ -489,7 +492,7 @@ fn a_saturated_result_is_never_negative_to_a_reader() {
     }
 }
 
-/// Where the colour is issued second, the condition does not count; where it is first, it does.
+/// In a pair whose second instruction is the colour `cnd`, the condition has no effect. It has one if `cnd` is first.
 #[test]
 fn a_color_cnd_behind_plus_takes_its_second_source() {
     let text = |pair: &str| format!("ps.1.1\ntex t0\ntex t1\nmov r0, v0\n{pair}");
@@ -511,7 +514,7 @@ fn a_color_cnd_behind_plus_takes_its_second_source() {
     }
 }
 
-/// A constant of both signs: two products where there is room, else a register, which keeps it.
+/// A constant with both signs takes two products if the stage has room, otherwise it takes a register of its own.
 #[test]
 fn constants_of_both_signs() {
     for (body, stages) in [
@@ -524,7 +527,7 @@ fn constants_of_both_signs() {
         let text = format!("ps.1.1\ndef c0, 1, -1, 0.5, -0.5\ndef c1, -1, -1, 0, 0.5\n{body}");
         assert_eq!(lowered(&text, Profile::Nv2a).combiners.stages.len(), stages, "{text}");
     }
-    // No such constant is read through an unsigned byte, nor is a register taken that is read later.
+    // Such a constant is not read through an unsigned mapping, and no register is taken that is read later.
     let text = "ps.1.1\ndef c0, 1, -1, 0.5, -0.5\ntex t0\ntex t1\ntex t2\ntex t3\nmov r1, v0\nadd r0, c0, v1\n\
                 mad r0, r0, t0, t1\nmad r0, r0, t2, t3\nmad r0, r0, r1, v0\nadd r0, r0, v1";
     let program = parse(text).unwrap().program;
@@ -541,7 +544,7 @@ fn pairs_share_a_stage_and_its_constants() {
     assert_eq!(combiners.stages[0].constants, [[255, 128, 0, 64], [0, 0, 255, 128]]);
 }
 
-/// Code and marked text of every finding.
+/// Returns the code and the marked text of every finding.
 fn said(text: &str) -> Vec<(&'static str, String)> {
     let findings = parse(text).unwrap_err().into_iter().filter(|finding| finding.severity == Severity::Error);
     findings.map(|finding| (finding.code, text[finding.span.unwrap()].to_owned())).collect()

@@ -1,7 +1,5 @@
-//! Combiners run alone: in real numbers, in integers, and as a bound of the difference.
+//! Runs combiners without a rasteriser, in real numbers and in integers, and bounds the difference.
 
-use ninebit::combiner::final_combiner::{self, PlannedFinal};
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;
 use ninebit::number::Lane;
 use ninebit::state::{
@@ -9,13 +7,13 @@ use ninebit::state::{
 };
 use ninebit::trace::Silent;
 
-/// What a pixel brings, as bytes.
+/// The inputs of the combiners at a pixel, as bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixel {
     pub(crate) diffuse: [u8; 4],
     pub(crate) specular: [u8; 4],
     pub(crate) textures: [[u8; 4]; 4],
-    /// R, G, B, factor.
+    /// The fog colour R, G, B, then the fog factor.
     pub(crate) fog: [u8; 4],
 }
 
@@ -34,7 +32,7 @@ impl Pixel {
     }
 }
 
-/// The fragment's colour in 255ths.
+/// Runs the combiners and returns the fragment's colour in 255ths.
 pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixel) -> [L; 4] {
     let mut registers = Registers::<L>::new();
     registers.load(Register::PrimaryColor, pixel.diffuse.map(L::byte));
@@ -44,26 +42,15 @@ pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixe
     for (register, color) in units.into_iter().zip(pixel.textures) {
         registers.load(register, color.map(L::byte));
     }
-    let policies = Policies::default();
-    for (index, stage) in combiners.stages.iter().enumerate() {
-        let stage = PlannedStage {
-            index,
-            rgb: PlannedPortion::whole(stage.rgb, 7),
-            alpha: PlannedPortion::whole(stage.alpha, 8),
-            constants: stage.constants,
-            reads_constants: true,
-        };
-        general::run(&stage, combiners.mux_select, &policies, &mut registers, &mut Silent);
-    }
-    let state = combiners.final_combiner;
-    let state = PlannedFinal { state, live: 15, product: 7, sum: 7, reads_constants: true, lerps: true };
-    final_combiner::run(&state, profile, &policies, &mut registers, &mut Silent)
+    let bytes = |constants: [[u8; 4]; 2], _| constants.map(|constant| constant.map(L::byte));
+    combiners.observed(&mut registers, bytes, (profile, &Policies::DEFAULT), &mut Silent)
 }
 
-/// How far, in 255ths, the integers of the fragment can be from the real numbers: from what each rule rounds. `least`: 1 where negative
-/// results are read, whose limits are -256 and -255.
+/// Returns how far the integers of the fragment, colour and alpha, can be from the real numbers, in 255ths. The bound adds what each rule
+/// rounds. Each stage counts as off by at least `least`, which is 1 if negative results are read, because these end at -256 in place of
+/// -255.
 pub(crate) fn bound(combiners: &Combiners, least: f64) -> [f64; 2] {
-    // Of every register: colour, alpha. What the pixel brings is exact.
+    // Bounds for each register, colour and alpha. The inputs of a pixel are exact.
     let mut errors = [[0.0_f64; 2]; 12];
     for stage in &combiners.stages {
         let [rgb, alpha] = [(&stage.rgb, 0), (&stage.alpha, 1)]
@@ -80,7 +67,7 @@ pub(crate) fn bound(combiners: &Combiners, least: f64) -> [f64; 2] {
     }
     let spare0 = errors[Register::Spare0 as usize];
     let alpha = spare0[usize::from(combiners.final_combiner.g.component == Component::Alpha)];
-    // The sum is exact; the blend with fog is rounded once.
+    // The sum is exact. The blend with fog rounds once.
     [spare0[0] + 0.5, alpha]
 }
 
@@ -92,7 +79,7 @@ fn portion_bound(portion: &Portion, half: usize, errors: &[[f64; 2]; 12]) -> f64
         };
         let error = errors[input.register as usize][channel];
         match input.mapping {
-            // CMB-3: 2 (x - 128) against 2x - 255.
+            // By CMB-3 the chip computes 2 (x - 128), the real formula 2x - 255.
             InputMapping::ExpandNormal | InputMapping::ExpandNegate => 2.0 * error + 1.0,
             InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => error + 0.5,
             _ => error,
@@ -112,7 +99,7 @@ fn portion_bound(portion: &Portion, half: usize, errors: &[[f64; 2]; 12]) -> f64
     }
 }
 
-/// Holds a lowered program against the API's own result, R, G, B, A in 0..1.
+/// Compares a lowered program with the colour that the API defines, R, G, B, A in 0..1.
 pub(crate) fn agrees(combiners: &Combiners, profile: Profile, pixel: &Pixel, expected: [f64; 4]) -> Result<(), String> {
     let ideal = run::<f64>(combiners, profile, pixel);
     let fixed = run::<i32>(combiners, profile, pixel);

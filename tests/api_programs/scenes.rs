@@ -1,4 +1,4 @@
-//! Scenes with programs of APIs.
+//! Tests scenes with programs of other APIs.
 
 use crate::repository::at;
 use ninebit::engine::{self, RenderOptions};
@@ -76,7 +76,7 @@ fn a_pixel_shader_that_moves_coordinates() {
     let loaded = parse(&text("Nv2a", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }")))
         .unwrap_or_else(|error| panic!("{error}"));
     let [r, ..] = engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].rgba8()[0];
-    // Blue 64 is half a texture to the right: the third of four texels.
+    // Blue 64 moves the lookup by half a texture to the right, to the third of four texels.
     assert_eq!(r, 170);
     assert_eq!(parse(&text("Nv2a", &shader(""))).unwrap_err().diagnostics[0].code, "NB0378");
     let nv10 = parse(&text("Nv10", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }"))).unwrap_err();
@@ -101,7 +101,7 @@ fn a_bump_environment_map_in_a_scene() {
     let parse = |text: &str| scene::parse(text, Path::new("bump.ron"), &Limits::default());
     let loaded = parse(&text("Nv2a", "")).unwrap_or_else(|error| panic!("{error}"));
     let frames = engine::render(&loaded.plan, &RenderOptions::default());
-    // Blue 64 is half a texture to the right: the third of four texels.
+    // Blue 64 moves the lookup by half a texture to the right, to the third of four texels.
     let [r, ..] = frames.surfaces[0].rgba8()[0];
     assert_eq!(r, 170);
     assert_eq!(parse(&text("Nv10", "")).unwrap_err().diagnostics[0].code, "NB0340");
@@ -122,13 +122,13 @@ fn camera_space_coordinates_take_a_set_that_nothing_reads() {
     let parse = |text: &str| scene::parse(text, Path::new("made.ron"), &Limits::default());
     let loaded = parse(&text("")).unwrap_or_else(|error| panic!("{error}"));
     let draw = &loaded.scene.draws[0];
-    // Unit 1 reads set 0 as it was given: the normals go to set 1.
+    // Unit 1 reads set 0 as it was given, so the normals move to set 1.
     assert_eq!([0, 1].map(|unit| draw.texture_shader[unit].coordinate_set), [1, 0]);
     assert_eq!(draw.vertices.at(0).texture_coordinates[1], [0.0, 0.0, 0.0, 1.0]);
     assert_eq!(parse(&text("texgen: [CameraSpacePosition],")).unwrap_err().diagnostics[0].code, "NB0352");
 }
 
-/// A quad over 8 x 8 pixels with these fields of its draw, drawn.
+/// Renders a quad of 8 x 8 pixels with the given fields of its draw. Returns the scene and the pixels.
 fn drawn(profile: &str, textures: &str, vertex: &str, fields: &str) -> (Loaded, Vec<[u8; 4]>) {
     let corner = |x: i32, y: i32| format!("(position: ({x}, {y}, {}), {vertex})", f64::from(x) / 8.0);
     let text = format!(
@@ -148,7 +148,7 @@ fn drawn(profile: &str, textures: &str, vertex: &str, fields: &str) -> (Loaded, 
 const CHECKS: &str =
     "\"t\": (source: Checker(width: 8, height: 8, colors: ((255, 200, 100), (0, 10, 20))), levels: All)";
 
-/// The matrix is the stage's, not the set's: one set, two matrices, and a stage that takes it as it is.
+/// A texture matrix belongs to the stage, not to the coordinate set. Here one set is read with two matrices, and by a stage without one.
 #[test]
 fn stages_read_one_set_through_their_own_matrices() {
     let (loaded, _) = drawn(
@@ -161,11 +161,11 @@ fn stages_read_one_set_through_their_own_matrices() {
     );
     let draw = &loaded.scene.draws[0];
     let of = |unit: usize| draw.vertices.at(0).texture_coordinates[draw.texture_shader[unit].coordinate_set];
-    // A matrix meets (s, t, 1, 0), so that its third column moves.
+    // A matrix is applied to (s, t, 1, 0), so its third row translates.
     assert_eq!(of(0), [0.5, 2.0, 1.0, 1.0]);
     assert_eq!(of(1), [3.25, 5.5, 1.0, 1.0]);
     assert_eq!(of(2), [0.25, 0.5, 0.0, 1.0]);
-    // Where no stage has flags the matrix of the set applies.
+    // If no stage has flags, the matrix of the set applies.
     let (loaded, _) = drawn(
         "Nv2a",
         CHECKS,
@@ -175,7 +175,8 @@ fn stages_read_one_set_through_their_own_matrices() {
     assert_eq!(loaded.scene.draws[0].vertices.at(0).texture_coordinates[0], [0.5, 2.0, 0.0, 1.0]);
 }
 
-/// Coefficients at the vertices are those at the pixels as far as bytes go: what they make is interpolated, and the curve follows on both chips.
+/// Fog factors for each vertex and for each pixel agree within the rounding of bytes, on both chips. Distances are interpolated, and the
+/// fog function is applied to the result.
 #[test]
 fn fog_of_vertices_and_of_pixels() {
     for mode in ["Exp, density: 4", "Exp2, density: 3", "Linear, start: 0.125, end: 0.75"] {
@@ -189,16 +190,16 @@ fn fog_of_vertices_and_of_pixels() {
                 assert!(one.abs_diff(*other) <= 2, "{mode}: {one} {other}");
             }
         }
-        // The curve is not straight between the vertices.
+        // The fog function is not linear between the vertices.
         let [middle, ..] = pixels[4];
         if mode.starts_with("Exp,") {
-            // e^-2 of the middle.
+            // The factor in the middle is e^-2.
             assert!((i32::from(middle) - 227).abs() < 8, "{middle}");
         }
     }
 }
 
-/// A texture that begins with level 1 is the texture of level 1 and what follows.
+/// A texture with `first_level: 1` has level 1 of the whole texture and the levels after it.
 #[test]
 fn first_levels_are_left_out() {
     let (whole, _) = drawn("Nv2a", CHECKS, "t0: (0.25, 0.5)", "textures: [\"t\"]");
@@ -213,7 +214,7 @@ fn first_levels_are_left_out() {
     assert_eq!((rest.0, rest.1, rest.2, &rest.3[..]), (4, 4, 3, &words[64..]));
 }
 
-/// From far away a flat mirror shows one place, from near by one after the other.
+/// With an infinite viewer a flat mirror reflects a single direction. With a local viewer the direction varies.
 #[test]
 fn a_viewer_far_away_sees_one_reflection() {
     let places = |viewer: &str| {
@@ -228,7 +229,7 @@ fn a_viewer_far_away_sees_one_reflection() {
     assert_eq!(places("viewer: Infinite(0, 0, 2)"), [[0.0, 0.0, -1.0, 1.0]; 2]);
 }
 
-/// Direct3D looks at s, t and r; the chip tests q as well.
+/// Direct3D tests s, t and r, whereas the chip tests q as well.
 #[test]
 fn texkill_looks_at_three_coordinates() {
     let shown = |t0: &str, more: &str, program: &str| {
@@ -257,7 +258,7 @@ fn texkill_looks_at_three_coordinates() {
     assert_eq!(q, [-1.0, 1.0]);
 }
 
-/// As it stands in C, a shader is what stands between its quotes.
+/// A shader that is pasted from C source is the text between the quotes.
 #[test]
 fn shaders_out_of_c_are_the_same() {
     let program = |text: &str| {

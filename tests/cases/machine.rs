@@ -1,4 +1,4 @@
-//! What needs something of the machine: a device that is always full, a small disk, a folder that this user may not write to.
+//! Tests that depend on the machine: a device that is always full, a small disk, and a folder that the user may not write to.
 
 use libtest_mimic::Trial;
 
@@ -19,7 +19,7 @@ mod unix {
     use std::path::Path;
     use std::process::Command;
 
-    /// The tests, those ignored that cannot run here.
+    /// Returns the tests. Those that cannot run on this machine are marked as ignored.
     pub fn trials() -> Vec<Trial> {
         let test = |name: &str, test: fn(), possible: bool, kind: &str| {
             let trial = Trial::test(format!("machine::{name}"), move || {
@@ -39,7 +39,7 @@ mod unix {
         ]
     }
 
-    /// A small disk in a folder; it goes with this.
+    /// A small disk that is mounted on a temporary folder, and unmounted when this value is dropped.
     struct Disk(tempfile::TempDir);
 
     impl Disk {
@@ -61,14 +61,14 @@ mod unix {
         }
     }
 
-    /// Whether permissions of folders bind this user; they do not bind a superuser.
+    /// Returns whether this user is bound by the permissions of folders. A superuser is not.
     fn folders_are_refused() -> bool {
         let folder = tempfile::tempdir().unwrap();
         fs::set_permissions(folder.path(), Permissions::from_mode(0o555)).unwrap();
         fs::write(folder.path().join("probe"), b"x").is_err()
     }
 
-    /// Names in a folder, sorted.
+    /// Returns the names in a folder, sorted.
     fn listing(folder: &Path) -> Vec<String> {
         let names = fs::read_dir(folder).into_iter().flatten();
         let mut names: Vec<String> = names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -103,7 +103,8 @@ mod unix {
         assert_eq!(listing(disk.path()), ["frame.png"]);
     }
 
-    /// A disk that is full in the middle of an export: the exit status says so, and no manifest makes a pack of what is there.
+    /// If the disk becomes full during an export, the exit status reports it, and there is no manifest that would make an incomplete pack
+    /// valid.
     fn a_full_disk_leaves_no_pack() {
         let disk = Disk::mounted("256k").unwrap();
         let run = |arguments: &[&str], place: &Path| {

@@ -1,5 +1,5 @@
-//! Tests of which it is known only when they start which there are, or whether they can run here: a scene is a test of its own, and what
-//! this machine cannot do is *ignored*, not passed.
+//! Tests whose number, or whose ability to run on this machine, is known only at start. Each scene is a test of its own. A test that this
+//! machine cannot run is reported as *ignored*, not as passed.
 //!
 //! `cargo test --test cases scenes::fog` runs the scenes of `vectors/scenes/fog`.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]

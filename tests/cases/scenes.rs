@@ -1,7 +1,7 @@
-//! Every scene under `vectors/scenes` shows what is expected.
+//! Compares every scene under `vectors/scenes` with its expectation.
 //!
-//! `ninebit replay --bless vectors/scenes` rewrites the expectations, but for those that come from a capture; look at the pictures and at
-//! the difference before committing.
+//! `ninebit replay --bless vectors/scenes` rewrites the expectations except for those that come from a capture. Look at the pictures and at
+//! the difference before you commit.
 
 use std::path::{Path, PathBuf};
 use std::slice;
@@ -13,7 +13,7 @@ use ninebit_cli::replay::{Entry, Options, Outcome, find, replay, report};
 
 const FOLDER: &str = "vectors/scenes";
 
-/// A test a scene. One that needs images that are not here is ignored.
+/// Returns one test for each scene. A test is marked as ignored if images that its scene needs are missing.
 pub fn trials() -> Vec<Trial> {
     let entries = find(&[PathBuf::from(FOLDER)]).unwrap_or_else(|error| panic!("{error}"));
     assert!(entries.len() > 150, "{} scenes", entries.len());
@@ -27,7 +27,7 @@ fn trial(entry: Entry) -> Trial {
     if complete { trial } else { trial.with_ignored_flag(true).with_kind("its images are not here") }
 }
 
-/// Whether all images that a scene needs are here; what is wrong with an expectation, the test says.
+/// Returns whether all images that a scene needs are there. Errors in the expectation itself are left for the test to report.
 fn complete(scene: &Path) -> bool {
     let text = std::fs::read_to_string(scene.with_extension("expect.ron")).unwrap_or_default();
     let folder = scene.parent().unwrap_or(Path::new(""));
@@ -36,7 +36,7 @@ fn complete(scene: &Path) -> bool {
 }
 
 fn shows_what_is_expected(entry: &Entry) -> Result<(), Failed> {
-    // The tests are run side by side already.
+    // The tests already run in parallel, so each takes one thread.
     let options = Options { render: RenderOptions { threads: 1, ..RenderOptions::default() }, ..Options::default() };
     let replayed = replay(slice::from_ref(entry), &options, &|_| {});
     match (replayed[0].exit_code(), &replayed[0].outcome) {

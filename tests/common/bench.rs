@@ -1,11 +1,11 @@
-//! The program run in a folder of its own.
+//! Runs the program in a temporary folder.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test uses a part; a test fails by panicking")]
 
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
-/// A folder to work in.
+/// A temporary folder for runs of the program.
 pub struct Bench(tempfile::TempDir);
 
 impl Bench {
@@ -35,7 +35,7 @@ impl Bench {
         Run::from_output(self.command(arguments).output().unwrap())
     }
 
-    /// A run whose output nobody reads: it ends in silence.
+    /// Runs the program with a closed pipe for its output, and checks that it ends without an error.
     pub fn unread(&self, arguments: &str) {
         let mut child = self.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
@@ -44,7 +44,7 @@ impl Bench {
     }
 }
 
-/// What a run left.
+/// Exit status and output of a run.
 #[derive(Debug)]
 pub struct Run {
     pub status: i32,
@@ -61,7 +61,7 @@ impl Run {
         }
     }
 
-    /// The run succeeded, silently but for its data.
+    /// Returns stdout, after checking that the run succeeded and that stderr is empty.
     pub fn data(self) -> Vec<u8> {
         assert_eq!((self.status, self.stderr.as_str()), (0, ""));
         self.stdout
@@ -71,7 +71,7 @@ impl Run {
         String::from_utf8(self.data()).unwrap()
     }
 
-    /// The run failed with this status, said this on stderr and nothing on stdout.
+    /// Checks that the run failed with the given status, that stderr contains the message without colours, and that stdout is empty.
     pub fn failed(self, status: i32, message: &str) {
         assert_eq!(self.status, status, "{}", self.stderr);
         assert!(self.stderr.contains(message), "`{message}` is not in: {}", self.stderr);

@@ -1,10 +1,11 @@
-//! Decoders of compressed blocks against another.
+//! Compares decoders of compressed blocks.
 
 use ninebit::random::Random;
 use ninebit::state::TextureFormat;
 use ninebit::texture::compressed::decode;
 
-/// Lowest and highest of (ours - theirs) in each channel, of 200,000 random blocks. `theirs` decodes one to 4 x 4 pixels R, G, B, A.
+/// Returns the lowest and the highest difference (ours - theirs) in each channel over 200,000 random blocks. `theirs` decodes one block to
+/// 4 x 4 pixels R, G, B, A.
 pub fn differences(format: TextureFormat, dithered: bool, theirs: &dyn Fn(&[u8], &mut [u8])) -> [(i32, i32); 4] {
     let mut random = Random::seeded(1);
     let mut found = [(0, 0); 4];

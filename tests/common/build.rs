@@ -1,18 +1,18 @@
-//! Scenes from few words: what the captured programs leave at its default, written once.
+//! Builds scenes in few words, with the state that the captured programs leave at its default.
 
 use ninebit::state::*;
 
-/// A colour target.
+/// Returns a colour target without a depth buffer.
 pub fn target(width: u32, height: u32, format: SurfaceFormat, clear_color: [u8; 4]) -> Target {
     Target { clear_color, ..Target::new(width, height, format) }
 }
 
-/// A vertex in the window.
+/// Returns a vertex in window coordinates, with z = 0 and w = 1.
 pub fn vertex(x: f32, y: f32, diffuse: [u8; 4]) -> Vertex {
     Vertex { position: [x, y, 0.0, 1.0], diffuse: VertexColor::Bytes(diffuse), ..Vertex::default() }
 }
 
-/// A draw of `vertices` in order that stores the primary colour.
+/// Returns a draw of `vertices` in order that stores the primary colour.
 pub fn draw(topology: Topology, vertices: Vec<Vertex>) -> Draw {
     Draw {
         indices: (0..vertices.len() as u32).collect(),

@@ -1,16 +1,16 @@
-//! DDS files, made field by field.
+//! Builds DDS files field by field.
 #![allow(dead_code, unreachable_pub, missing_docs, reason = "each test binary uses its part")]
 
-/// A DDS file that may be made wrong before it is written.
+/// A DDS file whose fields can be made wrong before it is written.
 #[derive(Clone)]
 pub struct File {
-    /// The 31 words after the signature.
+    /// The 31 words of the header after the signature.
     pub words: [u32; 31],
-    /// What follows: further header, palette, texels.
+    /// The bytes after the header: additional header, palette, texels.
     pub rest: Vec<u8>,
 }
 
-/// Places in [`File::words`].
+/// Indices of fields in [`File::words`].
 pub const FLAGS: usize = 1;
 pub const HEIGHT: usize = 2;
 pub const WIDTH: usize = 3;
@@ -25,7 +25,7 @@ pub const CAPS2: usize = 27;
 pub const CUBE: u32 = 0xfe00;
 pub const VOLUME: u32 = 0x20_0000;
 
-/// Pixel formats: flags, bits, masks.
+/// A pixel format: flags, bits for each texel, masks of R, G, B, A.
 pub type Pixels = (u32, u32, [u32; 4]);
 pub const A8R8G8B8: Pixels = (0x41, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000]);
 pub const R5G6B5: Pixels = (0x40, 16, [0xf800, 0x7e0, 0x1f, 0]);
@@ -42,7 +42,7 @@ impl File {
         File { words, rest }
     }
 
-    /// Uncompressed.
+    /// Returns a file with uncompressed texels or palette indices.
     pub fn plain((flags, bits, masks): Pixels, width: u32, height: u32, levels: u32, rest: Vec<u8>) -> File {
         let mut file = File::new(width, height, levels, rest);
         (file.words[PIXEL_FLAGS], file.words[BITS]) = (flags, bits);
@@ -50,20 +50,20 @@ impl File {
         file
     }
 
-    /// Of a four character code.
+    /// Returns a file whose format is a four-character code.
     pub fn coded(code: &[u8; 4], width: u32, height: u32, levels: u32, rest: Vec<u8>) -> File {
         let mut file = File::new(width, height, levels, rest);
         (file.words[PIXEL_FLAGS], file.words[FOUR_CHARACTERS]) = (4, u32::from_le_bytes(*code));
         file
     }
 
-    /// With the further header: a DXGI number, and the number of textures in the array.
+    /// Returns a file with the DX10 header, which has a DXGI format number and the number of textures in the array.
     pub fn numbered(number: u32, dimension: u32, misc: u32, array: u32, width: u32, height: u32, rest: &[u8]) -> File {
         let further = [number, dimension, misc, array, 0].map(u32::to_le_bytes).concat();
         File::coded(b"DX10", width, height, 1, [&further, rest].concat())
     }
 
-    /// The same file with one word changed.
+    /// Returns the file with one word changed.
     pub fn with(mut self, place: usize, word: u32) -> File {
         self.words[place] = word;
         self

@@ -1,6 +1,6 @@
-//! TEX-2, TEX-3, TEX-4 from `docs/numerics.md`, for recomputing traces: a texel of a block as A8R8G8B8.
+//! Decodes texels of compressed blocks by TEX-2, TEX-3 and TEX-4 of `docs/numerics.md`, to recompute traces.
 
-/// `words` are those of the block, then x and y.
+/// Returns a texel as A8R8G8B8. `words` are those of the block, then the texel's x and y.
 pub fn decode(operation: &str, words: &[i128]) -> i128 {
     let (block, [x, y]) = (&words[..words.len() - 2], [words[words.len() - 2], words[words.len() - 1]]);
     let [colors, indices] = [block[block.len() - 2], block[block.len() - 1]];

@@ -1,6 +1,7 @@
-//! What tests share that computes much: random scenes and programs, traces recomputed from their own numbers, decoded blocks.
+//! Shared parts of tests that need much computation: random scenes and programs, recomputed traces, decoded blocks.
 //!
-//! Strategies are boxed, so that their code is made here. The other files of this folder are modules of the tests that name them.
+//! Strategies are boxed, so that their code is compiled in this crate. The other files of this folder are modules of the tests that include
+//! them.
 #![allow(
     unreachable_pub,
     missing_docs,

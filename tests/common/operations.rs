@@ -1,12 +1,15 @@
-//! The operations of each unit. `docs/operations.md` shows them.
+//! The operations of each unit, which `docs/operations.md` lists.
 
-/// An operation: its unit, what it is, the bits of its inputs where it has no tree, and its trees, of which `FOLDER*` stands for all whose names begin so.
+/// Each operation has its unit, a description, the number of input bits if it has no tree, and its trees. `FOLDER*` stands for all trees
+/// whose names begin with `FOLDER`.
 pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
+    ("vertex-instruction", "three sources of four floats, by the instruction", 384, &[]),
     ("vertex-color", "a float to a byte", 32, &["vertex-color"]),
     ("constant-color", "a float to a byte", 32, &["constant-color"]),
     ("vertex-snap", "a float to 1/16 pixel", 32, &["vertex-snap"]),
     ("depth", "a float to 16 or 24 bits", 32, &["depth"]),
     ("primitive-split", "a count of vertices and a triangle's number", 12, &["primitive-split"]),
+    ("clipped-triangle", "a vertex of three positions of four floats", 377, &[]),
     ("coverage", "six positions, a pixel", 99, &[]),
     ("clip", "a pixel by the surface clip and two rectangles", 169, &[]),
     ("perspective-weights", "three w", 91, &[]),

@@ -1,4 +1,4 @@
-//! Random programs of the languages of pixel programs, as a draw takes them.
+//! Random programs of other languages, as the programs of draws.
 
 use super::super::Choices;
 use ninebit::state::*;
@@ -8,7 +8,7 @@ use ninebit_program::texture_environment::{self as environment, BaseFormat};
 use ninebit_program::texture_stages::{self as stages, ArgumentSource, ResultArgument, StageArgument};
 use std::fmt::Write;
 
-/// Gives a draw a program of another language, as far as the language takes what comes out.
+/// Replaces the program of a draw with one of another language. The draw keeps its program if the language refuses the random one.
 pub(super) fn change(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     match c.below(7) {
         0 => registers(c, scene, index),
@@ -23,7 +23,7 @@ fn signed(draw: &Draw) -> [bool; TEXTURE_UNITS] {
     draw.textures.map(|unit| unit.is_some_and(|unit| unit.signed != [false; 4]))
 }
 
-/// The words of the combiners, some bits of them turned over.
+/// Inverts random bits of the register words of the combiners.
 fn registers(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let draw = &mut scene.draws[index];
     let mut words = encode(&draw.combiners, scene.profile);
@@ -100,7 +100,7 @@ fn texture_environment(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// Texture instructions of a shader, and the registers that they load.
+/// Texture instructions of a shader, and the numbers of the registers that they load.
 const FETCHES: &[(&str, &[usize])] = &[
     ("tex t0\n", &[0]),
     ("tex t0\ntex t1\n", &[0, 1]),
@@ -116,7 +116,7 @@ const FETCHES: &[(&str, &[usize])] = &[
     ("tex t0\ntexm3x3pad t1, t0_bx2\ntexm3x3pad t2, t0_bx2\ntexm3x3vspec t3, t0_bx2\n", &[0, 3]),
 ];
 
-/// A pixel shader of version 1.1.
+/// Gives the draw a pixel shader of version 1.1.
 fn shader(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let (fetches, loaded) = c.pick(FETCHES);
     let mut text = format!("ps.1.1\n{fetches}");

@@ -1,4 +1,4 @@
-//! Any combiners at all, legal or not.
+//! Random combiners, legal or not.
 
 use ninebit::state::*;
 use proptest::prelude::*;
@@ -64,7 +64,7 @@ fn final_input() -> impl Strategy<Value = FinalInput> {
     prop_oneof![2 => Just(FinalInput::zero(Component::Rgb)), 3 => any]
 }
 
-/// Up to nine stages; every field is anything.
+/// Returns combiners with up to nine stages, in which every field is arbitrary.
 pub fn combiners() -> BoxedStrategy<Combiners> {
     let final_combiner =
         (

@@ -1,7 +1,7 @@
-//! Random valid scenes over all of the state.
+//! Random valid scenes that vary all of the state.
 //!
-//! A scene is built from a tape of choices; 0 is always the plain choice. Shrinking blanks stretches of the tape, so a failing scene
-//! loses whatever its failure does not need.
+//! A scene is built from a tape of choices, in which 0 always means the plainest choice. Shrinking sets ranges of the tape to 0, so a
+//! failing scene loses what its failure does not need.
 
 #[path = "random_texture.rs"]
 mod texture;
@@ -16,11 +16,12 @@ use proptest::prelude::*;
 use proptest::strategy::{NewTree, ValueTree};
 use proptest::test_runner::TestRunner;
 
-/// Whether per-pixel fog functions and texture shaders occur.
+/// Whether scenes contain per-pixel fog functions and texture shaders.
 pub const FOG_FUNCTIONS: bool = true;
 pub const TEXTURE_SHADERS: bool = true;
 
-/// Words of tape for what draws share, for each draw, for each vertex and for each stage.
+/// Numbers of tape words: shared by all draws, for each draw, for all vertices of a draw, for each vertex, for each stage, and for the
+/// units of a draw.
 const SHARED: usize = 1024;
 const DRAW: usize = 1280;
 const VERTICES: usize = 768;
@@ -28,7 +29,7 @@ const VERTEX: usize = 48;
 const STAGE: usize = 64;
 const UNITS: usize = 160;
 
-/// Valid scenes whose vertices lie in the domain of RAS-0: nothing is cut at the guard band.
+/// Returns valid scenes whose vertices lie in the domain of RAS-0, so that the guard band cuts nothing.
 pub fn scene() -> BoxedStrategy<Scene> {
     const SIDES: u8 = ClipPlane::Left.bit() | ClipPlane::Right.bit() | ClipPlane::Top.bit() | ClipPlane::Bottom.bit();
     let fits = |scene: &Scene| {
@@ -38,7 +39,7 @@ pub fn scene() -> BoxedStrategy<Scene> {
     Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }
 
-/// A tape of so many words.
+/// A strategy for tapes of the given number of words.
 #[derive(Debug)]
 struct Tape(usize);
 
@@ -91,7 +92,7 @@ impl ValueTree for TapeTree {
     }
 }
 
-/// Reads a stretch of tape; past its end everything is 0.
+/// Reads words of a tape. After the end, every word is 0.
 struct Choices<'a> {
     tape: &'a [u32],
 }
@@ -103,7 +104,7 @@ impl<'a> Choices<'a> {
         *first
     }
 
-    /// The next `n` words for themselves, so that what follows does not depend on how many of them are used.
+    /// Takes the next `n` words as a tape of their own, so that later choices do not depend on how many of these are used.
     fn part(&mut self, n: usize) -> Choices<'a> {
         let (part, rest) = self.tape.split_at(n.min(self.tape.len()));
         self.tape = rest;
@@ -118,7 +119,7 @@ impl<'a> Choices<'a> {
         from + self.below(to - from + 1)
     }
 
-    /// True once in `n` times.
+    /// Returns true in one of `n` cases.
     fn once_in(&mut self, n: u32) -> bool {
         self.below(n) == n - 1
     }
@@ -143,7 +144,7 @@ impl<'a> Choices<'a> {
         std::array::from_fn(|_| self.byte())
     }
 
-    /// Multiples of 2^-20 in [0, 1).
+    /// Returns a multiple of 2^-20 in [0, 1).
     fn unit(&mut self) -> f32 {
         (self.word() >> 12) as f32 / 1_048_576.0
     }
@@ -153,7 +154,7 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// The scene of a tape.
+/// Builds the scene of a tape.
 pub fn build(tape: &[u32]) -> Scene {
     let mut tape = Choices { tape };
     let mut c = tape.part(SHARED);
@@ -169,7 +170,7 @@ pub fn build(tape: &[u32]) -> Scene {
     Scene { profile, targets, textures, palettes, draws }
 }
 
-/// What draws refer to.
+/// The resources that draws refer to.
 struct Given<'a> {
     profile: Profile,
     targets: &'a [Target],
@@ -204,7 +205,8 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
         DepthBuffer { format, clear, clear_stencil: 0 }
     });
     let clear_color = c.bytes();
-    // Words that follow from the colour, in one of four: scenes without them stay as they are.
+    // One target in four has contents, which are derived from the clear colour and take no words of the tape, so that the other choices
+    // stay the same.
     let seed = u32::from_le_bytes(clear_color);
     let word = |n: u32| seed.wrapping_add(n).wrapping_mul(0x9e37_79b1) >> (32 - 8 * format.bytes());
     let contents = clear_color[3].is_multiple_of(4).then(|| (0..width * height).map(word).collect());
@@ -229,14 +231,14 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         vertices[index as usize % count].fog = coordinate;
     }
     match fog.function {
-        // As the vertex side makes it of a coordinate.
+        // The vertices get the values that the vertex side computes from these coordinates.
         Some(function) if c.once_in(2) => {
             for vertex in &mut vertices {
                 vertex.fog_coordinate = Some(vertex.fog);
                 vertex.fog = passed(&function, profile, vertex.fog);
             }
         }
-        // Most e of exponential fog lie where its tables do.
+        // Most values of exponential fog are brought near 1, where its tables lie.
         Some(function) if !function.mode.is_linear() && function.p1 < 0.1 => {
             for vertex in &mut vertices {
                 vertex.fog = 1.0 + vertex.fog / 8.0;
@@ -293,7 +295,7 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
     }
 }
 
-/// Fog, and now and then a vertex whose coordinate is not finite.
+/// Returns random fog, and occasionally a fog coordinate that is not finite, with the number of its vertex.
 fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
     let mut c = c.part(16);
     let (enabled, color) = (c.once_in(2), [c.byte(), c.byte(), c.byte()]);
@@ -321,7 +323,7 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
 
 // ---- geometry ----
 
-/// How [`coordinates`] makes each coordinate set.
+/// The kinds of coordinates that [`coordinates`] generates for each coordinate set.
 type CoordinateStyles = [u32; 4];
 
 fn vertices(
@@ -337,7 +339,7 @@ fn vertices(
         Topology::Quads => 4 * c.size(1, 3),
         Topology::QuadStrip => 2 * c.size(2, 5),
     } as usize;
-    // What leaves the shape, or is far away, half as often.
+    // Styles 6 and 7, which leave the shape or go far away, are half as frequent.
     let style = c.pick(&[0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 3, 4, 1, 5]);
     let (w_style, z_style, colors, clip) = (c.below(6), c.below(4), c.below(4), c.once_in(4));
     let fog_scale = c.pick(&[1.0, 1.0, 8.0, 100.0]);
@@ -373,7 +375,7 @@ fn vertices(
     (vertices, if clip { Positions::Clip(port) } else { Positions::Window })
 }
 
-/// Where the vertices lie on the target.
+/// Returns the positions of the vertices on the target, in pixels.
 fn places(
     c: &mut Choices<'_>,
     topology: Topology,
@@ -387,7 +389,7 @@ fn places(
     let mirrored = c.once_in(2);
     for k in 0..count {
         let mut c = c.part(4);
-        // Two styles in eight leave the shape altogether.
+        // Two of the eight styles do not use a shape.
         match style {
             6 => {
                 out.push([c.between(-0.5, 1.5) * width, c.between(-0.5, 1.5) * height]);
@@ -406,7 +408,7 @@ fn places(
             _ => count,
         };
         if k % corners == 0 {
-            // Origin and sides: the target, powers of two, or round and uneven numbers.
+            // Origin and sides: the target, twice the target, or small whole numbers, some of whose sides are powers of two.
             shape = match style {
                 0 => [0.0, 0.0, width, height],
                 1 => [0.0, 0.0, 2.0 * width, 2.0 * height],
@@ -440,7 +442,7 @@ fn places(
             };
         }
         if style == 5 {
-            // Slivers.
+            // A sliver: the vertices lie near a line.
             place[1] = shape[1] + u * shape[3] + c.between(-0.6, 0.6);
         }
         out.push(place);
@@ -469,7 +471,7 @@ fn port(c: &mut Choices<'_>, [width, height]: [f32; 2]) -> Viewport {
     }
 }
 
-/// A clip position for a place in units of the target; `near` brings it to the plane where w is clipped.
+/// Returns a clip position for a position in units of the target. `near` moves it close to the plane at which w is clipped.
 fn to_clip(c: &mut Choices<'_>, [u, v, z]: [f32; 3], w_style: u32, near: bool) -> [f32; 4] {
     let (x, y, z) = (2.0 * u - 1.0, 1.0 - 2.0 * v, 2.0 * z - 1.0);
     if near {
@@ -497,7 +499,7 @@ fn color(c: &mut Choices<'_>, style: u32) -> VertexColor {
     }
 }
 
-/// s, t, r, q.
+/// Returns texture coordinates s, t, r, q.
 fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
     let mut c = c.part(8);
     let (x, y) = (x.clamp(-256.0, 256.0), y.clamp(-256.0, 256.0));
@@ -511,32 +513,32 @@ fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
             [c.between(-far, far), c.pick(&[0.0, far + 1.0, -far - 1.0, 1.0 / 512.0]), 0.0, 1.0]
         }
         5 => {
-            // Projected, and the same place for every q: ties survive.
+            // Projected coordinates with the same ratios for every q, so that ties are preserved.
             let q = c.pick(&[1.0, 2.0, 4.0, 0.5]);
             [one_to_one[0] * q, one_to_one[1] * q, 0.0, q]
         }
         6 => [c.between(-2.0, 2.0), c.below(9) as f32 / 4.0, 0.0, c.pick(&[1.0, -1.0, 2.0, 0.0, 3.0, 0.5, -2.0])],
         7 => [c.between(-2.0, 2.0), c.between(-2.0, 2.0), 0.0, c.between(-0.5, 3.0)],
-        // Texels of rectangles; elsewhere many repeats.
+        // Texels of a rectangle. For other textures the image repeats many times.
         8 => [x, y, 0.5, 1.0],
         9 => [x / 4.0 + c.between(-0.5, 0.5), y * 0.75, 0.25, 1.0],
-        // Minified, evenly or in one direction.
+        // Minified, in both directions or more in one.
         10 => [x / 5.0, y / 16.0, 0.0, 1.0],
         11 => [x / 3.0 + c.between(-0.2, 0.2), y / 7.0 + c.between(-0.2, 0.2), 0.0, c.pick(&[1.0, 1.0, 1.5])],
-        // Directions: any, on the edges and corners of the cube, and one face after the other across the target.
+        // Directions: arbitrary ones, ones on edges and corners of the cube, and ones that cross several faces over the target.
         12 => [c.between(-1.0, 1.0), c.between(-1.0, 1.0), c.between(-1.0, 1.0), c.between(-1.0, 2.0)],
         13 => {
             let steps = [0.0, 1.0, -1.0, 0.5, -0.5];
             [c.pick(&steps), c.pick(&steps), c.pick(&steps), c.pick(&[1.0, 0.0, -1.0])]
         }
         14 => [x / 8.0 - 1.0, 1.0 - y / 8.0, c.pick(&[1.0, 1.0, -1.0, 0.25]), 1.0],
-        // Rows of a matrix, nearly, with an eye in q.
+        // Rows of a matrix that is nearly the identity, with the eye in q.
         _ => {
             let row = c.below(3) as usize;
             let mut out =
                 [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
             out[row] = c.pick(&[1.0, -1.0, 0.5]);
-            // So large, or so small, that the dot unit overflows; still the same for a whole triangle now and then.
+            // Some scales are so large or so small that the dot products overflow.
             let scale = c.pick(&[1.0, 1.0, 1.0, 1.0, 1.0, 1e-25, 300.0, 1e20]);
             out.map(|x| x * scale)
         }
@@ -569,7 +571,7 @@ fn combiners(c: &mut Choices<'_>, profile: Profile) -> Combiners {
     Combiners { stages, mux_select, final_combiner }
 }
 
-/// One stage that shows two units, or fog, nearly as they are.
+/// Returns one stage that shows two units, or fog, nearly unchanged.
 fn showing(c: &mut Choices<'_>, profile: Profile) -> Combiners {
     let mut units = vec![Register::Texture0, Register::Texture1];
     if profile == Profile::Nv2a {
@@ -631,7 +633,7 @@ fn portion(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> Portion {
         .filter(|r| !matches!(r, Register::Zero | Register::ConstantColor0 | Register::ConstantColor1 | Register::Fog))
         .filter(|r| profile == Profile::Nv2a || !matches!(r, Register::Texture2 | Register::Texture3))
         .collect();
-    // SPARE0 and SPARE1 first: what is written is then likely to be read.
+    // SPARE0 and SPARE1 come first, so that a result is likely to be read.
     free.reverse();
     let mut output = |written: bool| {
         let place = if c.once_in(3) { c.below(free.len() as u32) } else { c.below(2) };

@@ -4,7 +4,7 @@ use super::{Choices, CoordinateStyles, Given, TEXTURE_SHADERS};
 use ninebit::state::*;
 use std::sync::Arc;
 
-/// What the chip can sample as this kind of texture.
+/// Returns the formats without depth that the chip can sample in this kind of texture.
 fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
     let legal = |f: TextureFormat| match (profile, kind) {
         (Profile::Nv10, TextureKind::Rectangle) => {
@@ -15,23 +15,23 @@ fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
         (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed() && f != TextureFormat::P8,
         (Profile::Nv2a, _) => true,
     };
-    // Depths come with the wider scenes.
+    // Depth formats are used by the wider scenes only.
     TextureFormat::ALL.iter().copied().filter(|f| legal(*f) && f.depth().is_none()).collect()
 }
 
-/// 32 to 256 colours.
+/// Returns a palette of 32, 64, 128 or 256 colours.
 pub(super) fn palette(c: &mut Choices<'_>, n: u32) -> Palette {
     let (entries, seed) = (32 << c.below(4), c.word());
     Palette { name: format!("palette{n}"), entries: (0..entries).map(|k| scrambled(seed, k)).collect() }
 }
 
-/// A word that has nothing to do with the next.
+/// Returns word `k` of a sequence whose neighbouring words are unrelated.
 fn scrambled(seed: u32, k: u32) -> u32 {
     let x = (seed ^ k.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
     (x ^ x >> 15).wrapping_mul(0xc2b2_ae35) ^ x >> 13
 }
 
-/// A texture with its own texels.
+/// Returns a texture with texels of its own.
 pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let mut c = c.part(24);
     let kind = c.pick(&[TextureKind::TwoDimensional, TextureKind::Cube, TextureKind::Rectangle]);
@@ -44,7 +44,7 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let (mut width, height) = (side(&mut c), side(&mut c));
     match (kind, profile) {
         (TextureKind::Cube, _) => width = height,
-        // An even width.
+        // Nv10 requires an even width.
         (TextureKind::Rectangle, Profile::Nv10) => width += width & 1,
         _ => {}
     }
@@ -55,7 +55,7 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
     let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
     let (_, face_words) = Level::chain(format, width, height, levels, border);
-    // Few words of tape a texture: the rest follows from them.
+    // A texture takes few words of the tape. All of its texels are derived from them.
     let (even, seed, step) = (c.once_in(2), c.word(), c.word());
     let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
     let words: Arc<[u32]> = (0..faces * face_words as u32).map(|k| word(k) & mask).collect();
@@ -63,7 +63,7 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     Texture { name: format!("texture{n}"), kind, format, image }
 }
 
-/// A render target as a texture.
+/// Returns a render target as a texture, if it can be sampled.
 pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Target) -> Option<Texture> {
     let mut c = c.part(3);
     if c.once_in(2) {
@@ -86,7 +86,7 @@ pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Tar
 
 type Units = ([Option<TextureUnit>; TEXTURE_UNITS], [ShaderStage; TEXTURE_UNITS]);
 
-/// The units of a draw that may sample these textures, and their texture shader.
+/// Returns the units of a draw, which sample only the `usable` textures, and their texture shader.
 pub(super) fn units(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize], styles: &CoordinateStyles) -> Units {
     let shader = TEXTURE_SHADERS && given.profile == Profile::Nv2a && c.once_in(2);
     let operations = shader.then(|| operations(&mut c.part(48)));
@@ -95,7 +95,7 @@ pub(super) fn units(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize], st
         let mut c = c.part(28);
         let sets = given.profile.texture_units();
         let (any_set, fitting_set) = (c.below(sets as u32) as usize, c.below(3) != 2);
-        // Mostly a set that suits what is sampled.
+        // In most cases the coordinate set suits the kind of texture.
         let set_for = |suits: &dyn Fn(u32) -> bool| {
             let suiting = (0..sets).map(|n| (any_set + n) % sets).find(|n| fitting_set && suits(styles[*n]));
             suiting.unwrap_or(any_set)
@@ -142,7 +142,7 @@ pub(super) fn units(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize], st
     (bound, stages)
 }
 
-/// One operation for each unit, in legal order.
+/// Returns one operation for each unit, in an order that is legal.
 fn operations(c: &mut Choices<'_>) -> [ShaderOperation; TEXTURE_UNITS] {
     use ShaderOperation::*;
     let first = free(c, true);
@@ -157,7 +157,7 @@ fn operations(c: &mut Choices<'_>) -> [ShaderOperation; TEXTURE_UNITS] {
     }
 }
 
-/// An operation that needs no dot product before it; the first unit has no unit before it.
+/// Returns an operation that needs no dot product in an earlier unit, and for the first unit one that needs no earlier unit at all.
 fn free(c: &mut Choices<'_>, first: bool) -> ShaderOperation {
     use ShaderOperation::*;
     let mut c = c.part(12);
@@ -179,7 +179,7 @@ fn free(c: &mut Choices<'_>, first: bool) -> ShaderOperation {
     }
 }
 
-/// Units without a fitting texture sample nothing, and what rests on a unit that does not fit it goes too.
+/// Removes operations from units that have no fitting texture, and operations of other units that depended on them.
 fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit>; TEXTURE_UNITS]) {
     use ShaderOperation::{BumpEnvironment, CullFragment, DotReflectDiffuse, None, Sample};
     let lacks = |k: usize, stages: &[ShaderStage; 4]| stages[k].operation.samples() && bound[k].is_none();
@@ -197,7 +197,7 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
     if stages[2].operation == DotReflectDiffuse {
         stages[3].previous = stages[3].previous.min(1);
     }
-    // At unit 1 nothing that fetches no colour may come before a bump environment.
+    // A bump environment in unit 1 needs a unit 0 that yields a colour.
     if matches!(stages[1].operation, BumpEnvironment { .. })
         && matches!(stages[0].operation, None | CullFragment { .. })
     {

@@ -1,4 +1,4 @@
-//! Any vertex program that can be written, legal or not.
+//! Random vertex programs, legal or not, as far as they can be written as text.
 
 use ninebit::vertex::shader::*;
 use proptest::prelude::*;

@@ -1,5 +1,5 @@
-//! Wider random scenes: a scene of the first kind, whose draws then share what they have, leave the plain ranges, take programs of every
-//! language and pass the viewer. A change that the chip does not allow is left out.
+//! Wider random scenes. A plain random scene is changed: draws share meshes, textures and programs, use extreme numbers and programs of
+//! other languages, and pass the viewer. A change that the chip does not allow is undone.
 
 #[path = "random_front_end.rs"]
 mod front_end;
@@ -9,13 +9,13 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use proptest::prelude::*;
 
-/// Words of tape beyond those of the first kind: for each draw, and for the rest.
+/// Numbers of tape words in addition to those of a plain scene: for each draw, and for all changes.
 const WIDER_DRAW: usize = 800;
 const WIDER: usize = 256 + 4 * WIDER_DRAW;
-/// Words of tape of a scene of the first kind.
+/// Number of tape words of a plain scene.
 const FIRST: usize = SHARED + 4 * DRAW;
 
-/// Valid scenes, mostly unlike those that [`scene`](super::scene) gives.
+/// Returns valid scenes, most of them of kinds that [`scene`](super::scene) does not return.
 pub fn scene() -> BoxedStrategy<Scene> {
     Tape(FIRST + WIDER).prop_map(|tape| widened(&tape)).prop_filter("RAS-0", legal).boxed()
 }
@@ -24,7 +24,7 @@ fn legal(scene: &Scene) -> bool {
     Plan::compile(scene, &PlanOptions::default()).is_ok()
 }
 
-/// The scene of a tape.
+/// Builds the scene of a tape.
 fn widened(tape: &[u32]) -> Scene {
     let (first, rest) = tape.split_at(FIRST.min(tape.len()));
     let mut scene = build(first);
@@ -57,7 +57,7 @@ fn widened(tape: &[u32]) -> Scene {
             && c.once_in(3)
         {
             depth.format = if depth.format.has_stencil() { DepthFormat::Z24S8F } else { DepthFormat::Z16F };
-            // Depths of vertices, 0 to 1 or whole steps, lie on both sides.
+            // The depths of the vertices, which are 0 to 1 or whole steps, lie on both sides of this value.
             depth.clear =
                 if depth.format.has_stencil() { 0x3f_0000 + c.below(0x10_0000) } else { 0x6000 + c.below(0xa000) };
         }
@@ -72,7 +72,7 @@ fn widened(tape: &[u32]) -> Scene {
     scene
 }
 
-/// Makes a change if what comes out is a legal scene, or if it was none before.
+/// Applies a change, and undoes it if it makes a legal scene illegal.
 fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
     let before = scene.clone();
     change(scene);
@@ -83,7 +83,7 @@ fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
 
 type Change = fn(&mut Choices<'_>, &mut Scene, usize);
 
-/// What may happen to a draw, in order.
+/// The changes to a draw, in order.
 const CHANGES: [Change; 12] = [
     share_mesh,
     share_texture,
@@ -99,12 +99,12 @@ const CHANGES: [Change; 12] = [
     samplings,
 ];
 
-/// A rectangle that begins within a target, now and then an empty one.
+/// Returns a rectangle that begins within the target. It may be empty.
 fn rectangle(c: &mut Choices<'_>, width: u32, height: u32) -> Rectangle {
     Rectangle { x: c.below(width), y: c.below(height), width: c.below(width + 2), height: c.below(height + 2) }
 }
 
-/// A stencil test, where the target has a stencil, and a window clip.
+/// Adds a stencil test, if the target has a stencil buffer, and a window clip.
 fn stencil_and_clips(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let draw = &mut scene.draws[index];
     let target = &scene.targets[draw.target];
@@ -126,14 +126,14 @@ fn stencil_and_clips(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// Depths in steps, within a buffer and beyond it, ranges, offsets.
+/// Gives a draw depths in steps, within the buffer's range and beyond it, a depth range, an offset, or a w buffer.
 #[allow(clippy::float_arithmetic, reason = "choosing depths")]
 fn depths(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let Scene { targets, draws, .. } = scene;
     let draw = &mut draws[index];
     let (Some(test), Some(buffer)) = (&mut draw.depth_test, targets[draw.target].depth) else { return };
     let full = buffer.format.largest();
-    // Sixteenths, so that the oracle's numbers have room; of whole steps too.
+    // Steps are sixteenths or whole numbers, so that the oracle's integers do not overflow.
     let step = |c: &mut Choices<'_>| {
         let whole = (c.word() % (full + full / 4)) as f32;
         match c.below(4) {
@@ -162,14 +162,14 @@ fn depths(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     if c.once_in(5) {
         (test.w_buffer, test.offset.factor) = (true, 0.0);
         if c.once_in(2) {
-            // w of many steps.
+            // Scales w so that it spans many steps of the buffer.
             let scale = c.pick(&[16.0, 1024.0, 65536.0]);
             draw.vertices.map_positions(|[x, y, z, w]| [x, y, z, (w * scale).min(1_048_576.0)]);
         }
     }
 }
 
-/// Colour keys of texels that the textures have, where that is easily said.
+/// Adds colour keys. Most of them are the colour of a texel.
 fn color_keys(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let Scene { textures, palettes, draws, .. } = scene;
     for unit in draws[index].textures.iter_mut().flatten() {
@@ -197,7 +197,7 @@ fn color_keys(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// Units that compare depths, read volumes, take several taps, or go around a cylinder.
+/// Makes units compare depths, read volumes, take several taps, or wrap cylindrically.
 #[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
 fn samplings(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let function = c.any();
@@ -226,7 +226,7 @@ fn samplings(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// A depth buffer, or words that are taken for depths, and r near what they hold.
+/// Makes a unit compare with a depth buffer, or with a texture whose words are taken as depths, and sets r near these depths.
 #[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
 fn compares(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize), function: CompareFunction) {
     let target = c.below(scene.targets.len() as u32) as usize;
@@ -245,7 +245,7 @@ fn compares(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize), f
         let format = c.pick(&[TextureFormat::Z16, TextureFormat::Z24S8, TextureFormat::Z16F, TextureFormat::Z24S8F]);
         let bits = if format.bytes() == 2 { 16 } else { 32 };
         let count = texels.width as usize * texels.height as usize;
-        // Few words, so that many are met.
+        // A few different words, so that many comparisons meet equal ones.
         let words = texels.words.iter().cycle().take(count).map(|word| (word % 8 * 0x1111) << (bits - 16)).collect();
         let texels = Texels { levels: 1, layers: 1, border: false, words, ..*texels };
         (texture.format, texture.image) = (format, TextureImage::Texels(texels));
@@ -276,7 +276,7 @@ fn compares(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize), f
     });
 }
 
-/// A texture in layers.
+/// Replaces the texture of a unit by one with layers.
 #[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
 fn reads_layers(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize)) {
     let Some(unit) = &mut scene.draws[draw].textures[k] else { return };
@@ -300,7 +300,7 @@ fn reads_layers(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize
     });
 }
 
-/// Another reading of the same words; of a target, often in texels of another size.
+/// Changes the format in which words are read. For render targets the texels often have another size.
 fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
     if c.once_in(2) {
         let resizes = matches!(texture.image, TextureImage::Target { .. }) && c.below(3) != 0;
@@ -320,7 +320,7 @@ fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
     }
 }
 
-/// The vertices of another draw, in other state.
+/// Gives the draw the mesh of another draw, with other state.
 fn share_mesh(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let from = c.below(scene.draws.len() as u32) as usize;
     if !c.once_in(3) || from == index {
@@ -332,7 +332,7 @@ fn share_mesh(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     (draw.shade_model, draw.provoking_vertex, draw.perspective) = (c.any(), c.any(), c.below(3) != 0);
 }
 
-/// One texture in all units, and in those of other draws, each unit in its own state.
+/// Makes all units of the draw and of the next one sample the same texture, each unit with state of its own.
 fn share_texture(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     if !c.once_in(2) {
         return;
@@ -351,7 +351,7 @@ fn share_texture(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
             let mut c = c.part(16);
             let mut unit = texture::unit(&mut c, &given, &[one]);
             if let (Some(first), true) = (first, same_filters) {
-                // Only the levels tell the samplers apart.
+                // Only mip filter and lod limits differ between the samplers.
                 unit = TextureUnit { mip_filter: unit.mip_filter, max_lod: unit.max_lod, ..first };
                 unit.min_lod = unit.min_lod.min(unit.max_lod);
             }
@@ -368,7 +368,7 @@ fn share_texture(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// The program of another draw.
+/// Gives the draw the program of another draw.
 fn share_program(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let from = c.below(scene.draws.len() as u32) as usize;
     if c.once_in(4) {
@@ -377,7 +377,7 @@ fn share_program(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// A perspective view of vertices around the viewer, some behind him, some far away.
+/// Places the vertices around the viewer in perspective, some of them behind the viewer and some far away.
 fn view(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     if c.below(3) != 2 {
         return;
@@ -412,7 +412,7 @@ fn view(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     });
 }
 
-/// Powers of two and numbers beside them.
+/// Returns a power of two from 2^`least` to 2^`most`, or a number up to twice as large.
 fn extreme(c: &mut Choices<'_>, least: i32, most: i32) -> f32 {
     let mut c = c.part(4);
     let power = (least + c.below((most - least + 1) as u32) as i32) as f32;
@@ -420,7 +420,7 @@ fn extreme(c: &mut Choices<'_>, least: i32, most: i32) -> f32 {
     number.min((most as f32).exp2())
 }
 
-/// w from 2^-20 to 2^20, the same for all or each its own.
+/// Sets w to values from 2^-20 to 2^20, either the same for all vertices or one for each.
 fn extreme_w(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let draw = &mut scene.draws[index];
     if !c.once_in(3) || draw.positions != Positions::Window {
@@ -435,7 +435,7 @@ fn extreme_w(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     });
 }
 
-/// q from 2^-20 to 2^20 of either sign, and coordinates up to 65536 texels.
+/// Sets q to values from 2^-20 to 2^20 of either sign, or coordinates of up to 65536 texels.
 fn extreme_coordinates(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     if c.below(2) == 0 {
         return;
@@ -467,7 +467,7 @@ fn extreme_coordinates(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     });
 }
 
-/// Levels and lods at the ends of their ranges.
+/// Sets the lod bias and limits to values at the ends of their ranges and next to whole levels.
 fn lods(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     for unit in scene.draws[index].textures.iter_mut().flatten() {
         let mut c = c.part(8);

@@ -1,6 +1,6 @@
-//! Recomputes a trace from its own numbers: every step from its inputs, every input from the step that made it.
+//! Recomputes a trace from its own numbers: every step from its inputs, and every input from the step that yields it.
 //!
-//! Written from `docs/trace-format.md`, against the JSON document alone; nothing of the model is used.
+//! The code is written from `docs/trace-format.md` for the JSON document, and uses nothing of the model.
 
 #[path = "dxt.rs"]
 mod dxt;
@@ -10,7 +10,7 @@ mod shader;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// An exact number: value / per_one.
+/// An exact number: `value / per_one`. If `per_one` is 0, `value` is the bits of a binary32 number.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     pub value: i128,
@@ -30,7 +30,7 @@ fn number(v: &Value) -> Number {
     Number { value: v["value"].as_i64().unwrap().into(), per_one: v["per_one"].as_i64().unwrap().into() }
 }
 
-/// Operands that are given with the step itself.
+/// Returns whether a step states this operand itself, so that no earlier step yields it.
 fn is_parameter(name: &str) -> bool {
     let parameters = [
         "x",
@@ -95,7 +95,7 @@ fn is_parameter(name: &str) -> bool {
     parameters.contains(&name) || formats.contains(&name) || coefficient || slope
 }
 
-/// Recomputes one fragment under the document's `policies`; the values of all names at its end.
+/// Recomputes one fragment under the document's `policies`. Returns the final value of each name.
 pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Number>, String> {
     let mut known: BTreeMap<String, Number> = BTreeMap::new();
     for step in draw["steps"].as_array().unwrap() {
@@ -140,7 +140,7 @@ fn byte(value: i128) -> Number {
     Number { value, per_one: 255 }
 }
 
-/// Nearest 255th of an exact number, halves up: floor(255 n + 1/2).
+/// Rounds a number to the nearest 255th, halves up: floor(255 n + 1/2).
 fn nearest_255(n: Number) -> Number {
     byte((2 * 255 * n.value + n.per_one).div_euclid(2 * n.per_one))
 }
@@ -157,12 +157,12 @@ fn negate(a: Number) -> Number {
     Number { value: -a.value, per_one: a.per_one }
 }
 
-/// Twice the centre of the expand mappings, in steps.
+/// Returns twice the centre of the expand mappings, in steps.
 fn centre(policies: &Value) -> i128 {
     if policies["CMB-3"] == "literal" { 255 } else { 256 }
 }
 
-/// Twice the half of the half-bias mappings, in steps.
+/// Returns twice the half of the half-bias mappings, in steps.
 fn half(policies: &Value) -> i128 {
     match policies["CMB-4"].as_str() {
         Some("127") => 254,
@@ -171,12 +171,12 @@ fn half(policies: &Value) -> i128 {
     }
 }
 
-/// The smaller of a number and 1.
+/// Returns the smaller of a number and 1.
 fn at_most_one(n: Number) -> Number {
     Number { value: n.value.min(n.per_one), per_one: n.per_one }
 }
 
-/// A B and (1 - A) C of the final combiner.
+/// Returns A B and (1 - A) C of the final combiner.
 fn lerp(a: Number, b: Number, c: Number) -> [Number; 2] {
     let a = at_most_one(a);
     [times(a, b), times(add(byte(255), negate(a)), c)]
@@ -458,13 +458,13 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     })
 }
 
-/// The first 24 bits of a quotient, toward zero, and their exponent.
+/// Returns the first 24 bits of a quotient, truncated toward zero, and their exponent.
 fn truncated_24(inputs: &[(String, Number)]) -> (i128, i128) {
     let v = |k: usize| inputs[k].1.value;
     let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
     let (mut top, mut bottom, mut exponent) = (sum.abs(), v(6), 0);
     if top == 0 {
-        // Zero has no exponent of its own: the rule's is 0 with that of the numerator's taken off.
+        // A zero gets the exponent 0 by the rule. The caller adds the numerator's exponent, so it is subtracted here.
         return (0, inputs.get(7).map_or(0, |exponent| -exponent.1.value));
     }
     while top / bottom >= 1 << 24 {
@@ -476,7 +476,7 @@ fn truncated_24(inputs: &[(String, Number)]) -> (i128, i128) {
     (top / bottom * sum.signum(), exponent)
 }
 
-/// The sum of numbers m 2^e in 2^-60, floored term by term. A term beyond 2^60 decides alone.
+/// Returns the sum of numbers m 2^e in units of 2^-60, each rounded down. If a term is beyond 2^60, only its sign counts.
 fn sum(terms: &[(i128, i128)]) -> i128 {
     let mut sum = 0_i128;
     for (m, e) in terms.iter().filter(|term| term.0 != 0) {
@@ -490,7 +490,7 @@ fn sum(terms: &[(i128, i128)]) -> i128 {
     sum
 }
 
-/// A sum in 2^-60 in 4096ths, limited to 0..4096.
+/// Converts a sum in units of 2^-60 to 4096ths, limited to 0..4096.
 fn factor(sum: i128) -> Number {
     Number { value: (sum >> 48).clamp(0, 4096), per_one: 4096 }
 }
@@ -513,7 +513,7 @@ fn fog_table(operation: &str, q: i128) -> i128 {
 
 const LIGHT_NAN: i128 = 0x7fff_fc00;
 
-/// A word of the light unit as a sign, a mantissa of 14 bits and the exponent's field.
+/// Splits a word of the light unit into sign, 14-bit mantissa and exponent field.
 fn light_parts(word: i128) -> (i128, i128, i128) {
     let mantissa = if word >> 23 & 255 == 0 { 0 } else { word >> 10 & 0x1fff | 0x2000 };
     (if word >> 31 & 1 == 1 { -1 } else { 1 }, mantissa, word >> 23 & 255)
@@ -528,7 +528,7 @@ fn light_word(pattern: i128) -> i128 {
     }
 }
 
-/// m 2^(field - 140), truncated to a word.
+/// Truncates m 2^(field - 140) to a word of the light unit.
 fn light_truncated(mut m: i128, mut field: i128) -> i128 {
     let sign = if m < 0 { 1 << 31 } else { 0 };
     m = m.abs();
@@ -581,7 +581,7 @@ fn sixteen_bits(value: i128) -> Number {
     Number { value, per_one: 65535 }
 }
 
-/// The three sums of a direction: planes 0 to 8, edges 9 to 11.
+/// Returns the three components of a direction. Inputs 0 to 8 are the planes, 9 to 11 the edge functions.
 fn direction(inputs: &[(String, Number)]) -> [i128; 3] {
     let v = |k: usize| inputs[k].1.value;
     [0, 3, 6].map(|first| (0..3).map(|k| v(first + k) * v(9 + k)).sum())
@@ -594,7 +594,7 @@ fn cube_face(inputs: &[(String, Number)]) -> i128 {
     2 * axis as i128 + i128::from(d[axis] < 0)
 }
 
-/// s or t, and m, of a direction on a face (input 12).
+/// Returns the numerator of s or t, and |ma|, of a direction on the face of input 12.
 fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
     let [x, y, z] = direction(inputs);
     let (sc, tc, m) = match inputs[12].1.value {
@@ -608,7 +608,7 @@ fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
     [if s { sc } else { tc }, m]
 }
 
-/// floor(128 log2 n) - 4096 of the larger squared distance n.
+/// Returns floor(128 log2 n) - 4096 for the larger squared distance n.
 fn log2_ratio(uv: [i128; 6]) -> i128 {
     let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 60), 1 << 60));
     let n = ((u1 - u0).pow(2) + (v1 - v0).pow(2)).max((u2 - u0).pow(2) + (v2 - v0).pow(2)) as u128;
@@ -616,7 +616,7 @@ fn log2_ratio(uv: [i128; 6]) -> i128 {
         return -32768;
     }
     let exponent = n.ilog2();
-    // The mantissa, 1.0 to 2.0 with 60 fraction bits, squared seven times.
+    // Squares the mantissa seven times. It is 1.0 to 2.0 with 60 fraction bits.
     let mut mantissa = if exponent > 60 { n >> (exponent - 60) } else { n << (60 - exponent) };
     let mut log = i128::from(exponent);
     for _ in 0..7 {
@@ -674,7 +674,7 @@ fn surface(format: &str, word: i128, letter: &str) -> Option<i128> {
     })
 }
 
-/// Inputs: the format, the old word, the mask of written bits, then the channels that are written.
+/// Returns the word that is stored. The inputs are the format, the old word, the mask of written bits, then the channels that are written.
 fn store(inputs: &[(String, Number)]) -> Option<i128> {
     let mut rgba = [0; 4];
     for (name, value) in &inputs[3..] {
@@ -699,7 +699,7 @@ fn store(inputs: &[(String, Number)]) -> Option<i128> {
     Some(old & !mask | word & mask)
 }
 
-/// The number that an operand stands for; those of binary32 are given as their words.
+/// Returns the number that an operand stands for. Operands in binary32 are given as their bits.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn real(n: Number) -> f64 {
     if n.per_one == 0 { f32::from_bits(n.value as u32).into() } else { n.value as f64 / n.per_one as f64 }
@@ -710,7 +710,7 @@ fn cut(n: f64, step: f64) -> f64 {
     (n / step).trunc() * step
 }
 
-/// The place of the first bit.
+/// Returns the exponent of the first bit.
 fn power(n: f64) -> i32 {
     (n.abs().to_bits() >> 52) as i32 - 1023
 }
@@ -724,14 +724,15 @@ fn first_24(n: f64) -> f64 {
     if n == 0.0 { 0.0 } else { cut(n, two(power(n) - 23)) }
 }
 
-/// S of DEP-1, of cut edge functions the largest of which before cutting is in `e`.
+/// DEP-1: returns S, the sum of the truncated edge functions, in steps that depend on the largest of `e`, the edge functions before
+/// truncation.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth_sum(edges: [f64; 3], e: [f64; 3]) -> f64 {
     let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
     edges.into_iter().map(|e| cut(e, two(most - 28))).sum()
 }
 
-/// R of DEP-1: 29 bits, 3/16 of the last low; powers of two have exact ones.
+/// DEP-1: returns R, which has 29 bits and is 3/16 of the last bit too low. The reciprocal of a power of two is exact.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth_reciprocal(sum: f64) -> f64 {
     let top = power(sum);
@@ -740,7 +741,7 @@ fn depth_reciprocal(sum: f64) -> f64 {
     if whole == 1 << 30 { 1.0 / sum } else { low }
 }
 
-/// A step of DEP-1 on the way to a depth.
+/// Recomputes one of the steps of DEP-1 that lead to a depth.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth_part(operation: &str, inputs: &[f64; 3]) -> Number {
     let [first, second, _] = *inputs;
@@ -761,8 +762,8 @@ fn depth_part(operation: &str, inputs: &[f64; 3]) -> Number {
     }
 }
 
-/// DEP-1, DEP-4 and DEP-5, in doubles, which hold every one of these numbers. `None`: outside a range that does not clamp, which is what
-/// `depth_inside` asks.
+/// Recomputes the depth of DEP-1, DEP-4 and DEP-5 in doubles, which represent all of its numbers exactly. Returns `None` for `depth_inside`
+/// if the depth lies outside a range that does not clamp.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
     let number = |name: &str| inputs.iter().find(|(given, _)| given == name).map(|(_, n)| real(*n));
@@ -789,7 +790,7 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
         };
         let others = [weights[(dominant + 1) % 3], weights[(dominant + 2) % 3]];
         let rest = 1.0 - others[0] - others[1];
-        // A double rounds what is left of 1 up.
+        // If the others leave almost 1, the difference in doubles rounds to 1, so it is corrected to the number below.
         weights[dominant] = if rest == 1.0 && others != [0.0; 2] { 1.0 - two(-24) } else { first_24(rest) };
     }
     let terms = [0, 1, 2].map(|k| {
@@ -819,7 +820,7 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
     Some(depth)
 }
 
-/// DEP-3: the word of a float with `kept` bits of fraction.
+/// DEP-3: returns the word of a float with `kept` bits of fraction.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn float_word(z: f64, kept: i32, bias: i32, largest: i128) -> i128 {
     if z <= 0.0 {
@@ -834,8 +835,8 @@ fn float_word(z: f64, kept: i32, bias: i32, largest: i128) -> i128 {
     }
 }
 
-/// TEX-17: where a tap lies beside the pixel's coordinates, 1/256 texel, and its weight. u and v of the quad's three pixels follow; without them there
-/// is one tap.
+/// TEX-17: returns the offset of a tap from the pixel's coordinates in 1/256 texel, and its weight. `quad` has u and v of the quad's three
+/// pixels; if it is empty, there is one tap.
 fn tap([limit, number]: [i128; 2], quad: &[(String, Number)]) -> ([i128; 2], i128) {
     let c = |k: usize| quad.get(k).map_or(0, |input| input.1.value);
     let limited = |n: i128| n.clamp(-1 << 40, 1 << 40);

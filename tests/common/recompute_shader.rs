@@ -1,4 +1,4 @@
-//! The texture shader's operations, recomputed: single precision by the processor, the rest as exact fractions.
+//! Recomputes the operations of the texture shader. Single precision is computed by the processor, everything else in exact fractions.
 
 use super::Number;
 
@@ -17,13 +17,14 @@ fn value(inputs: &Inputs, n: usize) -> i128 {
     inputs[n].1.value
 }
 
-/// G0 E0 + G1 E1 + G2 E2.
+/// Returns G0 E0 + G1 E1 + G2 E2.
 pub fn numerator(inputs: &Inputs) -> i128 {
     (0..3).map(|k| value(inputs, k) * value(inputs, 3 + k)).sum()
 }
 
-/// 2^24 times the numerator of a function with weights that fall short, as a whole number and one over P1 (INT-4t): its numbers, the edge functions,
-/// and P0, P1, P2, short0, short2 begin at these inputs.
+/// INT-4t: returns 2^24 times the numerator of a function with weights that fall short, as a whole number and a number of parts 1/P1. The
+/// inputs from `x` on are the function's numbers, those from `e` on the edge functions, and those from `p` on P0, P1, P2, short0 and
+/// short2.
 pub fn short(inputs: &Inputs, x: usize, e: usize, p: usize) -> [i128; 2] {
     let v = |n: usize| value(inputs, n);
     let short = [v(p + 3), 0, v(p + 4)];
@@ -31,13 +32,13 @@ pub fn short(inputs: &Inputs, x: usize, e: usize, p: usize) -> [i128; 2] {
     [whole, v(x + 1) * (0..3).map(|k| short[k] * v(p + k) * v(e + k)).sum::<i128>()]
 }
 
-/// The same times P1, of numbers of 28 bits.
+/// Returns P1 times the result of [`short`], for numbers of 28 bits.
 pub fn short_of_unit(inputs: &Inputs, x: usize, e: usize, p: usize) -> i128 {
     let [whole, part] = short(inputs, x, e, p);
     whole * value(inputs, p + 1) + part
 }
 
-/// floor(scale n / d), d > 0, scale below 2^24; n and d may have 120 bits. Limited to 2^60.
+/// Returns floor(scale n / d) for d > 0 and scale below 2^24, limited to 2^60. n and d may have 120 bits.
 pub fn floor_of_product(n: i128, d: i128, scale: i128) -> i128 {
     let (whole, part) = (n.div_euclid(d).clamp(-1 << 36, 1 << 36), n.rem_euclid(d));
     let (mut value, mut rest) = (whole * scale, 0);
@@ -49,11 +50,11 @@ pub fn floor_of_product(n: i128, d: i128, scale: i128) -> i128 {
     value
 }
 
-/// floor(scale n / D 2^exponent).
+/// Returns floor(scale n / D 2^exponent).
 pub fn floor_number(inputs: &Inputs, scale: i128) -> i128 {
     let (n, d, exponent) = (numerator(inputs) * scale, value(inputs, 6), value(inputs, 7));
     if exponent <= 0 {
-        // A floor of a floor.
+        // The floor of a floor is the floor of the whole.
         return n.div_euclid(d) >> (-exponent).min(127);
     }
     match n.checked_mul(1_i128.checked_shl(exponent as u32).unwrap_or(i128::MAX)) {
@@ -62,10 +63,10 @@ pub fn floor_number(inputs: &Inputs, scale: i128) -> i128 {
     }
 }
 
-/// The nearest single-precision number to n / D 2^exponent.
+/// Returns the single-precision number nearest to n / D 2^exponent.
 pub fn nearest_float(inputs: &Inputs) -> Number {
     let (n, d, mut exponent) = (numerator(inputs), value(inputs, 6), value(inputs, 7));
-    // 50 bits of the quotient and a bit for whatever remains: a double holds them, and rounds once.
+    // Takes 50 bits of the quotient and one more for the remainder. A double represents them exactly, so the conversion rounds only once.
     let (mut quotient, mut remainder) = (n.abs() / d, n.abs() % d);
     while quotient < 1 << 50 && n != 0 {
         quotient = 2 * quotient + (2 * remainder) / d;
@@ -97,7 +98,7 @@ pub fn remap(operation: &str, inputs: &Inputs) -> Number {
         "remap_half_signed" => quotient(signed_half(0), 32768),
         "third_of_unit" => {
             let left = (32768 * 32768 - signed_half(0).pow(2) - signed_half(2).pow(2)).max(0);
-            // The largest n with 2 n <= sqrt(left), bit by bit.
+            // Finds the largest n with 2 n <= sqrt(left), bit by bit.
             let mut n = 0;
             for bit in (0..=14).rev() {
                 let more = n | 1 << bit;
@@ -128,7 +129,7 @@ pub fn float(operation: &str, inputs: &Inputs) -> Number {
     })
 }
 
-/// x = mantissa 2^exponent; infinity as 2^128.
+/// Splits x into mantissa 2^exponent. Infinity counts as 2^128.
 fn apart(x: f32) -> (i128, i32) {
     let field = (x.to_bits() >> 23 & 255) as i32;
     let fraction = i128::from(x.to_bits() & 0x7f_ffff);
@@ -136,7 +137,7 @@ fn apart(x: f32) -> (i128, i32) {
     (if x.is_sign_negative() { -mantissa } else { mantissa }, field.max(1) - 150)
 }
 
-/// floor(2^bits n x), limited.
+/// Returns floor(2^bits n x), limited to `limit`.
 fn floor_scaled(x: f32, n: i128, bits: i32, limit: i128) -> i128 {
     let (mantissa, exponent) = apart(x);
     let (product, exponent) = (mantissa * n, exponent + bits);
@@ -152,7 +153,7 @@ pub fn floor_float(inputs: &Inputs) -> i128 {
     if x.is_nan() { 0 } else { floor_scaled(x, value(inputs, 1), 8, 1 << 24) }
 }
 
-/// x, y, z; zero where something is not a number, or infinite.
+/// Returns x, y and z, or zero if one of them is not finite.
 fn vector(inputs: &Inputs) -> [f64; 3] {
     let vector = [0, 1, 2].map(|n| f64::from(single(inputs, n)));
     if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] }
@@ -185,7 +186,7 @@ pub fn face_coordinate(inputs: &Inputs, u: bool) -> i128 {
     half + (guess - 2..=guess + 2).rfind(fits).unwrap()
 }
 
-/// a x + b y as numerator and exponent, exactly.
+/// Returns a x + b y exactly, as numerator and exponent.
 fn sum(terms: [(i128, f32); 2]) -> (i128, i32) {
     let terms = terms.map(|(factor, x)| {
         let (mantissa, exponent) = apart(x);
@@ -215,7 +216,7 @@ pub fn luminance(inputs: &Inputs) -> i128 {
     value.div_euclid(255 * 255).clamp(0, 1 << 20)
 }
 
-/// SHD-1, DEP-3: the word of r, or of r/q where q's numbers follow r's; the format's name comes last.
+/// SHD-1, DEP-3: returns the word of r, or of r/q if the numbers of q follow. The last input is the name of the format.
 pub fn depth_word(inputs: &Inputs) -> i128 {
     let Some(((format, _), numbers)) = inputs.split_last() else { return 0 };
     let (r, q) = numbers.split_at(8.min(numbers.len()));
@@ -237,7 +238,7 @@ pub fn depth_word(inputs: &Inputs) -> i128 {
     if d.0 == 0 {
         return full;
     }
-    // Sixty bits of the quotient, bit by bit.
+    // Computes sixty bits of the quotient, one by one.
     let (mut quotient, mut rest, mut exponent) = (n.0 / d.0, n.0 % d.0, n.1 - d.1);
     while quotient >> 59 == 0 {
         rest *= 2;

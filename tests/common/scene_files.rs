@@ -1,4 +1,4 @@
-//! The scenes of the repository.
+//! Lists the scenes of the repository.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use ninebit_cli::expectation::Expectation;
 use ninebit_cli::replay::find;
 
-/// The folder of images that are not part of the repository, beside the scenes that need them.
+/// The folder, beside the scenes that need it, of images that are not part of the repository.
 pub const CAPTURED: &str = "captured/";
 
-/// The images of that folder that a scene names.
+/// Returns the images of [`CAPTURED`] that a scene refers to.
 pub fn captured(text: &str) -> Vec<String> {
     let strings = text.split('"').skip(1).step_by(2);
     let names: BTreeSet<&str> = strings.filter(|name| name.starts_with(CAPTURED)).collect();
     names.into_iter().map(str::to_owned).collect()
 }
 
-/// Every scene below a folder that can be drawn with what the repository has, sorted.
+/// Returns every scene below a folder that can be drawn with the files of the repository, sorted.
 #[allow(dead_code, reason = "not every test that shares this file lists scenes")]
 pub fn below(folder: &Path) -> Vec<PathBuf> {
     let entries = find(&[folder.to_path_buf()]).unwrap_or_else(|error| panic!("{error}"));

@@ -1,8 +1,8 @@
-//! Cases of public test suites: reading them, bringing each through the front end whole, and holding what comes out against the list
-//! of known differences.
+//! Runs the cases of public test suites. Each case is read, drawn through the whole front end, and judged with the list of known
+//! differences.
 //!
-//! `NINEBIT_CASES=FILE` runs another file of the same form instead; of one that names kinds, those of the test. The form is told in
-//! `vectors/third-party/README.md`. A case that cannot be put as a scene fails, by name: it never ends the run.
+//! `NINEBIT_CASES=FILE` runs another file of the same form. If its cases name kinds, a test runs those of its own kind.
+//! `vectors/third-party/README.md` describes the form. A case that cannot be expressed as a scene fails by name and does not end the run.
 #![allow(
     dead_code,
     unreachable_pub,
@@ -21,13 +21,13 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// A kind of cases: its file, and the name that other files have for it.
+/// A kind of cases: its file, and the name of the kind in other files.
 pub struct Kind {
     pub file: &'static str,
     pub name: &'static str,
 }
 
-/// The cases to run, and whether they are the repository's own.
+/// Returns the cases to run, and whether they are those of the repository.
 fn cases(kind: &Kind) -> (Vec<Value>, bool) {
     let other = std::env::var("NINEBIT_CASES").ok();
     let own = format!("vectors/third-party/{}.json", kind.file);
@@ -39,17 +39,17 @@ fn cases(kind: &Kind) -> (Vec<Value>, bool) {
     (cases, other.is_none())
 }
 
-/// What came of cases.
+/// The numbers of cases by outcome.
 #[derive(Debug, Default)]
 pub struct Outcome {
     pub wrong: Vec<String>,
-    /// Cases that differ as the list of known differences says.
+    /// Cases that differ as the list of known differences states.
     pub excepted: usize,
-    /// Cases that one of the chips can be asked.
+    /// Cases that apply to one of the chips.
     pub applicable: usize,
 }
 
-/// Runs every case of a kind: `problem` says what is wrong with it, given the case and the profile it names.
+/// Runs every case of a kind. `problem` gets the case and the profile that it names, and returns what is wrong.
 pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
     let kept = fs::read_to_string(at("docs/known-differences.md")).unwrap();
     let (cases, own) = cases(kind);
@@ -59,7 +59,7 @@ pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
     assert!(!own || applicable > 0, "no cases");
 }
 
-/// Holds cases against a text that names the known differences.
+/// Judges cases with a text that names the known differences.
 pub fn judge(cases: &[Value], kept: &str, problem: impl Fn(&Value, &str) -> Option<String>) -> Outcome {
     let mut outcome = Outcome::default();
     for case in cases {
@@ -68,7 +68,7 @@ pub fn judge(cases: &[Value], kept: &str, problem: impl Fn(&Value, &str) -> Opti
             continue;
         };
         if case["profile"] == "none" {
-            // Neither chip has what it asks for: the list says so by the test's name and what is asked for.
+            // If neither chip has the feature that a case needs, the list names the case by its test and this feature.
             let mode = case["inputs"]["mode"].as_str().unwrap_or(id);
             if !kept.contains(&format!("`{mode}`")) {
                 outcome.wrong.push(format!("{id} is not applicable and not listed as such"));
@@ -87,7 +87,7 @@ pub fn judge(cases: &[Value], kept: &str, problem: impl Fn(&Value, &str) -> Opti
     outcome
 }
 
-/// A case that the harness cannot read is wrong; the others still run.
+/// Returns the problem of a case. A panic counts as a problem, so that the other cases still run.
 fn caught(problem: impl Fn() -> Option<String>) -> Option<String> {
     catch_unwind(AssertUnwindSafe(problem)).unwrap_or_else(|panic| {
         let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
@@ -95,13 +95,13 @@ fn caught(problem: impl Fn() -> Option<String>) -> Option<String> {
     })
 }
 
-/// Reads a scene; a finding is a problem.
+/// Reads a scene. A finding is a problem.
 pub fn load(text: &str) -> Result<Loaded, String> {
     scene::parse(text, Path::new("case.ron"), &Limits::default())
         .map_err(|error| format!("{}\n{text}", error.render(false)))
 }
 
-/// What a scene shows in a pixel of its first target.
+/// Returns the colour of a pixel of the first target.
 pub fn pixel(text: &str, (x, y): (u32, u32)) -> Result<[u8; 4], String> {
     let loaded = load(text)?;
     let frames = engine::render(&loaded.plan, &RenderOptions::default());
@@ -109,8 +109,8 @@ pub fn pixel(text: &str, (x, y): (u32, u32)) -> Result<[u8; 4], String> {
     Ok(frames.surfaces[0].rgba8()[(y * width + x) as usize])
 }
 
-/// What is wrong with a colour, by the case's expectation and tolerance. What the suite states for the vendor's chips counts first. An
-/// expectation may be the name of an input (`framebuffer`), or a list of colours, each of which is right.
+/// Returns how a colour differs from the expectation of a case by more than its tolerance. What the suite states for the vendor's own chips
+/// takes precedence. An expectation may be the name of an input (`framebuffer`), or a list of colours that are all acceptable.
 pub fn differs(case: &Value, shown: Result<[u8; 4], String>) -> Option<String> {
     let expected = ["nvidia", "alt_expected_nv20", "expected"].iter().map(|field| &case[*field]).find(|v| !v.is_null());
     let expected = match expected {
@@ -131,7 +131,7 @@ pub fn differs(case: &Value, shown: Result<[u8; 4], String>) -> Option<String> {
     differs_from(colors, tolerance, shown)
 }
 
-/// The same with an expectation of the caller's: null is not looked at.
+/// Like [`differs`], with an expectation from the caller, in which null accepts any value.
 pub fn differs_from(expected: &[Value], tolerance: f64, shown: Result<[u8; 4], String>) -> Option<String> {
     let shown = match shown {
         Ok(shown) => shown,
@@ -144,13 +144,13 @@ pub fn differs_from(expected: &[Value], tolerance: f64, shown: Result<[u8; 4], S
     off.then(|| format!("{shown:?}, not {expected:?} within {tolerance}"))
 }
 
-/// A colour of bytes as a scene's: `(255, 128, 0)`. A channel that the suite does not state is full, as the alpha is that a target without
-/// alpha yields.
+/// Returns a colour of bytes in scene notation: `(255, 128, 0)`. Channels that the suite does not state are 255, which is also the alpha
+/// that a target without alpha yields.
 pub fn bytes(value: &Value) -> String {
     color_text(value, "255")
 }
 
-/// A colour of floats as a scene's.
+/// Returns a colour of floats in scene notation.
 pub fn floats(value: &Value) -> String {
     format!("Float{}", color_text(value, "1"))
 }
@@ -162,7 +162,7 @@ fn color_text(value: &Value, full: &str) -> String {
     format!("({})", parts.join(", "))
 }
 
-/// A colour under its name, of bytes, or of floats under its name and `_f`.
+/// Returns the colour of the given name, which has bytes, or of the name with `_f`, which has floats.
 pub fn color(inputs: &Value, name: &str) -> Option<String> {
     let exact = &inputs[format!("{name}_f")];
     if exact.is_array() {
@@ -171,21 +171,22 @@ pub fn color(inputs: &Value, name: &str) -> Option<String> {
     (!inputs[name].is_null()).then(|| bytes(&inputs[name]))
 }
 
-/// What the target holds before the draw, by the names that suites have for it, as further fields of a target.
+/// Returns further fields of a target that clear it to the values before the draw, by the names that the suites use.
 pub fn cleared(inputs: &Value) -> String {
     let names = ["framebuffer", "clear", "clear_color", "dst", "dest"];
     let color = names.iter().find_map(|name| color(inputs, name));
     color.map_or(String::new(), |color| format!(", clear: (color: {color})"))
 }
 
-/// A map of 128 x 128 texels.
+/// Returns the texels of a map of 128 x 128.
 fn map_of(texel: impl Fn(i32, i32) -> String) -> String {
     let row = |y| (0..128).map(|x| texel(x, y)).collect::<Vec<String>>().join(" ");
     let rows: Vec<String> = (0..128).map(|y| format!("\"{}\"", row(y))).collect();
     format!("source: Texels(width: 128, height: 128, rows: [{}])", rows.join(", "))
 }
 
-/// Wine's displacement map: it points away from the middle along the nearer axis. V8U8, V and U in the bytes of green and blue.
+/// Returns Wine's displacement map in V8U8, which points away from the centre along the nearer axis. V and U are in the bytes of green and
+/// blue.
 pub fn displacement_map() -> String {
     map_of(|x, y| {
         let (v, u) = match (x - 64).abs() > (y - 64).abs() {
@@ -196,23 +197,23 @@ pub fn displacement_map() -> String {
     })
 }
 
-/// Wine's map of places: red and green are twice column and row.
+/// Returns Wine's map of positions, in which red and green are twice the column and the row.
 pub fn place_map() -> String {
     map_of(|x, y| format!("ff{:02x}{:02x}00", 2 * x, 2 * y))
 }
 
-/// Letters and digits alone, in lower case.
+/// Returns only the letters and digits of a name, in lower case.
 pub fn folded(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 
-/// The name of an enumeration that a suite spells in capitals.
+/// Returns the name of a variant that a suite spells in capitals.
 pub fn named<T: Named>(name: &str) -> &'static str {
     let found = T::NAMES.iter().find(|known| folded(known) == folded(name));
     found.unwrap_or_else(|| panic!("{name} is not in {:?}", T::NAMES))
 }
 
-/// A blend factor by its name in OpenGL or Direct3D.
+/// Returns a blend factor by its name in OpenGL or Direct3D.
 pub fn blend_factor(name: &str) -> &'static str {
     let name = folded(name);
     let (inverse, plain) = match name.strip_prefix("oneminus").or_else(|| name.strip_prefix("inv")) {

@@ -1,25 +1,25 @@
-//! Compressed formats: TEX-2 to TEX-4.
+//! Decodes compressed formats: TEX-2 to TEX-4.
 
 use ninebit::state::TextureFormat;
 
-/// TEX-3: what is added before a channel is cut to 5, 6, 5 bits, by texel row and column.
+/// TEX-3: dither that is added to red before it is cut to five bits, by row and column of the texel.
 const DITHER_RED: [[i128; 4]; 4] = [[0, 4, 7, 3], [6, 2, 5, 1], [3, 7, 4, 0], [1, 5, 2, 6]];
 const DITHER_GREEN: [[i128; 4]; 4] = [[1, 3, 2, 0], [2, 0, 3, 1], [3, 1, 0, 2], [0, 2, 1, 3]];
 const DITHER_BLUE: [[i128; 4]; 4] = [[1, 5, 2, 6], [3, 7, 4, 0], [6, 2, 5, 1], [0, 4, 7, 3]];
 
-/// A channel of `bits` bits, replicated to 8.
+/// Widens a channel of `bits` bits to 8 by repeating them.
 fn widen(v: i128, bits: u32) -> i128 {
     v << (8 - bits) | v >> (2 * bits - 8)
 }
 
-/// The 5, 6, 5 bits of a colour.
+/// Returns the fields of a colour, which have 5, 6 and 5 bits.
 fn fields(word: u32) -> [i128; 3] {
     [word >> 11 & 31, word >> 5 & 63, word & 31].map(i128::from)
 }
 
 const WIDTHS: [u32; 3] = [5, 6, 5];
 
-/// TEX-3: one channel stored in `bits` bits with a dither that is taken off again.
+/// TEX-3: stores a channel in `bits` bits with dither, and removes the dither again.
 fn dithered(p: i128, bits: u32, d: i128) -> i128 {
     let step = 1 << (8 - bits);
     let n = (p + d) & (step - 1);
@@ -33,7 +33,7 @@ fn dithered(p: i128, bits: u32, d: i128) -> i128 {
     }
 }
 
-/// R, G, B, A of texel (x, y) of the block that starts with these words.
+/// Returns R, G, B, A of texel (x, y) of the block that begins with these words.
 pub fn texel(format: TextureFormat, nv2a: bool, block: &[u32], x: usize, y: usize) -> [i128; 4] {
     let one = format == TextureFormat::Dxt1;
     let (colors, indices) = if one { (block[0], block[1]) } else { (block[2], block[3]) };
@@ -45,7 +45,7 @@ pub fn texel(format: TextureFormat, nv2a: bool, block: &[u32], x: usize, y: usiz
         return [0; 4];
     }
     let (a, b) = (fields(low), fields(high));
-    // TEX-4: nv10 interpolates DXT1 at the width of each channel.
+    // TEX-4: nv10 mixes DXT1 at the width of each channel.
     let narrow = one && !nv2a;
     let [r, g, b] = [0, 1, 2].map(|c| {
         let (a, b) = if narrow { (a[c], b[c]) } else { (widen(a[c], WIDTHS[c]), widen(b[c], WIDTHS[c])) };
@@ -73,7 +73,7 @@ pub fn texel(format: TextureFormat, nv2a: bool, block: &[u32], x: usize, y: usiz
             match index {
                 0 => a,
                 1 => b,
-                // The nearest seventh.
+                // Rounds to the nearest seventh.
                 i if a > b => (2 * ((8 - i) * a + (i - 1) * b) + 7) / 14,
                 6 => 0,
                 7 => 255,

@@ -1,4 +1,4 @@
-//! General stages (CMB) and the final combiner (FIN), policies included.
+//! Computes general stages (CMB) and the final combiner (FIN), with all policies.
 
 use super::real::rnd255;
 use ninebit::state::{
@@ -7,7 +7,7 @@ use ninebit::state::{
     Scale, SumRounding,
 };
 
-/// The register file: R, G, B, A each, in units of 1/255.
+/// The registers with R, G, B, A each, in units of 1/255.
 #[derive(Clone)]
 pub struct Registers {
     pub fog: [i128; 4],
@@ -51,7 +51,7 @@ impl Registers {
     }
 }
 
-/// CMB-2 to CMB-5, in half units (CMB-4=127.5 has a half bit).
+/// CMB-2 to CMB-5: maps an input. The result is in half units, because CMB-4=127.5 needs a half.
 fn map(mapping: InputMapping, x: i128, policies: &Policies) -> i128 {
     let positive = x.max(0);
     let expanded = match policies.expand_centre {
@@ -75,15 +75,15 @@ fn map(mapping: InputMapping, x: i128, policies: &Policies) -> i128 {
     }
 }
 
-/// Raw values carry quarter units over 255: one register step is 4 * 255.
+/// One unit of a register in raw values, which are in quarter units times 255.
 const STEP: i128 = 4 * 255;
 
-/// CMB-6: floor(raw / 255 + 1/2).
+/// CMB-6: returns floor(raw / 255 + 1/2).
 fn round(raw: i128) -> i128 {
     (2 * raw + STEP).div_euclid(2 * STEP)
 }
 
-/// CMB-9 and NUM-3: a raw value to a register.
+/// CMB-9, NUM-3: returns the register value of a raw value.
 fn finish(raw: i128, portion: &Portion, policies: &Policies) -> i128 {
     let bias = if portion.bias == Bias::NegativeHalf { 128 } else { 0 };
     let value = match policies.output_rounding {
@@ -97,7 +97,7 @@ fn finish(raw: i128, portion: &Portion, policies: &Policies) -> i128 {
             }
         }
         OutputRounding::AfterScale => {
-            // One more factor of two keeps x1/2 exact.
+            // A factor of two more makes the scale x1/2 exact.
             let doubled = match portion.scale {
                 Scale::One => 2,
                 Scale::Two => 4,
@@ -114,7 +114,7 @@ fn finish(raw: i128, portion: &Portion, policies: &Policies) -> i128 {
     value.clamp(floor, 255)
 }
 
-/// CMB-10.
+/// CMB-10: returns whether the mux selects CD.
 fn mux_set(select: MuxSelect, value: i128, policies: &Policies) -> bool {
     match select {
         MuxSelect::Lsb => value & 1 == 1,
@@ -123,7 +123,7 @@ fn mux_set(select: MuxSelect, value: i128, policies: &Policies) -> bool {
     }
 }
 
-/// The three finished outputs of a portion for `channels` channels: AB, CD, and the sum or mux.
+/// Returns the finished outputs of a portion in `channels` channels: AB, CD, and the sum or mux.
 fn portion_outputs(
     portion: &Portion,
     mapped: [[i128; 3]; 4],
@@ -160,7 +160,7 @@ fn portion_outputs(
     [ab, cd, third].map(|output| output.map(|raw| finish(raw, portion, policies)))
 }
 
-/// CMB-1: one stage.
+/// CMB-1: runs one stage, whose inputs are all read before an output is written.
 fn stage(registers: &mut Registers, stage: &ninebit::state::GeneralStage, select: MuxSelect, policies: &Policies) {
     let old = registers.clone();
     let set = mux_set(select, old.spare0[3], policies);
@@ -193,12 +193,12 @@ fn stage(registers: &mut Registers, stage: &ninebit::state::GeneralStage, select
     }
 }
 
-/// FIN-1: identity or invert, never negative.
+/// FIN-1: applies identity or invert. The result is never negative.
 fn limit(x: i128, invert: bool) -> i128 {
     if invert { (255 - x.max(0)).max(0) } else { x.max(0) }
 }
 
-/// FIN-1 to FIN-4: R, G, B, A bytes.
+/// FIN-1 to FIN-4: returns the bytes R, G, B, A of the pixel.
 fn finish_pixel(registers: &Registers, combiners: &Combiners, policies: &Policies) -> [i128; 4] {
     let f = &combiners.final_combiner;
     // FIN-3
@@ -255,7 +255,7 @@ fn finish_pixel(registers: &Registers, combiners: &Combiners, policies: &Policie
     out
 }
 
-/// All stages and the final combiner.
+/// Runs all stages and the final combiner.
 pub fn run(mut registers: Registers, combiners: &Combiners, policies: &Policies) -> [i128; 4] {
     for s in &combiners.stages {
         stage(&mut registers, s, combiners.mux_select, policies);

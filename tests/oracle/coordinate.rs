@@ -1,38 +1,38 @@
-//! Where a unit samples: INT-4, INT-4t, TEX-11, TEX-12, TEX-13, TEX-15, and the coordinates of the texture shader.
+//! Computes where a unit samples: INT-4, INT-4t, TEX-11, TEX-12, TEX-13, TEX-15, and the coordinates of the texture shader.
 
 use super::raster::{Sample, Setup};
 use super::real::{align, bits, floor_div, floor_sum, shift, split};
 
-/// TEX-15: 65536 texels, in 1/256 texel. Coordinates made by the texture shader are limited to them too.
+/// TEX-15: the limit of 65536 texels, in 1/256 texel. It also applies to coordinates that the texture shader computes.
 const LIMIT: i128 = 1 << 24;
 
-/// m 2^e.
+/// The number m 2^e, as (m, e).
 pub type Exact = (i128, i32);
 
-/// What a unit's coordinates come from, at one pixel.
+/// The source of a unit's coordinates at one pixel.
 #[derive(Clone, Debug)]
 pub enum Place {
-    /// s, t (and q where it is not 1) of a coordinate set.
+    /// s and t of a coordinate set, divided by q if q is not 1.
     Set(usize),
     /// s, t, r of a coordinate set as a direction.
     Direction(usize),
-    /// s, t of a coordinate set, each moved by 1/128 of a number (TSH-7).
+    /// s and t of a coordinate set, each moved by 1/128 of a number (TSH-7).
     Moved(usize, [Exact; 2]),
-    /// Two bytes and what they are divided by (TSH-6).
+    /// Two bytes, and the divisor that makes them coordinates (TSH-6).
     Bytes([i128; 2], i128),
-    /// s, t of the dot unit (TSH-4).
+    /// s and t that the dot unit computes (TSH-4).
     Floats([f32; 2]),
-    /// A direction of the dot unit.
+    /// A direction that the dot unit computes.
     Vector([f32; 3]),
 }
 
-/// On a face: sc and |ma| in one unit, tc and |ma| in one unit.
+/// Coordinates on a face: sc and tc as `minor`, and for each of them |ma| in the same unit as `major`.
 struct Projected {
     minor: [i128; 2],
     major: [i128; 2],
 }
 
-/// TEX-12: (sc, tc) and ma of a face.
+/// TEX-12: returns (sc, tc) and ma of a direction on a face.
 fn project<T: Copy>(face: usize, [x, y, z]: [T; 3], minus: impl Fn(T) -> T) -> ([T; 2], T) {
     match face {
         0 => ([minus(z), minus(y)], x),
@@ -44,7 +44,7 @@ fn project<T: Copy>(face: usize, [x, y, z]: [T; 3], minus: impl Fn(T) -> T) -> (
     }
 }
 
-/// TEX-12, TEX-13: the face by the largest magnitude, X over Y over Z.
+/// TEX-12, TEX-13: returns the face of the component with the largest magnitude. X precedes Y, and Y precedes Z.
 fn face_of<T: Copy + PartialOrd>([x, y, z]: [T; 3], [ax, ay, az]: [T; 3], zero: T) -> usize {
     let (axis, value) = if ax >= ay && ax >= az {
         (0, x)
@@ -56,7 +56,7 @@ fn face_of<T: Copy + PartialOrd>([x, y, z]: [T; 3], [ax, ay, az]: [T; 3], zero: 
     2 * axis + usize::from(value < zero)
 }
 
-/// Two floats as integers of one unit; what is tiny beside the other keeps its sign only.
+/// Returns two floats as integers of the same unit. If one is tiny compared with the other, only its sign is certain.
 fn same_unit(a: f32, b: f32) -> [i128; 2] {
     let ((m, e), (n, f)) = (split(a), split(b));
     if e >= f { [m << (e - f).min(70), n] } else { [m, n << (f - e).min(70)] }
@@ -74,7 +74,7 @@ impl Setup {
         self.vertices.each_ref().map(|v| v.texture_coordinates[set][n])
     }
 
-    /// Nine products of one exponent, 28 bits, cut toward zero (TEX-15).
+    /// TEX-15: returns nine products in 28 bits with a common exponent, truncated toward zero.
     fn three(&self, set: usize, which: [usize; 3]) -> [[i128; 3]; 3] {
         let parts: [(i128, i32); 9] = std::array::from_fn(|n| {
             let (m, e) = split(self.vertices[n % 3].texture_coordinates[set][which[n / 3]]);
@@ -89,8 +89,8 @@ impl Setup {
         (0..3).map(|k| x[k] * sample.e[k]).sum()
     }
 
-    /// INT-4t: how a number lies beside its tie, in the direction of the weights that fall short. Earlier units at the pixels of a quad
-    /// that are not covered take the same formula.
+    /// INT-4t: returns on which side of a tie a number lies, in the direction of the weights that fall short. The formula also applies to
+    /// earlier units at pixels of the quad that are not covered.
     fn lean(&self, sample: &Sample, x: [i128; 3]) -> i128 {
         if self.exact {
             return 0;
@@ -99,9 +99,9 @@ impl Setup {
         [0, 2].into_iter().filter(|i| *i != dominant).map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1])).sum()
     }
 
-    /// INT-4t: 2^24 times the numerator of x with weights that fall short, as a whole number and one over P_1.
+    /// INT-4t: returns 2^24 times the numerator of x with weights that fall short, as a whole number and a number of parts 1/P_1.
     ///
-    /// The edge functions of weights 0 and 2 count 2^24 - 1 times instead of 2^24 times where they fall short, and vertex 1 has what is left.
+    /// Where weights 0 and 2 fall short, their edge functions count 2^24 - 1 times in place of 2^24 times, and vertex 1 has the remainder.
     fn short(&self, sample: &Sample, x: [i128; 3]) -> [i128; 2] {
         let (n, dominant) = self.weights(sample);
         let falls = |k: usize| i128::from(!self.exact && k != 1 && k != dominant);
@@ -109,14 +109,15 @@ impl Setup {
         [whole, x[1] * (0..3).map(|k| falls(k) * n[k]).sum::<i128>()]
     }
 
-    /// Whether q is 1 at all vertices.
+    /// Returns whether q is 1 at all vertices.
     fn is_plane(&self, set: usize) -> bool {
         self.component(set, 3) == [1.0; 3]
     }
 }
 
 impl Place {
-    /// Face (0 but for cubes) and coordinates in 1/256 texel of a level with such sides; a rectangle's count as 1.
+    /// Returns the face, which is 0 except for cube maps, and the coordinates in 1/256 texel of a level with these sides. The sides of a
+    /// rectangle count as 1.
     pub fn at(&self, setup: &Setup, sample: &Sample, size: [u32; 2]) -> (usize, [i128; 2]) {
         match self {
             Place::Set(set) if setup.is_plane(*set) => (0, [0, 1].map(|a| plane(setup, sample, *set, a, size[a]))),
@@ -137,7 +138,7 @@ impl Place {
         }
     }
 
-    /// A further component of a coordinate set, as `at` has s and t.
+    /// Returns another component of a coordinate set in the same way as [`Place::at`] returns s and t.
     pub fn along(&self, setup: &Setup, sample: &Sample, n: usize, size: u32) -> Option<i128> {
         let Place::Set(set) = self else { return None };
         if setup.is_plane(*set) {
@@ -147,7 +148,7 @@ impl Place {
         Some(ratio(setup, sample, r, q, size))
     }
 
-    /// The face that a quad is measured on (TEX-11).
+    /// TEX-11: returns the face on which a quad is measured.
     pub fn face(&self, setup: &Setup, sample: &Sample) -> usize {
         match self {
             Place::Direction(set) => {
@@ -159,7 +160,8 @@ impl Place {
         }
     }
 
-    /// TEX-11: coordinates in 2^-16 texel of level 0, no ties, cubes on the given face; none where a denominator is not positive.
+    /// TEX-11: returns coordinates in 2^-16 texel of level 0, without treatment of ties and for cube maps on the given face. Returns `None`
+    /// if a denominator is not positive.
     pub fn fine(&self, setup: &Setup, sample: &Sample, size: [u32; 2], face: usize) -> Option<[i128; 2]> {
         let quotient = |n: i128, d: i128| (d > 0).then(|| floor_div(n, d).0);
         let scale = size.map(|n| i128::from(n) << 16);
@@ -195,14 +197,14 @@ impl Place {
     }
 }
 
-/// INT-4 and INT-4t: u = floor(sum G E / D).
+/// INT-4, INT-4t: returns u = floor(sum G E / D).
 fn plane(setup: &Setup, sample: &Sample, set: usize, axis: usize, size: u32) -> i128 {
     let g = setup.plane(setup.component(set, axis), size);
     let (u, tie) = floor_div(Setup::total(sample, g), sample.d);
     if tie && setup.lean(sample, g) > 0 { u - 1 } else { u }
 }
 
-/// TEX-15 with weights that fall short (INT-4t).
+/// TEX-15, INT-4t: returns a ratio with weights that fall short.
 fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) -> i128 {
     let [n, d] = [s, q].map(|x| {
         let [whole, part] = setup.short(sample, x);
@@ -212,14 +214,14 @@ fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) 
         return n.signum() * LIMIT;
     }
     let (n, d) = (n * d.signum(), d.abs());
-    // What is below 1 is multiplied bit by bit, so that nothing leaves 127 bits.
+    // The fraction is multiplied bit by bit, so that no product exceeds 127 bits.
     let scale = 256 * i128::from(size);
     let (whole, part) = (n.div_euclid(d), n.rem_euclid(d));
     let (mut value, mut rest) = (0, 0);
     for bit in (0..24).rev() {
         rest = 2 * rest + (scale >> bit & 1) * part;
         value *= 2;
-        // Below three times d: at most two steps, and no division.
+        // `rest` is below 3 d, so at most two subtractions replace a division.
         while rest >= d {
             rest -= d;
             value += 1;
@@ -228,12 +230,12 @@ fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) 
     (value + whole.clamp(-2 * LIMIT, 2 * LIMIT) * scale).clamp(-LIMIT, LIMIT)
 }
 
-/// TSH-7's movement in 2^-24 of 1/256 texel.
+/// TSH-7: returns the offset in 2^-24 of 1/256 texel.
 fn offset((m, e): Exact, size: u32) -> i128 {
     floor_sum(&[(m * i128::from(size), e + 25)])
 }
 
-/// floor((total 2^24 + by D) / (D 2^24)), D > 0.
+/// Returns floor((total 2^24 + by D) / (D 2^24)), or `None` unless D > 0.
 fn moved_by(total: i128, d: i128, by: i128) -> Option<i128> {
     if d <= 0 {
         return None;
@@ -242,18 +244,18 @@ fn moved_by(total: i128, d: i128, by: i128) -> Option<i128> {
     Some(whole + (by >> 24) + floor_div((rest << 24) + (by & 0xff_ffff) * d, d << 24).0)
 }
 
-/// TSH-7: s or t of a set with weights that fall short (INT-4t), moved; q is not divided by.
+/// TSH-7, INT-4t: returns s or t of a set with weights that fall short, moved by an offset. There is no division by q.
 fn moved(setup: &Setup, sample: &Sample, set: usize, axis: usize, by: Exact, size: u32) -> i128 {
     let g = setup.plane(setup.component(set, axis), size);
     let ([whole, part], by) = (setup.short(sample, g), offset(by, size));
-    // Both in 2^-24 of 1/256 texel; whole steps of the movement are added at last.
+    // Both are in 2^-24 of 1/256 texel. Whole steps of the offset are added last.
     let (down, p) = (sample.d << 24, setup.p[1]);
     let sum = whole + (by & 0xff_ffff) * sample.d;
     let steps = sum.div_euclid(down) + (sum.rem_euclid(down) * p + part).div_euclid(down * p);
     ((by >> 24) + steps).clamp(-LIMIT, LIMIT)
 }
 
-/// TEX-12, TEX-13; a tie leans as its numerator and denominator do.
+/// TEX-12, TEX-13: returns the face and the coordinates of a direction. A tie is resolved by the numerator and the denominator together.
 fn direction(setup: &Setup, sample: &Sample, three: [[i128; 3]; 3], size: u32) -> (usize, [i128; 2]) {
     let v = three.map(|x| Setup::total(sample, x));
     if v == [0; 3] {
@@ -272,7 +274,7 @@ fn direction(setup: &Setup, sample: &Sample, three: [[i128; 3]; 3], size: u32) -
     (face, u)
 }
 
-/// The face of a direction of floats; none for the zero vector, which stands for what is not finite too (TEX-13).
+/// TEX-13: returns the face of a direction of floats, or `None` for the zero vector and for components that are not finite.
 fn vector_face(v: [f32; 3]) -> Option<usize> {
     (v.iter().all(|x| x.is_finite()) && v != [0.0; 3]).then(|| face_of(v, v.map(f32::abs), 0.0))
 }
@@ -283,7 +285,7 @@ fn vector_on(v: [f32; 3], face: usize) -> Projected {
     Projected { minor: pairs.map(|p| p[0]), major: pairs.map(|p| p[1]) }
 }
 
-/// floor(f * scale).
+/// Returns floor(f * scale), limited for infinity and 0 for NaN.
 fn floor_float(f: f32, scale: i128) -> i128 {
     if f.is_nan() {
         return 0;
@@ -295,10 +297,11 @@ fn floor_float(f: f32, scale: i128) -> i128 {
     floor_sum(&[(m * scale, e)])
 }
 
-/// TEX-9 to TEX-11: the lod of a quad in 1/256, before bias and limits, from the coordinates of its top left, right and lower pixel.
+/// TEX-9 to TEX-11: returns the lod of a quad in 1/256, before bias and limits, from the coordinates of its top-left, right and lower
+/// pixel.
 pub fn lod(corners: [Option<[i128; 2]>; 3]) -> i128 {
     const LEAST: i128 = -32768;
-    // Coordinates beyond 2^44 texels are as far away as any.
+    // Coordinates beyond 2^44 texels need not be told apart.
     let limited = corners.map(|c| c.map(|c| c.map(|c| c.clamp(-1 << 60, 1 << 60))));
     let [Some(left), Some(right), Some(lower)] = limited else { return LEAST };
     let square = |to: [i128; 2]| -> u128 { (0..2).map(|a| (to[a] - left[a]).unsigned_abs().pow(2)).sum() };

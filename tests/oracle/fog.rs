@@ -1,14 +1,14 @@
-//! The fog factor: FOG-1 to FOG-5, INT-5n, NUM-6.
+//! Computes the fog factor: FOG-1 to FOG-5, INT-5n, NUM-6.
 
 use super::raster::{Sample, Setup};
 use super::real::{bits, factor_byte, floor_div, floor_sum, shift, split};
 use super::tally::{count, count_named};
 use ninebit::state::{FogFunction, FogMode, Profile};
 
-/// FOG.a of a pixel, a byte.
+/// Returns the fog factor of a pixel, as a byte.
 pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> i128 {
     let Some(function) = function else {
-        // INT-5n: the vertices' factors, interpolated.
+        // Without a function, the factors of the vertices are interpolated.
         let sum: i128 = (0..3)
             .map(|k| {
                 let given = setup.vertices[k].fog;
@@ -22,7 +22,7 @@ pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> 
     let mut finite = setup.vertices.iter().all(|vertex| vertex.fog.is_finite());
     match function.mode {
         FogMode::Linear | FogMode::LinearAbs => {
-            // INT-5n: where the vertices have e the function is e - 1.
+            // INT-5n: if the vertices have the result e, the function is e - 1.
             let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (function.p0, function.p1) };
             finite &= p0.is_finite() && p1.is_finite();
             if !finite {
@@ -39,7 +39,7 @@ pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> 
     }
 }
 
-/// FOG-2: the fog coordinate cut to 24 significant bits, as m 2^e.
+/// FOG-2: returns the fog coordinate, truncated to 24 significant bits, as m 2^e.
 fn coordinate(setup: &Setup, sample: &Sample) -> (i128, i32) {
     let (n, e) = setup.attribute(sample, |v| v.fog);
     if n == 0 {
@@ -51,14 +51,14 @@ fn coordinate(setup: &Setup, sample: &Sample) -> (i128, i32) {
     (n.signum() * (q >> drop), e - up + drop)
 }
 
-/// FOG-2: v.
+/// FOG-2: returns v, the linear factor in 4096ths, limited to 0..4096.
 fn in_4096ths(mode: FogMode, (p0, p1): (f32, f32), (d, de): (i128, i32)) -> i128 {
     let d = if mode == FogMode::LinearAbs { d.abs() } else { d };
     let ((p0, e0), (p1, e1)) = (split(p0), split(p1));
     floor_sum(&[(p0, e0 + 12), (d * p1, de + e1 + 12), (-1, 12)]).clamp(0, 4096)
 }
 
-/// FOG-4: q, with INT-4t's tie; limited far outside what the tables know.
+/// FOG-4: returns q, with the tie of INT-4t. It is limited far outside the range of the tables.
 fn steps(setup: &Setup, sample: &Sample) -> i128 {
     let (g, e) = setup.attribute_numbers(|v| v.fog);
     let sum: i128 = (0..3).map(|k| g[k] * sample.e[k]).sum();
@@ -89,7 +89,7 @@ fn steps(setup: &Setup, sample: &Sample) -> i128 {
     floor.clamp(-1 << 40, 1 << 40) - i128::from(lowered) - 6144
 }
 
-/// FOG-4: the byte of q.
+/// FOG-4: returns the fog byte for q.
 pub fn exponential(mode: FogMode, q: i128) -> i128 {
     if mode == FogMode::Exp && q >= 0 {
         return 255;
@@ -107,7 +107,7 @@ pub fn exponential(mode: FogMode, q: i128) -> i128 {
     (entry(i) * (64 - w) + entry(i + 1) * w + 32) / 64
 }
 
-/// A word of the light unit (FOG-1): a number m 2^e of at most 14 bits, or none.
+/// FOG-1: a word of the light unit, which is m 2^e with at most 14 bits in m, infinite, or not a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     Number(i128, i32),
@@ -115,7 +115,7 @@ pub enum Light {
     NotANumber,
 }
 
-/// FOG-1.
+/// FOG-1: converts a float to a word of the light unit.
 pub fn light(f: f32) -> Light {
     if f.is_nan() {
         return Light::NotANumber;
@@ -132,7 +132,7 @@ pub fn light(f: f32) -> Light {
     Light::Number(m.signum() * (size >> 10), e + 10)
 }
 
-/// FOG-3: 14 significant bits toward zero, within single precision.
+/// FOG-3: truncates to 14 significant bits toward zero, within the range of single precision.
 fn fourteen(m: i128, e: i32) -> Light {
     if m == 0 || bits(m) + e < -125 {
         return Light::Number(0, 0);
@@ -144,7 +144,7 @@ fn fourteen(m: i128, e: i32) -> Light {
     Light::Number(m.signum() * (m.abs() >> drop), e + drop)
 }
 
-/// FOG-3: mul14.
+/// FOG-3: the product of two words, `mul14`.
 pub fn product(a: Light, b: Light) -> Light {
     match (a, b) {
         (Light::NotANumber, _) | (_, Light::NotANumber) => Light::NotANumber,
@@ -154,7 +154,7 @@ pub fn product(a: Light, b: Light) -> Light {
     }
 }
 
-/// FOG-3: sum14.
+/// FOG-3: the sum of three words, `sum14`.
 pub fn sum(terms: [Light; 3]) -> Light {
     if terms.contains(&Light::NotANumber) {
         return Light::NotANumber;
@@ -173,7 +173,7 @@ pub fn sum(terms: [Light; 3]) -> Light {
     fourteen(total, last)
 }
 
-/// The word as the number that it is.
+/// Returns the value of a word as a float.
 pub fn number(word: Light) -> f32 {
     match word {
         Light::Number(m, e) => (m as f64 * 2.0_f64.powi(e)) as f32,
@@ -188,7 +188,7 @@ pub fn number(word: Light) -> f32 {
     }
 }
 
-/// What a vertex passes on for the coordinate d: d' (FOG-2) or e (FOG-3, INT-5n).
+/// Returns the value that a vertex passes on for the coordinate d: d' (FOG-2), or e (FOG-3, INT-5n).
 pub fn at_vertex(function: &FogFunction, profile: Profile, d: f32) -> f32 {
     let straight = matches!(function.mode, FogMode::Linear | FogMode::LinearAbs);
     if straight && !function.per_vertex {
@@ -197,7 +197,7 @@ pub fn at_vertex(function: &FogFunction, profile: Profile, d: f32) -> f32 {
     let [c0, c1, c2] = [function.p0, function.p1, function.p2].map(light);
     let e = number(sum([c0, product(c1, light(d)), product(c2, light(d * d))]));
     if profile == Profile::Nv10 && e.is_finite() {
-        // INT-5n: bit 10 is bit 11.
+        // INT-5n: bit 10 is a copy of bit 11.
         let word = e.to_bits();
         return f32::from_bits(word & !(1 << 10) | (word >> 11 & 1) << 10);
     }

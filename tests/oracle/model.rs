@@ -1,7 +1,7 @@
-//! A second model of the chip, written from the rules alone: slow, in straight lines, on i128.
+//! A second model of the chip, written from the rules alone: slow, in straight lines, with integers of 128 bits.
 //!
-//! It shares no code with the crate but the scene it reads (`ninebit::state`) and the surfaces it returns, so that an error in one of
-//! the two shows as a difference.
+//! It shares no code with the crate except for the scene that it reads (`ninebit::state`) and the surfaces that it returns, so an error in
+//! one of the two models shows as a difference.
 #![allow(
     missing_docs,
     missing_debug_implementations,
@@ -30,7 +30,7 @@ use raster::{Sample, Setup};
 use shader::Units;
 use texture::Image;
 
-/// Every surface of the scene after its draws.
+/// Returns every surface of the scene after all draws.
 pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
     let mut surfaces: Vec<Surface> = scene
         .targets
@@ -79,7 +79,7 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
                 let Some(textures) = units.registers(i.into(), j.into(), &sample) else { continue };
                 let color = shade(draw, textures, &setup, &sample, policies);
                 let at = (j * u64::from(target.width) + i) as usize;
-                // ROP-1, then STN-1, then DEP-2.
+                // The order is ROP-1, STN-1, DEP-2.
                 if let Some(test) = draw.alpha_test
                     && !test.function.passes(color[3] as u32, test.reference.into())
                 {
@@ -89,7 +89,7 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
                     && (draw.depth_test.is_some() || draw.stencil_test.is_some())
                 {
                     let (mut stencil, mut stored) = (surface.depth[at] >> 24, surface.depth[at] % (1 << 24));
-                    // DEP-4 comes before either test.
+                    // DEP-4 comes before both tests.
                     let incoming = match &draw.depth_test {
                         Some(test) => match setup.depth(&sample, test, buffer.format) {
                             Some(depth) => depth,
@@ -109,7 +109,7 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
     }
 }
 
-/// CLP-1, CLP-2
+/// CLP-1, CLP-2: returns whether clip rectangles exclude a pixel.
 fn clipped(draw: &Draw, target: &Target, (x, y): (u64, u64)) -> bool {
     let inside = |r: &Rectangle| {
         let reaches = |at: u64, from: u32, size: u32| at >= u64::from(from) && at < u64::from(from) + u64::from(size);
@@ -123,7 +123,7 @@ fn clipped(draw: &Draw, target: &Target, (x, y): (u64, u64)) -> bool {
     window || target.clip.is_some_and(|clip| !inside(&clip))
 }
 
-/// One fragment's colour, R, G, B, A bytes.
+/// Returns the colour of a fragment, bytes R, G, B, A.
 fn shade(draw: &Draw, textures: [[i128; 4]; 4], setup: &Setup, sample: &Sample, policies: &Policies) -> [i128; 4] {
     let [r, g, b] = draw.fog.color.map(i128::from);
     let weights = setup.color_weights(sample);
@@ -132,7 +132,7 @@ fn shade(draw: &Draw, textures: [[i128; 4]; 4], setup: &Setup, sample: &Sample, 
         primary: setup.color(weights, |v| v.diffuse),
         secondary: setup.color(weights, |v| v.specular),
         textures,
-        // CMB-13
+        // CMB-13: SPARE0 begins with the alpha of TEXTURE0.
         spare0: [0, 0, 0, textures[0][3]],
         spare1: [0; 4],
     };

@@ -1,4 +1,4 @@
-//! Vertices to covered pixels, and everything that is interpolated.
+//! Computes covered pixels from vertices, and everything that is interpolated.
 
 use super::real::{align, color_byte, floor_div, shift, split};
 use ninebit::state::{
@@ -6,10 +6,10 @@ use ninebit::state::{
     Topology, Vertex, VertexColor, VertexDepths, Viewport,
 };
 
-/// RAS-6: vertices nearer than this are clipped away.
+/// RAS-6: vertices with a smaller w are clipped away.
 const NEAREST_W: f32 = 1.0 / 1_048_576.0;
 
-/// RAS-4 and RAS-5: triples of positions in the index list, and the position of the provoking vertex.
+/// RAS-4, RAS-5: returns for each triangle the three positions in the index list, and the position of its provoking vertex.
 pub fn split_topology(draw: &Draw) -> Vec<([usize; 3], usize)> {
     let n = draw.indices.len();
     let last = draw.provoking_vertex == ProvokingVertex::Last;
@@ -71,10 +71,10 @@ fn mix_color(a: VertexColor, b: VertexColor, t: f32) -> VertexColor {
     VertexColor::Floats(std::array::from_fn(|k| mix(p[k], q[k], t)))
 }
 
-/// RAS-6: how far the guard band reaches from the window's origin.
+/// RAS-6: distance of the guard band from the window's origin, in pixels.
 const BAND: f32 = 4095.9375;
 
-/// RAS-6: the signed distance of a position from plane 0 to 6: near, far, w, left, right, top, bottom.
+/// RAS-6: returns the signed distance of a position from plane 0 to 6: near, far, w, left, right, top, bottom.
 fn distance(plane: usize, [x, y, z, w]: [f32; 4], port: &Viewport) -> f32 {
     let (h, g) = (port.width / 2.0, port.height / 2.0);
     let (c, d) = (port.x + h, port.y + g);
@@ -90,7 +90,7 @@ fn distance(plane: usize, [x, y, z, w]: [f32; 4], port: &Viewport) -> f32 {
     }
 }
 
-/// RAS-7: the vertex where the edge from the inside vertex `a` to the outside vertex `b` meets a plane.
+/// RAS-7: returns the vertex at which the edge from the inner vertex `a` to the outer vertex `b` meets a plane.
 fn crossing(plane: usize, a: &Vertex, b: &Vertex, port: &Viewport) -> Vertex {
     let (before, behind) = (distance(plane, a.position, port), distance(plane, b.position, port));
     let t = if plane == 2 { before / (a.position[3] - b.position[3]) } else { before / (before - behind) };
@@ -120,7 +120,7 @@ fn crossing(plane: usize, a: &Vertex, b: &Vertex, port: &Viewport) -> Vertex {
     }
 }
 
-/// RAS-6: what of a polygon lies on the inner side of a plane.
+/// RAS-6: returns the part of a polygon on the inner side of a plane.
 fn half(plane: usize, polygon: &[Vertex], port: &Viewport) -> Vec<Vertex> {
     let outside: Vec<bool> = polygon.iter().map(|v| distance(plane, v.position, port) < 0.0).collect();
     let mut kept = Vec::new();
@@ -137,7 +137,7 @@ fn half(plane: usize, polygon: &[Vertex], port: &Viewport) -> Vec<Vertex> {
     kept
 }
 
-/// RAS-6: what is left of a triangle, in clip space.
+/// RAS-6: returns the part of a triangle in clip space that is not clipped.
 fn clipped(triangle: [Vertex; 3], port: &Viewport) -> Vec<Vertex> {
     let mut polygon = triangle.to_vec();
     for plane in if port.depth_clamp { 2..3 } else { 0..3 } {
@@ -145,7 +145,7 @@ fn clipped(triangle: [Vertex; 3], port: &Viewport) -> Vec<Vertex> {
     }
     let reaches_out = |v: &Vertex| {
         let [x, y, ..] = to_window(*v, port).position;
-        // RAS-1 cuts toward zero: 65535 sixteenths are the last.
+        // RAS-1 truncates toward zero, so 65535 sixteenths is the last position inside.
         x.abs() >= 4096.0 || y.abs() >= 4096.0
     };
     if polygon.iter().any(reaches_out) {
@@ -167,7 +167,7 @@ fn to_window(mut v: Vertex, port: &Viewport) -> Vertex {
     v
 }
 
-/// Every triangle of a draw in window space, in order, with flat colours spread over its vertices.
+/// Returns every triangle of a draw in window space, in order. With flat shading all vertices have the colours of the provoking one.
 pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
     let vertex = |position: usize| draw.vertices.at(draw.indices[position] as usize);
     let mut out = Vec::new();
@@ -192,7 +192,7 @@ pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
     out
 }
 
-/// RAS-1.
+/// RAS-1: returns a position in 1/16 pixel, truncated toward zero.
 fn snap(x: f32) -> i128 {
     let (m, e) = split(x);
     m.signum() * shift(m.abs(), e + 4)
@@ -203,29 +203,29 @@ fn snap(x: f32) -> i128 {
 pub struct Setup {
     pub vertices: [Vertex; 3],
     snapped: [[i128; 2]; 3],
-    /// Doubled area, positive.
+    /// Twice the area of the triangle in units of 1/256 pixel, positive.
     area: i128,
-    /// 1 when the vertices run clockwise on screen (y down), else -1.
+    /// 1 if the vertices run clockwise on the screen (y down), otherwise -1.
     turn: i128,
-    /// Perspective weights.
+    /// The perspective weights P of the vertices.
     pub p: [i128; 3],
-    /// INT-3's exception.
+    /// INT-3: whether the exception for exact weights applies.
     pub exact: bool,
 }
 
 /// The sample point of one pixel.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Edge functions, none negative where the pixel is covered.
+    /// Edge functions. None of them is negative if the pixel is covered.
     pub e: [i128; 3],
-    /// Whether the triangle covers it (RAS-3).
+    /// Whether the triangle covers the pixel (RAS-3).
     pub covered: bool,
-    /// sum P E; positive where the pixel is covered.
+    /// D, the sum of P E, which is positive if the pixel is covered.
     pub d: i128,
 }
 
 impl Setup {
-    /// RAS-1, zero areas, culling, INT-6, P.
+    /// Sets up a triangle: RAS-1, INT-6 and P. Returns `None` if the area is zero or the triangle is culled.
     pub fn new(draw: &Draw, profile: Profile, vertices: [Vertex; 3]) -> Option<Setup> {
         let snapped = vertices.map(|v| [snap(v.position[0]), snap(v.position[1])]);
         let [a, b, c] = snapped;
@@ -240,7 +240,7 @@ impl Setup {
             Cull::Back if !front => return None,
             _ => {}
         }
-        // INT-6: sixteen significant bits of the 24.
+        // INT-6: nv10 keeps sixteen of the 24 significant bits.
         let w = vertices.map(|v| match profile {
             Profile::Nv10 => {
                 let (m, e) = split(v.position[3]);
@@ -259,18 +259,19 @@ impl Setup {
         Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
     }
 
-    /// RAS-2, RAS-3, INT-1.
+    /// RAS-2, RAS-3, INT-1: returns the sample point of a pixel.
     pub fn sample(&self, i: i128, j: i128) -> Sample {
         let (x, y) = (16 * i + 8, 16 * j + 8);
         let (mut e, mut covered) = ([0; 3], true);
         for k in 0..3 {
-            // Brought to the clockwise order (y down), in which the inside lies to the right of s -> t.
+            // The edge is turned so that the vertices run clockwise (y down). The inside then lies to the right of s -> t.
             let (mut s, mut t) = (self.snapped[(k + 1) % 3], self.snapped[(k + 2) % 3]);
             if self.turn < 0 {
                 (s, t) = (t, s);
             }
             e[k] = (t[0] - s[0]) * (y - s[1]) - (t[1] - s[1]) * (x - s[0]);
-            // Going up, the inside is to the right of it: a left edge. Going right, it is below: a top edge.
+            // An edge that goes up has the inside to its right, so it is a left edge. One that goes right has it below, so it is a top
+            // edge.
             let left = t[1] < s[1];
             let top = t[1] == s[1] && t[0] > s[0];
             covered &= e[k] > 0 || (e[k] == 0 && (left || top));
@@ -278,13 +279,13 @@ impl Setup {
         Sample { e, covered, d: (0..3).map(|k| self.p[k] * e[k]).sum() }
     }
 
-    /// The weights P E, and INT-3's dominant one.
+    /// INT-3: returns the weights P E, and which of them is dominant.
     pub fn weights(&self, sample: &Sample) -> ([i128; 3], usize) {
         let n = std::array::from_fn(|k| self.p[k] * sample.e[k]);
         (n, dominant(n, sample.d))
     }
 
-    /// INT-2, INT-3: weights of the three colours in 256ths.
+    /// INT-2, INT-3: returns the weights of the three colours in 256ths.
     pub fn color_weights(&self, sample: &Sample) -> [i128; 3] {
         let (n, dominant) = self.weights(sample);
         let weight = |k: usize| {
@@ -295,7 +296,7 @@ impl Setup {
         [w0, 256 - w0 - w2, w2]
     }
 
-    /// INT-2 of one set of colours.
+    /// INT-2: interpolates one of the two vertex colours.
     pub fn color(&self, weights: [i128; 3], which: impl Fn(&Vertex) -> VertexColor) -> [i128; 4] {
         let colors = [0, 1, 2].map(|k| match which(&self.vertices[k]) {
             VertexColor::Bytes(b) => b.map(i128::from),
@@ -307,13 +308,13 @@ impl Setup {
         })
     }
 
-    /// TSH-4, FOG-2: a number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D.
+    /// TSH-4, FOG-2: interpolates a number of the vertices. Returns the numerator and its exponent; the denominator is D of the sample.
     pub fn attribute(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> (i128, i32) {
         let (g, exponent) = self.attribute_numbers(x);
         ((0..3).map(|k| g[k] * sample.e[k]).sum(), exponent)
     }
 
-    /// The products with P, which share one exponent, 62 bits.
+    /// Returns the products of the numbers with P in 62 bits, with a common exponent.
     pub fn attribute_numbers(&self, x: impl Fn(&Vertex) -> f32) -> ([i128; 3], i32) {
         let parts: [(i128, i32); 3] = std::array::from_fn(|k| {
             let (m, e) = split(x(&self.vertices[k]));
@@ -326,9 +327,9 @@ impl Setup {
         (parts.map(|part| shift(part.0, part.1 - exponent)), exponent)
     }
 
-    /// DEP-1, DEP-3 to DEP-5: the word of a buffer. `None`: dropped.
+    /// DEP-1, DEP-3 to DEP-5: returns the word for the depth buffer, or `None` if the fragment is dropped.
     pub fn depth(&self, sample: &Sample, test: &DepthTest, format: DepthFormat) -> Option<u32> {
-        /// Fraction bits of whatever is summed.
+        /// Fraction bits of fixed-point sums.
         const POINT: i32 = 80;
         let fixed = |n: f32| {
             let (m, e) = split(n);
@@ -346,7 +347,7 @@ impl Setup {
             }
             _ => v.position[2],
         });
-        // DEP-6: times w_1/w_k, 24 bits each; 61 bits of the largest count.
+        // DEP-6: edge functions are multiplied by w_1/w_k, with 24 bits each. The largest gets 61 bits.
         let w = self.vertices.each_ref().map(|v| v.position[3]);
         let in_perspective = |k: usize| {
             let ((m, e), (n, f)) = (split(w[1]), split(w[k]));
@@ -357,7 +358,7 @@ impl Setup {
             let product = edge * (ratio >> zeros);
             (keep(product, bits(product) - 24), e - f - 60 + zeros)
         };
-        // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
+        // Edge functions have 24 bits. Their sum has steps of the 29th bit of the largest.
         let edges = match test.w_buffer {
             true => align([0, 1, 2].map(in_perspective), 61),
             false => sample.e.map(|e| keep(e, bits(e) - 24)),
@@ -365,7 +366,7 @@ impl Setup {
         let values = if test.w_buffer { w } else { z };
         let step = edges.iter().map(|e| bits(*e)).max().unwrap() - 29;
         let sum = edges.iter().map(|e| keep(*e, step)).sum::<i128>().max(1);
-        // 1 / sum, in units of 2^-(28 + bits of the sum): 29 bits, 3/16 low but for powers of two.
+        // 1 / sum in units of 2^-(28 + bits of the sum). It has 29 bits and is 3/16 of the last bit too low, except for powers of two.
         let length = bits(sum);
         let power = sum == 1 << (length - 1);
         let reciprocal = if power { 1 << 29 } else { ((1 << (28 + length + 4)) - 3 * sum).div_euclid(16 * sum) };
@@ -378,7 +379,7 @@ impl Setup {
             keep(weight, bits(weight) - 24)
         });
         if test.w_buffer {
-            // The dominant weight, by its exponent, is what the others leave of 1.
+            // The dominant weight, chosen by exponents, is 1 minus the others.
             let class = weights.map(|weight| if weight > 0 { bits(weight) } else { -1 });
             let dominant = match class {
                 [a, b, c] if a >= b && a > c => 0,
@@ -405,7 +406,7 @@ impl Setup {
         let step = largest - 29;
         let along = |axis: usize| {
             let other = 1 - axis;
-            // Edge k as it changes along an axis: the difference of the other two vertices along the other axis, times the step of a pixel.
+            // An edge function changes along an axis by the difference of its two vertices along the other axis, times the step of a pixel.
             let sum: i128 = (0..3)
                 .map(|k| {
                     let (s, t) = (self.snapped[(k + 1) % 3], self.snapped[(k + 2) % 3]);
@@ -432,7 +433,7 @@ impl Setup {
             _ if depth <= 0 => 0,
             DepthFormat::Z16 | DepthFormat::Z24S8 => (depth >> POINT).min(full) as u32,
             DepthFormat::Z16F | DepthFormat::Z24S8F => {
-                // Exponent above fraction, as the format's name says.
+                // The exponent lies above the fraction, and each format has its own widths.
                 let (kept, bias, last) = if full == 0xffff { (12, 7, 15) } else { (16, 127, 254) };
                 let power = bits(depth) - 1;
                 let fraction = shift(depth, kept - power) as u32 - (1 << kept);
@@ -446,8 +447,8 @@ impl Setup {
     }
 }
 
-/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself. Outside the triangle a weight
-/// that is not positive never dominates.
+/// INT-3: returns the weight with the largest binary exponent, where an exact power of two counts as slightly less. A weight that is not
+/// positive, which only occurs outside the triangle, is never dominant.
 fn dominant(n: [i128; 3], d: i128) -> usize {
     let class = n.map(|n| {
         if n <= 0 {

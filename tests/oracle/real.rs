@@ -1,6 +1,6 @@
-//! Exact readings of f32 and the few integer helpers that the rules share.
+//! Exact reading of floats, and the integer operations that the rules share.
 
-/// f = m * 2^e, exactly.
+/// Returns f = m 2^e exactly, as (m, e).
 pub fn split(f: f32) -> (i128, i32) {
     let bits = f.to_bits();
     let exponent = (bits >> 23 & 255) as i32;
@@ -9,39 +9,39 @@ pub fn split(f: f32) -> (i128, i32) {
     (if bits >> 31 == 1 { -m } else { m }, e)
 }
 
-/// Bits of a magnitude; 0 for 0.
+/// Returns the number of bits of a magnitude, 0 for 0.
 pub fn bits(n: i128) -> i32 {
     128 - n.unsigned_abs().leading_zeros() as i32
 }
 
-/// floor(n * 2^e).
+/// Returns floor(n 2^e).
 pub fn shift(n: i128, e: i32) -> i128 {
     if e >= 0 { n << e.min(126 - bits(n)).max(0) } else { n >> (-e).min(127) }
 }
 
-/// Block floating point: the largest magnitude gets exactly `keep` bits, the others share its exponent, floored.
+/// Returns block floating point: the largest magnitude gets exactly `keep` bits, and the others get the same exponent, rounded down.
 pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i128; N] {
     let top = values.iter().filter(|(m, _)| *m != 0).map(|(m, e)| bits(*m) + e).max().unwrap_or(0);
     values.map(|(m, e)| shift(m, e + keep - top))
 }
 
-/// floor(numerator / denominator), whatever the signs; and whether nothing remains.
+/// Returns floor(numerator / denominator) for any signs, and whether the remainder is 0.
 pub fn floor_div(numerator: i128, denominator: i128) -> (i128, bool) {
     let (n, d) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };
     (n.div_euclid(d), n.rem_euclid(d) == 0)
 }
 
-/// NUM-2.
+/// NUM-2: divides by 255 and rounds to nearest.
 pub fn rnd255(n: i128) -> i128 {
     (2 * n + 255).div_euclid(510)
 }
 
-/// NUM-6 from v = floor(4096 f).
+/// NUM-6: returns the byte of a factor from v = floor(4096 f).
 pub fn factor_byte(v: i128) -> i128 {
     (v - (v >> 8)) >> 4
 }
 
-/// NUM-4.
+/// NUM-4: returns the byte of a float colour.
 pub fn color_byte(c: f32) -> i128 {
     let (m, e) = split(c);
     if m <= 0 {
@@ -53,7 +53,7 @@ pub fn color_byte(c: f32) -> i128 {
     let size = 128 - m.leading_zeros() as i32;
     let drop = (size - 14).max(0);
     let cut = m >> drop << drop;
-    // floor(255 c + 1/2) = floor((510 m 2^e + 1) / 2); e is negative here.
+    // floor(255 c + 1/2) = floor((510 m 2^e + 1) / 2). e is negative here.
     let half = -e;
     if half > 100 {
         return 0;
@@ -61,17 +61,17 @@ pub fn color_byte(c: f32) -> i128 {
     (510 * cut + (1 << half)) >> (half + 1)
 }
 
-/// floor of the sum of all m 2^e, exactly where at most one of them is tiny beside the others; limited to +-2^100.
+/// Returns the floor of the sum of all m 2^e, limited to +-2^100. It is exact if at most one of them is tiny compared with the others.
 pub fn floor_sum(terms: &[(i128, i32)]) -> i128 {
     let terms = || terms.iter().filter(|t| t.0 != 0);
     let top = terms().map(|t| t.1 + bits(t.0)).max().unwrap_or(0);
-    // A finer term is floored to a step that all the others are multiples of: the sum's floor stays.
+    // A finer term is rounded down to a step of which all others are multiples, so the floor of the sum does not change.
     let base = terms().map(|t| t.1).min().unwrap_or(0).max(top - 115);
     let sum: i128 = terms().map(|t| shift(t.0, t.1 - base)).sum();
     if base > 0 && bits(sum) + base > 100 { sum.signum() << 100 } else { shift(sum, base).clamp(-1 << 100, 1 << 100) }
 }
 
-/// The f32 nearest to n / d * 2^e, ties to even.
+/// Returns the float nearest to n / d 2^e, ties to even.
 pub fn nearest_f32(n: i128, d: i128, e: i32) -> f32 {
     if n == 0 {
         return 0.0;
@@ -80,7 +80,7 @@ pub fn nearest_f32(n: i128, d: i128, e: i32) -> f32 {
     let numerator = n.abs() << up;
     let (q, rest) = (numerator / d, numerator % d);
     let e = e - up;
-    // Twenty-four bits, or the grid of the smallest numbers.
+    // The result keeps 24 bits, or fewer in the range of subnormal numbers.
     let drop = (bits(q) - 24).max(-149 - e);
     let rounded = if drop > 126 {
         0
@@ -90,15 +90,15 @@ pub fn nearest_f32(n: i128, d: i128, e: i32) -> f32 {
         let up = lost > half || (lost == half && (rest != 0 || kept & 1 == 1));
         kept + i128::from(up)
     };
-    // Both conversions are exact, but for what is too large for an f32.
+    // Both conversions are exact, except for numbers beyond the range of floats.
     let value = (rounded as f64 * 2.0_f64.powi(e + drop)) as f32;
     if n < 0 { -value } else { value }
 }
 
-/// floor(128 log2 n), n > 0.
+/// Returns floor(128 log2 n) for n > 0.
 pub fn log2_in_128ths(n: u128) -> i128 {
     let whole = 127 - n.leading_zeros() as i32;
-    // The mantissa as an interval in units of 2^-62, squared seven times.
+    // Squares the mantissa seven times, as an interval in units of 2^-62.
     let (mut low, mut high) = if whole <= 62 {
         (n << (62 - whole), n << (62 - whole))
     } else {
@@ -119,7 +119,7 @@ pub fn log2_in_128ths(n: u128) -> i128 {
     digits
 }
 
-/// The same by writing out n^128.
+/// Returns the same logarithm by computing n^128 in full.
 fn log2_by_power(n: u128) -> i128 {
     let mut power: Vec<u64> = (0..4).map(|k| (n >> (32 * k)) as u64 & 0xffff_ffff).collect();
     for _ in 0..7 {

@@ -1,9 +1,9 @@
-//! Surfaces: ROP-1 to ROP-6.
+//! Computes raster operations and surfaces: ROP-1 to ROP-6.
 
 use super::real::rnd255;
 use ninebit::state::{BlendEquation, BlendFactor, Draw, StencilOperation, SurfaceFormat};
 
-/// ROP-5: a colour as the surface stores it (R, G, B, A bytes).
+/// ROP-5: returns the word that a surface stores for a colour (bytes R, G, B, A).
 pub fn store(format: SurfaceFormat, [r, g, b, a]: [i128; 4]) -> u32 {
     let rgb = r << 16 | g << 8 | b;
     let word = match format {
@@ -21,7 +21,7 @@ pub fn store(format: SurfaceFormat, [r, g, b, a]: [i128; 4]) -> u32 {
     u32::try_from(word).unwrap()
 }
 
-/// ROP-6: the bits of R, G, B and A; unused bits belong to A.
+/// ROP-6: returns the masks of R, G, B and A in a word. Unused bits belong to A.
 fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
     match format {
         SurfaceFormat::A8R8G8B8
@@ -36,7 +36,7 @@ fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
     }
 }
 
-/// ROP-5: what a blend reads of the stored word, low bits zero on 16-bit surfaces.
+/// ROP-5: returns what a blend reads from a stored word. On 16-bit surfaces the low bits are 0.
 fn load(format: SurfaceFormat, word: u32) -> [i128; 4] {
     let field = |at: u32, bits: u32| i128::from(word >> at & ((1 << bits) - 1)) << (8 - bits);
     match format {
@@ -52,7 +52,7 @@ fn load(format: SurfaceFormat, word: u32) -> [i128; 4] {
     }
 }
 
-/// ROP-5: the source as the blend sees it.
+/// ROP-5: returns the source as a blend reads it.
 fn truncate(format: SurfaceFormat, [r, g, b, a]: [i128; 4]) -> [i128; 4] {
     match format {
         SurfaceFormat::R5G6B5 => [r & 0xf8, g & 0xfc, b & 0xf8, a],
@@ -61,7 +61,7 @@ fn truncate(format: SurfaceFormat, [r, g, b, a]: [i128; 4]) -> [i128; 4] {
     }
 }
 
-/// ROP-4: a factor for channel `c`.
+/// ROP-4: returns a blend factor for channel `c`.
 fn factor(f: BlendFactor, c: usize, s: [i128; 4], d: [i128; 4], constant: [u8; 4]) -> i128 {
     let constant = constant.map(i128::from);
     match f {
@@ -84,7 +84,7 @@ fn factor(f: BlendFactor, c: usize, s: [i128; 4], d: [i128; 4], constant: [u8; 4
     }
 }
 
-/// ROP-2 to ROP-6: the new word.
+/// ROP-2 to ROP-6: returns the new word of a pixel.
 pub fn write(draw: &Draw, format: SurfaceFormat, old: u32, color: [i128; 4]) -> u32 {
     let mut out = color;
     let blends = !matches!(format, SurfaceFormat::B8 | SurfaceFormat::G8B8);
@@ -111,10 +111,10 @@ pub fn write(draw: &Draw, format: SurfaceFormat, old: u32, color: [i128; 4]) -> 
     store(format, out) & mask | old & !mask
 }
 
-/// STN-1 and DEP-2: whether a fragment passes both tests. `stencil` and `depth` are what is stored.
+/// STN-1, DEP-2: returns whether a fragment passes both tests. `stencil` and `depth` are the stored values, which are updated.
 pub fn stencil_and_depth(draw: &Draw, incoming: u32, stencil: &mut u32, depth: &mut u32) -> bool {
     let before = *stencil;
-    // Every bit of the write mask takes the operation's bit.
+    // For each set bit of the write mask, the bit of the result is stored.
     let mut store = |operation: StencilOperation, reference: u32, mask: u32| {
         let new = match operation {
             StencilOperation::Keep => before,

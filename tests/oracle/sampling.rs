@@ -1,4 +1,4 @@
-//! What units do beyond levels and filters: VOL-1, SHD-1, TEX-17, CYL-1.
+//! Computes volumes, depth comparisons, anisotropic taps and cylindrical wrap: VOL-1, SHD-1, TEX-17, CYL-1.
 
 use super::coordinate::Place;
 use super::raster::{Sample, Setup};
@@ -8,7 +8,7 @@ use ninebit::state::{
     AddressMode, CompareFunction, DepthFormat, Named, ShadowComparison, ShadowReference, TextureUnit,
 };
 
-/// CYL-1: a triangle whose coordinates of a set go the shorter way around.
+/// CYL-1: returns the triangle with coordinates of a set that take the shorter way around, or `None` if the unit does not wrap.
 pub fn wrapped(setup: &Setup, unit: &TextureUnit, set: usize) -> Option<Setup> {
     if unit.cylindrical_wrap == [false; 2] {
         return None;
@@ -30,7 +30,7 @@ pub fn wrapped(setup: &Setup, unit: &TextureUnit, set: usize) -> Option<Setup> {
     Some(setup)
 }
 
-/// A number n 2^e over d 2^f, d positive and n not negative, compared with m 2^g.
+/// Returns whether (n 2^e) / (d 2^f) is at least m 2^g, for positive d and n that is not negative.
 fn reaches((n, e): (i128, i32), (d, f): (i128, i32), (m, g): (i128, i32)) -> bool {
     // n 2^e >= m d 2^(f + g)
     let product = m * d;
@@ -48,7 +48,7 @@ fn reaches((n, e): (i128, i32), (d, f): (i128, i32), (m, g): (i128, i32)) -> boo
     }
 }
 
-/// SHD-1, DEP-3: the largest word whose depth r/q reaches.
+/// SHD-1, DEP-3: returns the largest word whose depth is at most r/q.
 pub fn reference(setup: &Setup, sample: &Sample, set: usize, format: DepthFormat) -> i128 {
     let [mut r, mut q] = [2, 3].map(|n| setup.attribute(sample, |v| v.texture_coordinates[set][n]));
     if setup.vertices.iter().all(|v| v.texture_coordinates[set][3] == 1.0) {
@@ -76,7 +76,7 @@ pub fn reference(setup: &Setup, sample: &Sample, set: usize, format: DepthFormat
             ((word & ((1 << kept) - 1)) | 1 << kept, field as i32 - bias - kept)
         }
     };
-    // No finite number has the field of the last words.
+    // The last words have an exponent field that no finite number has.
     if format == DepthFormat::Z24S8F && reaches(r, q, depth(0xff_0000)) {
         return full;
     }
@@ -91,7 +91,7 @@ pub fn reference(setup: &Setup, sample: &Sample, set: usize, format: DepthFormat
     low
 }
 
-/// SHD-1: 255 or 0.
+/// SHD-1: returns 255 if the comparison passes, otherwise 0.
 pub fn compared(shadow: ShadowComparison, reference: i128, stored: i128) -> i128 {
     let reference = if shadow.reference == ShadowReference::Zero { 0 } else { reference };
     count("shadow", shadow.function.name());
@@ -109,7 +109,7 @@ pub fn compared(shadow: ShadowComparison, reference: i128, stored: i128) -> i128
     if passes { 255 } else { 0 }
 }
 
-/// TEX-17: where the taps of a footprint lie, 1/256 texel, and their weights; from the coordinates at a quad's three pixels.
+/// TEX-17: returns the offsets of a footprint's taps in 1/256 texel, and their weights, from the coordinates of a quad's three pixels.
 pub fn taps(corners: [Option<[i128; 2]>; 3], limit: u32) -> Vec<([i128; 2], i128)> {
     let single = vec![([0, 0], 256)];
     let [Some(left), Some(right), Some(lower)] = corners else { return single };
@@ -128,7 +128,7 @@ pub fn taps(corners: [Option<[i128; 2]>; 3], limit: u32) -> Vec<([i128; 2], i128
         count("taps", "1");
         return single;
     }
-    // Toward zero, in both directions alike.
+    // Rounds toward zero in both directions, so that taps are symmetric.
     let at = |numerator: i128, denominator: i128| axis.map(|n| n * numerator / denominator / 256);
     if l <= 2 * m {
         count("taps", "2");
@@ -148,7 +148,7 @@ pub fn taps(corners: [Option<[i128; 2]>; 3], limit: u32) -> Vec<([i128; 2], i128
         .collect()
 }
 
-/// VOL-1: the place among layers, 1/256 layer; coordinates that are not of a set have none.
+/// VOL-1: returns the coordinate among layers in 1/256 layer, or 0 for coordinates that the texture shader computes.
 pub fn layer(place: &Place, setup: &Setup, sample: &Sample, layers: u32) -> i128 {
     place.along(setup, sample, 2, layers).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! The texture units in their order, each with what it makes of the ones before: TEX-16, TSH-1 to TSH-10.
+//! Computes the texture units in order, each of which may read earlier ones: TEX-16, TSH-1 to TSH-10.
 
 use super::coordinate::{Place, lod};
 use super::raster::{Sample, Setup};
@@ -17,9 +17,9 @@ pub struct Units<'a> {
     images: &'a [Option<Image>],
     setup: &'a Setup,
     policies: &'a Policies,
-    /// One lod a unit and quad.
-    /// The triangle as units with a cylindrical wrap see it.
+    /// The triangle as units with a cylindrical wrap use it.
     wrapped: [Option<Setup>; 4],
+    /// The lod of each unit at each quad, once it has been computed.
     lods: RefCell<HashMap<(usize, i128, i128), i128>>,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Units<'a> {
         Units { draw, images, setup, policies, wrapped, lods: RefCell::default() }
     }
 
-    /// The four texture registers of a covered pixel; none where a unit drops it.
+    /// Returns the four texture registers of a covered pixel, or `None` if a unit drops the fragment.
     pub fn registers(&self, i: i128, j: i128, sample: &Sample) -> Option<[[i128; 4]; 4]> {
         let kept = (0..4).all(|k| match self.draw.texture_shader[k].operation {
             ShaderOperation::CullFragment { drops_not_negative } => !self.culled(k, sample, drops_not_negative),
@@ -47,7 +47,7 @@ impl<'a> Units<'a> {
         kept.then(|| [0, 1, 2, 3].map(|k| self.unit(k, i, j, sample).register))
     }
 
-    /// TSH-10.
+    /// TSH-10: returns whether a unit drops the fragment by the signs of its coordinates.
     fn culled(&self, k: usize, sample: &Sample, drops_not_negative: [bool; 4]) -> bool {
         let set = self.draw.texture_shader[k].coordinate_set;
         (0..4).any(|c| {
@@ -56,7 +56,7 @@ impl<'a> Units<'a> {
         })
     }
 
-    /// What a unit fetches or makes at a pixel.
+    /// Returns the colour that a unit yields at a pixel.
     fn unit(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Color {
         let stage = &self.draw.texture_shader[k];
         count("operation", stage.operation.name());
@@ -82,7 +82,7 @@ impl<'a> Units<'a> {
         }
     }
 
-    /// What a unit fetches, before a luminance.
+    /// Returns the colour that a unit samples, before it is multiplied by luminance.
     fn sampled(&self, k: usize, image: &Image, i: i128, j: i128, sample: &Sample) -> Color {
         let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
         let setup = self.setup_of(k);
@@ -97,12 +97,12 @@ impl<'a> Units<'a> {
         image.sample(setup, sample, &place, lod, &taps)
     }
 
-    /// The triangle as a unit sees it.
+    /// Returns the triangle as a unit uses it.
     fn setup_of(&self, k: usize) -> &Setup {
         self.wrapped[k].as_ref().unwrap_or(self.setup)
     }
 
-    /// TEX-11: coordinates at the quad that a pixel lies in.
+    /// TEX-11: returns the coordinates at the pixels of the quad that contains a pixel.
     fn corners(&self, k: usize, image: &Image, i: i128, j: i128) -> [Option<[i128; 2]>; 3] {
         let (left, top) = (i & !1, j & !1);
         let mut face = None;
@@ -115,12 +115,13 @@ impl<'a> Units<'a> {
         })
     }
 
-    /// The bytes that a unit reads of an earlier one.
+    /// Returns the bytes that a unit reads from the earlier unit on which it depends.
     fn previous(&self, k: usize, i: i128, j: i128, sample: &Sample) -> [i128; 4] {
         self.unit(self.draw.texture_shader[k].previous, i, j, sample).bytes
     }
 
-    /// TSH-8: the luminance multiplies R, G and B as the register holds them (a signed channel doubled); below 0 counts as 0.
+    /// TSH-8: multiplies R, G and B by the luminance, as the register holds them, where signed channels are doubled. Negative values count
+    /// as 0.
     fn luminance(&self, color: Color, red: i128, [scale, offset]: [f32; 2]) -> Color {
         let ((ms, es), (mo, eo)) = (split(scale), split(offset));
         // 4096 (c / 255) (red / 255 scale + offset) = c (red scale + 255 offset) 4096 / 65025.
@@ -135,7 +136,7 @@ impl<'a> Units<'a> {
         Color { bytes, register: [bytes[0], bytes[1], bytes[2], color.register[3]] }
     }
 
-    /// Where a unit samples; none where that is not defined for a pixel outside the triangle.
+    /// Returns where a unit samples, or `None` outside the triangle where that is undefined.
     fn place(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Option<Place> {
         let stage = &self.draw.texture_shader[k];
         if stage.operation.reads_previous() && sample.d <= 0 {
@@ -145,7 +146,7 @@ impl<'a> Units<'a> {
         let dot = |unit: usize| self.dot(unit, i, j, sample);
         Some(match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
-                // TSH-7: both bytes are two's complement whatever the flags; the sums are in single precision.
+                // TSH-7: both bytes are two's complement regardless of the flags. The sums are in single precision.
                 let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8) as f32);
                 let [m0, m1, m2, m3] = matrix;
                 Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(split))
@@ -176,7 +177,7 @@ impl<'a> Units<'a> {
         })
     }
 
-    /// TSH-6: what a byte counts as 1.
+    /// TSH-6: returns the divisor of a byte, which counts as 1.
     fn whole(&self) -> i128 {
         match self.policies.dependent_scale {
             DependentScale::Over255 => 255,
@@ -184,13 +185,13 @@ impl<'a> Units<'a> {
         }
     }
 
-    /// TSH-4: an interpolated coordinate, rounded to f32.
+    /// TSH-4: returns an interpolated coordinate, rounded to single precision.
     fn float(&self, sample: &Sample, set: usize, c: usize) -> f32 {
         let (n, e) = self.setup.attribute(sample, |v| v.texture_coordinates[set][c]);
         nearest_f32(n, sample.d, e)
     }
 
-    /// TSH-1 to TSH-4: a unit's dot product.
+    /// TSH-1 to TSH-4: returns the dot product of a unit.
     fn dot(&self, k: usize, i: i128, j: i128, sample: &Sample) -> f32 {
         let stage = &self.draw.texture_shader[k];
         count_named(stage.mapping);
@@ -199,7 +200,7 @@ impl<'a> Units<'a> {
         v[0] * s + v[1] * t + v[2] * r
     }
 
-    /// TEX-11: the lod of the quad that a pixel lies in.
+    /// TEX-11: returns the lod of the quad that contains a pixel.
     fn lod(&self, k: usize, image: &Image, i: i128, j: i128) -> i128 {
         let key = (k, i >> 1, j >> 1);
         if let Some(lod) = self.lods.borrow().get(&key) {
@@ -212,7 +213,7 @@ impl<'a> Units<'a> {
     }
 }
 
-/// TSH-1 to TSH-3.
+/// TSH-1 to TSH-3: returns the vector of a texel's bytes.
 fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
     let [r, g, b, a] = bytes;
     let each = |f: &dyn Fn(i128) -> f32| [f(r), f(g), f(b)];
@@ -228,14 +229,14 @@ fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
         DotMapping::HiloHemisphere => {
             let [high, low] = [a << 8 | r, g << 8 | b].map(|v| signed(true, v, 16));
             let left = ((1 << 30) - high * high - low * low).max(0);
-            // 2^28 (1 - x^2 - y^2) is left / 4; the root of its floor.
+            // 2^28 (1 - x^2 - y^2) is left / 4. The result is the root of its floor.
             let third = ((left / 4) as u128).isqrt() as i128;
             [nearest_f32(high, 32768, 0), nearest_f32(low, 32768, 0), nearest_f32(third, 1, -14)]
         }
     }
 }
 
-/// TSH-5: 2 (n.e) n - (n.n) e.
+/// TSH-5: returns 2 (n.e) n - (n.n) e.
 fn reflect(n: [f32; 3], e: [f32; 3]) -> [f32; 3] {
     let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let (twice, square) = (2.0 * dot(n, e), dot(n, n));

@@ -1,4 +1,4 @@
-//! What has occurred while scenes were rendered, so that a test can say that everything did.
+//! Counts what occurs while scenes are rendered, so that a test can check that everything has occurred.
 
 use ninebit::state::Named;
 use std::cell::RefCell;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 type Tally = BTreeMap<(&'static str, &'static str), u64>;
 
 thread_local! {
-    /// Nothing is counted where nobody asked for it: that takes longer than to render.
+    /// The counts, or `None` if nothing is counted, because counting takes longer than rendering.
     static TALLY: RefCell<Option<Tally>> = const { RefCell::new(None) };
 }
 
@@ -25,7 +25,7 @@ pub fn count_named<T: Named>(variant: T) {
     count(T::TYPE, variant.name());
 }
 
-/// What occurs on this thread while `work` is done.
+/// Runs `work` and counts what occurs on this thread.
 pub fn during<T>(work: impl FnOnce() -> T) -> (T, Tally) {
     TALLY.replace(Some(Tally::new()));
     let done = work();

@@ -1,15 +1,15 @@
-//! What a stored texel is: TEX-1, TEX-18 on the way into the filter and out of it.
+//! Decodes stored texels, TEX-1, and applies TEX-18 before and after the filter.
 
 use ninebit::state::TextureFormat;
 
-/// Formats that are filtered as two halves of 16 bits.
+/// Returns whether a format is filtered as two halves of 16 bits.
 pub fn has_halves(format: TextureFormat) -> bool {
     matches!(format, TextureFormat::R16B16 | TextureFormat::Y16)
 }
 
-/// TEX-1: R, G, B, A bytes of a word of an uncompressed format.
+/// TEX-1: returns the bytes R, G, B, A of a word in an uncompressed format.
 pub fn bytes(format: TextureFormat, word: u32) -> [i128; 4] {
-    // `count` bits from bit `at` on, replicated to 8.
+    // Returns the `count` bits from bit `at` on, widened to 8 bits by repetition.
     let field = |at: u32, count: u32| {
         let v = i128::from(word >> at & ((1 << count) - 1));
         let mut wide = 0;
@@ -42,23 +42,23 @@ pub fn bytes(format: TextureFormat, word: u32) -> [i128; 4] {
     }
 }
 
-/// TEX-1: the two halves of a word that is filtered at 16 bits. Y16 has 255 in both bytes of the upper one.
+/// TEX-1: returns the two halves of a word that is filtered at 16 bits. Y16 has 255 in both bytes of the upper half.
 pub fn halves(format: TextureFormat, word: u32) -> [i128; 2] {
     let low = i128::from(word & 0xffff);
     if format == TextureFormat::Y16 { [0xffff, low] } else { [i128::from(word >> 16), low] }
 }
 
-/// Two's complement of `bits` bits, where a flag says so.
+/// Reads `bits` bits as two's complement if the flag is set.
 pub fn signed(flag: bool, v: i128, bits: u32) -> i128 {
     if flag && v >> (bits - 1) & 1 == 1 { v - (1 << bits) } else { v }
 }
 
-/// A sampled colour: its bytes as later units read them, and the register.
+/// A sampled colour, as later units read it and as the register holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
-    /// R, G, B, A, 0..=255.
+    /// R, G, B, A as later units read them, 0 to 255.
     pub bytes: [i128; 4],
-    /// R, G, B, A in 1/255.
+    /// R, G, B, A of the register, in 1/255.
     pub register: [i128; 4],
 }
 
@@ -67,13 +67,13 @@ impl Color {
         Color { bytes, register: bytes }
     }
 
-    /// TEX-18 of filtered channels.
+    /// TEX-18: returns the colour of filtered channels.
     pub fn of_channels(v: [i128; 4], flags: [bool; 4]) -> Color {
         let register = std::array::from_fn(|c| if flags[c] { 2 * v[c] } else { v[c] });
         Color { bytes: v.map(|v| v & 255), register }
     }
 
-    /// TEX-18 of filtered halves: only the upper byte of a signed half is signed.
+    /// TEX-18: returns the colour of filtered halves. Only the upper byte of a signed half is signed.
     pub fn of_halves([high, low]: [i128; 2], [high_signed, low_signed]: [bool; 2]) -> Color {
         let bytes = [high & 255, low >> 8 & 255, low & 255, high >> 8 & 255];
         let mut register = bytes;

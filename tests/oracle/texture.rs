@@ -1,4 +1,4 @@
-//! Sampling at known coordinates: TEX-5 to TEX-9, TEX-14, TEX-18.
+//! Samples at known coordinates: TEX-5 to TEX-9, TEX-14, TEX-18.
 
 use super::block;
 use super::coordinate::Place;
@@ -13,7 +13,7 @@ use ninebit::state::{
 };
 use std::cmp::Ordering;
 
-/// A bound unit and its texture's words as they stand when a draw begins.
+/// A bound unit, with the words of its texture at the beginning of a draw.
 pub struct Image {
     pub unit: TextureUnit,
     kind: TextureKind,
@@ -68,12 +68,12 @@ impl Image {
         (self.size[axis] >> level).max(1)
     }
 
-    /// What a coordinate of 1.0 counts in texels of a level: a rectangle's coordinates are texels.
+    /// Returns the number of texels of a level that a coordinate of 1.0 spans, which is 1 for rectangles.
     pub fn scale(&self, level: u32) -> [u32; 2] {
         [0, 1].map(|a| if self.kind == TextureKind::Rectangle { 1 } else { self.side(level, a) })
     }
 
-    /// Columns and rows that a level stores.
+    /// Returns the number of stored columns and rows of a level, borders included.
     fn stored(&self, level: u32) -> [usize; 2] {
         [0, 1].map(|a| self.side(level, a) as usize + if self.border { 8 } else { 0 })
     }
@@ -87,7 +87,7 @@ impl Image {
         }
     }
 
-    /// Channels of a stored texel as the filter sees them; two halves, where the format has them.
+    /// Returns the channels of a stored texel as the filter reads them, or two halves for formats that have them.
     fn stored_texel(&self, face: usize, level: u32, [x, y]: [usize; 2]) -> [i128; 4] {
         let whole: usize = (0..self.levels).map(|n| self.level_words(n)).sum();
         let start = face * whole + (0..level).map(|n| self.level_words(n)).sum::<usize>();
@@ -113,13 +113,13 @@ impl Image {
         }
     }
 
-    /// TEX-18.
+    /// TEX-18: makes signed channels two's complement.
     fn bytes(&self, bytes: [i128; 4]) -> [i128; 4] {
         std::array::from_fn(|c| texel::signed(self.unit.signed[c], bytes[c], 8))
     }
 
     fn half_flags(&self) -> [bool; 2] {
-        // The constant upper half of Y16 is not signed by anything.
+        // The upper half of Y16 is constant and never signed.
         [self.unit.signed[3] && self.format == TextureFormat::R16B16, self.unit.signed[1]]
     }
 
@@ -134,7 +134,7 @@ impl Image {
         if texel::has_halves(self.format) { self.halves([a << 8 | r, g << 8 | b]) } else { self.bytes([r, g, b, a]) }
     }
 
-    /// TEX-7, TEX-8, TEX-14: the texel at an index that may lie outside.
+    /// TEX-7, TEX-8, TEX-14: returns the texel at an index that may lie outside the image.
     fn fetch(&self, face: Option<usize>, level: u32, index: [i128; 2]) -> [i128; 4] {
         match (face, self.inside(level, index)) {
             (Some(face), Some(at)) => self.stored_texel(face, level, at),
@@ -142,7 +142,7 @@ impl Image {
         }
     }
 
-    /// TEX-7: one axis; none is the border colour.
+    /// TEX-7: returns the position of a texel in the stored level, or `None` for the border colour.
     fn inside(&self, level: u32, index: [i128; 2]) -> Option<[usize; 2]> {
         let modes = [self.unit.address_s, self.unit.address_t];
         let mut at = [0; 2];
@@ -151,7 +151,7 @@ impl Image {
             if i < 0 || i >= n {
                 count(if self.is_cube() { "cube edge" } else { "outside" }, modes[axis].name());
             }
-            // Where a border is stored, the interior begins at (4, 4).
+            // If a border is stored, the interior begins at (4, 4).
             let origin = if self.border { 4 } else { 0 };
             let inside = match modes[axis] {
                 _ if self.is_cube() => i.clamp(0, n - 1),
@@ -173,7 +173,7 @@ impl Image {
         Some(at)
     }
 
-    /// VOL-1: the layer.
+    /// VOL-1: returns the layer, or `None` for the border colour.
     fn layer(&self, setup: &Setup, sample: &Sample, place: &Place) -> Option<usize> {
         let (n, i) = (i128::from(self.layers), sampling::layer(place, setup, sample, self.layers) >> 8);
         count("layer", if (0..n).contains(&i) { "inside" } else { self.unit.address_r.name() });
@@ -187,7 +187,7 @@ impl Image {
         Some(layer as usize)
     }
 
-    /// SHD-1.
+    /// SHD-1: compares a stored depth with the reference.
     pub fn compare(
         &self,
         shadow: ShadowComparison,
@@ -198,7 +198,7 @@ impl Image {
     ) -> Color {
         count_named(self.format);
         let (_, [u, v]) = place.at(setup, sample, self.scale(0));
-        // Never the border: such units are refused.
+        // The border never occurs, because such units are refused.
         let at = self.inside(0, [u >> 8, v >> 8]).unwrap_or_default();
         let stored = i128::from(self.words[at[1] * self.size[0] as usize + at[0]] % (1 << 24));
         let format = match self.format {
@@ -211,7 +211,7 @@ impl Image {
         Color::of_channels([sampling::compared(shadow, reference, stored); 4], [false; 4])
     }
 
-    /// TEX-5, TEX-6 within a level.
+    /// TEX-5, TEX-6: filters within a level.
     fn filtered(&self, filter: Filter, face: Option<usize>, level: u32, [u, v]: [i128; 2]) -> [i128; 4] {
         match filter {
             Filter::Nearest => self.fetch(face, level, [u >> 8, v >> 8]),
@@ -226,26 +226,26 @@ impl Image {
         }
     }
 
-    /// TEX-9: the bias and the limits of a lod in 1/256.
+    /// TEX-9: returns a lod in 1/256 with bias and limits applied.
     pub fn limited_lod(&self, lod: i128) -> i128 {
         let biased = lod + i128::from(self.unit.lod_bias);
         biased.max(self.unit.min_lod.into()).min(self.unit.max_lod.into())
     }
 
-    /// KEY-1: whether a texel, whose filter is nearest, is the key.
+    /// KEY-1: returns whether a texel matches the key. The filter of a unit with a key is nearest.
     fn is_keyed(&self, value: [i128; 4]) -> bool {
         use TextureFormat::{L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8};
         let channels = if [L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8].contains(&self.format) { 3 } else { 4 };
         self.unit.color_key.is_some_and(|key| (0..channels).all(|c| value[c] & 255 == key.color[c].into()))
     }
 
-    /// KEY-1: whether a colour that was sampled drops the fragment: such a key changes no texel.
+    /// KEY-1: returns whether a sampled colour drops the fragment. A key that does so never changes the texel.
     pub fn drops(&self, color: &Color) -> bool {
         let drops = self.unit.color_key.is_some_and(|key| key.mode == ColorKeyMode::Texel);
         drops && self.is_keyed(color.bytes)
     }
 
-    /// What is sampled at a place, at a lod that is already limited.
+    /// Samples at a place, with a lod that is already limited.
     pub fn sample(
         &self,
         setup: &Setup,
@@ -307,7 +307,7 @@ impl Image {
     }
 }
 
-/// TEX-6: L(a, b, w) of every channel.
+/// TEX-6: returns L(a, b, w) of every channel.
 fn mix(a: [i128; 4], b: [i128; 4], w: i128) -> [i128; 4] {
     std::array::from_fn(|k| (a[k] * (256 - w) + b[k] * w + 128) >> 8)
 }

@@ -1,4 +1,4 @@
-//! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
+//! Checks that handbook and sources agree on ids, grades, counts, policies, files, tests and vectors.
 
 use crate::catalogue;
 use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read};
@@ -11,13 +11,13 @@ use ninebit_report::compare::bound;
 use std::collections::{BTreeMap, BTreeSet};
 
 const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
-/// The fields of a built rule; *Range* and *Error* are left out where there is nothing to say.
+/// The fields that a built rule must have. *Range* and *Error* are optional.
 const FIELDS: [&str; 4] = ["Grade", "Formula", "Source", "Example"];
 
-/// Tests that hold ids of rules that do not exist.
+/// Files with ids of rules that do not exist, which are skipped.
 const INVENTED: [&str; 2] = ["tests/cli.rs", "tests/rules/handbook.rs"];
 
-/// Where the scenes of captured frames lie.
+/// Folder of the scenes of captured frames.
 const CAPTURED_SCENES: &str = "vectors/scenes/silicon/";
 
 /// The test that draws the vectors of `vectors/silicon`.
@@ -57,7 +57,8 @@ fn every_id_that_is_mentioned_has_an_entry() {
     }
 }
 
-/// A step of a trace, a policy or an error of a plan names a rule that is built. A diagnostic may name one that is not: it says so.
+/// Steps of traces, policies and errors of plans name only rules that are built. A diagnostic may name one that is not built, and then says
+/// so.
 #[test]
 fn rules_that_are_applied_are_built() {
     let mut applied = BTreeSet::new();
@@ -100,7 +101,7 @@ fn pins_exist() {
     }
 }
 
-/// Where the example of a rule is computed: by units, in a file of `tests/rules` that opens it, or both.
+/// Returns where the example of a rule is computed: in the catalogue of units, in a file of `tests/rules`, or in both.
 fn computed(entry: &Entry, examples: &[(String, String)]) -> String {
     let opens = |call: &str| {
         let opened = |source: &str| {
@@ -118,13 +119,13 @@ fn computed(entry: &Entry, examples: &[(String, String)]) -> String {
     }
 }
 
-/// The names of files, without their folder and ending, each with its text.
+/// Returns the names of files, without folder and extension, each with its text.
 fn named(folder: &str, extension: &str) -> Vec<(String, String)> {
     let name = |file: &std::path::Path| file.file_stem().unwrap().to_str().unwrap().to_owned();
     files(folder, extension).into_iter().map(|file| (name(&file), read(&file))).collect()
 }
 
-/// The index: what tests of the whole hold of each rule.
+/// The index lists for each rule which tests of the whole cover it.
 #[test]
 fn the_index_is_right() {
     let (examples, vectors, scenes) = (named("tests/rules", "rs"), vectors(), captured());
@@ -177,7 +178,7 @@ fn policies_are_spelled_out() {
     assert!(order.is_sorted(), "POLICIES is not in the order of docs/numerics.md");
 }
 
-/// Rules by grade: built and not built by their first grade, and how many name the grade for a part.
+/// Counts rules by grade: built and not built by their first grade, and built ones that name the grade for a part.
 fn counts() -> BTreeMap<String, [usize; 3]> {
     let mut counts: BTreeMap<String, [usize; 3]> = BTreeMap::new();
     for entry in ENTRIES.iter() {
@@ -206,7 +207,7 @@ fn the_table_counts_right() {
     pages::hold(PAGE, "tests/rules (counts)", &table);
 }
 
-/// The README has the handbook's grades, meanings and counts.
+/// The README has the handbook's grades, their meanings and counts.
 #[test]
 fn the_readme_counts_right() {
     let (handbook, counts) = (read(PAGE), counts());
@@ -219,7 +220,7 @@ fn the_readme_counts_right() {
     pages::hold("README.md", "tests/rules (grades)", &table);
 }
 
-/// Names of the files of vectors that name a rule in their header, by rule.
+/// Returns for each rule the names of the vector files whose header names it.
 fn vectors() -> BTreeMap<String, BTreeSet<String>> {
     let mut vectors: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     let probes = read(PROBES);
@@ -242,7 +243,7 @@ fn vectors_name_built_rules() {
     }
 }
 
-/// Names of the scenes of captured frames that pin a rule, by rule, as the table beside them says.
+/// Returns for each rule the names of the captured scenes that pin it, according to the table beside them.
 fn captured() -> BTreeMap<String, BTreeSet<String>> {
     let mut pinned: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for line in read(format!("{CAPTURED_SCENES}README.md")).lines().filter(|line| line.starts_with("| `")) {
@@ -254,7 +255,7 @@ fn captured() -> BTreeMap<String, BTreeSet<String>> {
     pinned
 }
 
-/// The table of `vectors/scenes/silicon/README.md` has every scene there, and its rules are built.
+/// The table of `vectors/scenes/silicon/README.md` lists every scene in the folder, and its rules are built.
 #[test]
 fn scenes_of_captures_name_built_rules() {
     let pinned = captured();
@@ -266,14 +267,14 @@ fn scenes_of_captures_name_built_rules() {
     assert_eq!(scenes, stored.filter(|name| !name.ends_with(".expect")).collect());
 }
 
-/// The table of `vectors/silicon/README.md` says the same as the files.
+/// The table of `vectors/silicon/README.md` agrees with the headers of the files.
 #[test]
 fn the_table_of_vectors_is_right() {
     let vectors = vectors();
     let mut listed = BTreeSet::new();
     for line in read("vectors/silicon/README.md").lines().filter(|line| line.starts_with("| `")) {
         let names = line.split(" | ").next().unwrap().split('`').skip(1).step_by(2);
-        // `-b` after `blend-stack-a` stands for `blend-stack-b`.
+        // `-b` after `blend-stack-a` means `blend-stack-b`.
         let mut stem = "";
         let names: Vec<String> = names
             .map(|name| {
@@ -290,14 +291,14 @@ fn the_table_of_vectors_is_right() {
     assert_eq!(listed, all, "vectors/silicon/README.md lists the left, the right exist");
 }
 
-/// The table of bounds is what comparisons are held to.
+/// The table of bounds has the limits that comparisons apply.
 #[test]
 fn bounds_are_those_of_the_comparison() {
     let scene = Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] };
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
     let mut table = "| rule | lowest | highest |\n|---|---:|---:|\n".to_owned();
     for rule in Rule::ALL {
-        // INT-4 allows for the last bits of float64.
+        // The bound of INT-4 allows for the last bits of float64, which would print as -0.000.
         let number = |n: f64| format!("{n:.3}").replace("-0.000", "0.000");
         if let Some((low, high)) = bound::of(*rule, &plan) {
             table += &format!("| {} | {} | {} |\n", rule.name(), number(low), number(high));

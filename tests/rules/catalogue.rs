@@ -1,24 +1,21 @@
-//! Examples that units of the catalogue compute, as `ninebit op unit` does: `catalogue.txt`.
+//! Examples that rows of units compute, as `ninebit op unit` does. `catalogue.txt` lists them.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, Run};
 use crate::handbook::{PAGE, built, example, read};
-use crate::pages;
+use crate::{pages, repository};
 use ninebit_vectors::units;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-/// Rules whose example is no row of a unit, and why.
-const WITHOUT: [(&str, &str); 6] = [
+/// Rules whose example is not a row of a unit, with the reason.
+const WITHOUT: [(&str, &str); 3] = [
     ("NUM-1", "what a number stands for: nothing is computed"),
-    ("RAS-6 RAS-7", "a polygon in clip space, of any number of vertices"),
-    ("DEP-5", "depths that no row of `pixel-depth` takes"),
     ("CMB-12", "what is refused"),
-    ("CMB-13", "registers before the first stage: a whole pixel"),
-    ("TSH-11 VTX-1 VTX-2 VTX-3 VTX-4", "the vertex side: floats, which are not modelled bit by bit"),
+    ("TSH-11 VTX-4", "the vertex side: matrices in single precision, and the loading of a mesh"),
 ];
 
-/// The table, read.
+/// The sentences of `catalogue.txt`.
 static SENTENCES: LazyLock<Vec<Sentence>> = LazyLock::new(|| {
     let mut sentences: Vec<Sentence> = Vec::new();
     let table = include_str!("catalogue.txt");
@@ -33,23 +30,32 @@ static SENTENCES: LazyLock<Vec<Sentence>> = LazyLock::new(|| {
     sentences
 });
 
-/// The example of a rule.
+/// The example of a rule as a sentence.
 struct Sentence {
     rule: &'static str,
     text: &'static str,
     rows: Vec<Row>,
 }
 
-/// A row of a unit that computes a part of it.
+/// A row of a unit that computes a part of the example.
 struct Row {
     command: String,
-    /// The columns that the sentence speaks of: name, number, and how the sentence writes it.
+    /// The columns that the sentence mentions: name, number, and the form in which the sentence writes the number.
     results: Vec<[&'static str; 3]>,
 }
 
 impl Row {
     fn from_line(line: &'static str) -> Row {
         let (call, results) = line.split_once(" => ").unwrap_or_else(|| panic!("no results: {line}"));
+        let result = |word: &'static str| {
+            let (name, value) = word.split_once('=').unwrap_or_else(|| panic!("no result `{word}`: {line}"));
+            let (number, written) = value.split_once('~').unwrap_or((value, value));
+            [name, number, written]
+        };
+        let results = results.split(' ').map(result).collect();
+        if call.starts_with("op ") {
+            return Row { command: format!("ninebit {call}"), results };
+        }
         let mut words = call.split(' ');
         let unit = units::by_name(words.next().unwrap()).unwrap_or_else(|| panic!("no unit: {line}"));
         let (mut command, mut given) = (format!("ninebit op unit {}", unit.name()), BTreeMap::new());
@@ -65,17 +71,15 @@ impl Row {
             command += &format!(" --in {name}={value}");
         }
         assert!(given.is_empty(), "no inputs {given:?}: {line}");
-        let result = |word: &'static str| {
-            let (name, value) = word.split_once('=').unwrap_or_else(|| panic!("no result `{word}`: {line}"));
-            let (number, written) = value.split_once('~').unwrap_or((value, value));
-            [name, number, written]
-        };
-        Row { command, results: results.split(' ').map(result).collect() }
+        Row { command, results }
     }
 
-    /// What is wrong with it.
+    /// Returns the differences between this row and what the program computes.
     fn errors(&self, bench: &Bench, text: &str) -> Vec<String> {
-        let run = bench.run(&format!("{} --format json", self.command.strip_prefix("ninebit ").unwrap()));
+        let arguments = format!("{} --format json", self.command.strip_prefix("ninebit ").unwrap());
+        // Names of files are those that the page gives.
+        let mut command = bench.command(&arguments);
+        let run = Run::from_output(command.current_dir(repository::at("")).output().unwrap());
         if run.status != 0 {
             return vec![run.stderr];
         }
@@ -95,7 +99,7 @@ impl Row {
     }
 }
 
-/// Whether a number or a word stands in a sentence, and is no part of a longer one.
+/// Returns whether a number or a word occurs in a sentence, other than as a part of a longer one.
 fn has(text: &str, word: &str) -> bool {
     let joined = |c: char| c.is_alphanumeric() || c == '.' || c == '_' || c == '-' && !word.starts_with(['-', '+']);
     text.match_indices(word).any(|(at, _)| {
@@ -105,7 +109,7 @@ fn has(text: &str, word: &str) -> bool {
     })
 }
 
-/// Whether units compute the example of a rule.
+/// Returns whether units compute the example of a rule.
 pub fn computes(rule: &str) -> bool {
     SENTENCES.iter().any(|sentence| sentence.rule == rule)
 }
@@ -122,7 +126,7 @@ fn sentences_say_what_units_compute() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// The page has every sentence, and the command of each row below it.
+/// The page contains every sentence, and below it the command of each row.
 #[test]
 fn the_page_repeats_sentences() {
     for Sentence { rule, text, rows } in SENTENCES.iter() {
@@ -138,7 +142,7 @@ fn the_page_repeats_sentences() {
     assert_eq!(read(PAGE).matches("\n- Command: ").count(), commands, "commands of a rule that has no rows");
 }
 
-/// What has no rows is known by name: a new rule has some. The decision says the same.
+/// Rules without rows are listed by name, so a new rule needs rows. The decision has the same list.
 #[test]
 fn rules_without_rows_are_named() {
     let without: BTreeSet<&str> = WITHOUT.iter().flat_map(|(rules, _)| rules.split(' ')).collect();
@@ -146,5 +150,5 @@ fn rules_without_rows_are_named() {
     let rows: String =
         WITHOUT.iter().map(|(rules, why)| format!("| {} | {why} |\n", rules.replace(' ', ", "))).collect();
     let table = format!("| rules | why |\n|---|---|\n{rows}");
-    pages::hold("docs/decisions/0057-operations-beside-units.md", "tests/rules (without)", &table);
+    pages::hold("docs/decisions/0057-operations-are-units.md", "tests/rules (without)", &table);
 }

@@ -1,4 +1,4 @@
-//! Examples of the section "Final combiner".
+//! Computes the examples of the section "Final combiner".
 
 use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, load_spare0, scene};

@@ -1,4 +1,4 @@
-//! Examples of fog and of the section "Vertex side".
+//! Computes the examples of fog and of the section "Vertex side".
 
 use crate::handbook::{beside_rows, example};
 use crate::interpolation::{at, of_the_section};

@@ -1,8 +1,8 @@
-//! Examples of the section "General combiner stages".
+//! Computes the examples of the section "General combiner stages".
 
 use crate::handbook::{beside_rows, example};
 use crate::pixel::{Pixel, covering, load_spare0, scene};
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::general::{self, PlannedStage};
 use ninebit::combiner::registers::Registers;
 use ninebit::limits::Limits;
 use ninebit::state::*;
@@ -11,10 +11,10 @@ use std::path::Path;
 
 const DEFAULT: Policies = Policies::DEFAULT;
 
-/// Where A, B, C and D of [`products`] come from; any value can be loaded there.
+/// The registers that [`products`] reads as A, B, C and D. Tests load them with arbitrary values.
 const SOURCES: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
 
-/// An RGB portion that leaves AB, CD and their sum in SPARE0, SPARE1 and PRIMARY. Inputs are taken as they are.
+/// Returns an RGB portion that writes AB, CD and their sum to SPARE0, SPARE1 and PRIMARY. Inputs are not mapped.
 fn products() -> Portion {
     let mut portion = Portion::idle(Component::Rgb);
     for (input, register) in portion.inputs.iter_mut().zip(SOURCES) {
@@ -25,13 +25,7 @@ fn products() -> Portion {
 }
 
 fn run_both(rgb: Portion, alpha: Portion, select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) {
-    let stage = PlannedStage {
-        index: 0,
-        rgb: PlannedPortion::whole(rgb, 7),
-        alpha: PlannedPortion::whole(alpha, 8),
-        constants: [[0; 4]; 2],
-        reads_constants: false,
-    };
+    let stage = PlannedStage::whole(0, &GeneralStage { rgb, alpha, constants: [[0; 4]; 2] });
     general::run(&stage, select, policies, registers, &mut Silent);
 }
 
@@ -67,7 +61,7 @@ fn examples_of_the_general_stage() {
     };
     cmb12.gives("Nv10", refused("Nv10"), Some(vec![("NB0301", Some("CMB-12"))])).gives("Nv2a", refused("Nv2a"), None);
 
-    let cmb13 = example("CMB-13", "without textures SPARE0 starts as (0, 0, 0, 255).");
+    let cmb13 = beside_rows("CMB-13");
     let draw = Draw { combiners: Combiners::showing(FinalRegister::Spare0), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![draw]);
     let shown = Pixel::from_scene(&scene, DEFAULT);

@@ -1,6 +1,7 @@
-//! `docs/numerics.md`, read: its entries, its examples, and whatever else is found in files by its shape.
+//! Reads `docs/numerics.md`: its entries, its examples, and ids that occur in files.
 //!
-//! A rule's entry is a heading `### ID title`, a block of text with its formula, and a list of fields, one a line: `- Grade: ...`.
+//! The entry of a rule is a heading `### ID title`, a block of text with the formula, and a list with one field in each line: `- Grade:
+//! ...`.
 
 use crate::catalogue;
 use crate::pages;
@@ -16,29 +17,29 @@ const PREFIXES: [&str; 17] = [
     "CYL",
 ];
 
-/// The handbook.
+/// Path of the handbook.
 pub const PAGE: &str = "docs/numerics.md";
 
-/// Every entry of the handbook, in its order.
+/// All entries of the handbook in order.
 pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(entries);
 
 /// The entry of one rule.
 pub struct Entry {
     pub id: String,
     pub title: String,
-    /// Not in the section of what is known but not built.
+    /// Whether the rule is built, that is, not in the section "Known, not built yet".
     pub built: bool,
     /// Label and text of each field, in order.
     pub fields: Vec<(String, String)>,
 }
 
 impl Entry {
-    /// A field's text; empty if there is none.
+    /// Returns the text of a field, which is empty if there is no such field.
     pub fn field(&self, label: &str) -> &str {
         self.fields.iter().find(|f| f.0 == label).map_or("", |f| f.1.as_str())
     }
 
-    /// The grades: each is a word that may be followed by a part in brackets.
+    /// Returns the grades of the rule. Each is a word, possibly followed by the part that it applies to in brackets.
     pub fn grades(&self) -> Vec<String> {
         let mut depth = 0;
         let mut plain = String::new();
@@ -53,7 +54,7 @@ impl Entry {
         plain.split(',').map(|g| g.trim().to_string()).collect()
     }
 
-    /// The files of a field, each with the name that follows it.
+    /// Returns the files that a field names, each with the name in code that follows it.
     pub fn references(&self, label: &str) -> Vec<(String, Option<String>)> {
         let mut out: Vec<(String, Option<String>)> = Vec::new();
         for part in self.field(label).split(", ").filter(|part| !part.is_empty()) {
@@ -91,17 +92,17 @@ fn entries() -> Vec<Entry> {
     entries
 }
 
-/// The rules that are built.
+/// Returns the rules that are built.
 pub fn built() -> impl Iterator<Item = &'static Entry> {
     ENTRIES.iter().filter(|e| e.built)
 }
 
-/// The example of a rule, while it is being computed.
+/// The example of a rule while it is being computed.
 pub struct Example {
     rule: &'static str,
 }
 
-/// Opens the example of `rule`. `text` is the line that the handbook shows; `BLESS=1` writes it there.
+/// Begins the example of `rule`. `text` is the line that the handbook shows; `BLESS=1` writes it there.
 #[track_caller]
 pub fn example(rule: &'static str, text: &str) -> Example {
     let entry = ENTRIES.iter().find(|e| e.id == rule).unwrap_or_else(|| panic!("the handbook has no rule {rule}"));
@@ -124,7 +125,7 @@ pub fn example(rule: &'static str, text: &str) -> Example {
     Example { rule }
 }
 
-/// Opens what else an example says whose sentence and rows are in `catalogue.txt`.
+/// Begins the parts of an example that the rows in `catalogue.txt` do not compute.
 #[track_caller]
 pub fn beside_rows(rule: &'static str) -> Example {
     assert!(catalogue::computes(rule), "{rule} has no rows");
@@ -132,27 +133,27 @@ pub fn beside_rows(rule: &'static str) -> Example {
 }
 
 impl Example {
-    /// Compares one number of the line with what the model computes.
+    /// Compares a number of the example with the number that the model computes.
     #[track_caller]
     pub fn gives<T: PartialEq + Debug>(&self, what: &str, got: T, expected: T) -> &Example {
         assert!(got == expected, "{}: {what}: expected {expected:?}, the model gives {got:?}", self.rule);
         self
     }
 
-    /// Compares a real number, which the line gives with `digits` decimals.
+    /// Compares a real number, which the example gives with `digits` decimals.
     #[track_caller]
     pub fn shows(&self, what: &str, got: f64, digits: usize, expected: &str) -> &Example {
         self.gives(what, format!("{got:.digits$}"), expected.to_string())
     }
 }
 
-/// A text file of the repository.
+/// Returns the text of a file of the repository.
 pub fn read(path: impl AsRef<Path>) -> String {
     let path = repository::at(path);
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// Files below a folder whose names end in `.EXTENSION`, sorted.
+/// Returns the files below a folder that have the given extension, sorted.
 pub fn files(folder: impl AsRef<Path>, extension: &str) -> Vec<PathBuf> {
     let folder = repository::at(folder);
     let found = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
@@ -162,7 +163,7 @@ pub fn files(folder: impl AsRef<Path>, extension: &str) -> Vec<PathBuf> {
     paths.into_iter().flat_map(inside).filter(|p| p.extension().is_some_and(|e| e == extension)).collect()
 }
 
-/// Every rule id in a text: a prefix, a dash, a number, at most one letter.
+/// Returns every rule id in a text: a prefix, a dash, a number, at most one letter.
 pub fn ids(text: &str) -> BTreeSet<String> {
     let bytes = text.as_bytes();
     let mut found = BTreeSet::new();
@@ -184,7 +185,7 @@ pub fn ids(text: &str) -> BTreeSet<String> {
     found
 }
 
-/// String literals that are shaped like an id, whatever their prefix, each with the code before it.
+/// Returns the string literals that have the form of an id, whatever their prefix, each with the code before it.
 pub fn id_literals(source: &str) -> Vec<(&str, &str)> {
     let shaped = |text: &str| {
         let Some((prefix, number)) = text.split_once('-') else { return false };
@@ -198,7 +199,7 @@ pub fn id_literals(source: &str) -> Vec<(&str, &str)> {
     source.match_indices('"').filter_map(|(at, _)| Some((&source[..at], literal(at)?))).collect()
 }
 
-/// Whether a source declares a function, type, trait or constant of that name. A mention is no declaration.
+/// Returns whether a source declares a function, type, trait or constant of that name. A mere mention does not count.
 pub fn declares(source: &str, name: &str) -> bool {
     let named = |line: &str, keyword: &str| {
         line.match_indices(keyword).any(|(at, _)| {

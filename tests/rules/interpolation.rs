@@ -1,23 +1,23 @@
-//! Examples of the sections "Interpolation" and "Depth".
+//! Computes the examples of the sections "Interpolation" and "Depth".
 
-use crate::handbook::{beside_rows, example, read};
+use crate::handbook::{beside_rows, read};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::raster::depth::{self, Binary, DepthPlane};
+use ninebit::raster::depth::{self, DepthPlane};
 use ninebit::raster::interpolate::{Floored, Sample};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{CompareFunction, DepthFormat, DepthTest, PolygonOffset, Profile, VertexDepths};
 use ninebit_scene as scene;
 use std::path::Path;
 
-/// (0, 0), (side, 0), (0, side) in pixels.
+/// Returns the triangle (0, 0), (side, 0), (0, side) in pixels, with the given w.
 fn right_triangle(side: f32, w: [f32; 3], profile: Profile) -> Triangle {
     let corners = [[0.0, 0.0, 0.0, w[0]], [side, 0.0, 0.0, w[1]], [0.0, side, 0.0, w[2]]];
     Triangle::new(corners, true, profile).unwrap()
 }
 
-/// The triangle that the section uses.
+/// Returns the triangle that the section uses, with sides of 96 pixels and w = 1.
 pub fn of_the_section() -> Triangle {
     right_triangle(96.0, [1.0; 3], Profile::Nv2a)
 }
@@ -103,18 +103,13 @@ fn examples_of_depth() {
 fn examples_of_depth_words_ranges_and_offsets() {
     beside_rows("DEP-3").gives("1.5", 1.5_f32.to_bits(), 0x3fc0_0000);
 
-    let dep5 = example(
-        "DEP-5",
-        "z from 16572698 to 16809768 over 487.3125 rows: the slope 486.4845 becomes 486.4375, and factor 16 adds 7783 (real: 7783.75).",
-    );
-    let p = [
-        [53.1875, -34.3125, 16_809_768.0, 1.0],
-        [1808.6875, 453.0, 16_572_698.0, 1.0],
-        [-1168.6875, 453.0, 16_572_698.0, 1.0],
-    ];
+    let dep5 = beside_rows("DEP-5");
+    let p = [[200.0, 0.0, 16_716_070.0, 1.0], [500.0, 487.3125, 16_479_000.0, 1.0], [0.0, 487.3125, 16_479_000.0, 1.0]];
     let triangle = Triangle::new(p, true, Profile::Nv2a).unwrap();
     let z = p.map(|p| p[2]);
-    dep5.gives("the slope", depth::slope(&triangle, z), Binary { mantissa: 7783, exponent: -4 });
+    let real = f64::from(z[0] - z[1]) / 487.3125;
+    dep5.shows("the real slope", real, 4, "486.4845").shows("16 times that", 16.0 * real, 2, "7783.75");
+    dep5.gives("32nds", 15_567.0 / 32.0, 486.46875).gives("the rows", 0x00fe_7091 - 0x00fe_522a, 7783);
     let steps = DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Less, true) };
     let test = DepthTest { offset: PolygonOffset { bias: 0.0, factor: 16.0 }, ..steps };
     let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (z, [1.0; 3])).unwrap();

@@ -1,4 +1,4 @@
-//! Examples of the section "Numbers".
+//! Computes the examples of the section "Numbers".
 
 use crate::handbook::{beside_rows, example};
 use ninebit::limits::Limits;

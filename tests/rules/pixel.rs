@@ -1,4 +1,4 @@
-//! Scenes of one pixel, and everything that is known about it.
+//! Scenes of one pixel, rendered and traced.
 
 use crate::build::{draw, target, vertex};
 use ninebit::engine::{RenderOptions, render, trace};
@@ -6,16 +6,16 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit::trace::Step;
 
-/// A pixel that was drawn, and traced.
+/// A pixel that was rendered and traced.
 pub struct Pixel {
-    /// What the surface holds.
+    /// The word that the surface holds.
     pub word: u32,
     /// The steps of the last draw.
     steps: Vec<Step>,
 }
 
 impl Pixel {
-    /// Draws and traces pixel (0, 0) of the first target.
+    /// Renders and traces pixel (0, 0) of the first target.
     pub fn from_scene(scene: &Scene, policies: Policies) -> Pixel {
         let plan = Plan::compile(scene, &PlanOptions { policies, prune: true }).unwrap();
         let word = render(&plan, &RenderOptions::default()).surfaces[0].words[0];
@@ -24,33 +24,33 @@ impl Pixel {
         Pixel { word, steps: trace.draws.pop().map_or(Vec::new(), |draw| draw.steps) }
     }
 
-    /// The step that yields `name`.
+    /// Returns the last step that yields `name`.
     #[track_caller]
     pub fn step(&self, name: &str) -> &Step {
         let names = || self.steps.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" ");
         self.steps.iter().rfind(|s| s.name == name).unwrap_or_else(|| panic!("no step `{name}` in {}", names()))
     }
 
-    /// The integer of a step.
+    /// Returns the integer of a step.
     #[track_caller]
     pub fn value(&self, name: &str) -> i64 {
         self.step(name).value
     }
 }
 
-/// A pixel of `format`, cleared to `clear`.
+/// Returns a scene with one pixel of `format`, cleared to `clear`.
 pub fn scene(profile: Profile, format: SurfaceFormat, clear: [u8; 4], draws: Vec<Draw>) -> Scene {
     Scene { profile, targets: vec![target(1, 1, format, clear)], textures: vec![], palettes: vec![], draws }
 }
 
-/// Stores the primary colour in the pixel. All corners are alike, so nothing depends on weights.
+/// Returns a draw that stores the primary colour in the pixel. All corners have the same values, so the result does not depend on weights.
 pub fn covering(corner: Vertex) -> Draw {
     let corners = [(0.0, 0.0), (2.0, 0.0), (0.0, 2.0)];
     let place = |(x, y): (f32, f32)| Vertex { position: vertex(x, y, [0; 4]).position, ..corner };
     draw(Topology::Triangles, corners.map(place).to_vec())
 }
 
-/// A portion that writes A times one to SPARE0.
+/// Returns a portion that writes `register` times one to SPARE0.
 pub fn load_spare0(component: Component, register: Register) -> Portion {
     let mut portion = Portion::idle(component);
     portion.inputs[0].register = register;

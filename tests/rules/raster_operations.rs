@@ -1,4 +1,4 @@
-//! Examples of the section "Raster operations".
+//! Computes the examples of the section "Raster operations".
 
 use crate::handbook::beside_rows;
 use ninebit::plan::{Plan, PlanOptions};
@@ -15,7 +15,7 @@ fn examples_of_raster_operations() {
     rop6.gives("the mask", mask, 0xffff_0000);
 }
 
-/// The pixels that a draw may touch.
+/// Returns the pixels that a draw may touch.
 fn touched(target: Target, draw: Draw) -> Vec<(u32, u32)> {
     let draw = Draw { color_mask: [true; 4], ..draw };
     let scene = Scene { targets: vec![target], draws: vec![draw], ..Scene::default() };

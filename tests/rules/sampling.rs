@@ -1,4 +1,4 @@
-//! Examples of volumes.
+//! Computes the examples of volumes.
 
 use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, scene};

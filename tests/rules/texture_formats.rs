@@ -1,10 +1,10 @@
-//! Examples of compressed textures.
+//! Computes the examples of compressed textures.
 
 use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
 
-/// A pixel that shows TEXTURE0: texel (x, 0) of one block.
+/// Returns a pixel that shows TEXTURE0, sampled at texel (x, 0) of one block.
 fn sampled(profile: Profile, format: TextureFormat, words: &[u32], x: u32) -> Pixel {
     let s = (x as f32 + 0.5) / 4.0;
     let mut draw = covering(Vertex { texture_coordinates: [[s, 0.0, 0.0, 1.0]; TEXTURE_UNITS], ..Vertex::default() });
@@ -21,7 +21,7 @@ fn sampled(profile: Profile, format: TextureFormat, words: &[u32], x: u32) -> Pi
     Pixel::from_scene(&scene, Policies::DEFAULT)
 }
 
-/// Two words that differ in red.
+/// Returns the word of two colours that have only red.
 fn reds(first: u32, second: u32) -> u32 {
     first << 11 | second << 27
 }

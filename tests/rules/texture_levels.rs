@@ -1,13 +1,14 @@
-//! Examples of levels and cube maps.
+//! Computes the examples of levels and cube maps.
 
 use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
 
-/// A pixel that shows TEXTURE0 of a white texture, sampled at s, t, r plus so much a pixel along x.
+/// Returns a pixel that shows TEXTURE0 of a white texture, with the coordinates `st` at its centre, which change by `step` from pixel to
+/// pixel along x.
 fn sampled(kind: TextureKind, side: u32, levels: u32, st: [f32; 3], step: [f32; 3], unit: TextureUnit) -> Pixel {
     let mut draw = covering(Vertex::default());
-    // The vertices lie where they lie: coordinates that grow by `step` from pixel to pixel and are `st` at the centre of the first.
+    // At each vertex the coordinates have the value of this linear function.
     draw.vertices.update(|_, vertex| {
         let x = vertex.position[0] - 0.5;
         let along = |n: usize| st[n] + step[n] * x;
@@ -54,7 +55,7 @@ fn anisotropy_takes_taps_along_the_longer_axis() {
 
     let vertical = |anisotropy: u32| TextureUnit { anisotropy, ..TextureUnit::new(0) };
     let two = sampled(TextureKind::TwoDimensional, 64, 1, [0.5; 3], [0.0, 3.0 / 64.0, 0.0], vertical(2));
-    // Three texels a pixel: m = 1.5, the taps 0.75 to both sides.
+    // With a step of three texels m is 1.5, and the taps lie 0.75 texels to both sides.
     let [up, down] = ["unit0.tap1.v", "unit0.tap0.v"].map(|tap| two.value(tap) - two.value("unit0.v"));
     assert_eq!((up, down, two.value("unit0.tap0.weight")), (-192, 192, 128));
 }

@@ -1,4 +1,4 @@
-//! Examples of the section "Texture shader".
+//! Computes the examples of the section "Texture shader".
 
 use crate::handbook::beside_rows;
 use crate::pixel::{Pixel, covering, scene};
@@ -15,8 +15,8 @@ fn stage(operation: ShaderOperation, mapping: DotMapping) -> ShaderStage {
     ShaderStage { operation, mapping, ..ShaderStage::conventional(0, false) }
 }
 
-/// A pixel of a texture shader: unit 0 fetches `word`, the others sample `second` where they sample, at the same coordinates for all
-/// vertices; the last register that a stage makes is shown.
+/// Returns a pixel that shows the register of the last stage. Unit 0 fetches `word`. Other units that sample read `second`. The coordinates
+/// are the same at all vertices.
 fn shaded(word: u32, stages: &[ShaderStage], second: Texture, sets: [[f32; 4]; 4], policies: Policies) -> Pixel {
     let mut draw = covering(Vertex { texture_coordinates: sets, ..Vertex::default() });
     for (index, stage) in stages.iter().enumerate() {
@@ -42,7 +42,7 @@ fn white(kind: TextureKind, side: u32) -> Texture {
 
 const SAMPLE: ShaderOperation = ShaderOperation::Sample;
 
-/// The single-precision number that a step yields.
+/// Returns the single-precision number that a step yields.
 fn float(pixel: &Pixel, name: &str) -> f32 {
     let step = pixel.step(name);
     assert_eq!(step.per_one, 0, "{name} is a single-precision number");
@@ -121,6 +121,6 @@ fn examples_of_colors() {
         let second = white(TextureKind::TwoDimensional, 1);
         shaded(0, &stages, second, [[0.0, t, 0.0, 1.0]; 4], Policies::DEFAULT).word
     };
-    // The surface is cleared to 0; what is kept is black, opaque.
+    // The surface is cleared to 0. A fragment that is kept is opaque black.
     tsh10.gives("kept and dropped", [0.0, -0.001].map(culled), [0xff00_0000, 0]);
 }

@@ -1,11 +1,11 @@
-//! Examples of the section "Texture units".
+//! Computes the examples of the section "Texture units".
 
 use crate::handbook::beside_rows;
 use crate::interpolation::{at, of_the_section};
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
 
-/// A pixel that shows TEXTURE0: unit 0 samples a row of texels at s, t = 0, with this q.
+/// Returns a pixel that shows TEXTURE0, where unit 0 samples a row of texels at s with t = 0 and the given q.
 fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn(&mut TextureUnit)) -> Pixel {
     let mut draw = covering(Vertex { texture_coordinates: [[s, 0.0, 0.0, q]; TEXTURE_UNITS], ..Vertex::default() });
     let mut unit = TextureUnit { min_filter: Filter::Nearest, mag_filter: Filter::Nearest, ..TextureUnit::new(0) };
@@ -38,7 +38,7 @@ fn examples_of_texture_units() {
 
     let tex8 = beside_rows("TEX-8");
     for (mode, mixed) in [(AddressMode::Wrap, 85), (AddressMode::ClampToEdge, 70)] {
-        // s = 1 lies on the edge: half way between the centres of texels 3 and 4.
+        // s = 1 is the edge of the image, half way between the centres of texels 3 and 4.
         let pixel = sampled(TextureFormat::L8, &[100, 10, 20, 70], 1.0, 1.0, |unit| {
             linear(unit);
             unit.address_s = mode;
@@ -52,7 +52,7 @@ fn examples_of_texture_units() {
     for (sign, value) in [(1.0, 1 << 24), (-1.0, -1 << 24)] {
         let [s, q, one] = triangle.direction([[1.0; 3], [0.0, sign, -7.0 * sign], [1.0; 3]]);
         tex15.gives("q", sample.sum(&q), 0);
-        // -2^-27 of 1.
+        // The weights fall short by 2^-27 of 1.
         let loss = -sign as i128 * sample.sum(&one) * i128::from(triangle.p[1]);
         tex15.gives("8 times its loss", 8 * sample.shortfall(&q), loss);
         tex15.gives("u", sample.ratio(&s, &q, 64).value, value);

@@ -1,4 +1,4 @@
-//! Probes of the raster operations (ROP-1 to ROP-6) and of what is read back from surfaces.
+//! Probes of the raster operations (ROP-1 to ROP-6), and of surfaces that are read back.
 
 use crate::probes::{Answers, single};
 use crate::sheet::{ALPHA_ONLY, OVER, RGB_ONLY, Sheet, bind, cell, copy, opaque};
@@ -6,14 +6,14 @@ use crate::table::{Row, bytes};
 use ninebit::state::*;
 use std::collections::BTreeMap;
 
-/// A drawing sequence of the blend tests, on a texel.
+/// A sequence of draws of the blend tests, which ends in one texel.
 #[derive(Clone, Copy)]
 enum Stack {
-    /// Levels 1 to n: RGB stored, alpha blended.
+    /// Draws levels 1 to n, each of which stores RGB and blends alpha.
     A,
-    /// One level: all channels blended.
+    /// Draws one level, which blends all channels.
     B,
-    /// One level: RGB blended, alpha stored.
+    /// Draws one level, which blends RGB and stores alpha.
     C,
 }
 
@@ -29,7 +29,7 @@ impl Stack {
         }
     }
 
-    /// Which channels are drawn, and whether they are blended, for each colour.
+    /// Returns the passes for each colour: the channels that are drawn, and whether they are blended.
     fn passes(self) -> &'static [([bool; 4], bool)] {
         match self {
             Stack::A => &[(RGB_ONLY, false), (ALPHA_ONLY, true)],
@@ -39,7 +39,7 @@ impl Stack {
     }
 }
 
-/// The stack is drawn on a texture, and the texture over a grey background.
+/// Draws the stack on a texture, and the texture over a grey background.
 fn stacks(rows: &[Row], stack: impl Fn(&Row) -> Stack) -> Answers {
     let mut sheet = Sheet::new();
     let canvas = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
@@ -61,22 +61,22 @@ fn stacks(rows: &[Row], stack: impl Fn(&Row) -> Stack) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// blend-stack-a.
+/// Draws the rows of `blend-stack-a`.
 pub fn stack_a(rows: &[Row]) -> Answers {
     stacks(rows, |_| Stack::A)
 }
 
-/// blend-stack-b.
+/// Draws the rows of `blend-stack-b`.
 pub fn stack_b(rows: &[Row]) -> Answers {
     stacks(rows, |_| Stack::B)
 }
 
-/// blend-stack-c.
+/// Draws the rows of `blend-stack-c`.
 pub fn stack_c(rows: &[Row]) -> Answers {
     stacks(rows, |_| Stack::C)
 }
 
-/// blend-spot.
+/// Draws the rows of `blend-spot`.
 pub fn spot(rows: &[Row]) -> Answers {
     stacks(rows, |row| match row.text("stack") {
         "A" => Stack::A,
@@ -86,13 +86,13 @@ pub fn spot(rows: &[Row]) -> Answers {
     })
 }
 
-/// A target of every format.
+/// Adds a target of every format, and returns a function that finds them.
 fn surfaces(sheet: &mut Sheet) -> impl Fn(SurfaceFormat) -> usize + use<> {
     let targets: Vec<usize> = SurfaceFormat::ALL.iter().map(|format| sheet.target(*format, [0; 4])).collect();
     move |format| targets[SurfaceFormat::ALL.iter().position(|f| *f == format).unwrap()]
 }
 
-/// surface-blend: blends chained on a surface, then shown through a texture unit.
+/// Draws the rows of `surface-blend`: several blends on a surface, which is then shown by a texture unit.
 pub fn surface(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let surfaces = surfaces(&mut sheet);
@@ -116,7 +116,7 @@ pub fn surface(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// destination-alpha: one blend whose source factor is the destination's alpha, shown over grey.
+/// Draws the rows of `destination-alpha`: one blend with the destination's alpha as the source factor, shown over grey.
 pub fn destination_alpha(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let surfaces = surfaces(&mut sheet);
@@ -144,7 +144,7 @@ pub fn destination_alpha(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// signed-texel: a signed channel, shown by one blend.
+/// Draws the rows of `signed-texel`: a signed channel, shown by one blend.
 pub fn signed_texel(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let frame = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
@@ -168,7 +168,7 @@ pub fn signed_texel(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// alpha-test.
+/// Draws the rows of `alpha-test`.
 pub fn alpha_test(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let frame = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
@@ -183,7 +183,7 @@ pub fn alpha_test(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// color-key: a texel behind a key, over a background.
+/// Draws the rows of `color-key`: a texel with a key over a background.
 pub fn color_key(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let frame = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
@@ -210,7 +210,7 @@ pub fn color_key(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// color-mask: the last draw must leave alpha alone.
+/// Draws the rows of `color-mask`: the last draw must not change alpha.
 pub fn color_mask(rows: &[Row]) -> Answers {
     let mut sheet = Sheet::new();
     let frame = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
@@ -229,7 +229,8 @@ pub fn color_mask(rows: &[Row]) -> Answers {
     single(sheet.show(frame, rows.len()))
 }
 
-/// alpha-chain: a texture is drawn onto itself n times, here from one surface to the next.
+/// Draws the rows of `alpha-chain`: the captured programs draw a texture onto itself n times, whereas this draws from one surface to the
+/// next.
 pub fn alpha_chain(rows: &[Row]) -> Answers {
     let answer = |row: &Row| {
         let mut sheet = Sheet::new();

@@ -1,23 +1,23 @@
-//! The captured frames R1 to R7 as scenes: geometry of the programs that drew them, pass-through colours.
+//! The captured frames R1 to R7 as scenes, with the geometry of the programs that drew them and pass-through colours.
 
 use crate::build::{draw, target, vertex};
 use ninebit::state::*;
 
-/// A captured frame and what of it the model answers for.
+/// A captured frame, and the part of it that the model reproduces.
 pub struct Case {
-    /// R1 to R7.
+    /// The name, R1 to R7.
     pub name: &'static str,
-    /// File of the golden results.
+    /// Path of the picture among the golden results.
     pub capture: &'static str,
-    /// The scene. Its clear has alpha 0 and its fragments alpha 255: alpha is the coverage.
+    /// The scene. Cleared pixels have alpha 0 and fragments alpha 255, so alpha shows the coverage.
     pub scene: Scene,
-    /// The frame's background, captured and ours.
+    /// The background colour of both the captured and the rendered frame.
     pub background: [u8; 3],
-    /// Pixels that the case is about, text and other draws not yet taken out.
+    /// Whether a pixel belongs to the case. Text and other draws are still included.
     pub region: fn(u32, u32) -> bool,
-    /// Covered pixels compared.
+    /// Number of covered pixels that are compared.
     pub covered: usize,
-    /// Pixels known to differ.
+    /// Number of pixels that are known to differ.
     pub differing: usize,
 }
 
@@ -30,7 +30,7 @@ fn scene(background: [u8; 3], draws: Vec<Draw>) -> Scene {
     Scene { profile: Profile::Nv2a, targets: vec![target], textures: vec![], palettes: vec![], draws }
 }
 
-/// A vertex at a snapped position (1/16 pixel).
+/// Returns a vertex at a position in 1/16 pixel.
 fn snapped(x: i32, y: i32, [r, g, b]: [u8; 3]) -> Vertex {
     vertex(x as f32 / 16.0, y as f32 / 16.0, [r, g, b, 255])
 }
@@ -39,7 +39,7 @@ fn everywhere(_: u32, _: u32) -> bool {
     true
 }
 
-/// RAS-1 to RAS-3: slivers whose edges lie on, or one float below, the sample points.
+/// RAS-1 to RAS-3: slivers whose edges lie on the sample points, or one float below them.
 pub fn r1() -> Case {
     let color = [51, 119, 136, 255];
     let dec = f32::next_down;
@@ -120,7 +120,7 @@ pub fn r1() -> Case {
     }
 }
 
-/// INT-3: vertical ramps, a tie in every eighth row.
+/// INT-3: vertical ramps with a tie in every eighth row.
 pub fn r2() -> Case {
     let (black, white) = ([0; 3], [255; 3]);
     let mut vertices = Vec::new();
@@ -144,7 +144,7 @@ pub fn r2() -> Case {
 
 /// INT-3 with three colours, and DEP-1.
 pub fn r3() -> Case {
-    // DEP-2: z (2^24 - 1), floored, is 11184809 above and 16777214 below.
+    // DEP-2: z (2^24 - 1), rounded down, is 11184809 above and 16777214 below.
     let (above, below) = (11_184_810.0 / 16_777_216.0, 16_777_215.0 / 16_777_216.0);
     let mut vertices = vec![
         snapped(2048, 640, [0, 255, 0]),
@@ -171,13 +171,13 @@ pub fn r3() -> Case {
     }
 }
 
-/// A smooth draw on the usual background; pixels that it covers, and of these those that differ.
+/// Returns a case with a smooth draw on the usual background, with the numbers of pixels that it covers and of those that differ.
 fn shaded(name: &'static str, capture: &'static str, draw: Draw, [covered, differing]: [usize; 2]) -> Case {
     let background = [44, 48, 46];
     Case { name, capture, scene: scene(background, vec![draw]), background, region: everywhere, covered, differing }
 }
 
-/// INT-2 on triangles of equal w.
+/// INT-2: triangles with equal w at all vertices.
 pub fn r4() -> Case {
     let corners = [
         (1529, 1554, [0, 0, 255]),
@@ -193,7 +193,7 @@ pub fn r4() -> Case {
     shaded("R4", "Shade_model/Prog_Tri_Smooth_First.png", draw(Topology::Triangles, equal_w(&corners)), [36_035, 2])
 }
 
-/// INT-2 on quads of equal w.
+/// INT-2: quads with equal w at all vertices.
 pub fn r5() -> Case {
     let corners = [
         (1529, 1554, [0, 0, 255]),
@@ -214,7 +214,7 @@ fn equal_w(corners: &[(i32, i32, [u8; 3])]) -> Vec<Vertex> {
     vertices
 }
 
-/// INT-1: without the perspective flag w does not matter; RAS-1: positions left of the screen are truncated toward zero.
+/// INT-1: without the perspective flag w has no effect. RAS-1: positions left of the screen are truncated toward zero.
 pub fn r6() -> Case {
     let mut vertices = vec![
         vertex(-162.311_39, -242.311_39, [255, 0, 0, 255]),
@@ -239,7 +239,7 @@ pub fn r6() -> Case {
     }
 }
 
-/// NUM-4: thousands of float colours. The top rows are drawn over once more and left out.
+/// NUM-4: thousands of float colours. The top rows are left out, because another draw covers them.
 pub fn r7() -> Case {
     fn advance(state: &mut [f32; 3]) {
         for (value, step) in state.iter_mut().zip([0.03, 0.05, 0.01]) {

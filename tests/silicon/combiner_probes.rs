@@ -1,4 +1,4 @@
-//! Probes of the combiners and of what enters them.
+//! Probes of the combiners and of their inputs.
 
 use crate::probes::{Answers, single};
 use crate::sheet::{OVER, Sheet, bind, cell, input, opaque};
@@ -10,7 +10,7 @@ fn frame(sheet: &mut Sheet) -> usize {
     sheet.target(SurfaceFormat::A8R8G8B8, [0, 0, 0, 255])
 }
 
-/// One draw a row on a frame of its own.
+/// Draws each row in one cell of a common frame.
 fn each(rows: &[Row], draw: impl Fn(&Row, Draw) -> Draw) -> Vec<[u8; 4]> {
     let mut sheet = Sheet::new();
     let frame = frame(&mut sheet);
@@ -20,12 +20,12 @@ fn each(rows: &[Row], draw: impl Fn(&Row, Draw) -> Draw) -> Vec<[u8; 4]> {
     sheet.show(frame, rows.len())
 }
 
-/// 1 in a general stage (CMB-2).
+/// CMB-2: returns an input of a general stage that is 1.
 fn one(component: Component) -> CombinerInput {
     CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(component) }
 }
 
-/// SPARE0 = `register` times one, by the portion's bias and scale.
+/// Writes `register` times one to SPARE0, with the bias and scale of the portion.
 fn load(portion: &mut Portion, register: Register, component: Component) {
     portion.inputs[0].register = register;
     portion.inputs[1] = one(component);
@@ -41,7 +41,7 @@ fn output(row: &Row, draw: &mut Draw) {
     stage.constants[0] = [r, g, b, 0];
 }
 
-/// combiner-output.
+/// Draws the rows of `combiner-output`.
 pub fn outputs(rows: &[Row]) -> Answers {
     single(each(rows, |row, mut draw| {
         output(row, &mut draw);
@@ -50,7 +50,7 @@ pub fn outputs(rows: &[Row]) -> Answers {
     }))
 }
 
-/// combiner-output-alpha: for each of the backgrounds.
+/// Draws the rows of `combiner-output-alpha` over each of the backgrounds.
 pub fn outputs_alpha(rows: &[Row]) -> Answers {
     let mut answers: Answers = vec![vec![]; rows.len()];
     for alternative in 0..2 {
@@ -74,7 +74,7 @@ pub fn outputs_alpha(rows: &[Row]) -> Answers {
     answers
 }
 
-/// SPARE0 and SECONDARY hold the given colours.
+/// Loads SPARE0 and SECONDARY with the given colours.
 fn sum(row: &Row, draw: &mut Draw, spare0: [u8; 3], secondary: [u8; 3]) {
     let opaque = |[r, g, b]: [u8; 3]| [r, g, b, 255];
     let stage = &mut draw.combiners.stages[0];
@@ -88,7 +88,7 @@ fn sum(row: &Row, draw: &mut Draw, spare0: [u8; 3], secondary: [u8; 3]) {
     combiner.invert_secondary = row.flag("invert_secondary");
 }
 
-/// final-product-sum: A is constant 0, B the sum.
+/// Draws the rows of `final-product-sum`: A is constant 0 and B is the sum.
 pub fn product_sum(rows: &[Row]) -> Answers {
     single(each(rows, |row, mut draw| {
         sum(row, &mut draw, [row.number("spare0"); 3], [row.number("secondary"); 3]);
@@ -100,7 +100,7 @@ pub fn product_sum(rows: &[Row]) -> Answers {
     }))
 }
 
-/// final-sum: D is the sum.
+/// Draws the rows of `final-sum`: D is the sum.
 pub fn final_sum(rows: &[Row]) -> Answers {
     single(each(rows, |row, mut draw| {
         sum(row, &mut draw, row.bytes("spare0"), row.bytes("secondary"));
@@ -109,7 +109,7 @@ pub fn final_sum(rows: &[Row]) -> Answers {
     }))
 }
 
-/// final-ef: E and F are the constants, D their product.
+/// Draws the rows of `final-ef`: E and F are the constants and D is their product.
 pub fn final_ef(rows: &[Row]) -> Answers {
     single(each(rows, |row, mut draw| {
         let combiner = &mut draw.combiners.final_combiner;
@@ -125,7 +125,7 @@ pub fn final_ef(rows: &[Row]) -> Answers {
     }))
 }
 
-/// fog-curve: the fog of a coordinate, by FOG-1 to FOG-4.
+/// Draws the rows of `fog-curve`: fog of a coordinate by FOG-1 to FOG-4.
 pub fn fog_curve(rows: &[Row]) -> Answers {
     single(each(rows, |row, draw| {
         let [p0, p1, d] = ["p0", "p1", "d"].map(|column| row.number(column));
@@ -137,7 +137,7 @@ pub fn fog_curve(rows: &[Row]) -> Answers {
     }))
 }
 
-/// A is the fog factor, B the primary colour, C the fog colour.
+/// Adds fog to a draw: A is the fog factor, B the primary colour and C the fog colour.
 fn fogged(mut draw: Draw, fog: f32, b: [u8; 3], c: [u8; 3]) -> Draw {
     draw.vertices.update(|_, vertex| {
         vertex.fog = fog;
@@ -151,19 +151,19 @@ fn fogged(mut draw: Draw, fog: f32, b: [u8; 3], c: [u8; 3]) -> Draw {
     draw
 }
 
-/// fog-factor: a known factor, by NUM-6.
+/// Draws the rows of `fog-factor`: a known factor by NUM-6.
 pub fn fog_factor(rows: &[Row]) -> Answers {
     single(each(rows, |row, draw| fogged(draw, row.number("fog"), row.bytes("b_input"), row.bytes("c_input"))))
 }
 
-/// fog-lerp: every factor byte.
+/// Draws the rows of `fog-lerp` with every byte of the fog factor.
 pub fn fog_lerp(rows: &[Row]) -> Answers {
     let (b, c) = (rows[0].text("b_input"), rows[0].text("c_input"));
     assert!(rows.iter().all(|row| (row.text("b_input"), row.text("c_input")) == (b, c)));
     let mut sheet = Sheet::new();
     let frame = frame(&mut sheet);
     for byte in 0..256 {
-        // NUM-6 the other way round: 4096ths that come out as the byte.
+        // The inverse of NUM-6: 4096ths that yield this byte.
         let fog = (16 * byte + byte / 16 + 1) as f32 / 4096.0;
         let draw = fogged(cell(frame, byte, [255; 4]), fog, rows[0].bytes("b_input"), rows[0].bytes("c_input"));
         sheet.draw(draw);
@@ -177,7 +177,7 @@ fn float_color(row: &Row, draw: &mut Draw) {
     draw.vertices.update(|_, vertex| vertex.diffuse = VertexColor::Floats([r, g, b, 1.0]));
 }
 
-/// vertex-color: NUM-4.
+/// Draws the rows of `vertex-color`: float colours by NUM-4.
 pub fn vertex_color(rows: &[Row]) -> Answers {
     single(each(rows, |row, mut draw| {
         float_color(row, &mut draw);
@@ -185,7 +185,7 @@ pub fn vertex_color(rows: &[Row]) -> Answers {
     }))
 }
 
-/// texel-times-diffuse: for each of the texels.
+/// Draws the rows of `texel-times-diffuse` with each of the texels.
 pub fn texel_times_diffuse(rows: &[Row]) -> Answers {
     let mut answers: Answers = vec![vec![]; rows.len()];
     for alternative in 0..2 {
@@ -209,7 +209,7 @@ pub fn texel_times_diffuse(rows: &[Row]) -> Answers {
     answers
 }
 
-/// unbound-texture: colour or alpha of a unit without a texture.
+/// Draws the rows of `unbound-texture`: colour or alpha of a unit without a texture.
 pub fn unbound(rows: &[Row]) -> Answers {
     use FinalRegister::{Texture0, Texture1, Texture2, Texture3};
     single(each(rows, |row, mut draw| {

@@ -1,7 +1,7 @@
-//! Fog at the pixels of `fog-lerp`, drawn from the vertices that the captured programs drew.
+//! Draws fog at the pixels of `fog-lerp` from the vertices of the captured programs.
 //!
-//! Four triangles before a viewer at z = -7, white, in fog from 1 to 200 or of density 0.025. The suites differ in where they put
-//! the viewport only.
+//! Four white triangles lie before a viewer at z = -7, in linear fog from 1 to 200 or in fog of density 0.025. The suites differ only in
+//! the position of the viewport.
 
 use crate::table;
 use ninebit::engine::{RenderOptions, render};
@@ -12,13 +12,13 @@ use ninebit_scene as scene;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// x, y and z of the vertices, three a triangle.
+/// x, y and z of the vertices, three for each triangle.
 const VERTICES: &str = "(position: (-1.5, -1.5, 0)), (position: (-2.5, 0.6, 0)), (position: (-0.5, 0.6, 0)), \
      (position: (0, -1.5, 5)), (position: (-1, 0.75, 10)), (position: (2, 0.75, 20)), \
      (position: (5, -2, 30)), (position: (3, 2, 40)), (position: (12, 2, 70)), \
      (position: (20, -10, 50)), (position: (12, 10, 125)), (position: (80, 10, 200))";
 
-/// One of the frames.
+/// Renders one of the frames.
 fn frame(suite: &str, case: &str) -> Surface {
     let offset = if suite == "Fog" { 0.53125 } else { 0.0 };
     let (mode, parameters) = match case {
@@ -28,7 +28,7 @@ fn frame(suite: &str, case: &str) -> Surface {
         "AFF-exp2_abs-planar" => ("Exp2Abs", "density: 0.025"),
         _ => panic!("{case}"),
     };
-    // An opening of 45 degrees: 1 / tan(22.5 degrees), and 3/4 of it across.
+    // The field of view is 45 degrees: 1 / tan(22.5 degrees) vertically, and 3/4 of it horizontally.
     let text = format!(
         "(version: 1, profile: Nv2a, targets: [(width: 640, height: 480)], draws: [(vertices: Matrix( \
          matrix: Rows((1.8106601, 0, 0, 0), (0, 2.4142135, 0, 0), (0, 0, 0, 0), (0, 0, 1, 7)), \
@@ -40,7 +40,7 @@ fn frame(suite: &str, case: &str) -> Surface {
     render(&plan, &RenderOptions::default()).surfaces.remove(0)
 }
 
-/// The fog byte that makes these colours of white and the fog's colour.
+/// Returns the fog byte that blends white and the fog colour to this colour.
 fn byte([r, g, b]: [u8; 3]) -> i32 {
     let lerp = |a: i32, c: i32| (2 * (255 * a + (255 - a) * c) + 255) / 510;
     let found: Vec<i32> = (0..256).filter(|a| [48, 32, 127].map(|c| lerp(*a, c)) == [r, g, b].map(i32::from)).collect();
@@ -48,7 +48,7 @@ fn byte([r, g, b]: [u8; 3]) -> i32 {
     found[0]
 }
 
-/// Fog is what was captured, at every pixel and in each of the modes.
+/// The fog byte equals the captured one at every pixel and in each mode.
 #[test]
 fn fog_of_the_captured_triangles() {
     let mut frames: BTreeMap<(String, String), Surface> = BTreeMap::new();
@@ -64,7 +64,7 @@ fn fog_of_the_captured_triangles() {
         *differences.entry((case.to_string(), difference)).or_default() += 1;
     }
     println!("{differences:?}");
-    // One pixel of the 1,493 is a tie of the coordinate (INT-4t), one step beside.
+    // One pixel of the 1,493 lies at a tie of the coordinate (INT-4t) and differs by one step.
     let wrong: Vec<_> = differences.iter().filter(|((_, difference), _)| *difference != 0).collect();
     assert_eq!(wrong, [(&("AFF-exp_abs-planar".to_string(), 1), &1)], "{differences:?}");
     assert_eq!(differences[&("AFF-linear_abs-planar".to_string(), 0)], 458);

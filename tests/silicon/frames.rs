@@ -1,7 +1,7 @@
-//! Captured frames of a real NV2A, reproduced pixel by pixel.
+//! Reproduces captured frames of a real NV2A, pixel by pixel.
 //!
-//! The captures are not part of the repository; `vectors/silicon/frames` says what they show. With `NINEBIT_CAPTURES` set to a
-//! folder that holds them (`frames/SUITE/NAME.png`) they are compared directly, and `BLESS=1` writes the expectations anew.
+//! The captures are not part of the repository; `vectors/silicon/frames` has their expectations. If `NINEBIT_CAPTURES` is set to a folder
+//! that contains them (`frames/SUITE/NAME.png`), they are compared directly, and `BLESS=1` rewrites the expectations.
 
 use crate::cases::{self, Case};
 use crate::picture::{Expectation, Values, digest};
@@ -11,7 +11,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit_report::trace_text;
 use std::path::{Path, PathBuf};
 
-/// A case, rendered.
+/// A case and its rendered frame.
 struct Rendered {
     case: Case,
     plan: Plan,
@@ -41,13 +41,13 @@ impl Rendered {
         self.surface.words[self.index(at)] >> 24 == 255
     }
 
-    /// Fails with everything known about a pixel.
+    /// Fails with the trace of a pixel.
     fn fail(&self, at: (u32, u32), message: &str) -> ! {
         let trace = trace(&self.plan, 0, at, None).unwrap();
         panic!("{}: pixel {},{}: {message}\n{}", self.case.name, at.0, at.1, trace_text(&self.plan, &trace));
     }
 
-    /// What the model holds now against the committed expectation `name`. `ours` reads a value.
+    /// Compares the rendered values with the committed expectation `name`. `ours` returns the value at a pixel.
     fn check(&self, name: &str, capture: &str, differing: usize, ours: impl Fn((u32, u32)) -> u32) {
         let path = Expectation::path(name);
         let expected = Expectation::parse(&std::fs::read_to_string(&path).unwrap());
@@ -62,7 +62,7 @@ impl Rendered {
         }
         let known = |at: (u32, u32)| expected.differing.iter().any(|(x, y, ..)| (*x, *y) == at);
         let values: Values = expected.positions().filter(|at| !known(*at)).map(|at| (at, ours(at))).collect();
-        // A digest does not say where: the trace is that of the first pixel compared.
+        // A digest does not show which pixel differs, so the trace is that of the first pixel.
         if digest(&values) != expected.sha256 {
             let count = values.len();
             self.fail(
@@ -91,7 +91,7 @@ impl Rendered {
     }
 }
 
-/// The folder of captures, if there is one.
+/// Returns the folder of captures, if there is one.
 fn captures() -> Option<PathBuf> {
     crate::settings::captures().map(|folder| folder.join("frames"))
 }
@@ -107,7 +107,7 @@ fn color([r, g, b, _]: [u8; 4]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Colours of a case: no pixel covered that is not in the capture, none missing, and no more than the known ones off.
+/// Compares the colours of a case. The covered pixels must be the same as in the capture, and only the known number of colours may differ.
 fn colors(rendered: &Rendered, keep: impl Fn((u32, u32)) -> bool) {
     let case = &rendered.case;
     if let Some(folder) = captures() {
@@ -165,7 +165,7 @@ fn r7_float_colors() {
     whole(cases::r7());
 }
 
-/// Colours and depths are all exact.
+/// All colours and depths are exact.
 #[test]
 fn r3_three_colors_and_depth() {
     const DIFFERING: usize = 0;
@@ -176,7 +176,7 @@ fn r3_three_colors_and_depth() {
         let [r, g, _, a] = buffer.as_ref().unwrap().get_pixel(x, y).0;
         u32::from(a) << 16 | u32::from(r) << 8 | u32::from(g)
     };
-    // Small quads lie on top of the large one: what belongs to it has about its depth.
+    // Small quads lie on top of the large one. Pixels of the large one are recognised by their depth.
     let ours = |(x, y): (u32, u32)| {
         let plane = 11_184_809.0 + (f64::from(y) - 39.5) * 13_981.012_5;
         (f64::from(stored((x, y))) - plane).abs() <= 50.0

@@ -1,4 +1,4 @@
-//! The model against a real NV2A: measured pixels (`probes`) and whole captured frames (`frames`).
+//! Compares the model with a real NV2A: single measured pixels (`probes`) and whole captured frames (`frames`).
 #![allow(
     clippy::float_arithmetic,
     clippy::unwrap_used,

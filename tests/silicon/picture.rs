@@ -1,4 +1,4 @@
-//! A committed expectation: what of a captured frame is compared, without the frame.
+//! A committed expectation, which allows a captured frame to be compared without the frame itself.
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -6,47 +6,47 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Rows `first` to `last` have the runs `columns`; first and last column of each.
+/// Rows from the first to the last number have the same runs, each with its first and last column.
 type Rows = (u32, u32, Vec<(u32, u32)>);
 
-/// `vectors/silicon/frames/NAME.ron`. A value has 24 bits: R, G, B, or a depth.
+/// The contents of `vectors/silicon/frames/NAME.ron`. Values have 24 bits: R, G, B, or a depth.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
-    /// 1.
+    /// Version of the format, 1.
     pub version: u32,
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// File of the golden results.
+    /// Path of the picture among the golden results.
     pub capture: String,
-    /// Pixels compared.
+    /// Number of pixels that are compared.
     pub pixels: usize,
-    /// The pixels compared.
+    /// The pixels that are compared.
     pub mask: Vec<Rows>,
-    /// Of x, y (two bytes each, high first) and the value (three bytes, high first) of the pixels compared, those of
-    /// `differing` left out, row by row.
+    /// SHA-256 over the pixels that are compared except for those of `differing`, row by row: x and y with two bytes each and the value
+    /// with three, all high byte first.
     pub sha256: String,
-    /// Pixels where the model is known to differ: x, y, captured, ours.
+    /// Pixels at which the model is known to differ: x, y, captured value, value of the model.
     pub differing: Vec<(u32, u32, u32, u32)>,
 }
 
-/// The pixels compared, row by row, and a value each.
+/// The pixels that are compared, row by row, each with its value.
 pub type Values = Vec<((u32, u32), u32)>;
 
 impl Expectation {
-    /// The expectation's file.
+    /// Returns the path of an expectation.
     pub fn path(name: &str) -> PathBuf {
         crate::repository::at("vectors/silicon/frames").join(format!("{name}.ron"))
     }
 
-    /// Reads the committed text.
+    /// Reads the text of an expectation.
     pub fn parse(text: &str) -> Expectation {
         let expectation: Expectation = ron::from_str(text).unwrap();
         assert_eq!(expectation.version, 1);
         expectation
     }
 
-    /// The pixels of the mask.
+    /// Returns the pixels of the mask.
     pub fn positions(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         self.mask.iter().flat_map(|(first, last, runs)| {
             (*first..=*last)
@@ -54,7 +54,7 @@ impl Expectation {
         })
     }
 
-    /// The expectation that a capture gives: where `captured` and `ours` agree they are hashed, elsewhere listed.
+    /// Returns the text of an expectation. Pixels at which `captured` and `ours` agree are hashed, others are listed.
     pub fn text(case: &str, capture: &str, captured: &Values, ours: &Values) -> String {
         let mut out = format!(
             "(\n    version: 1,\n    case: \"{case}\",\n    capture: \"{capture}\",\n    pixels: {},\n    mask: [\n",
@@ -68,7 +68,7 @@ impl Expectation {
         let equal: Values = (0..captured.len()).filter(|n| !differs(n)).map(|n| captured[n]).collect();
         writeln!(out, "    ],\n    sha256: \"{}\",\n    differing: [", digest(&equal)).unwrap();
         let different: Vec<usize> = (0..captured.len()).filter(differs).collect();
-        // Four to a line: thousands of depths differ.
+        // Four in each line, because thousands of depths may differ.
         for line in different.chunks(4) {
             let items: Vec<String> = line
                 .iter()
@@ -80,7 +80,7 @@ impl Expectation {
     }
 }
 
-/// SHA-256 of positions and values.
+/// Returns the SHA-256 of positions and values.
 pub fn digest(values: &[((u32, u32), u32)]) -> String {
     let mut hash = Sha256::new();
     for ((x, y), value) in values {
@@ -91,7 +91,7 @@ pub fn digest(values: &[((u32, u32), u32)]) -> String {
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Positions as runs; neighbouring rows of equal runs as one.
+/// Returns positions as runs, where adjacent rows with equal runs are combined.
 fn mask(values: &Values) -> Vec<Rows> {
     let mut rows: BTreeMap<u32, Vec<(u32, u32)>> = BTreeMap::new();
     for ((x, y), _) in values {

@@ -1,4 +1,4 @@
-//! What a real NV2A showed, row by row: every probe of `vectors/silicon` goes through the model.
+//! Runs every probe of `vectors/silicon` through the model and compares with what a real NV2A showed, row by row.
 
 use crate::table::{self, Row};
 use crate::{blend_probes, combiner_probes, raster_probes, sheet, unit_probes};
@@ -7,12 +7,12 @@ use rayon::prelude::*;
 /// For each row the pixels that the model allows: one, or one for each value of an input that the capture leaves open.
 pub type Answers = Vec<Vec<[u8; 4]>>;
 
-/// One answer a row.
+/// Returns answers with one pixel for each row.
 pub fn single(pixels: Vec<[u8; 4]>) -> Answers {
     pixels.into_iter().map(|pixel| vec![pixel]).collect()
 }
 
-/// A file of probes and how the model answers them, at most [`sheet::WIDTH`] rows at a time.
+/// A file of probes, and the function that answers at most [`sheet::WIDTH`] of its rows.
 type Kind = (&'static str, fn(&[Row]) -> Answers);
 
 const KINDS: [Kind; 24] = [
@@ -42,7 +42,7 @@ const KINDS: [Kind; 24] = [
     ("unbound-texture", combiner_probes::unbound),
 ];
 
-/// Files whose rows have the columns of a unit of the conformance vectors, and that unit.
+/// Files whose rows have the columns of a unit of the conformance vectors, each with that unit.
 const UNITS: [(&str, &str); 8] = [
     ("clip", "clip"),
     ("depth-range", "depth-range"),
@@ -54,19 +54,19 @@ const UNITS: [(&str, &str); 8] = [
     ("w-buffer", "w-buffer"),
 ];
 
-/// How a row came out.
+/// The result of comparing a row.
 enum Outcome {
-    /// The only answer is what was captured.
+    /// There is one answer, and it is the captured pixel.
     Exact,
-    /// One of several answers is.
+    /// There are several answers, and one of them is the captured pixel.
     Explained,
-    /// None is.
+    /// No answer is the captured pixel.
     Wrong(String),
 }
 
 fn judge(file: &str, row: &Row, answers: &[[u8; 4]]) -> Outcome {
     let captured = row.captured();
-    // The colours of these depend on a picture; alpha is what is pinned.
+    // The colours of these rows depend on a picture, so only alpha is compared.
     let first = if file == "color-mask" { 3 } else { 0 };
     let found = answers.iter().any(|answer| answer[first..] == captured[first..]);
     match (found, answers) {

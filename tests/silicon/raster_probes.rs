@@ -9,7 +9,7 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 
-/// The pixels of a whole frame that the rows name.
+/// Renders a whole frame and returns the pixels that the rows name.
 fn pixels(scene: &Scene, rows: &[Row]) -> Answers {
     let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
     let frame = &render(&plan, &RenderOptions::default()).surfaces[0];
@@ -18,7 +18,7 @@ fn pixels(scene: &Scene, rows: &[Row]) -> Answers {
     single(rows.iter().map(|row| shown[index(row)]).collect())
 }
 
-/// alpha-ramp: quads of 512 x 64 pixels. Their area is a power of two: INT-3's exception.
+/// Draws the rows of `alpha-ramp`: quads of 512 x 64 pixels. Their area is a power of two, which is the exception of INT-3.
 pub fn alpha_ramp(rows: &[Row]) -> Answers {
     let frame = target(640, 480, SurfaceFormat::A8R8G8B8, rows[0].bytes("destination"));
     let mut scene =
@@ -38,7 +38,7 @@ pub fn alpha_ramp(rows: &[Row]) -> Answers {
     pixels(&scene, rows)
 }
 
-/// triangle-weights: the first triangle of R4, whose corners are pure blue, green and red.
+/// Draws the rows of `triangle-weights`: the first triangle of R4, whose corners are pure blue, green and red.
 pub fn triangle_weights(rows: &[Row]) -> Answers {
     let mut scene = cases::r4().scene;
     let draw = &mut scene.draws[0];

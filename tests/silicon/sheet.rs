@@ -1,4 +1,4 @@
-//! Many probes in one scene: probe i is pixel i of every target, one row of pixels each.
+//! Combines many probes in one scene. Every target is one row of pixels, and probe i is pixel i.
 
 use crate::build::{draw, target, vertex};
 use ninebit::engine::{RenderOptions, render};
@@ -6,19 +6,19 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 
-/// Probes of a sheet at most.
+/// Largest number of probes in a sheet.
 pub const WIDTH: usize = 512;
 
-/// Source over destination by source alpha.
+/// Blends the source over the destination by source alpha.
 pub const OVER: Blend = Blend {
     equation: BlendEquation::Add,
     source: BlendFactor::SourceAlpha,
     destination: BlendFactor::OneMinusSourceAlpha,
 };
 
-/// Only R, G, B are written.
+/// Colour mask that writes R, G and B.
 pub const RGB_ONLY: [bool; 4] = [true, true, true, false];
-/// Only A is written.
+/// Colour mask that writes A.
 pub const ALPHA_ONLY: [bool; 4] = [false, false, false, true];
 
 /// A scene under construction.
@@ -27,30 +27,30 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// No targets yet.
+    /// Returns a sheet without targets.
     pub fn new() -> Sheet {
         Sheet {
             scene: Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] },
         }
     }
 
-    /// Another target.
+    /// Adds a target and returns its number.
     pub fn target(&mut self, format: SurfaceFormat, clear_color: [u8; 4]) -> usize {
         self.scene.targets.push(target(WIDTH as u32, 1, format, clear_color));
         self.scene.targets.len() - 1
     }
 
-    /// A texture that reads a target.
+    /// Adds a texture that reads a target, and returns its number.
     pub fn reads(&mut self, target: usize, format: TextureFormat) -> usize {
         self.texture(format, TextureImage::Target { target })
     }
 
-    /// A texture of one texel a probe.
+    /// Adds a texture with one texel for each probe, and returns its number.
     pub fn texels(&mut self, texels: impl Iterator<Item = [u8; 4]>) -> usize {
         self.texels_of(TextureFormat::A8R8G8B8, texels)
     }
 
-    /// The same in a format whose words have the channels where A8R8G8B8 has them.
+    /// Like [`Sheet::texels`], in a format whose words have the same layout as A8R8G8B8.
     pub fn texels_of(&mut self, format: TextureFormat, texels: impl Iterator<Item = [u8; 4]>) -> usize {
         let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
         words.resize(WIDTH, 0);
@@ -65,14 +65,14 @@ impl Sheet {
         self.scene.textures.len() - 1
     }
 
-    /// Adds a draw.
+    /// Adds a draw to the scene.
     pub fn draw(&mut self, draw: Draw) {
         self.scene.draws.push(draw);
     }
 
-    /// Renders; the first `count` pixels of a target.
+    /// Renders the scene and returns the first `count` pixels of a target.
     pub fn show(&self, target: usize, count: usize) -> Vec<[u8; 4]> {
-        // A cell is a texture: more than a scene may bring from a file.
+        // Each probe may add a texture, which are more than a scene file may have.
         let limits = Limits { textures: self.scene.textures.len(), ..Limits::default() };
         let plan = Plan::compile_within(&self.scene, &PlanOptions::default(), &limits).unwrap();
         let mut pixels = render(&plan, &RenderOptions::default()).surfaces[target].rgba8();
@@ -81,7 +81,7 @@ impl Sheet {
     }
 }
 
-/// A quad over pixels `from` to `to`, each reading its own texel.
+/// Returns a quad over the pixels `from` to `to`, each of which reads its own texel.
 fn span(target: usize, from: usize, to: usize, color: [u8; 4]) -> Draw {
     let corners = [(from, 0.0), (to, 0.0), (to, 1.0), (from, 1.0)];
     let vertices = corners.map(|(x, y)| {
@@ -92,12 +92,12 @@ fn span(target: usize, from: usize, to: usize, color: [u8; 4]) -> Draw {
     Draw { target, ..draw(Topology::Quads, vertices.to_vec()) }
 }
 
-/// Stores a colour in pixel `probe`.
+/// Returns a draw that stores a colour in pixel `probe`.
 pub fn cell(target: usize, probe: usize, color: [u8; 4]) -> Draw {
     span(target, probe, probe + 1, color)
 }
 
-/// Copies a texture to every pixel.
+/// Returns a draw that copies a texture to every pixel.
 pub fn copy(target: usize, texture: usize) -> Draw {
     let mut draw = span(target, 0, WIDTH, [255; 4]);
     bind(&mut draw, 0, texture);
@@ -105,7 +105,7 @@ pub fn copy(target: usize, texture: usize) -> Draw {
     draw
 }
 
-/// Binds a texture to a unit.
+/// Binds a texture to a unit, with nearest filters and clamping.
 pub fn bind(draw: &mut Draw, unit: usize, texture: usize) {
     draw.textures[unit] = Some(TextureUnit {
         address_s: AddressMode::ClampToEdge,
@@ -117,13 +117,13 @@ pub fn bind(draw: &mut Draw, unit: usize, texture: usize) {
     draw.texture_shader[unit] = ShaderStage::conventional(unit, true);
 }
 
-/// The alpha of a fragment is 255.
+/// Makes the alpha of the fragments 255.
 pub fn opaque(draw: &mut Draw) {
     draw.combiners.final_combiner.g =
         FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true };
 }
 
-/// Input A to F of the final combiner.
+/// Returns an input A to F of the final combiner that reads a register.
 pub fn input(register: FinalRegister) -> FinalInput {
     FinalInput { register, component: Component::Rgb, invert: false }
 }

@@ -1,17 +1,17 @@
-//! `vectors/silicon/*.tsv`: rows of what a real chip showed.
+//! Reads `vectors/silicon/*.tsv`, whose rows are measurements of a real chip.
 
 use ninebit::state::{Blend, BlendEquation, BlendFactor, Named};
 use std::sync::Arc;
 
-/// One probe.
+/// One probe: the fields of a row.
 pub struct Row {
     columns: Arc<Vec<String>>,
-    /// Line of the file, from 1.
+    /// Number of the line in the file, from 1.
     pub line: usize,
     fields: Vec<String>,
 }
 
-/// Reads a file: `#` lines with the version, the count and the names of the columns, then rows.
+/// Reads a file. Lines with `#` have the version, the number of rows and the names of the columns; all others are rows.
 pub fn read(file: &str) -> Vec<Row> {
     let path = format!("vectors/silicon/{file}.tsv");
     let text = std::fs::read_to_string(crate::repository::at(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -36,45 +36,45 @@ pub fn read(file: &str) -> Vec<Row> {
 }
 
 impl Row {
-    /// A field.
+    /// Returns the text in a column.
     pub fn text(&self, column: &str) -> &str {
         let at = self.columns.iter().position(|c| c == column).unwrap_or_else(|| panic!("no column {column}"));
         &self.fields[at]
     }
 
-    /// The columns and what stands in them.
+    /// Returns the columns and their texts.
     pub fn fields(&self) -> impl Iterator<Item = (&str, &str)> {
         self.columns.iter().map(String::as_str).zip(self.fields.iter().map(String::as_str))
     }
 
-    /// A number.
+    /// Returns the number in a column.
     pub fn number<T: std::str::FromStr>(&self, column: &str) -> T {
         let text = self.text(column);
         text.parse().unwrap_or_else(|_| panic!("line {}: {column}: `{text}`", self.line))
     }
 
-    /// 0 or 1.
+    /// Returns whether a column, which has 0 or 1, is 1.
     pub fn flag(&self, column: &str) -> bool {
         self.number::<u8>(column) == 1
     }
 
-    /// Bytes written `1.2.3`.
+    /// Returns the bytes in a column, which are written as `1.2.3`.
     pub fn bytes<const N: usize>(&self, column: &str) -> [u8; N] {
         bytes(self.text(column))
     }
 
-    /// Alternatives or steps, written `51|68`.
+    /// Returns the alternatives or steps in a column, which are written as `51|68`.
     pub fn list(&self, column: &str) -> Vec<&str> {
         self.text(column).split('|').collect()
     }
 
-    /// A state enumeration by name.
+    /// Returns the variant of an enumeration that a column names.
     pub fn named<T: Named>(&self, column: &str) -> T {
         let text = self.text(column);
         T::from_name(text).unwrap_or_else(|| panic!("line {}: {} `{text}`", self.line, T::TYPE))
     }
 
-    /// The columns `equation`, `source`, `destination`.
+    /// Returns the blend of the columns `equation`, `source` and `destination`.
     pub fn blend(&self) -> Blend {
         Blend {
             equation: self.named::<BlendEquation>("equation"),
@@ -83,18 +83,18 @@ impl Row {
         }
     }
 
-    /// R, G, B, A as captured.
+    /// Returns the captured R, G, B, A.
     pub fn captured(&self) -> [u8; 4] {
         ["r", "g", "b", "a"].map(|channel| self.number(channel))
     }
 
-    /// The row for a message.
+    /// Returns the row as text for a message.
     pub fn describe(&self) -> String {
         self.columns.iter().zip(&self.fields).map(|(c, f)| format!("{c}={f}")).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Bytes written `1.2.3`.
+/// Returns bytes that are written as `1.2.3`.
 pub fn bytes<const N: usize>(text: &str) -> [u8; N] {
     let list: Vec<u8> = text.split('.').map(|b| b.parse().unwrap()).collect();
     list.try_into().unwrap_or_else(|_| panic!("`{text}` has not {N} bytes"))

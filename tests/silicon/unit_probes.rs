@@ -1,11 +1,12 @@
-//! Rows in the columns of a unit of the conformance vectors: its `cfg.` and `in.` columns are what was drawn, its `out.` columns what the pixel showed.
+//! Compares rows that have the columns of a unit of the conformance vectors. The `cfg.` and `in.` columns are what was drawn, and the
+//! `out.` columns are what the pixel showed.
 
 use crate::table::Row;
 use ninebit::state::{Policies, Profile};
 use ninebit_vectors::unit::Conditions;
 use ninebit_vectors::units;
 
-/// What the unit says otherwise than the pixel did, if it does. Results that no pixel shows have no column.
+/// Returns a description of the first result in which the unit differs from the pixel. Results that a pixel cannot show have no column.
 pub fn difference(file: &str, unit: &str, row: &Row) -> Option<String> {
     let unit = units::by_name(unit).unwrap_or_else(|| panic!("no unit {unit}"));
     let read = |column: &ninebit_vectors::column::Column, text: &str| {

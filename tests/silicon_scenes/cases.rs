@@ -1,19 +1,20 @@
-//! The captured frames: which pixels of them are compared, and where their scenes come from.
+//! The captured frames: which of their pixels are compared, and how their scenes are made.
 
 use crate::scenes;
 use ninebit::frame::Surface;
 
-/// A captured frame.
+/// A captured frame and the pixels that are compared.
 pub struct Case {
     /// Name of the scene's file, without its extension.
     pub name: &'static str,
-    /// The capture: a file of the golden results.
+    /// Path of the capture among the golden results.
     pub capture: &'static str,
-    /// How many pixels are compared.
+    /// Number of pixels that are compared.
     pub pixels: u64,
-    /// Which pixels are compared, text taken out. A scene of the cubes compares those that they cover, which its depth buffer says.
+    /// Whether a pixel is compared, before text is excluded. Scenes with cubes compare the pixels that the cubes cover, which they find in
+    /// their depth buffer.
     pub region: fn(u32, u32, &Surface) -> bool,
-    /// The scene's text, if it is a generated one.
+    /// Returns the text of the scene, if it is generated.
     pub scene: Option<fn() -> String>,
 }
 
@@ -22,12 +23,12 @@ fn formats(x: u32, y: u32, _: &Surface) -> bool {
     (135..505).contains(&x) && (55..425).contains(&y) && (x >= 330 || y >= 190)
 }
 
-/// A square of 256 pixels in the middle.
+/// A square of 256 pixels in the middle of the frame.
 fn middle(x: u32, y: u32, _: &Surface) -> bool {
     (192..448).contains(&x) && (112..368).contains(&y)
 }
 
-/// Squares of `side` pixels, at every corner of `columns` and `rows`.
+/// Squares of `side` pixels whose top-left corners are at all combinations of `columns` and `rows`.
 fn squares(x: u32, y: u32, columns: &[u32], rows: &[u32], side: u32) -> bool {
     columns.iter().any(|left| (*left..left + side).contains(&x))
         && rows.iter().any(|top| (*top..top + side).contains(&y))
@@ -37,25 +38,26 @@ fn lod_bias(x: u32, y: u32, _: &Surface) -> bool {
     squares(x, y, &[192, 288, 384, 480, 576], &[200, 296, 392], 64)
 }
 
-/// Nested squares.
+/// The left part of the frame, which has nested squares.
 fn nested(x: u32, _: u32, _: &Surface) -> bool {
     x < 160
 }
 
-/// All but the text and the group whose border comes out of the texture.
+/// Everything except for the text and the group whose border comes from the texture.
 fn border(x: u32, y: u32, _: &Surface) -> bool {
     let labels = (15..=69).contains(&y) || (190..=244).contains(&y);
     let group = (253..=387).contains(&x) && (245..=390).contains(&y);
     !labels && !group
 }
 
-/// That group, without the 28 pixels that are known to differ: all lie exactly between two border texels.
+/// The group whose border comes from the texture, without the 28 pixels that are known to differ. All of these lie exactly between two
+/// border texels.
 fn border_texels(x: u32, y: u32, _: &Surface) -> bool {
     let known = matches!(x, 267..=277 | 311 | 312 | 315 | 316 | 318 | 319 | 352..=362);
     (256..384).contains(&x) && (255..378).contains(&y) && !(y == 275 && known)
 }
 
-/// What is nearer than the cleared depth.
+/// Pixels that are nearer than the cleared depth.
 fn cubes(x: u32, y: u32, surface: &Surface) -> bool {
     y >= 130 && surface.depth[(y * surface.width + x) as usize] != 0xff_ffff
 }
@@ -70,7 +72,7 @@ fn bump_signs(x: u32, y: u32, _: &Surface) -> bool {
     squares(x, y, &[146, 326], &[66, 246], 168) && !text
 }
 
-/// All of them: the thirteen, and what else two of the frames show.
+/// All cases: the thirteen frames, and further parts of two of them.
 pub static CASES: [Case; 15] = [
     Case {
         name: "t01-r5g6b5",

@@ -1,26 +1,26 @@
-//! Where the captured programs put their vertices. Their matrices, in double precision; what leaves here are window positions.
+//! Computes the vertices of the captured programs. Matrices are in double precision, and the results are window positions.
 
-/// A matrix for row vectors.
+/// A matrix that is multiplied by row vectors from the left.
 pub type Matrix = [[f64; 4]; 4];
 
-/// Columns and rows of the frame.
+/// Width and height of the frame in pixels.
 pub const FRAME: [f64; 2] = [640.0, 480.0];
 
-/// What the projection scales x and y with.
+/// Scale of x and y in the projection.
 const SCALE: [f64; 2] = [1.8106602, 2.4142136];
 /// Distance of the viewer from the origin.
 const DISTANCE: f64 = 7.0;
-/// What Direct3D's viewport adds, for it wants pixels at whole numbers.
+/// Offset of Direct3D's viewport, which puts pixel centres at whole numbers.
 pub const PIXEL_OFFSET: f64 = 0.53125;
 
-/// Window x, y and w of a point that the viewer at (0, 0, -7) sees; `offset` is added to x and y.
+/// Returns x, y and w in the window for a point in front of the viewer at (0, 0, -7). `offset` is added to x and y.
 pub fn project([x, y, z]: [f64; 3], offset: f64) -> [f64; 3] {
     let w = z + DISTANCE;
     let [half_width, half_height] = FRAME.map(|side| side / 2.0);
     [half_width + offset + half_width * SCALE[0] * x / w, half_height + offset - half_height * SCALE[1] * y / w, w]
 }
 
-/// A cube: where it stands, and its turns about x and y.
+/// A cube: its centre, and its rotations about x and y in radians.
 pub struct Cube {
     pub center: [f64; 3],
     pub turns: [f64; 2],
@@ -46,7 +46,7 @@ pub const FACES: [[[i8; 3]; 4]; 6] = [
 ];
 
 impl Cube {
-    /// From the cube's own space to the world: the turn about y, then the one about x, then the move.
+    /// Returns the matrix from the cube's space to the world, which rotates about y, then about x, and then translates.
     fn model(&self) -> Matrix {
         let [x, y, z] = self.center;
         let ([sx, sy], [cx, cy]) = (self.turns.map(f64::sin), self.turns.map(f64::cos));
@@ -55,14 +55,14 @@ impl Cube {
         product(&product(&about_y, &about_x), &translate(x, y, z))
     }
 
-    /// A corner in the world.
+    /// Returns a corner in world space.
     pub fn corner(&self, corner: [i8; 3]) -> [f64; 3] {
         let [x, y, z] = corner.map(f64::from);
         let model = self.model();
         [0, 1, 2].map(|n| x * model[0][n] + y * model[1][n] + z * model[2][n] + model[3][n])
     }
 
-    /// From the window, scaled by depths of 16 bits, back to the cube's own space.
+    /// Returns the matrix from the window, with depths of 16 bits, to the cube's own space.
     pub fn window_to_object(&self) -> Matrix {
         let (near, far) = (1.0, 200.0);
         let q = far / (far - near);
@@ -84,12 +84,12 @@ fn translate(x: f64, y: f64, z: f64) -> Matrix {
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]]
 }
 
-/// First `a`, then `b`.
+/// Returns the matrix that applies `a`, then `b`.
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| (0..4).map(|n| a[row][n] * b[n][column]).sum()))
 }
 
-/// By elimination, the largest pivot first.
+/// Returns the inverse of a matrix by elimination with the largest pivot.
 fn inverse(matrix: &Matrix) -> Matrix {
     let mut left = *matrix;
     let mut right: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| f64::from(u8::from(row == column))));
@@ -113,7 +113,7 @@ fn inverse(matrix: &Matrix) -> Matrix {
     right
 }
 
-/// A unit vector from one point to another, in single precision.
+/// Returns the unit vector from one point to another, in single precision.
 pub fn direction(from: [f32; 3], to: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = std::array::from_fn(|n| to[n] - from[n]);
     let length = (x * x + y * y + z * z).sqrt();

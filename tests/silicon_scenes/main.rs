@@ -1,10 +1,10 @@
-//! Captured frames of a real NV2A whose textures and geometry are known, drawn from the scenes of `vectors/scenes/silicon`.
+//! Compares captured frames of a real NV2A, whose textures and geometry are known, with the scenes of `vectors/scenes/silicon`.
 //!
-//! The captures are not part of the repository; a scene's expectation holds the digest of what is compared of one. Nor are some
-//! images that the captured programs load: scenes that need them are ignored, unless `NINEBIT_CAPTURES` names a folder that has
-//! `frames/SUITE/NAME.png` and `assets/NAME`. Every scene is compared with its capture itself there.
+//! The captures are not part of the repository; the expectation of a scene holds the digest of the pixels that are compared. Some images
+//! that the captured programs load are not part of it either, and scenes that need them are ignored. If `NINEBIT_CAPTURES` names a folder
+//! with `frames/SUITE/NAME.png` and `assets/NAME`, these scenes are drawn as well, and every scene is compared with the capture itself.
 //!
-//! `BLESS=1` writes generated scenes and textures anew; with `NINEBIT_CAPTURES` also masks and expectations, from the captures.
+//! `BLESS=1` rewrites generated scenes and textures. With `NINEBIT_CAPTURES` it also rewrites masks and expectations from the captures.
 #![allow(
     clippy::float_arithmetic,
     clippy::unwrap_used,
@@ -42,28 +42,28 @@ use textures::Picture;
 /// Overlaid text is white with alpha 0.
 const TEXT: [u8; 4] = [255, 255, 255, 0];
 
-/// Differing pixels that are listed.
+/// Number of differing pixels that are listed in a message.
 const LISTED: usize = 20;
 
 fn folder() -> PathBuf {
     repository::at("vectors/scenes/silicon")
 }
 
-/// A scene as it was drawn.
+/// A scene and its frame.
 struct Drawn {
     text: String,
     plan: Plan,
     surface: Surface,
 }
 
-/// The file of a scene, and its text.
+/// Returns the path of a scene and its text.
 fn written(case: &Case) -> (PathBuf, String) {
     let file = folder().join(case.name).with_extension("ron");
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     (file, text)
 }
 
-/// Draws a scene.
+/// Renders a scene, with the images that are not part of the repository if it needs them.
 fn draw(case: &Case) -> Drawn {
     let (file, text) = written(case);
     let place;
@@ -94,7 +94,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Compares a picture with the capture, pixel by pixel; what is wrong, with the trace of the first difference.
+/// Compares a frame with the capture, pixel by pixel. Returns the differences, with the trace of the first one.
 fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &[bool]) -> Option<String> {
     let ours = drawn.surface.rgba8();
     let different: Vec<usize> = (0..ours.len()).filter(|n| compared[*n] && ours[*n] != captured[*n]).collect();
@@ -109,7 +109,7 @@ fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &
     Some(message + &trace_text(&drawn.plan, &trace))
 }
 
-/// A case's scene against its expectation and, if it is there, its capture.
+/// Compares a scene with its expectation and, if there is one, with its capture.
 fn check(case: &Case) -> Result<(), Failed> {
     let drawn = draw(case);
     let path = folder().join(case.name).with_extension("expect.ron");
@@ -175,14 +175,14 @@ fn main() {
     libtest_mimic::run(&arguments, trials).exit();
 }
 
-/// The test of a scene; ignored where its images are not here.
+/// Returns the test of a scene, which is ignored if its images are missing.
 fn trial(case: &'static Case) -> Trial {
     let trial = Trial::test(format!("shows_what_was_captured::{}", case.name), move || check(case));
     let complete = scene_files::captured(&written(case).1).is_empty() || captures().is_some();
     if complete { trial } else { trial.with_ignored_flag(true).with_kind("its images are not here") }
 }
 
-/// Writes everything that formulas give.
+/// Writes all scenes and textures that formulas determine.
 fn write_generated() {
     for case in &CASES {
         if let Some(scene) = case.scene {
@@ -196,7 +196,7 @@ fn write_generated() {
     write_file(&folder().join(INDICES), &textures::indices()).unwrap();
 }
 
-/// Texels of T3.
+/// The file with the texels of T3.
 const INDICES: &str = "textures/indices-64.bin";
 
 fn pictures() -> impl Iterator<Item = (PathBuf, Picture)> {

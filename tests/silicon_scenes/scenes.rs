@@ -1,25 +1,26 @@
-//! The scenes whose geometry comes out of formulas, as text.
+//! Generates the text of scenes whose geometry is given by formulas.
 
 use crate::geometry::{self, CUBES, FACES, PIXEL_OFFSET};
 use crate::textures::RADIAL;
 use std::fmt::{Display, Write};
 
-/// The colour that most of the frames are cleared to.
+/// The colour to which most of the frames are cleared.
 const GREY: &str = "(0x20, 0x20, 0x20, 0xfe)";
 
-/// One vertex: window position, and its coordinate sets by number.
+/// One vertex: its window position, and its coordinate sets by number.
 struct Corner {
     position: Vec<f32>,
     sets: Vec<(usize, Vec<f32>)>,
 }
 
-/// Numbers as the format writes tuples.
+/// Returns numbers as a tuple of the scene format.
 fn tuple<T: Display>(numbers: &[T]) -> String {
     let numbers: Vec<String> = numbers.iter().map(T::to_string).collect();
     format!("({})", numbers.join(", "))
 }
 
-/// A rectangle's corners from the top left clockwise, `t` from one corner of the texture to the other in every set of `sets`.
+/// Returns the corners of a rectangle, clockwise from the top left. `sets` has coordinate sets with their values at the first and at the
+/// opposite corner.
 fn rectangle([x0, y0]: [f32; 2], [x1, y1]: [f32; 2], sets: &[(usize, [f32; 2], [f32; 2])]) -> Vec<Corner> {
     let corner = |right: bool, down: bool| {
         let pick = |a: [f32; 2], b: [f32; 2]| vec![if right { b[0] } else { a[0] }, if down { b[1] } else { a[1] }];
@@ -29,7 +30,8 @@ fn rectangle([x0, y0]: [f32; 2], [x1, y1]: [f32; 2], sets: &[(usize, [f32; 2], [
     vec![corner(false, false), corner(true, false), corner(true, true), corner(false, true)]
 }
 
-/// A window position cut to 1/16 pixel, as RAS-1 would cut it. Near a limit the last bit of a formula would decide: there is none.
+/// Truncates a window position to 1/16 pixel, as RAS-1 does. Checks that no position is so close to a multiple that the last bit of a
+/// formula would decide.
 fn snapped(position: f64) -> f32 {
     let sixteenths = position * 16.0;
     let whole = (sixteenths + 1e-9).trunc();
@@ -40,7 +42,7 @@ fn snapped(position: f64) -> f32 {
     (whole / 16.0) as f32
 }
 
-/// A draw under construction.
+/// The text of a draw under construction.
 struct Draw {
     text: String,
 }
@@ -65,7 +67,7 @@ impl Draw {
     }
 }
 
-/// What all these scenes have in common: the texel of one unit, with its alpha, over the cleared frame.
+/// The common parts of these scenes: every draw shows the texel of one unit, blended by its alpha, over the cleared frame.
 struct Sheet<'a> {
     comment: &'a str,
     shown: usize,
@@ -109,7 +111,7 @@ impl Sheet<'_> {
     }
 }
 
-/// The texture of T6: eight levels, a colour each.
+/// Returns the texture of T6, which has eight levels of different colours.
 fn levels() -> String {
     const COLORS: [&str; 8] = [
         "(0, 0, 255)",
@@ -129,7 +131,7 @@ fn levels() -> String {
     format!("\"levels\": (\n    source: {},\n    mips: [\n{mips}    ],\n),", level(0))
 }
 
-/// A square of that texture.
+/// Returns a square with that texture.
 fn square_of_levels(name: &str, from: [f32; 2], side: f32, bias: &str) -> Draw {
     let corners = rectangle(from, [from[0] + side, from[1] + side], &[(0, [0.0, 0.0], [1.0, 1.0])]);
     Draw::new(name, &corners).line(&format!(
@@ -142,7 +144,7 @@ fn level_scene(comment: &str, draws: Vec<Draw>) -> String {
     sheet.text()
 }
 
-/// T6: fifteen biases of the lod.
+/// T6: squares with fifteen values of the lod bias.
 pub fn lod_bias() -> String {
     const BIASES: [f32; 15] = [-15.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 15.0, -0.8, 1.2, 1.8, 2.5, 3.5];
     let draws = BIASES.iter().enumerate().map(|(n, bias)| {
@@ -156,7 +158,7 @@ pub fn lod_bias() -> String {
     )
 }
 
-/// The left of the same frame: the texture at sizes from its own down to 1/128.
+/// The left part of the same frame: the texture in sizes from its own down to 1/128.
 pub fn nested_levels() -> String {
     let draws = (0..8).map(|n| {
         let side = (512 >> n) as f32;
@@ -168,7 +170,7 @@ pub fn nested_levels() -> String {
     )
 }
 
-/// T7: the nine quads of a group, 0 to 5; `sides` are s, and t, at the four lines between them.
+/// T7: returns the nine quads of group 0 to 5. `sides` are the values of s, and of t, at the four lines between the quads.
 fn nine_quads(group: usize, sides: [f32; 4]) -> Vec<Corner> {
     const CELL: [f64; 2] = [(5.5 - 0.2) / 9.0, (3.5 - 0.1) / 6.0];
     let left = -2.75 + (group % 3) as f64 * ((5.5 - 0.2) / 3.0 + 0.1);
@@ -186,7 +188,7 @@ fn nine_quads(group: usize, sides: [f32; 4]) -> Vec<Corner> {
     cells.flat_map(|(column, row)| around.map(|(right, down)| corner(column + right, row + down))).collect()
 }
 
-/// T7: five address modes, from one texture's width before the texture to one beyond.
+/// T7: five address modes, with coordinates from one width before the texture to one after it.
 pub fn border() -> String {
     let groups: [(usize, &str); 5] = [
         (0, "Wrap"),
@@ -211,7 +213,7 @@ pub fn border() -> String {
     sheet.text()
 }
 
-/// The sixth group of the same frame: a border of texels.
+/// The sixth group of the same frame, whose texture has a border of texels.
 pub fn border_texels() -> String {
     let draw = Draw::new("border texels", &nine_quads(4, [-0.125, 0.0, 1.0, 1.125]))
         .line("textures: [(texture: \"stripes\", address: ClampToBorder, min_filter: Nearest)],");
@@ -227,7 +229,7 @@ pub fn border_texels() -> String {
     sheet.text()
 }
 
-/// The faces of the two cubes; `sets` gives the coordinates of a corner by cube, face and corner.
+/// Returns the faces of the two cubes. `sets` returns the coordinates of a corner by cube, face and corner.
 fn cubes(line: &str, sets: impl Fn(usize, usize, usize) -> Vec<(usize, Vec<f32>)>) -> Vec<Draw> {
     CUBES
         .iter()
@@ -238,7 +240,7 @@ fn cubes(line: &str, sets: impl Fn(usize, usize, usize) -> Vec<(usize, Vec<f32>)
                 .map(|(face, corner)| {
                     let at = cube.corner(FACES[face][corner]);
                     let [x, y, w] = geometry::project(at, 0.0);
-                    // Any depth that grows with the distance serves.
+                    // Any depth that increases with the distance is sufficient.
                     let z = (w as f32 - 1.0) / 199.0;
                     Corner { position: vec![snapped(x), snapped(y), z, w as f32], sets: sets(c, face, corner) }
                 })
@@ -248,7 +250,7 @@ fn cubes(line: &str, sets: impl Fn(usize, usize, usize) -> Vec<(usize, Vec<f32>)
         .collect()
 }
 
-/// T8: a cube map looked up with the corners of a cube; q is 0.
+/// T8: a cube map, looked up with the corners of a cube. q is 0.
 pub fn cube_map() -> String {
     const COLORS: [(&str, [u32; 2]); 6] = [
         ("positive_x", [0xff77_77ff, 0xff22_2222]),
@@ -282,9 +284,9 @@ pub fn cube_map() -> String {
     sheet.text()
 }
 
-/// T9: normals of a map, turned by three dot products into the direction of a cube map.
+/// T9: normals from a map, which three dot products turn into the direction of a cube map.
 pub fn dot_cube() -> String {
-    // Left, top, right, bottom of each face in the map.
+    // Left, top, right and bottom of each face in the map.
     const PLACES: [[f32; 4]; 6] = [
         [0.25, 0.375, 0.5, 0.625],
         [0.75, 0.375, 1.0, 0.625],
@@ -400,7 +402,7 @@ pub fn bump_matrices() -> String {
     sheet.text()
 }
 
-/// T13: a step from below one half to above it, filtered as unsigned and as signed channels.
+/// T13: a step from below to above one half, filtered as unsigned and as signed channels.
 pub fn bump_signs() -> String {
     let draws = [(false, false), (true, false), (false, true), (true, true)].iter().enumerate().map(|(n, (blue, green))| {
         let (x, y) = (146.0 + 180.0 * (n % 2) as f32, 66.0 + 180.0 * (n / 2) as f32);

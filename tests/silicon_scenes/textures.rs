@@ -1,9 +1,9 @@
-//! The textures that the captured programs compute, by their rules.
+//! Computes the textures of the captured programs by the same formulas.
 
-/// R, G, B, A.
+/// R, G, B, A bytes of a pixel.
 pub type Pixel = [u8; 4];
 
-/// A picture: columns, rows, pixels row by row from the top.
+/// A picture with its pixels row by row from the top.
 pub struct Picture {
     pub width: u32,
     pub height: u32,
@@ -17,7 +17,7 @@ impl Picture {
     }
 }
 
-/// Green from left to right, red from top to bottom, blue against red, alpha the sum of red and green.
+/// Returns a gradient: green from left to right, red from top to bottom, blue the inverse of red, and alpha the sum of red and green.
 pub fn gradient(width: u32, height: u32) -> Picture {
     let step = |i: u32, n: u32| (i as f32 * 255.0 / n as f32) as u8;
     Picture::from_pixels(width, height, |x, y| {
@@ -26,7 +26,7 @@ pub fn gradient(width: u32, height: u32) -> Picture {
     })
 }
 
-/// Four gradients side by side and one above the other, their alpha falling off from the centre.
+/// Returns two by two gradients, with alpha decreasing from the centre.
 pub fn four_gradients() -> Picture {
     let one = gradient(128, 128);
     Picture::from_pixels(256, 256, |x, y| {
@@ -36,12 +36,12 @@ pub fn four_gradients() -> Picture {
     })
 }
 
-/// Indices into 64 entries, 256 x 256: all of them above, every fourth below.
+/// Returns 256 x 256 indices into 64 entries. The upper half has all of them, the lower half every fourth.
 pub fn indices() -> Vec<u8> {
     (0..65536_u32).map(|k| if k < 32768 { k & 63 } else { k & !3 & 63 } as u8).collect()
 }
 
-/// Diagonal stripes in steps of two texels, opaque and translucent in turn.
+/// Returns diagonal stripes in steps of two texels, alternately opaque and translucent.
 pub fn stripes() -> Picture {
     const COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0x44, 0x44, 255], [255; 3]];
     Picture::from_pixels(32, 32, |x, y| {
@@ -51,7 +51,7 @@ pub fn stripes() -> Picture {
     })
 }
 
-/// The same with red and blue exchanged, within a checkered border of four texels on each side.
+/// Returns [`stripes`] with red and blue exchanged, in a checkered border of four texels on each side.
 pub fn bordered_stripes() -> Picture {
     let inside = stripes();
     Picture::from_pixels(40, 40, |x, y| match (x.checked_sub(4), y.checked_sub(4)) {
@@ -64,13 +64,13 @@ pub fn bordered_stripes() -> Picture {
     })
 }
 
-/// Green just below one half in two columns and just above it in the others.
+/// Returns a texture with green just below one half in two columns, and just above it in the others.
 pub fn step() -> Picture {
     Picture::from_pixels(256, 256, |x, _| [0, if x < 2 { 0x7f } else { 0x80 }, 0x45, 255])
 }
 
-/// Colours that grow from the centre outwards, fast and then slowly. `mask` says which channels are on: then all that are show the
-/// largest of the three.
+/// Returns colours that increase from the centre outwards, first fast and then slowly. `mask` tells which channels are on; all of these
+/// have the largest of the three values.
 pub fn radial(side: u32, mask: [bool; 3]) -> Picture {
     let side_f = side as f32;
     let centre = (side_f - 1.0) / 2.0;
@@ -88,7 +88,7 @@ pub fn radial(side: u32, mask: [bool; 3]) -> Picture {
     })
 }
 
-/// Every stored picture by its name.
+/// Returns every stored picture with its name.
 pub fn pictures() -> Vec<(String, Picture)> {
     let mut pictures = vec![
         ("gradient-256".to_string(), gradient(256, 256)),
@@ -103,10 +103,10 @@ pub fn pictures() -> Vec<(String, Picture)> {
     pictures
 }
 
-/// Side of the radial gradients.
+/// Width and height of the radial gradients.
 const RADIAL_SIDE: u32 = 64;
 
-/// The radial gradients, in the order of the faces of a cube map.
+/// The radial gradients with their channels, in the order of the faces of a cube map.
 pub const RADIAL: [(&str, [bool; 3]); 6] = [
     ("red", [true, false, false]),
     ("magenta", [true, false, true]),

@@ -1,10 +1,10 @@
-//! A small encoder of DXT1, DXT3 and DXT5: content preparation, no part of the chip.
+//! A small encoder for DXT1, DXT3 and DXT5, which prepares content and is no part of the chip.
 //!
-//! The two texels of a block that are farthest apart give the end points; each texel takes the nearest of the four colours.
+//! The end points of a block are its two texels that are farthest apart. Each texel gets the nearest of the four colours.
 
 use ninebit_scene::image::Rgba;
 
-/// Blocks of an image whose sides are multiples of four; `code` is `DXT1`, `DXT3` or `DXT5`.
+/// Returns the blocks of an image whose sides are multiples of four. `code` is `DXT1`, `DXT3` or `DXT5`.
 pub fn encode(image: &Rgba, code: &[u8; 4]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for top in (0..image.height).step_by(4) {
@@ -37,7 +37,7 @@ fn colors(texels: &[[u8; 4]; 16]) -> [u8; 8] {
     if c0 < c1 {
         (c0, c1) = (c1, c0);
     }
-    // With equal end points the block has three colours, and every index below 3 is the same one.
+    // With equal end points the block has three colours, and all indices below 3 stand for the same one.
     let (a, b) = (from_565(c0), from_565(c1));
     let third =
         |a: [u8; 4], b: [u8; 4]| std::array::from_fn(|n| ((2 * u32::from(a[n]) + u32::from(b[n]) + 1) / 3) as u8);
@@ -56,7 +56,7 @@ fn distance(a: &[u8; 4], b: &[u8; 4]) -> i32 {
     (0..3).map(|n| (i32::from(a[n]) - i32::from(b[n])).pow(2)).sum()
 }
 
-/// The nearest colour of 5, 6 and 5 bits.
+/// Returns the nearest colour with 5, 6 and 5 bits.
 fn to_565(color: &[u8; 4]) -> u16 {
     let field = |n: usize, most: u16| (u16::from(color[n]) * most + 127) / 255;
     field(0, 31) << 11 | field(1, 63) << 5 | field(2, 31)
@@ -76,7 +76,7 @@ fn interpolated_alpha(texels: &[[u8; 4]; 16]) -> u64 {
     let alphas = texels.map(|texel| u64::from(texel[3]));
     let (high, low) = (*alphas.iter().max().unwrap(), *alphas.iter().min().unwrap());
     let mut bits = high | low << 8;
-    // Eight steps from high to low; index 0 and 1 are the ends, 2 to 7 go down.
+    // There are eight steps from high to low. Indices 0 and 1 are the ends, and 2 to 7 the values between them in descending order.
     for (n, alpha) in alphas.into_iter().enumerate().filter(|_| high > low) {
         let down = (7 * (high - alpha) + (high - low) / 2) / (high - low);
         let index = [0, 2, 3, 4, 5, 6, 7, 1][down as usize];

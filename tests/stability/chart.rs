@@ -1,17 +1,17 @@
-//! Line charts as SVG: fixed size, fixed decimals, the same bytes on every machine.
+//! Draws line charts as SVG with a fixed size and fixed decimals, so that the bytes are the same on every machine.
 
 use std::fmt::Write;
 
-/// One line.
+/// A line of the chart.
 pub struct Line<'a> {
     pub label: &'a str,
     pub color: &'a str,
-    /// Drawn broad and pale, so that a line on top of it can be told from it.
+    /// Whether the line is drawn broad and pale, so that a line on top of it remains distinguishable.
     pub beneath: bool,
     pub points: Vec<[f64; 2]>,
 }
 
-/// An axis: what it shows, its ends, and the ticks with their labels.
+/// An axis: its label, its ends, and its ticks with their labels.
 pub struct Axis<'a> {
     pub label: &'a str,
     pub range: [f64; 2],
@@ -20,14 +20,14 @@ pub struct Axis<'a> {
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 300.0;
-/// Left, top, right, bottom of the plot.
+/// Left, top, right and bottom of the plot.
 const PLOT: [f64; 4] = [62.0, 16.0, 612.0, 246.0];
 
 pub const BLUE: &str = "#2364aa";
 pub const RED: &str = "#c8402f";
 pub const GREEN: &str = "#3d8b4f";
 
-/// A chart of lines over two linear axes, with a legend at the upper left or, if asked for, the upper right.
+/// Returns a chart of lines over two linear axes. The legend is at the upper left or, if asked for, at the upper right.
 pub fn chart(x: &Axis<'_>, y: &Axis<'_>, lines: &[Line<'_>], legend_right: bool) -> String {
     let across = |v: f64| PLOT[0] + (v - x.range[0]) / (x.range[1] - x.range[0]) * (PLOT[2] - PLOT[0]);
     let up = |v: f64| PLOT[3] - (v - y.range[0]) / (y.range[1] - y.range[0]) * (PLOT[3] - PLOT[1]);
@@ -87,7 +87,7 @@ pub fn chart(x: &Axis<'_>, y: &Axis<'_>, lines: &[Line<'_>], legend_right: bool)
     out + "</svg>\n"
 }
 
-/// Whole numbers from `low` to `high` as ticks.
+/// Returns ticks at whole numbers from `low` to `high`.
 pub fn ticks(low: i64, high: i64, step: usize, label: impl Fn(i64) -> String) -> Vec<(f64, String)> {
     (low..=high).step_by(step).map(|n| (n as f64, label(n))).collect()
 }

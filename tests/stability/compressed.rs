@@ -1,4 +1,4 @@
-//! Normal maps in DXT blocks: `normals-*.ron`.
+//! Normal maps in DXT blocks, drawn by `normals-*.ron`.
 
 use super::content::ball;
 use super::page::{Section, cells};
@@ -35,7 +35,7 @@ fn crop(frame: &Picture) -> Picture {
     frame.part(24, 104, 128, 128)
 }
 
-/// Errors of a frame, but for the margin, where the maps end.
+/// Returns a row with the errors of a frame. The margin is left out, because the maps end there.
 fn row(label: &str, frame: &Picture, whole: &Picture) -> Vec<String> {
     let [frame, whole] = [frame, whole].map(|frame| frame.part(16, 16, 224, 224));
     let differences: Vec<u8> = frame.pixels.iter().zip(&whole.pixels).map(|(a, b)| a[0].abs_diff(b[0])).collect();
@@ -44,7 +44,7 @@ fn row(label: &str, frame: &Picture, whole: &Picture) -> Vec<String> {
     vec![label.to_string(), format!("{mean:.2}"), format!("{:.2}", rms(&frame, &whole)), largest]
 }
 
-/// The reference with a map of half the bytes of the DXT1 one.
+/// Returns the reference scene with a smaller map, which takes half the bytes of the DXT1 map.
 fn smaller() -> Scene {
     let mut scene = scene("normals-uncompressed.ron");
     let Texture { image: TextureImage::Texels(texels), .. } = &mut scene.textures[0] else { panic!("texels expected") };

@@ -1,4 +1,4 @@
-//! The textures of `vectors/scenes/stability`: content, prepared here, no part of the chip.
+//! Generates the textures of `vectors/scenes/stability`, which are content and no part of the chip.
 
 use super::blocks;
 use super::view::FOLDER;
@@ -9,24 +9,25 @@ use ninebit_scene::generate::{height_field, normal_map};
 use ninebit_scene::image::Rgba;
 use std::sync::Once;
 
-/// Rows of `angle-pairs.png`.
+/// Number of rows of `angle-pairs.png`.
 pub const PAIRS: usize = 256;
 
-/// Texels along a face of `directions-8.dds`.
+/// Texels along a side of a face of `directions-8.dds`.
 pub const FACE: u32 = 8;
 
-/// Angle between the two normals of a row of `angle-pairs.png`, degrees: four rows for three of them, 180 in the last 16.
+/// Returns the angle between the two normals of a row of `angle-pairs.png`, in degrees. Four rows make three degrees, and the last 16 rows
+/// have 180.
 pub fn pair_angle(row: usize) -> f64 {
     (0.75 * row as f64).min(180.0)
 }
 
-/// The two normals of a row, left and right of z, as bytes.
+/// Returns the two normals of a row as bytes. They lie on both sides of z.
 pub fn pair(row: usize) -> [[u8; 3]; 2] {
     let half = pair_angle(row).to_radians() / 2.0;
     [-half, half].map(|a| normal_map::encode([a.sin(), 0.0, a.cos()]))
 }
 
-/// The stone that several scenes share: 64 x 64 texels that repeat.
+/// Returns the normal map of a stone that several scenes share. It has 64 x 64 texels and repeats.
 pub fn stone() -> Rgba {
     let options = normal_map::Options { scale: 6.0, ..normal_map::Options::default() };
     normal_map::from_height(&height_field::rocks(64, 5), &options)
@@ -35,7 +36,7 @@ pub fn stone() -> Rgba {
 /// Texels along a side of `ball-normal.png`.
 pub const BALL: u32 = 4;
 
-/// The middle of a ball, out to 0.7 of its radius along x and y.
+/// Returns normals of the middle of a ball, up to 0.7 of its radius along x and y.
 pub fn ball(side: u32) -> Rgba {
     let normal = |n: u32| {
         let along = |index: u32| 0.7 * (f64::from(2 * index + 1) / f64::from(side) - 1.0);
@@ -46,7 +47,7 @@ pub fn ball(side: u32) -> Rgba {
     Rgba { width: side, height: side, pixels: (0..side * side).map(normal).collect() }
 }
 
-/// A normalisation cube map, as words A8R8G8B8, face after face: each texel the direction through its centre.
+/// Returns a normalisation cube map as words A8R8G8B8, face after face. Each texel is the direction through its centre.
 pub fn directions(side: u32) -> Vec<u32> {
     use ninebit::state::Named;
     use ninebit::texture::cube::Face;
@@ -79,7 +80,7 @@ pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Every file: its name and its bytes.
+/// Returns every file with its name and its bytes.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
     let png = |image: Rgba| encode_png(image.width, image.height, &image.pixels, Compression::Small).unwrap();
     let pairs = (0..PAIRS).flat_map(|row| pair(row).map(|[r, g, b]| [r, g, b, 255])).collect();
@@ -100,7 +101,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
 
 static MADE: Once = Once::new();
 
-/// Writes the files, once, if they are to be written.
+/// Writes the files once, if expectations are to be rewritten.
 pub fn bless() {
     if crate::settings::bless() {
         MADE.call_once(|| {
@@ -111,7 +112,7 @@ pub fn bless() {
     }
 }
 
-/// The stored files are those that are made here; PNG files by their pixels, which no encoder changes.
+/// Checks that the stored files are those generated here. PNG files are compared by their pixels, which do not depend on the encoder.
 pub fn check() {
     bless();
     for (name, bytes) in files() {

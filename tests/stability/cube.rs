@@ -1,4 +1,4 @@
-//! Edges of cube maps: `cube-edge.ron`, `cube-ties.ron`.
+//! Edges of cube maps, drawn by `cube-edge.ron` and `cube-ties.ron`.
 
 use super::content::{directions, dot, unit};
 use super::page::{Section, cells};
@@ -28,7 +28,7 @@ pub fn section() -> Section {
     }
     let plan_of_page = plan(&scene);
     let frame = draw(&plan_of_page);
-    // Errors of the bilinear half against the exact directions, eight times.
+    // Eight times the errors of the bilinear half with respect to the exact directions.
     let map = faces(&plan_of_page);
     let error = Picture::from(256, 256, |x, y| {
         let (_, direction) = map[256 * y + x];
@@ -48,7 +48,7 @@ pub fn section() -> Section {
     }
 }
 
-/// Face and direction of each pixel of the bilinear half.
+/// Returns face and direction of each pixel of the bilinear half.
 fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
     let mut map = vec![(Face::PositiveX, [0.0; 3]); 256 * 256];
     visit(plan, |covered| {
@@ -67,8 +67,8 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
     map
 }
 
-/// The largest difference of neighbouring pixels of the bilinear half on one face and on two, and the largest angle between what is
-/// read and the direction itself, for a normalisation map of another size.
+/// Measures the bilinear half with a normalisation map of another size. Returns the largest difference of adjacent pixels on one face, and
+/// on two faces, and the largest angle between the direction and the vector that is read, in degrees.
 fn jumps(scene: &Scene, side: u32) -> (u8, u8, f64) {
     let mut scene = scene.clone();
     let Texture { image: TextureImage::Texels(texels), .. } = &mut scene.textures[0] else { panic!("texels expected") };
@@ -95,7 +95,7 @@ fn jumps(scene: &Scene, side: u32) -> (u8, u8, f64) {
     (inside, across, least.acos().to_degrees())
 }
 
-/// TEX-13 as `cube-ties.ron` shows it.
+/// TEX-13: returns the rows that `cube-ties.ron` shows, with the face that is read for each tie.
 fn ties() -> Vec<Vec<String>> {
     let scene = scene("cube-ties.ron");
     let frame = draw(&plan(&scene));

@@ -1,11 +1,12 @@
-//! Where methods fail: each threshold is held from both sides, and the page is what the experiments yield.
+//! Limits of methods: each threshold is tested from both sides, and the page has the results of the experiments.
 
 use crate::repository::at;
 use ninebit_lab::chart::page::{plain, replace_section};
 use ninebit_lab::experiments::{self, Experiment, Threshold, experiments};
 use std::fs;
 
-/// A method works at the first value and fails at the second; `None`: it does not fail where it ought to.
+/// Experiment, method, a value at which the method works, and a value at which it fails. `None` means that the method does not fail where
+/// the experiment expects it to.
 const PINNED: [(&str, &str, f64, Option<f64>); 38] = [
     ("squaring", "largest step between neighbouring pixels", 16.0, Some(32.0)),
     ("squaring", "largest error", 8.0, Some(16.0)),

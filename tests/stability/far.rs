@@ -1,4 +1,4 @@
-//! Coordinates far from the origin: `far-coordinates.ron`.
+//! Coordinates far from the origin, drawn by `far-coordinates.ron`.
 
 use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
 use super::page::{Section, cells};
@@ -8,13 +8,13 @@ use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::Scene;
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
 
-/// Bits of the texel coordinate that the strips of a draw end at, from top to bottom.
+/// Exponent of the coordinate at which the first strip of a draw ends: strip n, from the top, ends at 2^(10 + n) texels.
 const FIRST: usize = 10;
 
 pub fn section() -> Section {
     let scene = scene("far-coordinates.ron");
     let plan_of_page = plan(&scene);
-    // By draw and strip.
+    // Largest error for each draw and strip.
     let mut worst = [[None; 11]; 3];
     visit(&plan_of_page, |covered| {
         let strip = (covered.pixel.1 as usize - 2) / 24;
@@ -65,7 +65,7 @@ pub fn section() -> Section {
     }
 }
 
-/// u as the model has it, and the floor of the exact rational number, 1/256 texel.
+/// Returns u of the model and the floor of the exact rational number, both in 1/256 texel.
 fn u(covered: &Covered<'_>) -> (i64, i64) {
     let (sample, coordinates) =
         (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
@@ -78,9 +78,9 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
         perspective: true,
     };
     let floored = place.on(&covered.unit.levels[0])[0];
-    // INT-4t takes an exact tie one step lower: that is the rule and no error.
+    // INT-4t makes an exact tie one step lower. That is the rule and does not count as an error.
     let u = floored.value + floored.lowered;
-    // Everything as whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
+    // All values are converted to whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
     let whole = |value: f32, bits: i32| (f64::from(value) * f64::from(bits).exp2()) as i128;
     let w = covered.w().map(|w| whole(w, 23));
     let [s, q] = [0, 3].map(|n| covered.coordinates().map(|c| whole(c[n], 5)));
@@ -91,7 +91,7 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
     (u, exact as i64)
 }
 
-/// RAS-0: with q = 1 coordinates beyond 65536 texels are refused, with another q they are not.
+/// RAS-0: coordinates beyond 65536 texels are refused if q is 1, but not for other q.
 fn refused(scene: &Scene) {
     let mut scene = scene.clone();
     scene.draws.truncate(1);

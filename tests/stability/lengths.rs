@@ -1,4 +1,4 @@
-//! Normals shortened by the filter: `filtered-length.ron`, `seams.ron`.
+//! Normals that filtering shortens, drawn by `filtered-length.ron` and `seams.ron`.
 
 use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
 use super::content::{BALL, PAIRS, dot, length, pair, pair_angle, unit};
@@ -13,7 +13,7 @@ pub fn section() -> Section {
     for angle in [0, 15, 30, 45, 60, 90, 120, 150, 180] {
         let row = (0..PAIRS).find(|row| pair_angle(*row) == f64::from(angle)).unwrap();
         let mixed = mix(row, 128);
-        // The light stands between the two, where a ridge should be brightest.
+        // The light direction is half way between the two normals, where a ridge should be brightest.
         let light = round_255(mixed[2] * expand_normal(255));
         let exact = (f64::from(angle) / 2.0).to_radians().cos();
         let renormalised = if angle == 180 { "none".to_string() } else { "255".to_string() };
@@ -31,7 +31,7 @@ pub fn section() -> Section {
     for row in 0..PAIRS {
         for weight in 0..256 {
             let mixed = mix(row, weight);
-            // The scene shows what is measured here.
+            // The scene shows the same value.
             let shown = i32::from(frame.at(weight as usize, row)[0]);
             assert_eq!(shown, round_255(mixed.iter().map(|n| n * n).sum::<i32>()).min(255), "{row} {weight}");
             let difference = (fixed_length(mixed) - exact_length(row, weight)).abs();
@@ -73,7 +73,7 @@ pub fn section() -> Section {
     }
 }
 
-/// The mix of the two normals of a row as the first combiner input receives it, in 255ths.
+/// Returns the mix of the two normals of a row, in 255ths, as a combiner input reads it.
 fn mix(row: usize, weight: i32) -> [i32; 3] {
     let [a, b] = pair(row);
     std::array::from_fn(|n| expand_normal(lerp(i32::from(a[n]), i32::from(b[n]), weight)))
@@ -89,7 +89,7 @@ fn exact_length(row: usize, weight: i32) -> f64 {
     length([t * half.sin(), 0.0, half.cos()])
 }
 
-/// The highlight of `seams.ron` with the filtered normals brought back to length in float64, in 255ths.
+/// Returns the highlight of `seams.ron`, in 255ths, with the filtered normals renormalised in float64.
 fn renormalised() -> Vec<f64> {
     let map = image::open(at("vectors/scenes/stability/ball-normal.png")).unwrap().to_rgb8();
     let last = i64::from(BALL) - 1;
@@ -145,12 +145,12 @@ fn length_chart() -> String {
     chart(&x, &y, &lines, true)
 }
 
-/// CMB-3 of a byte, in 255ths.
+/// CMB-3: returns the expanded byte in 255ths.
 fn expand_normal(byte: i32) -> i32 {
     2 * (byte - 128)
 }
 
-/// NUM-2.
+/// NUM-2: divides by 255 and rounds to nearest.
 fn round_255(n: i32) -> i32 {
     (2 * n + 255).div_euclid(510)
 }

@@ -1,4 +1,4 @@
-//! The lod of a quad against that of each pixel: `lod-plane.ron`.
+//! Compares the lod of a quad with the lod of each pixel, in `lod-plane.ron`.
 
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
@@ -6,7 +6,7 @@ use super::view::{Picture, draw, plan, scene, visit};
 pub fn section() -> Section {
     let plan = plan(&scene("lod-plane.ron"));
     let frame = draw(&plan);
-    // Bands by lod: error of lod, and steps of colour between the rows and columns of a quad and those of two.
+    // Results for each band of lod: number of pixels, sum of errors, largest error.
     const BANDS: usize = 5;
     let names = ["below 0 (magnified)", "0 to 1", "1 to 2", "2 to 3", "above 3"];
     let mut errors = [(0_u32, 0.0, 0.0_f64); BANDS];
@@ -23,7 +23,7 @@ pub fn section() -> Section {
         let error = (f64::from(lod) - exact).abs();
         let (count, sum, most) = &mut errors[band];
         (*count, *sum, *most) = (*count + 1, *sum + error, most.max(error));
-        // The nearest level of a lod, TEX-9.
+        // TEX-9: returns the nearest level of a lod.
         let level = |lod: i64| (lod + 128) >> 8;
         if exact > 0.0 {
             minified += 1;
@@ -60,7 +60,7 @@ pub fn section() -> Section {
     }
 }
 
-/// The largest difference of a channel between neighbouring pixels of two quads, where both are minified.
+/// Returns the largest difference of a channel between adjacent pixels of the right half that are both minified.
 fn steps(frame: &Picture, lods: &[Option<(i32, f64)>]) -> u8 {
     let minified = |x: usize, y: usize| lods[y * frame.width + x].is_some_and(|(lod, _)| lod > 0);
     let mut most = 0;

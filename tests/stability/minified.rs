@@ -1,4 +1,4 @@
-//! Minified normal maps with and without levels: `shimmer.ron`.
+//! Minified normal maps with and without levels, drawn by `shimmer.ron`.
 
 use super::content::length;
 use super::page::{Section, cells};
@@ -14,14 +14,14 @@ pub fn section() -> Section {
         draw.assembly.corners.iter_mut().for_each(|corner| corner.position[0] += 8);
     }
     let (a, b) = (draw(&still), draw(&moved));
-    // Which band of the lod each pixel lies in; 0 is magnified.
+    // Band of lod of each pixel, where 0 means magnified.
     let mut bands = vec![None; a.pixels.len()];
     visit(&still, |covered| {
         let (i, j) = covered.pixel;
         bands[j as usize * a.width + i as usize] =
             Some((covered.lod().max(-1) / 256 + i32::from(covered.lod() > 0)) as usize);
     });
-    // The left half has no levels, and so no lod: it is that of the right half.
+    // The left half has no levels and thus no lod, so it takes the band of the right half.
     let band = |x: usize, y: usize| bands[y * a.width + x % 256 + 256];
     let names = ["magnified", "1 to 2 texels a pixel", "2 to 4", "4 to 8", "more than 8"];
     let mut rows = vec![cells([
@@ -55,7 +55,7 @@ pub fn section() -> Section {
     }
 }
 
-/// The lengths of the normals of each level, 128 being zero and 127 one.
+/// Returns the lengths of the normals of each level. A byte b stands for (b - 128) / 127.
 fn levels(scene: &ninebit::state::Scene) -> Vec<Vec<String>> {
     let texture = &scene.textures[scene.draws[1].textures[0].unwrap().texture];
     let TextureImage::Texels(texels) = &texture.image else { panic!("texels expected") };

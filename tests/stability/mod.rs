@@ -1,8 +1,8 @@
-//! `docs/stability.md`, where sampling fails: every number, picture and chart of the page is made here again and compared.
+//! Tests `docs/stability.md`, the page on the limits of sampling: computes every number, picture and chart of the page again and compares.
 //!
-//! `ninebit chart --only stability` writes the section on methods. For the rest
-//! `BLESS=1 cargo test --test suite stability::` writes the tables of the page, the pictures under `docs/pictures/stability` and the textures of
-//! `vectors/scenes/stability`; look at them before committing. What an item measures is in the file of its name.
+//! `ninebit chart --only stability` writes the section on methods. `BLESS=1 cargo test --test suite stability::` writes everything else:
+//! the tables of the page, the pictures under `docs/pictures/stability` and the textures of `vectors/scenes/stability`. Look at them before
+//! you commit. Each section has a file of its name.
 
 mod blocks;
 mod chart;
@@ -34,7 +34,7 @@ macro_rules! sections {
     )+ };
 }
 
-/// What each section of the page shows is what is measured.
+/// One test for each section of the page, which compares it with new measurements.
 mod sections {
     use super::page;
     sections!(lengths, minified, cube, far, near_eye, compressed, one_texel, level_of_detail);

@@ -1,4 +1,4 @@
-//! w close to zero: `near-eye.ron`.
+//! Vertices with w close to zero, drawn by `near-eye.ron`.
 
 use super::chart::{Axis, BLUE, Line, RED, chart, ticks};
 use super::page::{Section, cells};
@@ -11,15 +11,15 @@ use ninebit::raster::project::ClipPlane;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{Profile, Scene};
 
-/// Texels of the texture that the coordinates count in.
+/// Width of the texture to which the coordinates refer, in texels.
 const SIDE: u32 = 64;
 
-/// Largest errors of a triangle's samples.
+/// Largest errors of the samples of a triangle.
 #[derive(Clone, Copy, Default)]
 struct Errors {
-    /// Of 256 times a weight, against the floor of the exact one.
+    /// Error of a weight in 256ths, with respect to the floor of the exact one.
     weight: f64,
-    /// Of u, 1/256 texel, against the floor.
+    /// Error of u in 1/256 texel, with respect to the floor of the exact one.
     u: f64,
 }
 
@@ -71,7 +71,7 @@ pub fn section() -> Section {
     }
 }
 
-/// RAS-6: what is cut off at w = 2^-20 lies far outside the window there, and is cut off at the guard band as well.
+/// RAS-6: a triangle that is cut at w = 2^-20 reaches far outside the window there, so the guard band cuts it as well.
 fn floor_below_the_eye_is_cut_off(scene: &Scene) {
     let mut scene = scene.clone();
     scene.draws[1].vertices.update(|index, vertex| {
@@ -88,10 +88,10 @@ fn log(error: f64) -> f64 {
     error.log2().clamp(-16.0, 16.0)
 }
 
-/// A triangle whose upper edge, opposite its first vertex, runs exactly through the centres of a row of pixels that belong to it.
+/// A triangle whose upper edge, opposite to its first vertex, passes exactly through the centres of a row of pixels that it covers.
 const EDGE: [[f32; 2]; 3] = [[60.3, 121.7], [4.2, 8.5], [119.6, 8.5]];
 
-/// The largest errors of many triangles with slanted edges.
+/// Returns the largest errors of a hundred triangles with slanted edges, as [`errors`] does.
 fn slanted(w: [f64; 3]) -> [Errors; 2] {
     let mut random = Random::seeded(1);
     let mut next = || random.below(2048) as f32 / 16.0;
@@ -105,7 +105,7 @@ fn slanted(w: [f64; 3]) -> [Errors; 2] {
     worst
 }
 
-/// Over a triangle: inside, and on the edge that the first vertex does not touch.
+/// Returns the largest errors inside a triangle, and on the edge opposite to its first vertex.
 fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
     let w = w.map(|w| w as f32);
     let positions = std::array::from_fn(|k| [corners[k][0], corners[k][1], 0.0, w[k]]);
@@ -130,8 +130,8 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
     worst
 }
 
-/// How far an integer lies from a floor: 0 where the real number is within the step above it. A tie that was taken one step lower
-/// counts as exact.
+/// Returns how far an integer is from being the floor of a real number: 0 if the real number lies within the step above it. A tie that was
+/// rounded one step lower counts as exact.
 fn beyond(floored: Floored, exact: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
     let error = (floored.value + floored.lowered) as f64 - exact;

@@ -1,4 +1,4 @@
-//! The last levels: `one-texel-levels.ron`.
+//! The last levels of a texture, drawn by `one-texel-levels.ron`.
 
 use super::page::{Section, cells};
 use super::view::{draw, plan, scene};
@@ -15,7 +15,7 @@ pub fn section() -> Section {
         vec![cells(["level", "texels", "lowest and highest shown", "mean shown", "off the mean of level 0"])];
     for (n, level) in levels.iter().enumerate() {
         let strip = frame.part(0, 16 * n, 256, 14);
-        // One row: every row of the strip is the same, since the level is one texel high.
+        // One row is sufficient. All rows of the strip are the same, since the level is one texel high.
         assert!((1..14).all(|y| (0..256).all(|x| strip.at(x, y) == strip.at(x, 0))));
         let row: Vec<u8> = (0..256).map(|x| strip.at(x, 0)[0]).collect();
         let shown = row.iter().map(|v| f64::from(*v)).sum::<f64>() / 256.0;

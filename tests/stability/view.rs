@@ -1,4 +1,4 @@
-//! Scenes drawn, and pictures put together.
+//! Renders scenes and composes pictures.
 
 use crate::repository::at;
 use ninebit::engine::{RenderOptions, render, walk};
@@ -12,10 +12,10 @@ use ninebit::texture::lod;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit_scene as scene;
 
-/// Where the scenes are.
+/// Folder of the scenes.
 pub const FOLDER: &str = "vectors/scenes/stability";
 
-/// A picture: R, G, B, row by row.
+/// A picture of R, G, B, row by row.
 #[derive(Clone, PartialEq)]
 pub struct Picture {
     pub width: usize,
@@ -37,17 +37,17 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// A part of it.
+    /// Returns a part of the picture.
     pub fn part(&self, x: usize, y: usize, width: usize, height: usize) -> Picture {
         Picture::from(width, height, |i, j| self.at(x + i, y + j))
     }
 
-    /// Each pixel as a square.
+    /// Returns the picture with each pixel as a square of pixels.
     pub fn enlarged(&self, times: usize) -> Picture {
         Picture::from(self.width * times, self.height * times, |x, y| self.at(x / times, y / times))
     }
 
-    /// Two pictures of one width, one above the other.
+    /// Returns this picture above another one of the same width, with a light gap.
     pub fn above(&self, lower: &Picture) -> Picture {
         const GAP: usize = 6;
         let gap = vec![[255; 3]; GAP * self.width];
@@ -55,7 +55,7 @@ impl Picture {
         Picture { width: self.width, height: self.height + GAP + lower.height, pixels }
     }
 
-    /// Pictures of one height side by side, a light gap between them.
+    /// Returns pictures of the same height side by side, with light gaps between them.
     pub fn row(parts: &[Picture]) -> Picture {
         const GAP: usize = 6;
         let width = parts.iter().map(|p| p.width).sum::<usize>() + GAP * (parts.len() - 1);
@@ -83,7 +83,7 @@ pub fn plan(scene: &Scene) -> Plan {
     Plan::compile(scene, &PlanOptions::default()).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
-/// The first target of a plan.
+/// Renders the first target of a plan.
 pub fn draw(plan: &Plan) -> Picture {
     let frames = render(plan, &RenderOptions::default());
     let surface = &frames.surfaces[0];
@@ -91,7 +91,7 @@ pub fn draw(plan: &Plan) -> Picture {
     Picture { width: surface.width as usize, height: surface.height as usize, pixels }
 }
 
-/// Root of the mean square of the differences of the red channels.
+/// Returns the root of the mean square of the differences in the red channel.
 pub fn rms(a: &Picture, b: &Picture) -> f64 {
     let squares = a.pixels.iter().zip(&b.pixels).map(|(a, b)| f64::from(a[0].abs_diff(b[0])).powi(2));
     (squares.sum::<f64>() / a.pixels.len() as f64).sqrt()
@@ -111,7 +111,7 @@ impl Covered<'_> {
         Sample::new(self.triangle, self.triangle.edges(self.pixel.0, self.pixel.1))
     }
 
-    /// Texture coordinates s, t, r, q of the vertices.
+    /// Returns the texture coordinates s, t, r, q of the vertices.
     pub fn coordinates(&self) -> [[f32; 4]; 3] {
         self.vertices.coordinates(self.unit.stage.coordinate_set)
     }
@@ -120,7 +120,7 @@ impl Covered<'_> {
         self.vertices.position(3)
     }
 
-    /// TEX-10, TEX-11 as the model does it: 256 times the lod before bias and limits.
+    /// TEX-10, TEX-11: returns 256 times the lod of the model, before bias and limits.
     pub fn lod(&self) -> i32 {
         let coordinates = Coordinates::new(self.triangle, self.coordinates(), self.unit);
         let at = self.sample();
@@ -135,12 +135,12 @@ impl Covered<'_> {
         lod::log2_ratio(place.quad())
     }
 
-    /// The same of real numbers, from the derivatives at this very pixel.
+    /// Returns 256 times the lod in real numbers, from the derivatives at this pixel.
     pub fn exact_lod(&self) -> f64 {
         let (vertices, w, t) = (self.coordinates(), self.w(), self.triangle);
         let e = t.edges(self.pixel.0, self.pixel.1);
         let sides = self.unit.scale(&self.unit.levels[0]);
-        // u = S / W with S and W linear on the screen: its derivative is (S' - u W') / W.
+        // u = S / W, where S and W are linear on the screen, so its derivative is (S' - u W') / W.
         let linear = |values: [f64; 3], e: [i64; 3]| -> f64 { (0..3).map(|k| values[k] * e[k] as f64).sum() };
         let inverse = w.map(|w| 1.0 / f64::from(w));
         let at = linear(inverse, e);
@@ -157,11 +157,11 @@ impl Covered<'_> {
     }
 }
 
-/// Visits every pixel that a plan's triangles cover, in their order; each draw has unit 0.
+/// Visits every pixel that the triangles of a plan cover, in order. Each draw uses unit 0.
 pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
     for (draw, planned) in plan.draws.iter().enumerate() {
         let whole = (0, i64::from(plan.targets[planned.target].height));
-        // None of its scenes clips.
+        // No clip rectangle splits these scenes, so there is at most one window.
         let Some((rows, columns)) = walk::windows(planned, whole).next() else { continue };
         for number in 0..planned.assembly.triangles.len() {
             let vertices = planned.assembly.triangle(number);

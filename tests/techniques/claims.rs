@@ -1,4 +1,4 @@
-//! The scenes by which claims of 2002 are decided, and rows of published texts that fail: held to coarse bounds.
+//! Scenes that decide claims of 2002, and listings of published texts that fail, tested with wide bounds.
 
 use super::pinned;
 use ninebit::limits::Limits;
@@ -9,7 +9,8 @@ fn rms(name: &str) -> f64 {
     pinned(name).rms
 }
 
-/// Stages beat a cube map of eight bits, sixteen bits beat both; all beat nothing and the light of the vertices.
+/// Normalisation in combiner stages is better than a cube map with 8 bits, and a map with 16 bits is better than both. All are better than
+/// lighting at the vertices, which is better than no normalisation.
 #[test]
 fn sixteen_bits_then_stages_then_eight_bits() {
     let of = |name: &str| rms(&format!("normalisation/smooth-{name}"));
@@ -36,7 +37,7 @@ fn the_neutral_normal_is_upright() {
     assert_eq!(accuracy.normals.unwrap().degrees.max(), 0.0);
 }
 
-/// What saturates before one half is added ends at one half: off by up to half of what lies between sky and ground.
+/// A value that saturates before one half is added ends at one half. The error is up to half of the difference between sky and ground.
 #[test]
 fn a_listing_that_saturates_too_early_fails_below_the_horizon() {
     let of = |name: &str| pinned(&format!("per-pixel-lighting/{name}"));
@@ -50,7 +51,7 @@ fn a_ceiling_may_be_lit_with_its_own_normal() {
     assert!(rms("dot-product-texture-blending/diffuse-ceiling-own-normal") < 3.0);
 }
 
-/// Twelve passes are asked for and paid by a chip, five are left here, and three do with two units.
+/// Twelve passes are asked for, and a chip has to draw all of them. Pruning leaves five. With two units three passes are enough.
 #[test]
 fn passes_as_asked_and_after_pruning() {
     let passes = |name: &str| pinned(&format!("orthogonal-illumination-mapping/{name}")).passes;

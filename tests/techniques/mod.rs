@@ -1,6 +1,6 @@
-//! The lighting techniques under `vectors/scenes/techniques`: each is measured, and their textures are what the generators make.
+//! Measures the lighting techniques under `vectors/scenes/techniques`, and checks that their textures are what the generators make.
 //!
-//! `BLESS=1 cargo test --test suite techniques::` rewrites the figures; look at the difference before committing.
+//! `BLESS=1 cargo test --test suite techniques::` rewrites the figures; look at the difference before you commit.
 
 mod claims;
 mod listings;
@@ -25,7 +25,7 @@ fn folder() -> PathBuf {
     at("vectors/scenes/techniques")
 }
 
-/// The folders of the families, sorted.
+/// Returns the folders of the families, sorted.
 fn families() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
     let mut families: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();
@@ -33,13 +33,13 @@ fn families() -> Vec<PathBuf> {
     families
 }
 
-/// One line: the scene, its errors, its bands and its passes.
+/// Returns the line of a scene: its name, its errors, its banding and its passes.
 fn figures(path: &Path) -> String {
     let loaded = scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(loaded.render_warnings(false), "", "{}", path.display());
     let truth = loaded.truth.as_ref().unwrap_or_else(|| panic!("{} has no truth", path.display()));
     let accuracy = measure(&loaded.scene, &loaded.plan, truth).unwrap();
-    // The causes add up, as far as all that is drawn has a truth.
+    // The causes add up to the error, provided that everything drawn has a truth.
     if accuracy.without == 0 {
         let sum: f64 = accuracy.causes.iter().map(|cause| cause.errors.bias()).sum();
         assert!((sum - accuracy.errors.bias()).abs() < 1e-3, "{}: {sum}", path.display());
@@ -54,7 +54,8 @@ fn figures(path: &Path) -> String {
     )
 }
 
-/// What `figures.tsv` says of a scene. Other tests read it instead of measuring anew: `techniques_are_as_exact_as_they_were` holds it.
+/// The figures of a scene in `figures.tsv`. Other tests read them in place of measuring again; `techniques_are_as_exact_as_they_were`
+/// checks them.
 #[derive(Clone, Copy)]
 struct Figures {
     rms: f64,
@@ -62,11 +63,11 @@ struct Figures {
     bias: f64,
     levels: u32,
     truth_levels: u32,
-    /// As asked for, and after pruning.
+    /// Numbers of passes as asked for, and after pruning.
     passes: (u32, u32),
 }
 
-/// The pinned figures of every scene, by folder and name.
+/// Returns the stored figures of every scene, by folder and name.
 fn all_pinned() -> &'static BTreeMap<String, Figures> {
     static PINNED: OnceLock<BTreeMap<String, Figures>> = OnceLock::new();
     PINNED.get_or_init(|| {
@@ -81,7 +82,7 @@ fn all_pinned() -> &'static BTreeMap<String, Figures> {
     })
 }
 
-/// The pinned figures of a scene: its folder and name.
+/// Returns the stored figures of a scene by its folder and name.
 fn pinned(name: &str) -> Figures {
     *all_pinned().get(name).unwrap_or_else(|| panic!("no figures of {name}"))
 }
@@ -112,7 +113,7 @@ fn every_scene_has_a_line_in_its_readme() {
     }
 }
 
-/// The commands of each folder's page, run in order, make the files that are stored, and all of them.
+/// The commands in the page of each folder, run in order, generate exactly the stored files.
 #[test]
 fn textures_are_what_the_generators_make() {
     for family in families() {

@@ -1,4 +1,4 @@
-//! Passes of orthogonal illumination mapping: which of them are left out, and what that changes.
+//! Tests the passes of orthogonal illumination mapping: which are left out, and what that changes.
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
@@ -14,7 +14,7 @@ fn words(loaded: &Loaded) -> Vec<u32> {
     render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.clone()
 }
 
-/// The draws of which nothing can be seen, by name.
+/// Returns the names of the draws that are left out because they change nothing visible.
 fn left_out(loaded: &Loaded) -> Vec<String> {
     let draws = explain(&loaded.scene, &loaded.plan);
     let gone = draws.into_iter().filter(|draw| draw.dropped.iter().any(|line| line.starts_with("the whole draw:")));
@@ -39,7 +39,7 @@ fn three_passes_of_two_units_are_nearly_the_same() {
     assert!(words(&five).iter().zip(&words(&three)).map(apart).max() <= Some(2));
 }
 
-/// At every pixel only one of the four halves of a product is there: the approximate subtraction subtracts from nothing.
+/// At every pixel only one of the four halves of a product is not zero, so the approximate subtraction has nothing to subtract from.
 #[test]
 fn one_signed_product_does_not_tell_the_subtractions_apart() {
     assert_eq!(words(&load("signed-product")), words(&load("signed-product-approximate")));

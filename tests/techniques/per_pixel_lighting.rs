@@ -1,6 +1,6 @@
-//! Per-pixel lighting and renormalisation: how far each picture is from its truth, and where a technique breaks.
+//! Tests per-pixel lighting and renormalisation: the error of each picture, and the limits of a technique.
 //!
-//! Bounds of pinned figures are coarse, in steps of 1/255: they say what a technique is good for, not which bits it has.
+//! Bounds are wide, in steps of 1/255. They state what a technique is good for, not its exact bits.
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
@@ -8,7 +8,7 @@ use ninebit_scene as scene;
 
 use super::{Figures, all_pinned, folder, pinned};
 
-/// Scene, and between which RMS errors it lies.
+/// Scene, and the lowest and highest RMS error that it may have.
 const BOUNDS: &[(&str, f64, f64)] = &[
     ("coarse-light", 6.5, 9.9),
     ("coarse-light-renormalised", 3.3, 5.0),
@@ -74,7 +74,7 @@ fn rms(name: &str) -> f64 {
     of(name).rms
 }
 
-/// The first target's bytes.
+/// Returns the bytes of the first target.
 fn picture(name: &str) -> Vec<u8> {
     let path = folder().join(format!("per-pixel-lighting/{name}.ron"));
     let plan = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}")).plan;
@@ -82,7 +82,7 @@ fn picture(name: &str) -> Vec<u8> {
     words.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
-/// How many bytes two pictures differ in, and by how much at most.
+/// Returns in how many bytes two pictures differ, and the largest difference.
 fn difference(names: [&str; 2]) -> (usize, u8) {
     let [one, other] = names.map(picture);
     let differences = one.into_iter().zip(other).map(|(a, b)| a.abs_diff(b)).filter(|difference| *difference != 0);
@@ -103,7 +103,7 @@ fn techniques_are_as_exact_as_they_ought_to_be() {
     assert!(outside.is_empty(), "{}", outside.join("\n"));
 }
 
-/// One runs on the Xbox, the other on the GeForce 256, which places coordinates a little differently where they run fast.
+/// One scene runs on the Xbox, the other on the GeForce 256, whose coordinates differ slightly where they change quickly.
 #[test]
 fn the_fallback_by_dot_product_shows_what_the_pixel_shader_shows() {
     for end in ["", "-stone"] {
@@ -118,14 +118,14 @@ fn a_binormal_made_by_a_cross_product_is_the_mesh_s() {
     assert_eq!(difference(["tangent-space-diffuse", "tangent-space-diffuse-cross"]), (0, 0));
 }
 
-/// The third stage reads nine bits with a sign, blending the eight of the frame buffer.
+/// The third stage reads nine bits with a sign, whereas blending reads the eight of the frame buffer.
 #[test]
 fn doubling_by_blending_is_doubling_in_the_stages() {
     let (_, largest) = difference(["emboss-2x", "emboss-2x-blend"]);
     assert!((1..=2).contains(&largest), "{largest}");
 }
 
-/// Each squaring takes many of the levels that are left of the highlight, whose truth has 128; a table keeps them.
+/// Each squaring loses many of the remaining levels of the highlight, whose truth has 128. A table keeps them.
 #[test]
 fn squaring_bands_and_a_table_does_not() {
     let levels = [2, 4, 8, 16, 32].map(|exponent| of(&format!("specular-{exponent}")).levels);
@@ -135,19 +135,19 @@ fn squaring_bands_and_a_table_does_not() {
     assert!(of("specular-16").truth_levels >= 100);
 }
 
-/// The last of 32 entries stands for 63/64, which is a fifth to the power of 100: the highlight is one dim grey.
+/// The last of 32 entries stands for 63/64. To the power of 100 this is a fifth, so the highlight is a single dim grey.
 #[test]
 fn a_small_table_is_too_coarse_for_a_large_exponent() {
     let levels = |entries: u32| of(&format!("specular-table-100-{entries}")).levels;
     assert!(levels(32) <= 3 && levels(256) > 80 && levels(1024) > 80);
     assert!(rms("specular-table-100-32") > 1.5 * rms("specular-table-100-256"));
-    // More entries do not help: what is left comes from half vectors that are too short between the vertices, and from filtered normals.
+    // More entries do not help. The remaining error comes from half vectors that interpolation shortens, and from filtered normals.
     assert!((rms("specular-table-100-1024") - rms("specular-table-100-256")).abs() < 0.5);
     assert!(rms("specular-table-100-256-fine") < rms("specular-table-100-256"));
     assert!(rms("specular-table-100-256-coarse") > 1.5 * rms("specular-table-100-256"));
 }
 
-/// (3 - v.v) / 2 brings back most of what a filter or an interpolation took from a vector's length.
+/// (3 - v.v) / 2 restores most of the length that a vector lost in filtering or interpolation.
 #[test]
 fn vectors_brought_back_to_length_pay() {
     for (name, most) in [("coarse-light", 0.6), ("specular-8", 0.5), ("specular-16", 0.5)] {
@@ -160,23 +160,24 @@ fn vectors_brought_back_to_length_pay() {
     }
 }
 
-/// The simplified integral is right about itself; held against the exact one it has too much contrast.
+/// The simplified integral matches its own truth. Compared with the exact integral it has too much contrast.
 #[test]
 fn the_simplified_integral_is_not_the_exact_one() {
     assert!(rms("hemisphere-pixel") < 1.0 && rms("hemisphere-exact") < 1.0);
     assert!(rms("hemisphere-pixel-for-exact") > 15.0);
     assert_eq!(difference(["hemisphere-pixel", "hemisphere-pixel-for-exact"]), (0, 0));
-    // Light of the vertices knows nothing of bumps.
+    // Lighting at the vertices does not see bumps.
     assert!(rms("hemisphere-vertex") < 1.0 && rms("hemisphere-vertex-bumps") > 8.0);
 }
 
-/// Emboss alone is about one half everywhere; with the light of the smooth surface it is a light, and a longer way a stronger one.
+/// Emboss alone is about one half everywhere. Multiplied by the light of the smooth surface it resembles lighting, and a larger offset
+/// makes it stronger.
 #[test]
 fn emboss_needs_the_light_of_the_smooth_surface() {
     assert!(rms("emboss") > 60.0 && rms("emboss-2x") < 35.0);
     assert!(rms("emboss-2x-far") < 0.7 * rms("emboss-2x"));
     assert!(rms("tangent-space-diffuse") < 0.2 * rms("emboss-2x-far"));
-    // A highlight less what the heights lack is further off than a highlight without any bumps.
+    // Subtracting the embossed heights from a highlight makes a larger error than a highlight without bumps.
     assert!(rms("emboss-specular-map") > 1.5 * rms("highlight-map"));
     assert!(rms("emboss-specular") < rms("highlight-map"));
 }

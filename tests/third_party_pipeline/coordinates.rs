@@ -1,16 +1,16 @@
-//! Texture coordinates of Direct3D texture stages: which set, how it is transformed, and how a bump map moves it.
+//! Runs cases of texture coordinates of Direct3D texture stages: which set is used, how it is transformed, and how a bump map moves it.
 
 use super::third_party::{Kind, bytes, differs, displacement_map, pixel, place_map, run};
 use super::{number, numbers, quad, scene};
 use serde_json::Value;
 
-/// A list of numbers as a scene's.
+/// Returns a list of numbers in scene notation.
 fn list(values: &[f64]) -> String {
     let texts: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
     format!("({})", texts.join(", "))
 }
 
-/// The rows of a matrix that Direct3D multiplies a row vector by.
+/// Returns a matrix for column vectors from the rows of a Direct3D matrix, which row vectors are multiplied by.
 fn transposed(rows: [[f64; 4]; 4]) -> String {
     let rows: Vec<String> = (0..4).map(|n| list(&[rows[0][n], rows[1][n], rows[2][n], rows[3][n]])).collect();
     format!("Rows({})", rows.join(", "))
@@ -27,7 +27,7 @@ fn every_case_of_texture_coordinates() {
     });
 }
 
-/// s and t by two pictures: ramps along either.
+/// Reads s and t from two pictures, each with a ramp along one of them. Returns how they differ from the expectation.
 fn flags(case: &Value, profile: &str) -> Option<String> {
     let inputs = &case["inputs"];
     let given = list(&numbers(&inputs["attribute"]));
@@ -55,7 +55,7 @@ fn flags(case: &Value, profile: &str) -> Option<String> {
     }
     let expected = numbers(&case["expected_st"]);
     let tolerance = number(&case["tolerance_st"]);
-    // The texture repeats: a hair below 1 is a hair below 0.
+    // The texture repeats, so a coordinate slightly below 1 is also slightly below 0.
     let apart = |n: usize| {
         let difference = (place[n] - expected[n]).abs();
         difference.min(1.0 - difference)
@@ -63,7 +63,7 @@ fn flags(case: &Value, profile: &str) -> Option<String> {
     ((0..2).any(|n| apart(n) > tolerance)).then(|| format!("{place:?}, not {expected:?} within {tolerance}"))
 }
 
-/// Two textures of 2 x 2 texels, added, over 640 x 480 pixels.
+/// Draws the sum of two textures of 2 x 2 texels over 640 x 480 pixels, and returns one pixel.
 fn indexed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let mut textures = Vec::new();
     for unit in ["0", "1"] {
@@ -79,7 +79,7 @@ fn indexed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
         let rows = format!("\"{} {}\", \"{} {}\"", texels[0], texels[1], texels[2], texels[3]);
         textures.push(format!("\"t{unit}\": (source: Texels(width: 2, height: 2, rows: [{rows}]))"));
     }
-    // Of a corner, counted from the bottom left.
+    // Returns the coordinate sets of a corner. x and y are counted from the bottom left.
     let corner = |x: f64, y: f64| {
         let sets: Vec<String> = ["0", "1", "2"]
             .iter()
@@ -110,7 +110,7 @@ fn indexed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
         "{quad}, scissor: (x: {x}, y: {y}, width: 1, height: 1), textures: [{}], {matrices} program: TextureStages(stages: [\
          (color_op: SelectArg1, color_arg1: Texture, texture_coordinate_index: {first}), \
          (color_op: Add, color_arg1: Texture, color_arg2: Current, texture_coordinate_index: {second}{flags})])",
-        // Direct3D's samplers take the nearest texel unless they are told otherwise.
+        // The default filter of Direct3D's samplers is the nearest one.
         ["t0", "t1"].map(|name| format!("(texture: \"{name}\", min_filter: Nearest)")).join(", ")
     );
     let head = format!("textures: {{ {} }},", textures.join(", "));
@@ -126,7 +126,7 @@ fn every_case_of_bump_maps() {
     });
 }
 
-/// Two textures under a bump stage and one that shows what it finds.
+/// Returns a scene with two textures, in a bump stage and a stage that shows its texture.
 fn bumped(textures: [&str; 2], units: [&str; 2], coordinates: &str, stage: &str) -> String {
     let corner = format!("t0: {coordinates}, t1: {coordinates}");
     let quad = quad(1.0, 1.0, [0; 4].map(|_| corner.clone()));
@@ -139,7 +139,7 @@ fn bumped(textures: [&str; 2], units: [&str; 2], coordinates: &str, stage: &str)
     scene("Nv2a", "name: \"frame\", width: 1, height: 1", &head, &draw)
 }
 
-/// A place map that a displacement map moves.
+/// Returns a scene in which a displacement map moves a map of positions.
 fn moved(inputs: &Value) -> String {
     let plain = "min_filter: Nearest, address: ClampToEdge";
     bumped(
@@ -150,7 +150,7 @@ fn moved(inputs: &Value) -> String {
     )
 }
 
-/// A texel of L6V5U5, which the chip reads as R6G5B5, and the luminance that it gives the next texture.
+/// Returns a scene with a texel of L6V5U5, which the chip reads as R6G5B5, whose luminance scales the next texture.
 fn lit(inputs: &Value) -> String {
     let texel = inputs["texel_L6V5U5"].as_u64().unwrap();
     bumped(

@@ -1,11 +1,11 @@
-//! Fog. Direct3D's table fog is evaluated at each pixel, of z, or under a perspective projection of w; its vertex fog at each vertex, of
-//! the magnitude of z in eye space. OpenGL's is that of the eye plane.
+//! Runs cases of fog. Direct3D's table fog is evaluated at each pixel from z or, with a perspective projection, from w. Its vertex fog is
+//! evaluated at each vertex from the magnitude of z in eye space. OpenGL's fog uses the distance from the eye plane.
 
 use super::third_party::{Kind, bytes, differs, pixel, run};
 use super::{number, scene};
 use serde_json::Value;
 
-/// The function and what it is a function of.
+/// A fog function and the source of its coordinate.
 struct Function {
     mode: &'static str,
     per_vertex: bool,
@@ -23,7 +23,7 @@ impl Function {
         format!("mode: {mode}, {range}, coordinate_source: {source}, evaluation: {evaluation}")
     }
 
-    /// Only Nv2a evaluates fog at pixels.
+    /// Returns the profile of a scene with this function. Only nv2a evaluates fog at pixels.
     fn profile<'p>(&self, profile: &'p str) -> &'p str {
         if self.per_vertex { profile } else { "Nv2a" }
     }
@@ -45,7 +45,7 @@ fn mode(name: &str) -> Option<&'static str> {
 
 fn color_of(inputs: &Value) -> String {
     let [r, g, b] = [0, 1, 2].map(|n| inputs["color"][n].as_u64().unwrap());
-    // What a suite does not say of alpha is one half, which the one that looks at it has.
+    // If a suite does not state alpha, it is one half. One suite reads it, and has this value.
     format!("diffuse: ({r}, {g}, {b}, 128)")
 }
 
@@ -67,7 +67,7 @@ fn every_case_of_fog() {
     });
 }
 
-/// The same coordinate everywhere.
+/// Returns a pixel with the same fog coordinate everywhere.
 fn constant(inputs: &Value, profile: &str, opengl: bool) -> Result<[u8; 4], String> {
     let Some(mode) = mode(inputs["mode"].as_str().unwrap()) else { return Err("no mode".to_owned()) };
     let vertex_fog = inputs["vertex_fog"] == true;
@@ -83,7 +83,7 @@ fn constant(inputs: &Value, profile: &str, opengl: bool) -> Result<[u8; 4], Stri
     pixel(&scene(function.profile(profile), "name: \"frame\", width: 1, height: 1", "", &draw), (0, 0))
 }
 
-/// A z that grows from 0 at the left edge to 1 at the right, 640 pixels later.
+/// Returns a pixel of a quad on which z increases from 0 at the left edge to 1 at the right edge, 640 pixels away.
 fn gradient(
     inputs: &Value,
     profile: &str,
@@ -115,7 +115,8 @@ fn across(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     gradient(inputs, function.profile(profile), &format!(", {}", function.text(inputs)), [1.0; 2], "Smooth", x)
 }
 
-/// Table fog goes before vertex fog; without either the vertices' factors count, the alpha of their specular colour.
+/// Table fog takes precedence over vertex fog. Without either, the factors of the vertices are used, which are the alpha of their specular
+/// colour.
 fn interpolated(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let [vertex, table] = ["vertex_mode", "table_mode"].map(|name| mode(inputs[name].as_str().unwrap()));
     let function = match (vertex, table) {
@@ -130,10 +131,10 @@ fn interpolated(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     gradient(inputs, profile, &text, factors, shade, (640.0 * number(&inputs["x"])).round() as u32)
 }
 
-/// Table fog of transformed vertices and of ones that a view and a projection transform.
+/// Returns a pixel with table fog, for vertices that are already transformed, or that a view and a projection transform.
 fn transformed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let mode = mode(inputs["mode"].as_str().unwrap()).ok_or("no mode")?;
-    // A projection whose last column is not that of a parallel one asks for w.
+    // A projection whose last column is not that of a parallel projection selects w.
     let perspective = number(&inputs["proj_44"]) != 1.0;
     let function = Function { mode, per_vertex: false, source: if perspective { "W" } else { "Depth" } };
     let z = number(&inputs["position_z"]);
@@ -157,7 +158,7 @@ fn transformed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     pixel(&scene(function.profile(profile), "name: \"frame\", width: 1, height: 1", "", &draw), (0, 0))
 }
 
-/// z fog of transformed vertices with a reciprocal w, which does not count; 0 stands for the largest w that there is.
+/// Returns a pixel with z fog, for transformed vertices with a reciprocal w, which has no effect. 0 stands for the largest possible w.
 fn with_w(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let function = Function { mode: "Linear", per_vertex: false, source: "Depth" };
     let (z, rhw) = (number(&inputs["coord"]), number(&inputs["rhw"]));

@@ -1,4 +1,4 @@
-//! Blending and the alpha test.
+//! Runs cases of blending and of the alpha test.
 
 use super::third_party::{Kind, blend_factor, bytes, cleared, color, differs, named, pixel, run};
 use super::{quad, scene};

@@ -1,4 +1,4 @@
-//! Flat and smooth colours of strips and lists of Direct3D, whose pixel centres lie on whole numbers.
+//! Runs cases of flat and smooth colours in strips and lists of Direct3D, whose pixel centres lie at whole numbers.
 
 use super::scene;
 use super::third_party::{Kind, bytes, cleared, differs, pixel, run};

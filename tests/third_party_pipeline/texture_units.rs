@@ -1,4 +1,4 @@
-//! Addressing, cube maps, levels, units without a texture.
+//! Runs cases of addressing, cube maps, levels, and units without a texture.
 
 use super::third_party::{Kind, bytes, differs, differs_from, load, pixel, run};
 use super::{number, numbers, quad, scene};
@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 /// A program that shows the first texture.
 const SHOWN: &str = "program: TextureStages(stages: [(color_op: SelectArg1, color_arg1: Texture, alpha_op: SelectArg1, alpha_arg1: Texture)])";
 
-/// A quad of one pixel, all of whose corners have these coordinates.
+/// Returns a scene with a quad of one pixel, whose corners all have the same coordinates.
 fn sampled(profile: &str, texture: &str, unit: &str, coordinates: &str) -> String {
     let corner = format!("t0: {coordinates}");
     let quad = quad(1.0, 1.0, [0; 4].map(|_| corner.clone()));
@@ -20,7 +20,7 @@ fn sampled(profile: &str, texture: &str, unit: &str, coordinates: &str) -> Strin
     scene(profile, "name: \"frame\", width: 1, height: 1", &head, &draw)
 }
 
-/// A row of eight texels, no two alike, as numbers and as a source.
+/// Returns one of eight texels, which are all different.
 fn texel(index: u64) -> [u64; 4] {
     [20 * index + 15, 240 - 30 * index, (index * 90) % 256, 255 - index]
 }
@@ -34,7 +34,7 @@ fn every_case_of_addressing() {
         if case["test"] == "conditional_np2_repeat_test" {
             return differs(case, conditional(inputs));
         }
-        // Border colours are Nv2a's.
+        // Only nv2a has border colours.
         let (mode, profile) = match inputs["mode"].as_str().unwrap() {
             "REPEAT" => ("Wrap", profile),
             "MIRRORED_REPEAT" => ("Mirror", profile),
@@ -67,13 +67,13 @@ fn every_case_of_addressing() {
         let inside = case["expected_index"].as_u64().map_or([0; 4], texel);
         let expected: Vec<Value> =
             (0..4).map(|n| json!(share * BORDER[n] as f64 + (1.0 - share) * inside[n] as f64)).collect();
-        // One hundredth, which is what the suite allows.
+        // The suite allows one hundredth.
         differs_from(&expected, 2.55, pixel(&text, (0, 0)))
     });
 }
 
-/// A texture whose sides are no powers of two: Direct3D asks for coordinates of the whole, the chip for texels, and such a texture
-/// clamps whatever was asked for.
+/// Draws a texture whose sides are not powers of two. Direct3D's coordinates refer to the whole image, the chip's to texels, and such a
+/// texture clamps regardless of the address mode.
 fn conditional(inputs: &Value) -> Result<[u8; 4], String> {
     let size = inputs["size"].as_u64().unwrap();
     let rows: Vec<String> = (0..size)
@@ -103,7 +103,7 @@ const FACES: [(&str, &str); 6] = [
     ("-Z", "negative_z"),
 ];
 
-/// A cube map whose faces are what `source` says.
+/// Returns a cube map. `source` returns the source of a face.
 fn cube(source: impl Fn(&str) -> String) -> String {
     let faces: Vec<String> = FACES.iter().map(|(name, field)| format!("{field}: {}", source(name))).collect();
     format!("source: Faces({})", faces.join(", "))
@@ -130,7 +130,7 @@ pub(crate) fn cube_face(case: &Value, profile: &str) -> Option<String> {
         if inputs["face_colors"].is_object() {
             return format!("Solid(width: 1, height: 1, color: {})", bytes(&inputs["face_colors"][name]));
         }
-        // Of the faces that are asked for; the others are of a third colour.
+        // Only the expected faces have the two colours of the case. The others have a third one.
         let [first, second] = if expected_faces.iter().any(|face| face == name) {
             ["first", "second"].map(|n| hex(&inputs[n]))
         } else {
@@ -140,14 +140,14 @@ pub(crate) fn cube_face(case: &Value, profile: &str) -> Option<String> {
     });
     let shown = pixel(&sampled(profile, &faces, "min_filter: Nearest", &direction), (0, 0));
     if case["expected"].is_null() && inputs["face_colors"].is_object() {
-        // Only faces are named: their colours are what is expected.
+        // If a case names only faces, their colours are the expectation.
         let colors: Vec<&Value> = expected_faces.iter().map(|face| &inputs["face_colors"][face]).collect();
         return differs(&json!({ "expected": colors, "tolerance": case["tolerance"] }), shown);
     }
     differs(case, shown)
 }
 
-/// The faces that an expectation names: one, or a set of those that are tied, in a list or in one text (`+X +Y`, `+X|+Y`).
+/// Returns the faces that an expectation names: one, or several that are tied, as a list or in one text (`+X +Y`, `+X|+Y`).
 fn faces_of(expected: &Value) -> Vec<String> {
     let texts: Vec<&str> = match expected {
         Value::Array(faces) => faces.iter().filter_map(Value::as_str).collect(),
@@ -165,10 +165,11 @@ fn faces_of(expected: &Value) -> Vec<String> {
     faces
 }
 
-/// The face and the place on it, from the trace of a pixel that looks into a map of large faces.
+/// Compares the face, and the position on it, with the trace of a pixel that samples a map of large faces.
 fn place_on_face(case: &Value, direction: &str) -> Option<String> {
     const SIZE: u32 = 1024;
-    // Six million texels are the same for all cases: each is read with faces of one texel, and gets the large ones.
+    // The six million texels are the same for all cases, so they are generated once. Each scene is read with faces of one texel, which are
+    // then replaced.
     static LARGE: OnceLock<Texture> = OnceLock::new();
     let looking = |size: u32| {
         let faces = cube(|_| format!("Solid(width: {size}, height: {size}, color: (1, 2, 3))"));
@@ -185,7 +186,8 @@ fn place_on_face(case: &Value, direction: &str) -> Option<String> {
     let face = FACES[step("unit0.face") as usize].0;
     let place = ["u", "v"].map(|axis| step(&format!("unit0.{axis}")) as f64 / f64::from(256 * SIZE));
     let expected_faces = faces_of(&case["expected_face"]);
-    // One face of a tie is only the order of a suite's reference; its verifier takes either. A set of faces is the suite's own word.
+    // If a case names one of several tied faces, this only reflects the order of its reference implementation; the suite itself accepts the
+    // other faces. If it names several, they are the suite's own requirement.
     let direction = numbers(&case["inputs"]["direction"]);
     let magnitude = |face: &str| direction["XYZ".find(&face[1..]).unwrap()].abs();
     if let [one] = &expected_faces[..]
@@ -197,7 +199,7 @@ fn place_on_face(case: &Value, direction: &str) -> Option<String> {
     let Some(tied) = expected_faces.iter().position(|expected| expected == face) else {
         return Some(format!("face {face}, not {}", expected_faces.join(" or ")));
     };
-    // Of several faces each has its place: by name, or in the order of the faces; or all have the same.
+    // If there are several faces, each has its position by name or in the order of the faces, or all have the same one.
     let expected = match &case["expected_st"] {
         Value::Object(of_faces) => of_faces.get(face).unwrap_or_else(|| panic!("has no place on face {face}")),
         Value::Array(places) if places.iter().all(Value::is_array) => &places[tied],
@@ -211,7 +213,7 @@ fn place_on_face(case: &Value, direction: &str) -> Option<String> {
 
 const LEVELS: [[u64; 3]; 3] = [[255, 0, 0], [0, 255, 0], [0, 0, 255]];
 
-/// A texture of three levels of three colours over a square, at so many texels a pixel: 2^lambda.
+/// Returns a scene with a texture of three levels in three colours on a square, with 2^lambda texels for each pixel.
 fn levels(profile: &str, texture: &str, unit: &str, lambda: f64) -> String {
     let mips = [1, 2].map(|n| {
         let [r, g, b] = LEVELS[n];
@@ -245,7 +247,7 @@ fn every_case_of_levels() {
             let [r, g, b] = LEVELS[case["expected_level"].as_u64().unwrap() as usize];
             return differs_from(&[json!(r), json!(g), json!(b), json!(null)], 0.0, pixel(&text, (1, 1)));
         }
-        // Direct3D counts its greatest level from the whole texture, the chip from the level that it is told to begin with.
+        // Direct3D counts its largest level from that of the whole texture, the chip from the level with which the texture begins.
         let [first, most] = ["setlod", "maxmiplevel"].map(|name| inputs[name].as_u64().unwrap());
         let unit = format!("mip_filter: {filter}, min_lod: {}", most.saturating_sub(first));
         let text = levels(profile, &format!("first_level: {first}"), &unit, number(&inputs["lod"]));
@@ -253,7 +255,7 @@ fn every_case_of_levels() {
     });
 }
 
-/// A unit without a texture has no kind either.
+/// A unit without a texture has no kind of texture either.
 #[test]
 fn every_case_of_unbound_textures() {
     run(&Kind { file: "unbound-textures", name: "texture_unbound" }, |case, profile| {

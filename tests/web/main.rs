@@ -1,6 +1,8 @@
-//! The page of `ninebit inspect`: the embedded module draws what the program draws and finds what it finds, in node; the page works in a browser.
+//! Tests the page of `ninebit inspect`: in node the embedded module draws and finds the same as the program, and the page works in a
+//! browser.
 //!
-//! Without node, Chromium (`CHROMIUM` names it) or Firefox, what needs them is *ignored*. Of the scenes forty are drawn; `NINEBIT_WEB_SCENES=0` draws all.
+//! Tests that need node, Chromium (`CHROMIUM` names it) or Firefox are *ignored* if these are missing. Forty scenes are drawn;
+//! `NINEBIT_WEB_SCENES=0` draws all of them.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]
 
 #[path = "../common/repository.rs"]
@@ -49,7 +51,7 @@ fn runs(program: &str, argument: &str) -> bool {
     Command::new(program).arg(argument).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
 }
 
-/// The files below a folder with that ending, in their order.
+/// Returns the files below a folder with the given extension, sorted.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -64,7 +66,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// Answers of the module in node to scenes and the files that go with them.
+/// Returns the module's answers, in node, to scenes and the files that belong to them.
 fn node(what: &str, scenes: &[(PathBuf, Vec<String>)]) -> Vec<Value> {
     let mut child = Command::new("node")
         .args(["tests/web/model.mjs", what, WASM])
@@ -91,7 +93,7 @@ fn digests(plan: &Plan) -> Vec<String> {
     render(plan, &RenderOptions::default()).surfaces.iter().map(surface_digest).collect()
 }
 
-/// The digests of a scene's targets, and what the library answers when asked for a pixel in the middle of the first.
+/// Returns the digests of a scene's targets, and the library's trace of the pixel in the middle of the first target.
 fn drawn(path: &Path, files: &[String]) -> (Vec<String>, Value) {
     let loaded = load(path).unwrap().0;
     let [width, height] = [loaded.scene.targets[0].width, loaded.scene.targets[0].height];
@@ -99,7 +101,7 @@ fn drawn(path: &Path, files: &[String]) -> (Vec<String>, Value) {
     (digests(&loaded.plan), Native::with_scene(path, files).ask(request))
 }
 
-/// Whether two documents say the same. What a script writes of a large float is not read as the very same.
+/// Returns whether two documents are equal. Large floats that a script prints are not read back as exactly the same.
 #[allow(clippy::float_arithmetic, reason = "comparing what was printed and read")]
 fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
@@ -120,12 +122,12 @@ fn frames() -> Result<(), Failed> {
     let all: Vec<(PathBuf, Vec<String>)> = files(Path::new("vectors/scenes"), ".ron")
         .into_iter()
         .filter(|path| !path.to_str().unwrap().ends_with(".expect.ron"))
-        // Families are no scenes, and scenes that need captured images cannot be drawn here.
+        // Families are not scenes, and scenes that need captured images cannot be drawn here.
         .filter_map(|path| load(&path).map(|(_, files)| (path, files)))
         .collect();
     let step = if wanted == 0 { 1 } else { all.len().div_ceil(wanted) };
     let scenes: Vec<_> = all.into_iter().step_by(step).collect();
-    // Both draw at once.
+    // The module and the library draw at the same time.
     let (answers, drawn) = std::thread::scope(|scope| {
         let answers = scope.spawn(|| node("frames", &scenes));
         let drawn: Vec<_> = scenes.iter().map(|(path, files)| drawn(path, files)).collect();
@@ -142,12 +144,12 @@ fn frames() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The library behind the module.
+/// The library that the module contains, called directly.
 #[derive(Default)]
 struct Native(Session);
 
 impl Native {
-    /// With files that lie beside that path.
+    /// Returns a session with files from the folder of `beside`.
     fn with(beside: &Path, files: &[String]) -> Native {
         let mut native = Native::default();
         for name in files {
@@ -157,12 +159,12 @@ impl Native {
         native
     }
 
-    /// With that scene open.
+    /// Returns a session with the scene open.
     fn from_path(path: &Path) -> Native {
         Native::with_scene(path, &load(path).unwrap().1)
     }
 
-    /// With that scene open, which needs those files beside it.
+    /// Returns a session with the scene open, which needs `files` from its folder.
     fn with_scene(path: &Path, files: &[String]) -> Native {
         let mut native = Native::with(path, files);
         native.open(&std::fs::read_to_string(path).unwrap());
@@ -177,7 +179,7 @@ impl Native {
         self.ask(json!({ "do": "open", "text": text, "name": "a.ron" }))
     }
 
-    /// The text after an edit, and the digest of its picture.
+    /// Edits a program. Returns the new text, and the digest of its picture.
     fn edited(&mut self, path: Value, value: &str) -> (String, String) {
         let edited = self.ask(json!({ "do": "edit", "draw": 0, "path": path, "value": value }));
         let text = edited["text"].as_str().unwrap_or_else(|| panic!("{edited}")).to_owned();
@@ -191,7 +193,7 @@ impl Native {
         answer["digest"].as_str().unwrap_or_else(|| panic!("{answer}")).to_owned()
     }
 
-    /// What the page says of a comparison.
+    /// Returns the page's text for a comparison.
     fn differing(&mut self, against: Value, until: Option<usize>) -> String {
         let heat = self.ask(json!({ "do": "heat", "target": 0, "against": against, "until": until }));
         let left = heat["diverged"].as_u64().filter(|n| *n > 0).map(|n| format!("; {n} more went another way"));
@@ -202,7 +204,7 @@ impl Native {
     }
 }
 
-/// What the library answers to a scene whose folder is that bundle.
+/// Returns the library's answer to a scene whose folder has exactly these files.
 fn native(path: &Path, files: &[String]) -> Value {
     let text = String::from_utf8_lossy(&std::fs::read(path).unwrap()).into_owned();
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -231,7 +233,7 @@ fn bad_scenes() -> Vec<(PathBuf, Vec<String>)> {
 }
 
 fn findings() -> Result<(), Failed> {
-    // A page holds texts: what is none is refused when the page is written.
+    // A page contains only texts. Other files are refused when the page is written.
     let text = |path: &Path| std::fs::read_to_string(path).is_ok();
     let scenes: Vec<_> = bad_scenes().into_iter().filter(|(path, _)| text(path)).collect();
     assert!(scenes.len() > 100);
@@ -273,12 +275,12 @@ fn refused() -> Result<(), Failed> {
     ] {
         assert!(ask(request)["error"].is_string(), "{request}");
     }
-    // What was open still is.
+    // The scene that was open stays open.
     assert!(ask(r#"{"do":"draw","target":0,"until":null}"#)["digest"].is_string());
     Ok(())
 }
 
-/// Places are UTF-16 units: each value's text lies where the tree says, behind characters of one to four bytes.
+/// Places are counted in UTF-16 units. The text of each value lies where the outline says, behind characters of one to four bytes.
 fn places() -> Result<(), Failed> {
     fn check(node: &Value, units: &[u16]) -> usize {
         let at = |n: usize| usize::try_from(node["span"][n].as_u64().unwrap()).unwrap();
@@ -292,7 +294,7 @@ fn places() -> Result<(), Failed> {
     assert!(native.open(text)["scene"].is_object());
     let units: Vec<u16> = text.encode_utf16().collect();
     assert!(check(&native.ask(json!({ "do": "outline" }))["tree"], &units) >= 8);
-    // So are places of findings.
+    // Places of findings are counted in the same way.
     let broken = text.replace("Nv10", "Nv30");
     let finding = &native.open(&broken)["findings"][0];
     let at = |n: usize| usize::try_from(finding["span"][n].as_u64().unwrap()).unwrap();
@@ -301,7 +303,7 @@ fn places() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Every part that a program names is changed to every choice: the text reads back as a program that has it, or says why it is not one.
+/// Changes every part of a program to every choice. The new text is either a program with this choice, or is refused with findings.
 fn edits() -> Result<(), Failed> {
     let text = std::fs::read_to_string("vectors/scenes/programs/lit-combiners.ron").unwrap();
     let mut native = Native::from_path(Path::new("vectors/scenes/programs/lit-combiners.ron"));
@@ -348,7 +350,7 @@ fn edits() -> Result<(), Failed> {
     Ok(())
 }
 
-/// A program in any language can be changed by its boxes: a scale written as it is leaves the picture, whatever the program was written in.
+/// Tests that a program in any language can be edited by its boxes. Writing a scale that it already has leaves the picture unchanged.
 fn languages() -> Result<(), Failed> {
     let all = files(Path::new("vectors/scenes"), ".ron");
     let (mut rewritten, mut refused) = (0, Vec::new());
@@ -382,7 +384,7 @@ fn inspect(scene: &Path, page: &Path) {
     assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
 }
 
-/// A PNG of a surface with four pixels changed.
+/// Returns a surface with four changed pixels as PNG.
 fn four_off(surface: &Surface) -> Vec<u8> {
     let mut pixels = surface.rgba8();
     for at in [0, 1, 640, 5000] {
@@ -391,7 +393,7 @@ fn four_off(surface: &Surface) -> Vec<u8> {
     encode_png(surface.width, surface.height, &pixels, Compression::Fast).unwrap()
 }
 
-/// Opens, clicks, edits, undoes, follows a link, compares with float64 and with a picture.
+/// Opens the page, clicks, edits, undoes, follows a link, and compares with float64 and with a picture.
 fn firefox() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("stone.html");
@@ -408,7 +410,7 @@ fn firefox() -> Result<(), Failed> {
     if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
 }
 
-/// Two draws of which the second lies behind the first in a corner, and counts in the stencils.
+/// A scene of two draws, of which the second lies behind the first in one corner and counts in the stencil buffer.
 const STEPS: &str = r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 64, height: 64, format: A8R8G8B8, depth: Z24S8)],
 draws: [
     (name: "near", vertices: Window([(position: (0, 0, 0.25), diffuse: (255, 0, 0)), (position: (50, 0, 0.5), diffuse: (0, 255, 0)), (position: (0, 50, 0.5), diffuse: (0, 0, 255))]),
@@ -430,7 +432,7 @@ fn page() -> Result<(), Failed> {
     let first = text.split_once("\"picture\":\"").unwrap().1.find('"').unwrap() as u64;
     println!("page without its images {} bytes", text.len() as u64 - image * 4 / 3 - first);
 
-    // Names with markup in them, and a picture of 256 x 256.
+    // Scenes with markup in their names, and one with a picture of 256 x 256.
     let triangle = |name: &str, side: u32| {
         format!(
             "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: {side}, height: {side}, format: A8R8G8B8)],\n draws: [(name: \"{name}\", vertices: Window([\n (position: (0, 0), diffuse: (255, 0, 0)), (position: ({}, 0), diffuse: (0, 255, 0)), (position: (0, {}), diffuse: (0, 0, 255))]),\n program: Combiners(stages: [(rgb: (a: PrimaryColor, b: UnsignedInvert(Zero), c: ConstantColor0, d: UnsignedInvert(Zero), sum: Spare0))], final_combiner: (d: Spare0)))])",
@@ -446,7 +448,7 @@ fn page() -> Result<(), Failed> {
         inspect(&scene, &at(&format!("{name}.html")));
     }
 
-    // What the page has to show, by the library.
+    // The values that the page has to show, computed by the library.
     let pixel = (200, 300);
     let traced = trace(&loaded.plan, 0, pixel, None).unwrap();
     let mut native = Native::from_path(path);
@@ -467,7 +469,7 @@ fn page() -> Result<(), Failed> {
         .filter(|(path, _)| std::fs::metadata(path).unwrap().len() < 20_000)
         .filter_map(|(path, _)| Some((path.clone(), std::fs::read_to_string(path).ok()?)))
         .filter_map(|(path, text)| {
-            // An area of text has no carriage returns.
+            // A text area has no carriage returns.
             let text = text.replace('\r', "");
             let open = json!({ "do": "open", "text": text, "name": "lit-stone.ron" });
             let answer = Native::with(Path::new("vectors/scenes/dot3/lit-stone.ron"), &images).ask(open);
@@ -479,7 +481,7 @@ fn page() -> Result<(), Failed> {
         .collect();
     assert!(bad.len() > 100, "{}", bad.len());
 
-    // Draws one over the other, with depths and stencils.
+    // Two draws on top of each other, with depth and stencil tests.
     std::fs::write(at("steps.ron"), STEPS).unwrap();
     inspect(&at("steps.ron"), &at("steps.html"));
     let mut native = Native::from_path(&at("steps.ron"));
@@ -511,7 +513,7 @@ fn page() -> Result<(), Failed> {
             json!({ "page": page, "part": "Scale of stage 1 rgb", "value": "Two", "text": text, "digest": digest })
         })
         .to_vec();
-    // One change upon another.
+    // One change after another.
     let mut twice = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
     assert_ne!(twice.edited(json!(["stages", 1, "rgb", "scale"]), "Two").1, once);

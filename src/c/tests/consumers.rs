@@ -53,7 +53,7 @@ fn c(library: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The header is what cbindgen makes from the library.
+/// Checks that the header is what cbindgen generates from the library.
 fn header() -> Result<(), Failed> {
     let config = Path::new(HERE).join("cbindgen.toml");
     let mut make = Command::new(named("CBINDGEN", "cbindgen"));
@@ -67,7 +67,7 @@ fn header() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The example in C++ writes the picture that the library renders.
+/// Checks that the example in C++ writes the picture that the library renders.
 fn cpp() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let program = folder.path().join("picture");
@@ -84,7 +84,7 @@ fn cpp() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The example in Python prints what is expected.
+/// Checks that the output of the example in Python is the expected one.
 fn python() -> Result<(), Failed> {
     let mut command = Command::new(named("NINEBIT_C_PYTHON", "python3"));
     let output = run(command.arg(Path::new(HERE).join("examples/combine.py")).arg(built().join("libninebit_c.so")))?;

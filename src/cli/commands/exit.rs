@@ -53,7 +53,7 @@ pub(crate) const HELP: &str = "Exit status:
 /// Reason why a command stopped: its message for stderr and its exit status.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    /// Exit status.
+    /// Exit status of the process.
     pub(crate) exit: Exit,
     /// Message for stderr.
     pub(crate) report: Report,

@@ -119,7 +119,7 @@ pub struct Difference {
     pub known: Option<Known>,
     /// The drawn picture as PNG.
     pub picture: Vec<u8>,
-    /// Further remarks.
+    /// Further remarks for people, one line each.
     pub remarks: Vec<String>,
 }
 

@@ -16,13 +16,13 @@ use ninebit_files::output::{Compression, OutputError, encode_png};
 pub(super) enum Side {
     /// Its left end.
     Left,
-    /// Its middle.
+    /// Its middle, halfway between the ends.
     Middle,
     /// Its right end.
     Right,
 }
 
-/// A picture.
+/// A picture of opaque pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Image {
     /// Width in pixels.

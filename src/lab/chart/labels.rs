@@ -3,13 +3,13 @@
 /// A rectangle, in pixels from the top left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rect {
-    /// Left edge.
+    /// Column of the left edge.
     pub(crate) x: f64,
-    /// Upper edge.
+    /// Row of the upper edge.
     pub(crate) y: f64,
-    /// Width.
+    /// Width in pixels.
     pub(crate) width: f64,
-    /// Height.
+    /// Height in pixels.
     pub(crate) height: f64,
 }
 

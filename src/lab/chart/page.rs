@@ -5,7 +5,7 @@
 pub struct File {
     /// Path relative to the output folder, with `/` between folders.
     pub path: String,
-    /// Content.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
 }
 

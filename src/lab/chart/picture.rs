@@ -17,7 +17,7 @@ use super::labels::{self, Named, Rect};
 use super::page::plain;
 use ninebit_files::output::OutputError;
 
-/// An axis.
+/// An axis of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Axis {
     /// Quantity and unit.
@@ -114,7 +114,7 @@ pub(crate) const SHAPES: [MarkerShape; 5] =
 /// The line that joins the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Join {
-    /// No line.
+    /// Points are not joined by a line.
     None,
     /// A solid line.
     Solid,
@@ -157,9 +157,9 @@ pub(crate) const COLORS: [&str; 8] =
 pub(crate) struct Drawing {
     /// Title above the chart.
     pub title: String,
-    /// Horizontal axis.
+    /// The horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
+    /// The vertical axis.
     pub y: Axis,
     /// Points and lines; later series are drawn over earlier ones.
     pub series: Vec<Series>,

@@ -27,9 +27,9 @@ pub struct Measured {
     pub techniques: Vec<Technique>,
     /// Titles of the families.
     pub titles: BTreeMap<String, String>,
-    /// Measured evaluators.
+    /// Evaluators that were measured.
     pub evaluators: Vec<Evaluator>,
-    /// Measured surfaces.
+    /// Surfaces that were measured.
     pub surfaces: Vec<SurfaceCost>,
     /// Measured cost curves.
     pub curves: Vec<Curve>,

@@ -37,7 +37,7 @@ impl Entry {
 /// Measurements of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Technique {
-    /// The scene.
+    /// The scene that shows the technique.
     pub entry: Entry,
     /// The ground truth without the part that describes the technique. Scenes with an equal truth are techniques for the same light.
     pub truth: Truth,

@@ -12,11 +12,11 @@ use ninebit::plan::Plan;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
-    /// Median.
+    /// Median of the times.
     pub(crate) median: f64,
-    /// Lower quartile.
+    /// Lower quartile of the times.
     pub(crate) lower: f64,
-    /// Upper quartile.
+    /// Upper quartile of the times.
     pub(crate) upper: f64,
 }
 

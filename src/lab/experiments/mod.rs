@@ -63,7 +63,7 @@ impl std::fmt::Debug for Method {
 pub enum Scale {
     /// Real numbers; thresholds are found to this precision.
     Real(f64),
-    /// Integers.
+    /// All whole numbers of the range.
     Whole,
     /// Powers of two.
     Doubling,
@@ -86,7 +86,7 @@ pub struct Experiment {
     pub scale: Scale,
     /// Values of the parameter that the chart shows.
     pub shown: Vec<f64>,
-    /// The methods.
+    /// The methods that are compared.
     pub methods: Vec<Method>,
 }
 

@@ -15,7 +15,7 @@ const FOLDER: &str = "stability";
 /// Measurements of an experiment.
 #[derive(Debug)]
 pub struct Measured {
-    /// The experiment.
+    /// The experiment that was measured.
     pub experiment: Experiment,
     /// Errors of each method at the values that the chart shows.
     pub curves: Vec<Vec<f64>>,

@@ -376,13 +376,7 @@ pub(super) fn writes() -> Vec<Write> {
         }
     };
     let (rgb, alpha) = (portion(Component::Rgb), portion(Component::Alpha));
-    let stage = general::PlannedStage {
-        index: 0,
-        rgb: general::PlannedPortion::whole(rgb, 7),
-        alpha: general::PlannedPortion::whole(alpha, 8),
-        constants: [[0; 4]; 2],
-        reads_constants: false,
-    };
+    let stage = general::PlannedStage::whole(0, &GeneralStage { rgb, alpha, constants: [[0; 4]; 2] });
     let mut registers = Registers::from_value(Number::ZERO);
     let values = general::evaluate(&stage, MuxSelect::Lsb, &registers, &mut listing);
     listing.take_sites();

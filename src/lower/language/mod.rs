@@ -37,7 +37,7 @@ pub struct Named<'f> {
     pub name: String,
     /// Description in one line. Printing removes whatever would end a comment.
     pub about: String,
-    /// The function.
+    /// The function to print.
     pub function: &'f Function,
 }
 

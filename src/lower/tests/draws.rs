@@ -1,4 +1,4 @@
-//! Compares the lines of draws with traces: a trace tells what a pixel was given and what was stored.
+//! Compares the printed form of draws with traces, which record what each pixel was given and what it stored.
 //!
 //! `NINEBIT_LOWER_SCENES` is the number of random scenes; `NINEBIT_LOWER_SEED` selects others.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]

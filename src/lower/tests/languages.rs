@@ -28,12 +28,12 @@ use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, bytes, compiler, drawing, python, runner, setting, works};
 use traced::Traced;
 
-/// Numbers of columns in the pool of inputs: bytes, registers, and all including words.
+/// Numbers of columns in the pool of inputs: those with bytes, those with registers, and all of them, of which the rest are words.
 const BYTES: usize = 32;
 const REGISTERS: usize = 16;
 const COLUMNS: usize = 64;
 
-/// Returns random functions, programs and draws in turn.
+/// Returns random functions: programs and draws in turn.
 fn functions(count: usize, seed: u64) -> Vec<Function> {
     let mut runner = runner(seed);
     let (programs, scenes) = (random_program::combiners(), random_scene::scene());
@@ -414,8 +414,9 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
     }
 }
 
-/// Sends whole frames through shaders. The inputs of each fragment come from the model's trace; the word that it stores has to come out. The last
-/// fragments of the pixels are the frame that the engine draws. `NINEBIT_LOWER_FRAMES` is the distance of the rows that are taken.
+/// Draws whole frames with shaders. Each fragment takes its inputs from the model's trace and has to yield the word that the trace stores.
+/// The last fragments of the pixels have to yield the frame of the engine. `NINEBIT_LOWER_FRAMES` is the distance between the rows that are
+/// drawn.
 fn frames() -> std::result::Result<(), Failed> {
     let step = setting("NINEBIT_LOWER_FRAMES").map_or(1, |step| step as usize);
     for scene in ["w1", "w2", "w4"] {

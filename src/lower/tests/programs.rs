@@ -1,4 +1,4 @@
-//! Compares printed programs with the model, by running their lines.
+//! Compares programs with the model by running the lines that they are printed from.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 

@@ -26,6 +26,21 @@ pub struct PlannedFinal {
 }
 
 impl PlannedFinal {
+    /// Returns a final combiner whose channels are all needed, and whose constants are in the registers.
+    pub fn whole(state: FinalCombiner) -> PlannedFinal {
+        let reads = |register| state.inputs.iter().chain([&state.g]).any(|input| input.register == register);
+        let product = reads(FinalRegister::ETimesF) || state.inputs[4..].iter().any(|input| !input.is_zero());
+        let channels = |needed| if needed { 7 } else { 0 };
+        PlannedFinal {
+            state,
+            live: 15,
+            product: channels(product),
+            sum: channels(reads(FinalRegister::Spare0PlusSecondary)),
+            reads_constants: false,
+            lerps: true,
+        }
+    }
+
     /// Returns the sites of the values that are needed. With `report`, values that make no difference are included.
     #[inline(always)]
     fn sites(&self, report: bool) -> u64 {
@@ -173,7 +188,7 @@ fn read<A: Algebra>(
     input(source(from, channel, registers, specials), from.invert, a)
 }
 
-/// Runs the final combiner. Returns R, G, B, A bytes, in which channels that nothing needs are zero.
+/// Runs the final combiner. Returns its values, of which those that nothing needs are zero.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
     planned: &PlannedFinal,
@@ -181,7 +196,7 @@ pub fn run<L: Lane, O: Observer>(
     policies: &Policies,
     registers: &mut Registers<L>,
     observer: &mut O,
-) -> [L; 4] {
+) -> FinalValues<L> {
     let mut direct = Direct::new(policies, observer).only(planned.sites(O::ON));
     if planned.reads_constants {
         load_constants(planned.state.constants, registers, &mut direct);
@@ -190,7 +205,7 @@ pub fn run<L: Lane, O: Observer>(
     if O::ON {
         report_all(planned, &values, profile, policies, registers, observer);
     }
-    values.fragment
+    values
 }
 
 /// Reports all values, in the order of a trace.

@@ -3,7 +3,7 @@
 //! [`evaluate`] and [`write()`] are the rules, written in the operations of an [`Algebra`]. [`run`] applies them to
 //! numbers, with reports.
 
-use super::direct::Direct;
+use super::direct::{Direct, Ruled};
 use super::output::takes_cd;
 use super::registers::Registers;
 use super::report;
@@ -100,6 +100,9 @@ type PortionOf<A, const N: usize> = Values<<A as Algebra>::Factor, <A as Algebra
 /// The values of a stage in an algebra.
 pub type StageOf<A> =
     StageValues<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, <A as Algebra>::Choice>;
+
+/// The values of a stage on the numbers of a lane.
+pub type StageOn<L> = StageValues<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, bool>;
 
 /// Computes the values of a stage from the registers before it.
 #[inline(always)]
@@ -244,8 +247,7 @@ pub fn stage<A: Algebra>(
 /// Loads the constant colours of a stage or of the final combiner.
 #[inline(always)]
 pub fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Registers<A::Register>, a: &mut A) {
-    registers.load(Register::ConstantColor0, constants[0].map(|byte| a.byte(byte)));
-    registers.load(Register::ConstantColor1, constants[1].map(|byte| a.byte(byte)));
+    registers.load_constants(constants.map(|constant| constant.map(|byte| a.byte(byte))));
 }
 
 /// A portion with its liveness: which channels of which output are read.
@@ -317,7 +319,15 @@ pub struct PlannedStage {
     pub reads_constants: bool,
 }
 
-/// CMB-1: runs a stage, which reads all inputs before it writes any output.
+impl PlannedStage {
+    /// Returns a stage whose outputs are all needed, and whose constants are in the registers.
+    pub fn whole(index: usize, stage: &GeneralStage) -> PlannedStage {
+        let (rgb, alpha) = (PlannedPortion::whole(stage.rgb, 7), PlannedPortion::whole(stage.alpha, 8));
+        PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants: false }
+    }
+}
+
+/// CMB-1: runs a stage, which reads all inputs before it writes any output. Returns its needed values.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
     stage: &PlannedStage,
@@ -325,7 +335,7 @@ pub fn run<L: Lane, O: Observer>(
     policies: &Policies,
     registers: &mut Registers<L>,
     observer: &mut O,
-) {
+) -> StageOn<L> {
     let spare0 = registers.read(Register::Spare0, 3);
     let muxes = [&stage.rgb, &stage.alpha].into_iter().any(PlannedPortion::muxes);
     if O::MEASURES && muxes {
@@ -343,6 +353,7 @@ pub fn run<L: Lane, O: Observer>(
         report::stage(stage, mux_select, &values, registers, policies, observer);
     }
     write(stage, &values, registers, &mut Direct::new(policies, observer).only(sites));
+    values
 }
 
 /// Returns the register channel of a portion's first channel: R in an RGB portion, A in an alpha portion.

@@ -6,13 +6,14 @@ pub mod general;
 pub mod mapping;
 pub mod output;
 pub mod registers;
-mod report;
+pub(crate) mod report;
 
 use crate::algebra::Algebra;
-use crate::state::{Combiners, Policies, Register};
-use crate::trace::Silent;
-use direct::Direct;
-use general::{PlannedPortion, PlannedStage};
+use crate::number::Lane;
+use crate::state::{Combiners, Policies, Profile, Register};
+use crate::trace::{self, Observer, Silent};
+use final_combiner::PlannedFinal;
+use general::PlannedStage;
 use registers::Registers;
 
 impl Combiners {
@@ -24,11 +25,42 @@ impl Combiners {
     /// [`legality::check`](crate::legality::check) does that.
     ///
     /// The example `stage` runs a program on every pair of bytes.
-    pub fn run(&self, registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
-        let mut observer = Silent;
-        let constants = |_: &mut _, of: [[u8; 4]; 2], _| of.map(|constant| constant.map(i32::from));
-        let fragment = self.evaluate(registers, constants, &mut Direct::new(policies, &mut observer));
+    pub fn run(&self, mut registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
+        let bytes = |constants: [[u8; 4]; 2], _| constants.map(|constant| constant.map(i32::from));
+        // The profile only changes what a report says.
+        let fragment = self.observed(&mut registers, bytes, (Profile::Nv10, policies), &mut Silent);
         fragment.map(|channel| channel.clamp(0, 255) as u8)
+    }
+
+    /// Runs the program on the numbers of a lane and reports to an observer. Returns R, G, B, A of the fragment, and leaves
+    /// the registers as the general stages and the loading of constants left them.
+    ///
+    /// `registers` and `constants` are those of [`evaluate`](Self::evaluate).
+    pub fn observed<L: Lane, O: Observer>(
+        &self,
+        registers: &mut Registers<L>,
+        mut constants: impl FnMut([[u8; 4]; 2], Option<usize>) -> [[L; 4]; 2],
+        (profile, policies): (Profile, &Policies),
+        observer: &mut O,
+    ) -> [L; 4] {
+        let alpha = registers.read(Register::Texture0, 3);
+        registers.write(Register::Spare0, 3, alpha);
+        if O::ON {
+            observer.step(trace::report::register_step("given", "CMB-13", "spare0.a", alpha));
+        }
+        for (index, stage) in self.stages.iter().enumerate() {
+            if O::ON {
+                report::constants(&format!("general stage {index}"), stage.constants, observer);
+            }
+            registers.load_constants(constants(stage.constants, Some(index)));
+            general::run(&PlannedStage::whole(index, stage), self.mux_select, policies, registers, observer);
+        }
+        let last = PlannedFinal::whole(self.final_combiner);
+        if O::ON {
+            report::constants("final combiner", last.state.constants, observer);
+        }
+        registers.load_constants(constants(last.state.constants, None));
+        final_combiner::run(&last, profile, policies, registers, observer).fragment
     }
 
     /// Evaluates the program in an algebra. Returns R, G, B, A of the fragment.
@@ -43,18 +75,13 @@ impl Combiners {
         a: &mut A,
     ) -> [A::Register; 4] {
         registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
-        let load = |registers: &mut Registers<A::Register>, [first, second]: [_; 2]| {
-            registers.load(Register::ConstantColor0, first);
-            registers.load(Register::ConstantColor1, second);
-        };
         for (index, stage) in self.stages.iter().enumerate() {
-            let (rgb, alpha) = (PlannedPortion::whole(stage.rgb, 7), PlannedPortion::whole(stage.alpha, 8));
-            let planned = PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants: true };
-            load(&mut registers, constants(a, stage.constants, Some(index)));
+            let planned = PlannedStage::whole(index, stage);
+            registers.load_constants(constants(a, stage.constants, Some(index)));
             let values = general::evaluate(&planned, self.mux_select, &registers, a);
             general::write(&planned, &values, &mut registers, a);
         }
-        load(&mut registers, constants(a, self.final_combiner.constants, None));
+        registers.load_constants(constants(a, self.final_combiner.constants, None));
         final_combiner::evaluate(&self.final_combiner, &registers, a).fragment
     }
 }

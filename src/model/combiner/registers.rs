@@ -44,6 +44,13 @@ impl<V: Copy> Registers<V> {
         self.values[register as usize] = value;
     }
 
+    /// Loads the two constant colours.
+    #[inline(always)]
+    pub fn load_constants(&mut self, [first, second]: [[V; 4]; 2]) {
+        self.load(Register::ConstantColor0, first);
+        self.load(Register::ConstantColor1, second);
+    }
+
     /// Writes one channel of a register.
     #[inline(always)]
     pub fn write(&mut self, register: Register, channel: usize, value: V) {

@@ -1,7 +1,7 @@
 //! The reports of a general stage to an observer. Nothing here computes a value that is used.
 
 use super::direct::Ruled;
-use super::general::{PlannedPortion, PlannedStage, StageValues, source_channel};
+use super::general::{PlannedPortion, PlannedStage, StageOn, source_channel};
 use super::mapping;
 use super::output::{biased, rounded_after, scaled};
 use super::registers::{self, Registers, channel_name};
@@ -15,11 +15,21 @@ const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
 /// All values that a portion computes, on numbers.
 type Values<L, const N: usize> = super::general::Values<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, N>;
 
+/// NUM-5: reports the constant colours of a stage or of the final combiner.
+pub(crate) fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {
+    for (n, constant) in constants.into_iter().enumerate() {
+        for (channel, value) in constant.into_iter().enumerate() {
+            let name = format!("constant{n}.{}", channel_name(channel));
+            observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(f64::from(value)));
+        }
+    }
+}
+
 /// Reports a stage in the order of a trace: what it reads, computes and writes.
 pub(super) fn stage<L: Lane, O: Observer>(
     stage: &PlannedStage,
     mux_select: MuxSelect,
-    values: &StageValues<L::Mapped, Ruled<L::Full>, L, bool>,
+    values: &StageOn<L>,
     registers: &Registers<L>,
     policies: &Policies,
     observer: &mut O,

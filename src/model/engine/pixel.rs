@@ -244,8 +244,8 @@ impl<'a> TriangleContext<'a> {
                 reports::stage_constants(stage.index + 1, draw, observer);
             }
         }
-        let source =
-            final_combiner::run(&draw.final_combiner, self.plan.profile, &self.plan.policies, &mut registers, observer);
+        let (profile, policies) = (self.plan.profile, &self.plan.policies);
+        let source = final_combiner::run(&draw.final_combiner, profile, policies, &mut registers, observer).fragment;
         self.depth_stencil_test(&source, &sample, memory, observer)?;
         self.raster_operations(source, fragment, memory, destination, observer)
     }

@@ -2,6 +2,7 @@
 
 use super::pixel::{DepthStencil, TriangleContext};
 use crate::combiner::registers::{self, channel_name};
+use crate::combiner::report::constants;
 use crate::number::{Lane, convert, light};
 use crate::plan::PlannedDraw;
 use crate::raster::depth::{DepthWeights, largest_edge};
@@ -132,15 +133,6 @@ pub(super) fn color<L: Lane, O: Observer>(
 /// Reports a number of the set-up that a step reads.
 fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: impl Into<i64>) -> Operand {
     observer.tell(Step::given(FOG, rule, name, value))
-}
-
-fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {
-    for (n, constant) in constants.into_iter().enumerate() {
-        for (channel, value) in constant.into_iter().enumerate() {
-            let name = format!("constant{n}.{}", channel_name(channel));
-            observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(f64::from(value)));
-        }
-    }
 }
 
 impl TriangleContext<'_> {

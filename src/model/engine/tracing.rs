@@ -69,9 +69,9 @@ impl DrawTrace {
 pub enum TraceError {
     /// The pixel is outside the target.
     Pixel {
-        /// Requested column.
+        /// The column that was asked for.
         x: u32,
-        /// Requested row.
+        /// The row that was asked for.
         y: u32,
         /// Name of the target.
         target: String,

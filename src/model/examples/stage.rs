@@ -1,5 +1,5 @@
-//! Runs one general stage on all of its inputs: how far is the product of two expanded bytes, as DOT3 bump mapping
-//! computes it, from the real product?
+//! Runs one general stage on all of its inputs, and measures how far the product of two expanded bytes, as DOT3 bump mapping computes it,
+//! is from the real product.
 //!
 //! `cargo run -p ninebit --example stage`
 

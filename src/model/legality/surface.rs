@@ -1,4 +1,4 @@
-//! What the chips allow for surfaces: formats, and blending.
+//! Checks that surfaces are legal on a chip: formats, and blending.
 
 use crate::diagnostic::{Diagnostic, needs_nv2a};
 use crate::place::Span;

@@ -1,4 +1,4 @@
-//! What the chips allow for textures: formats, sides, layers, levels and border texels, by kind.
+//! Checks that textures are legal on a chip: formats, sides, layers, levels and border texels, by kind.
 
 use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
 use crate::place::Span;

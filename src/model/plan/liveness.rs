@@ -43,7 +43,7 @@ impl Part {
     }
 }
 
-/// What a draw's combiners read, and which of their values are needed.
+/// The parts of a draw's combiners that are needed, and the registers and units that they read.
 pub(super) struct Liveness {
     pub(super) stages: Vec<PlannedStage>,
     pub(super) final_combiner: PlannedFinal,
@@ -76,7 +76,7 @@ impl<'d> Computed<'d> {
         let mut stages = Vec::new();
         for stage in &combiners.stages {
             let [rgb, alpha] = [&stage.rgb, &stage.alpha].map(|portion| planned(portion, 0, 0));
-            let whole = PlannedStage { index: 0, rgb, alpha, constants: stage.constants, reads_constants: true };
+            let whole = PlannedStage { rgb, alpha, ..PlannedStage::whole(0, stage) };
             general::load_constants(stage.constants, &mut registers, &mut trail);
             let values = general::evaluate(&whole, combiners.mux_select, &registers, &mut trail);
             let mut after = registers;

@@ -50,7 +50,7 @@ pub struct PlanError {
     pub code: &'static str,
     /// Rule that is violated, if there is one.
     pub rule: Option<&'static str>,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Advice on what to do.
     pub help: String,
@@ -178,7 +178,7 @@ pub struct PlannedDraw {
     pub write_mask: u32,
     /// Channels that the written bits keep, as bits R, G, B, A.
     pub written: u8,
-    /// What constant folding found before the rest was planned.
+    /// The results of constant folding, which precedes the rest of planning.
     pub folded: Folded,
 }
 

@@ -6,7 +6,7 @@ use super::{LARGEST_W, SMALLEST_W, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
 
-/// What triangle set-up reads of a vertex, converted as the chip does.
+/// The values of a vertex that triangle set-up reads, converted as on the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Corner {
     /// x and y in 1/16 pixel (RAS-1). 0 for vertices that no triangle uses.
@@ -33,7 +33,7 @@ pub struct Assembly {
     pub clipping: Clipping,
 }
 
-/// What clipping did to the triangles of a draw (RAS-6).
+/// The effects of clipping on the triangles of a draw (RAS-6).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Clipping {
     /// Set of the planes that cut something off, as [bits](project::ClipPlane::bit).

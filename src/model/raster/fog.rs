@@ -52,7 +52,7 @@ pub enum FogPlane {
 pub struct Line {
     /// The constant term p0; the function is p0 - 1 at d' = 0.
     pub p0: f32,
-    /// The slope.
+    /// The slope p1, which multiplies d'.
     pub p1: f32,
     /// Whether the magnitude of d' is used.
     pub absolute: bool,

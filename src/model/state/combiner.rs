@@ -65,7 +65,7 @@ named! {
 named! {
     /// Input mappings of the general stages (CMB-2 to CMB-5), as formulas of the register's value x.
     pub enum InputMapping {
-        /// max(0, x).
+        /// max(0, x), which drops negative values.
         UnsignedIdentity,
         /// 1 - max(0, x).
         UnsignedInvert,
@@ -77,9 +77,9 @@ named! {
         HalfBiasNormal,
         /// 1/2 - max(0, x).
         HalfBiasNegate,
-        /// x.
+        /// x itself, negative values included.
         SignedIdentity,
-        /// -x.
+        /// -x, negative values included.
         SignedNegate,
     }
 }
@@ -99,7 +99,7 @@ named! {
 named! {
     /// The bias of a portion's outputs, applied before the scale.
     pub enum Bias {
-        /// Subtracts nothing.
+        /// Subtracts nothing from the output.
         None,
         /// Subtracts 1/2. Legal only with [`Scale::One`] and [`Scale::Two`].
         NegativeHalf,

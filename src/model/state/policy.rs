@@ -5,9 +5,9 @@ use super::{Named, named};
 named! {
     /// NUM-3: the lowest value that a register can hold.
     pub enum RegisterFloor {
-        /// -256.
+        /// The lowest value is -256.
         Full,
-        /// -255.
+        /// The lowest value is -255.
         Symmetric,
     }
 }

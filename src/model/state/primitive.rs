@@ -164,13 +164,13 @@ named! {
         Linear,
         /// 2^(16 x), limited to 1 where x is positive.
         Exp,
-        /// 2^(-32 x^2).
+        /// 2^(-32 x^2), for x of either sign.
         Exp2,
         /// [`Linear`](FogMode::Linear) of |d|.
         LinearAbs,
-        /// 2^(-16 |x|).
+        /// 2^(-16 |x|), for x of either sign.
         ExpAbs,
-        /// 2^(-32 x^2).
+        /// 2^(-32 x^2), the same curve as [`Exp2`](FogMode::Exp2).
         Exp2Abs,
     }
 }
@@ -221,9 +221,9 @@ pub struct Fog {
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
-    /// Leftmost column.
+    /// Column of the leftmost pixels.
     pub x: u32,
-    /// Top row.
+    /// Row of the topmost pixels.
     pub y: u32,
     /// Width in pixels.
     pub width: u32,

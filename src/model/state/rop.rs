@@ -51,9 +51,9 @@ named! {
         Subtract,
         /// D Fd - S Fs.
         ReverseSubtract,
-        /// min(S, D).
+        /// min(S, D), without the factors.
         Min,
-        /// max(S, D).
+        /// max(S, D), without the factors.
         Max,
         /// D + s8(S) (nv2a).
         SignedAdd,
@@ -64,13 +64,13 @@ named! {
 named! {
     /// Blend factors (ROP-4).
     pub enum BlendFactor {
-        /// 0.
+        /// 0 for all channels.
         Zero,
-        /// 255.
+        /// 255 for all channels.
         One,
         /// The source's own channel.
         SourceColor,
-        /// The source colour, each channel by its own.
+        /// 255 - the source's own channel.
         OneMinusSourceColor,
         /// The source's alpha.
         SourceAlpha,
@@ -82,7 +82,7 @@ named! {
         OneMinusDestinationAlpha,
         /// The destination's own channel.
         DestinationColor,
-        /// The destination colour, each channel by its own.
+        /// 255 - the destination's own channel.
         OneMinusDestinationColor,
         /// min(source alpha, 255 - destination alpha) for colour, 255 for alpha.
         SourceAlphaSaturate,
@@ -174,11 +174,11 @@ impl DepthTest {
 named! {
     /// What a stencil test stores (STN-1). S is the stored stencil, R the reference.
     pub enum StencilOperation {
-        /// S.
+        /// S: the stored value stays.
         Keep,
-        /// 0.
+        /// 0: the value is cleared.
         Zero,
-        /// R.
+        /// R: the reference replaces the value.
         Replace,
         /// min(S + 1, 255).
         IncrementSaturate,

@@ -56,7 +56,7 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
     }
 }
 
-/// Transparent black.
+/// Transparent black, for formats without blocks and for the transparent index of DXT1.
 const NOTHING: Decoded = Decoded { bytes: [0; 4], ideal: [(0, 1); 4] };
 
 /// How the colour of a texel is mixed from the two colours of the block: (a first + b second) / (a + b).

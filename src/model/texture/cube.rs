@@ -5,17 +5,17 @@ use crate::state::named;
 named! {
     /// Faces of a cube map, in the order in which they are stored.
     pub enum Face {
-        /// +X.
+        /// Face 0, in the direction +X.
         PositiveX,
-        /// -X.
+        /// Face 1, in the direction -X.
         NegativeX,
-        /// +Y.
+        /// Face 2, in the direction +Y.
         PositiveY,
-        /// -Y.
+        /// Face 3, in the direction -Y.
         NegativeY,
-        /// +Z.
+        /// Face 4, in the direction +Z.
         PositiveZ,
-        /// -Z.
+        /// Face 5, in the direction -Z.
         NegativeZ,
     }
 }

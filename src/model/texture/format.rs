@@ -111,7 +111,7 @@ mod tests {
     enum Channel {
         /// Bits of the word: the lowest one, and their number.
         Bits(u32, u32),
-        /// A constant.
+        /// A constant, which is in no bit of the word.
         Fixed(u8),
     }
     use Channel::{Bits, Fixed};

@@ -132,13 +132,13 @@ impl Selection {
         Selection { bias, min_lod, max_lod, last, rounding, step, fraction }
     }
 
-    /// [`biased`].
+    /// Like [`biased`], for a unit whose state is set up.
     #[inline(always)]
     pub(crate) fn biased(self, log2_ratio: i32) -> i32 {
         (log2_ratio + self.bias).max(self.min_lod).min(self.max_lod)
     }
 
-    /// [`levels`].
+    /// Like [`levels`], for a unit whose state is set up.
     #[inline(always)]
     pub(crate) fn levels(self, lod: i32) -> (i32, i32, i32) {
         let level = (lod + self.rounding) >> 8;

@@ -11,13 +11,13 @@ named! {
     part: Part {
         /// Vertex colours given as floats.
         Num4 = "NUM-4" => Part::Interpolation,
-        /// Fog factors.
+        /// Bytes of fog factors.
         Num6 = "NUM-6" => Part::Interpolation,
         /// Linear fog: the numbers of the light unit, the linear function, and the byte of its factor.
         Fog2 = "FOG-2" => Part::Interpolation,
         /// Exponential fog: the numbers of the light unit, and the table.
         Fog4 = "FOG-4" => Part::Interpolation,
-        /// Interpolated colours.
+        /// Interpolated vertex colours.
         Int2 = "INT-2" => Part::Interpolation,
         /// Texture coordinates, as weights of the filter.
         Int4 = "INT-4" => Part::Interpolation,
@@ -37,7 +37,7 @@ named! {
         Tsh9 = "TSH-9" => Part::Interpolation,
         /// Texels of few bits, and bytes of 16-bit halves.
         Tex1 = "TEX-1" => Part::Filtering,
-        /// Compressed texels.
+        /// Texels of compressed formats.
         Tex2 = "TEX-2" => Part::Filtering,
         /// DXT1 with dither.
         Tex3 = "TEX-3" => Part::Filtering,
@@ -51,29 +51,29 @@ named! {
         Tex17 = "TEX-17" => Part::Filtering,
         /// Signed texels after filtering.
         Tex18 = "TEX-18" => Part::Filtering,
-        /// Unsigned mappings.
+        /// The unsigned input mappings.
         Cmb2 = "CMB-2" => Part::Expansion,
-        /// Expand mappings.
+        /// The expand input mappings.
         Cmb3 = "CMB-3" => Part::Expansion,
-        /// Half-bias mappings.
+        /// The half-bias input mappings.
         Cmb4 = "CMB-4" => Part::Expansion,
-        /// Signed mappings.
+        /// The signed input mappings.
         Cmb5 = "CMB-5" => Part::Expansion,
-        /// Products.
+        /// Products of two inputs.
         Cmb6 = "CMB-6" => Part::Product,
         /// Sums of products.
         Cmb7 = "CMB-7" => Part::Product,
-        /// Dot products.
+        /// Sums of three products.
         Cmb8 = "CMB-8" => Part::Product,
         /// Bias and scale.
         Cmb9 = "CMB-9" => Part::Product,
-        /// Saturation.
+        /// The limits of a register.
         Num3 = "NUM-3" => Part::Product,
         /// The linear interpolation of the final combiner.
         Fin2 = "FIN-2" => Part::Product,
         /// E times F in the final combiner.
         Fin4 = "FIN-4" => Part::Product,
-        /// Blend equations.
+        /// The blend equations and their rounding.
         Rop2 = "ROP-2" => Part::Store,
         /// The bits that a surface keeps.
         Rop5 = "ROP-5" => Part::Store,

@@ -44,7 +44,7 @@ pub struct CoordinateSet {
     pub transform: Option<StageTransform>,
 }
 
-/// Direct3D's D3DTSS_TEXTURETRANSFORMFLAGS.
+/// Direct3D's D3DTSS_TEXTURETRANSFORMFLAGS of a texture stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageTransform {
     /// COUNT2 to COUNT4 apply the matrix and use this many components of the result. 0 and 1 do not apply it.

@@ -48,7 +48,7 @@ impl Vocabulary {
 /// A program read from pasted text, with notes about what was skipped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pasted<P> {
-    /// The program.
+    /// The program that was read.
     pub program: P,
     /// Notes about the rest of the text; each is a warning.
     pub asides: Vec<Aside>,
@@ -57,7 +57,7 @@ pub struct Pasted<P> {
 /// A note about a part of a text that does not belong to the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Aside {
-    /// The warning.
+    /// The warning about this part.
     pub finding: Diagnostic,
     /// The field of a draw with the same meaning: the warning is only for draws without that field. `None` if it is for all draws.
     pub field: Option<&'static str>,

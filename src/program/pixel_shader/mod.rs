@@ -103,7 +103,7 @@ named! {
 named! {
     /// A modifier of a source. Of a negative register, all but `Plain` read 0.
     pub enum Modifier {
-        /// x.
+        /// The value x itself.
         Plain = "",
         /// x - 1/2.
         Bias = "_bias",
@@ -119,7 +119,7 @@ named! {
 pub struct Source {
     /// The register that is read.
     pub register: ShaderRegister,
-    /// Its channels.
+    /// The channels that are read.
     pub selector: Selector,
     /// The modifier of these.
     pub modifier: Modifier,
@@ -134,7 +134,7 @@ named! {
         All = "",
         /// R, G and B.
         Color = ".rgb",
-        /// Alpha alone.
+        /// A without the colour.
         Alpha = ".a",
     }
 }
@@ -195,7 +195,7 @@ pub(crate) struct Reads {
 /// One arithmetic instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arithmetic {
-    /// The operation.
+    /// The operation of the instruction.
     pub operation: Operation,
     /// The scale: `_x2`, `_x4`, `_d2`.
     pub scale: Scale,
@@ -296,7 +296,7 @@ pub struct TextureSource {
 /// One texture instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextureInstruction {
-    /// The operation.
+    /// The operation of the instruction.
     pub operation: TextureOperation,
     /// Number of its register, t0 to t3, and of the texture unit.
     pub unit: Spanned<u8>,
@@ -357,7 +357,7 @@ impl PixelShader {
 /// A shader that has been read and checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
-    /// The shader.
+    /// The shader that was read.
     pub program: PixelShader,
     /// Findings about what is probably unintended.
     pub warnings: Vec<Diagnostic>,

@@ -12,7 +12,7 @@ use crate::lexer::{Kind, Language};
 /// Words, with their places in a text.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// The words.
+    /// The words that were read.
     pub words: RegisterWords,
     places: Vec<(Word, usize, Span)>,
     /// Place that stands for words that are not written.

@@ -88,7 +88,7 @@ impl<'t> Parser<'t> {
         if self.cursor.take(sign) { Ok(()) } else { Err(self.expected(&format!("`{sign}`"))) }
     }
 
-    /// Takes `name();`.
+    /// Takes `name();`, beginning at the name.
     pub(super) fn call(&mut self) -> Read<()> {
         self.cursor.advance();
         self.sign('(')?;

@@ -78,18 +78,18 @@ named! {
         PrimaryColor,
         /// The result of the unit before; the primary colour in unit 0.
         Previous,
-        /// 0 (Combine4).
+        /// 0 in every channel (Combine4).
         Zero,
     }
 }
 named! {
     /// OPERAND0_RGB and the like: what an argument takes of its source.
     pub enum Operand {
-        /// The colour.
+        /// The colour of the source.
         SourceColor,
         /// 1 minus the colour.
         OneMinusSourceColor,
-        /// The alpha.
+        /// The alpha of the source.
         SourceAlpha,
         /// 1 minus the alpha.
         OneMinusSourceAlpha,
@@ -147,7 +147,7 @@ pub struct Half {
 /// The environment of one texture unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unit {
-    /// TEXTURE_ENV_MODE.
+    /// The mode, TEXTURE_ENV_MODE.
     pub mode: Mode,
     /// COMBINE_RGB and its arguments and scale.
     pub rgb: Half,

@@ -128,7 +128,7 @@ pub struct TextureStage {
     pub transform_flags: Spanned<u32>,
     /// BUMPENVMAT00, 01, 10, 11.
     pub bump_matrix: [f32; 4],
-    /// BUMPENVLSCALE, BUMPENVLOFFSET.
+    /// Scale and offset of luminance: BUMPENVLSCALE, BUMPENVLOFFSET.
     pub bump_luminance: [f32; 2],
     /// Place where the stage is written, for findings about states that are not; empty if it is not written.
     pub span: Span,

@@ -17,7 +17,7 @@ pub use print::print;
 /// A program with the places of its parts in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The program.
+    /// The program that was read.
     pub shader: VertexShader,
     /// Places of each instruction.
     pub places: Vec<InstructionPlaces>,

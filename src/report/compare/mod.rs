@@ -68,7 +68,7 @@ pub struct ChannelError {
 /// Errors of one rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RuleError {
-    /// The rule.
+    /// The rule that causes the errors.
     pub rule: Rule,
     /// Errors of the rule itself, given exact inputs.
     pub errors: Statistics,
@@ -90,7 +90,7 @@ impl RuleError {
 /// Number of times that a decision was taken, and that the ideal would have decided otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decided {
-    /// The decision.
+    /// The kind of decision.
     pub decision: Decision,
     /// Number of times that it was taken.
     pub taken: u64,

@@ -31,7 +31,7 @@ struct Face {
     /// Weight at each corner: the sine of the angle there, divided by the lengths of both edges. The weighted mean of normals on a
     /// sphere is then the sphere's normal, and the way in which a flat polygon is cut makes no difference.
     weights: [f64; 3],
-    /// Unit normal.
+    /// Unit normal of the triangle.
     normal: Vector,
     /// Unit vector along s; `None` where the texture has no direction.
     tangent: Option<Vector>,

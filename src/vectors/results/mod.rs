@@ -82,7 +82,7 @@ pub struct Observed {
 pub struct UnitResults {
     /// The file of results.
     pub path: PathBuf,
-    /// The unit.
+    /// The unit whose results these are.
     pub unit: &'static dyn Unit,
     /// Chip, level, seed and behaviour of the table that was drawn, as text.
     pub asked: [String; 4],

@@ -1,7 +1,7 @@
 //! Depths: polygon offset, range and stored word; and w buffers.
 
 use super::raster::{LARGE, fit, geometry, is_covered, triangle};
-use super::{Column, Conditions, Kind, Reach, Unit, float, named};
+use super::{Column, Conditions, Kind, Reach, Unit, float, named, sized};
 use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
@@ -33,11 +33,6 @@ fn powers(format: i64) -> (i64, i64) {
         DepthFormat::Z16F => (-6, 15),
         DepthFormat::Z24S8F => (-20, 40),
     }
-}
-
-/// Returns a float with the sign and the fraction of `bits`, which also choose its power of two.
-fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
-    bits & 0x807f_ffff | (127 + first + (bits >> 3) % count) << 23
 }
 
 /// The stored word of a depth.

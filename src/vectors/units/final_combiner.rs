@@ -1,12 +1,11 @@
 //! The final combiner: one colour channel, and alpha.
 
 use super::{Column, Conditions, Kind, Reach, Unit, block, named, paired, put};
-use ninebit::combiner::direct::Direct;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::registers::Registers;
-use ninebit::number::{Lane, Lanes16};
+use ninebit::number::Lane;
 use ninebit::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
-use ninebit::trace::{Recorder, Silent};
+use ninebit::trace::{Observer, Recorder, Silent};
 
 enumeration! {
     /// The source of an input A to D in these vectors.
@@ -48,23 +47,6 @@ const REGISTERS: [Register; 8] = [
     Register::SecondaryColor,
 ];
 
-/// Puts an input into its register.
-fn load<L: Lane>(file: &mut Registers<L>, input: usize, value: L) {
-    match REGISTERS.get(input) {
-        Some(register) => file.load(*register, [value; 4]),
-        None => file.write(Register::Spare1, 3, value),
-    }
-}
-
-/// Returns the registers of a row.
-fn file<L: Lane>(inputs: &[i64], value: impl Fn(i64) -> L) -> Registers<L> {
-    let mut file = Registers::new();
-    for (n, input) in inputs[CONFIGURATION..].iter().enumerate() {
-        load(&mut file, n, value(*input));
-    }
-    file
-}
-
 /// Returns the final combiner of a row.
 fn planned(inputs: &[i64]) -> PlannedFinal {
     let flag = |n: usize| inputs[n] != 0;
@@ -77,7 +59,6 @@ fn planned(inputs: &[i64]) -> PlannedFinal {
         };
         source.invert = flag(4 + n);
     }
-    let needs = |register| u8::from(sources.iter().any(|source| source.register == register));
     let state = state::FinalCombiner {
         inputs: sources,
         g: FinalInput { register: FinalRegister::Spare1, component: Component::Alpha, invert: flag(10) },
@@ -86,8 +67,30 @@ fn planned(inputs: &[i64]) -> PlannedFinal {
         invert_secondary: flag(13),
         constants: [[0; 4]; 2],
     };
-    let (product, sum) = (needs(FinalRegister::ETimesF), needs(FinalRegister::Spare0PlusSecondary));
-    PlannedFinal { state, live: 9, product, sum, reads_constants: false, lerps: true }
+    // The columns show one colour channel.
+    PlannedFinal { live: 9, product: 1, sum: 1, ..PlannedFinal::whole(state) }
+}
+
+impl FinalCombiner {
+    #[inline(always)]
+    fn run<L: Lane>(
+        &self,
+        inputs: &[i64],
+        at: impl Fn(usize) -> L,
+        Conditions { profile, policies }: &Conditions,
+        observer: &mut impl Observer,
+    ) -> ([i64; 7], [L; 2]) {
+        let mut file = Registers::new();
+        for (n, register) in REGISTERS.into_iter().enumerate() {
+            file.load(register, [at(CONFIGURATION + n); 4]);
+        }
+        file.write(Register::Spare1, 3, at(CONFIGURATION + REGISTERS.len()));
+        let values = final_combiner::run(&planned(inputs), *profile, policies, &mut file, observer);
+        let [sum, product] = [values.specials.sum, values.specials.product].map(|channels| channels[0]);
+        let [a, b, c, d, ..] = values.inputs.map(|channels| channels[0]);
+        let mid = [sum, product, a, b, c, d, values.raw[0]].map(|value| value.observe().0);
+        (mid, [values.fragment[0], values.fragment[3]])
+    }
 }
 
 impl Unit for FinalCombiner {
@@ -110,27 +113,5 @@ impl Unit for FinalCombiner {
         ]
     );
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let (mut silent, file) = (Silent, file(inputs, |value| value as i32));
-        let mut direct = Direct::new(&conditions.policies, &mut silent);
-        let values = final_combiner::evaluate(&planned(inputs).state, &file, &mut direct);
-        let [a, b, c, d, ..] = values.inputs.map(|channels| channels[0]);
-        let [sum, product] = [values.specials.sum, values.specials.product].map(|channels| channels[0]);
-        put(results, [sum, product, a, b, c, d, values.raw[0], values.fragment[0], values.fragment[3]]);
-    }
-
-    fn trace(&self, inputs: &[i64], Conditions { profile, policies }: &Conditions, recorder: &mut Recorder) {
-        final_combiner::run(&planned(inputs), *profile, policies, &mut file(inputs, paired), recorder);
-    }
-
-    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let own = varying.checked_sub(CONFIGURATION)?;
-        let (planned, mut file) = (planned(inputs), file(inputs, |value| Lanes16::all(value as i32)));
-        Some(block::bytes(inputs, varying, out, |rows| {
-            load(&mut file, own, rows.numbers());
-            let Conditions { profile, policies } = conditions;
-            let [r, _, _, a] = final_combiner::run(&planned, *profile, policies, &mut file, &mut Silent);
-            [r, a]
-        }))
-    }
+    computed!(run; bytes from CONFIGURATION);
 }

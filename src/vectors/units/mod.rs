@@ -41,10 +41,53 @@ $(
 )?    };
 }
 
+/// Evaluates a unit, and records its steps, by its method `run` of the inputs, the conditions and an observer. Where the results are numbers
+/// of a lane, `run` also takes a function from an input's index to its number; where it returns intermediates and, apart from them, outputs
+/// (bytes or registers), rows are computed in block lanes from an input on, unless a condition holds.
+macro_rules! computed {
+    (plain $run:ident) => {
+        fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+            put(results, self.$run(inputs, conditions, &mut Silent));
+        }
+
+        fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+            self.$run(inputs, conditions, recorder);
+        }
+    };
+    ($run:ident) => {
+        fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+            put(results, self.$run(inputs, |n| inputs[n] as i32, conditions, &mut Silent));
+        }
+
+        fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+            self.$run(inputs, |n| paired(inputs[n]), conditions, recorder);
+        }
+    };
+    ($run:ident; $outputs:ident from $first:expr $(, unless $decides:expr)?) => {
+        fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+            let (mid, out) = self.$run(inputs, |n| inputs[n] as i32, conditions, &mut Silent);
+            put(results, mid.into_iter().chain(out.map(i64::from)));
+        }
+
+        fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
+            self.$run(inputs, |n| paired(inputs[n]), conditions, recorder);
+        }
+
+        fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+            if varying < $first $(|| $decides(inputs, varying))? {
+                return None;
+            }
+            let rows = |rows: &block::Sixteen| self.$run(inputs, |n| rows.at(n), conditions, &mut Silent).1;
+            Some(block::$outputs(inputs, varying, out, rows))
+        }
+    };
+}
+
 mod block;
 mod clip;
 mod combiner;
 mod combiner_stage;
+mod configured;
 mod depth;
 pub(super) mod final_combiner;
 mod fog;
@@ -62,7 +105,10 @@ mod texture;
 mod texture_environment;
 mod texture_stage;
 
-pub use texture::{CubeDirection, FilteredChannel, LinearAddress, NearestAddress, one_channel};
+pub use configured::{
+    ConfiguredAddress, ConfiguredBlend, ConfiguredCube, ConfiguredFilter, ConfiguredFinal, ConfiguredProgram,
+    ConfiguredStage,
+};
 
 use super::column::{Column, Kind};
 use super::unit::{Conditions, Reach, Unit};
@@ -72,11 +118,13 @@ use ninebit::state::{Bias, Named, Scale};
 /// Returns every unit of the catalogue.
 pub fn all() -> Vec<&'static dyn Unit> {
     vec![
+        &geometry::VertexInstruction,
         &number::VertexColor,
         &number::ConstantColor,
         &number::VertexSnap,
         &number::Depth,
         &geometry::PrimitiveSplit,
+        &geometry::ClippedTriangle,
         &raster::Coverage,
         &clip::Clip,
         &raster::PerspectiveWeights,
@@ -181,6 +229,11 @@ fn float(bits: i64) -> f32 {
     f32::from_bits(bits as u32)
 }
 
+/// Returns a float with the sign and the fraction of `bits`, which also choose its power of two.
+fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
+    bits & 0x807f_ffff | (127 + first + (bits >> 3) % count) << 23
+}
+
 /// Writes results in their order.
 fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
     for (result, value) in results.iter_mut().zip(values) {
@@ -189,6 +242,6 @@ fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
 }
 
 /// Returns a register's integer with the ideal's real number.
-pub fn paired(value: i64) -> Paired {
+fn paired(value: i64) -> Paired {
     Paired { fixed: value as i32, ideal: value as f64 }
 }

@@ -1,8 +1,9 @@
 //! One arithmetic instruction of ps.1.1.
 
-use super::program::{self, Through};
-use super::{CHANNELS, Column, Conditions, Reach, Unit, channels, named};
+use super::program::{self, Through, lowered_by};
+use super::{CHANNELS, Column, Conditions, Reach, Unit, channels, named, paired, put};
 use ninebit::state::{Combiners, Profile, Register, Scale};
+use ninebit::trace::{Recorder, Silent};
 use ninebit_program::Spanned;
 use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
@@ -158,16 +159,11 @@ impl Unit for Instruction {
         }
     }
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        program::run(lowered(inputs, conditions.profile), &PLACES, inputs, conditions, results);
-    }
+    lowered_by!(lowered, |_| PLACES, through);
+}
 
-    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        // The last column decides which source cnd takes.
-        let decides = named::<Operation>(inputs[0]) == Operation::Cnd && varying == inputs.len() - 1;
-        let through = if decides { Through::Decision } else { Through::Register };
-        let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);
-        let has = varying >= CONFIGURATION;
-        has.then(|| program::block(inputs, varying, through, &PLACES, conditions, out, lower))?
-    }
+/// Returns the use of an input. The last decides which source cnd takes.
+fn through(inputs: &[i64], varying: usize) -> Option<Through> {
+    let decides = named::<Operation>(inputs[0]) == Operation::Cnd && varying == inputs.len() - 1;
+    (varying >= CONFIGURATION).then_some(if decides { Through::Decision } else { Through::Register })
 }

@@ -4,22 +4,26 @@ use super::{
     CHANNELS, Column, Conditions, Kind, Reach, Unit, block, bytes, channels, color_results, colors, named, paired, put,
 };
 use ninebit::combiner::direct::Direct;
-use ninebit::number::{Lane, Lanes16};
+use ninebit::number::Lane;
 use ninebit::rop::{blend, surface};
 use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
-use ninebit::trace::{Recorder, Silent};
-
-/// Returns source, destination and constant of a row of blending.
-fn blended_colors<L: Lane>(at: impl Fn(usize) -> L) -> [[L; 4]; 3] {
-    [3, 7, 11].map(|first| [at(first), at(first + 1), at(first + 2), at(first + 3)])
-}
-
-fn alpha_test(inputs: &[i64]) -> state::AlphaTest {
-    state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 }
-}
+use ninebit::trace::{Observer, Recorder, Silent};
 
 /// The alpha test of a fragment.
 pub(super) struct AlphaTest;
+
+impl AlphaTest {
+    fn run<L: Lane>(
+        &self,
+        inputs: &[i64],
+        at: impl Fn(usize) -> L,
+        _: &Conditions,
+        observer: &mut impl Observer,
+    ) -> [bool; 1] {
+        let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
+        [blend::alpha_test(&test, at(2), observer)]
+    }
+}
 
 impl Unit for AlphaTest {
     known_as!(
@@ -28,20 +32,34 @@ impl Unit for AlphaTest {
         gives [Column::result("out.passes", Kind::Unsigned(1))]
     );
 
-    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        results[0] = blend::alpha_test(&alpha_test(inputs), inputs[2] as i32, &mut Silent).into();
-    }
-
-    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
-        blend::alpha_test(&alpha_test(inputs), paired(inputs[2]), recorder);
-    }
+    computed!(run);
 }
 
 /// A fragment that is blended with the surface.
 pub(super) struct Blend;
 
-fn blend_state(inputs: &[i64]) -> state::Blend {
-    state::Blend { equation: named(inputs[0]), source: named(inputs[1]), destination: named(inputs[2]) }
+impl Blend {
+    #[inline(always)]
+    fn run<L: Lane, O: Observer>(
+        &self,
+        inputs: &[i64],
+        at: impl Fn(usize) -> L,
+        _: &Conditions,
+        observer: &mut O,
+    ) -> ([i64; 8], [L; 4]) {
+        let state =
+            state::Blend { equation: named(inputs[0]), source: named(inputs[1]), destination: named(inputs[2]) };
+        let color = |first: usize| [at(first), at(first + 1), at(first + 2), at(first + 3)];
+        let [source, destination, constant] = [3, 7, 11].map(color);
+        if O::ON {
+            blend::run(&state, 15, bytes(&inputs[11..15]), &source, &destination, observer);
+        }
+        let mut silent = Silent;
+        let mut direct = Direct::plain(&mut silent);
+        let values = [0, 1, 2, 3].map(|c| blend::evaluate(&state, c, &source, &destination, &constant, &mut direct));
+        let factors = std::array::from_fn(|n| values[n % 4].factors[n / 4].observe().0);
+        (factors, values.map(|value| value.blended))
+    }
 }
 
 impl Unit for Blend {
@@ -56,37 +74,12 @@ impl Unit for Blend {
         gives [color_results(["mid.source_factor", "mid.destination_factor", "out"])]
     );
 
-    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let state = blend_state(inputs);
-        let [source, destination, constant] = blended_colors(|n| inputs[n] as i32);
-        let (mut silent, mut results) = (Silent, results.chunks_exact_mut(4));
-        let mut direct = Direct::plain(&mut silent);
-        let values = [0, 1, 2, 3].map(|c| blend::evaluate(&state, c, &source, &destination, &constant, &mut direct));
-        let columns = [values.map(|v| v.factors[0]), values.map(|v| v.factors[1]), values.map(|v| v.blended)];
-        columns.into_iter().zip(&mut results).for_each(|(column, results)| put(results, column));
-    }
+    computed!(run; bytes from 3);
+}
 
-    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
-        let [source, destination, _] = blended_colors(|n| paired(inputs[n]));
-        blend::run(&blend_state(inputs), 15, bytes(&inputs[11..15]), &source, &destination, recorder);
-    }
-
-    fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let state = blend_state(inputs);
-        (varying >= 3).then(|| {
-            let mut lanes: [Lanes16<i32>; 12] = std::array::from_fn(|n| Lanes16::all(inputs[3 + n] as i32));
-            block::bytes(inputs, varying, out, |rows| {
-                lanes[varying - 3] = rows.numbers();
-                let [source, destination, constant] = lanes.as_chunks().0 else { return [Lanes16::all(0); 4] };
-                let channel = |channel: usize| {
-                    let mut silent = Silent;
-                    let mut direct = Direct::plain(&mut silent);
-                    blend::evaluate(&state, channel, source, destination, constant, &mut direct).blended
-                };
-                [channel(0), channel(1), channel(2), channel(3)]
-            })
-        })
-    }
+/// Returns all bits of a word of the surface format of that number.
+fn all_bits(format: i64) -> i64 {
+    (1 << (8 * named::<SurfaceFormat>(format).bytes())) - 1
 }
 
 /// A store under a colour mask.
@@ -105,11 +98,11 @@ impl Unit for WriteMask {
     );
 
     fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
-        inputs[5..].iter().all(|word| word >> (8 * named::<SurfaceFormat>(inputs[0]).bytes()) == 0)
+        inputs[5..].iter().all(|word| *word <= all_bits(inputs[0]))
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        let all = (1 << (8 * named::<SurfaceFormat>(inputs[0]).bytes())) - 1;
+        let all = all_bits(inputs[0]);
         inputs[5..].iter_mut().for_each(|word| *word &= all);
     }
 
@@ -145,12 +138,11 @@ impl Unit for SurfaceLoad {
     );
 
     fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
-        let bytes = named::<SurfaceFormat>(inputs[0]).bytes();
-        inputs[1] >> (8 * bytes) == 0
+        inputs[1] <= all_bits(inputs[0])
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        inputs[1] &= (1 << (8 * named::<SurfaceFormat>(inputs[0]).bytes())) - 1;
+        inputs[1] &= all_bits(inputs[0]);
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {

@@ -1,9 +1,11 @@
 //! The texture shader's arithmetic.
 
 use super::raster::with_place;
-use super::{CHANNELS, Column, Conditions, Kind, Reach, Unit, bytes, channels, color_results, float, named, put};
+use super::{
+    CHANNELS, Column, Conditions, Kind, Reach, Unit, bytes, channels, color_results, float, named, paired, put,
+};
+use ninebit::number::Lane;
 use ninebit::number::convert::split;
-use ninebit::number::{Lane, Paired};
 use ninebit::state::{DotMapping, Profile, ShaderOperation, ShaderStage};
 use ninebit::texture::chain::Chain;
 use ninebit::texture::stage::{PlannedShader, PlannedShaderStage, ShaderSetup};
@@ -73,23 +75,31 @@ impl Unit for Reflection {
 /// A stage of the texture shader that reads coordinates, but no texture.
 pub(super) struct CoordinateStage;
 
-/// Returns the colour of the stage of a row, or `None` if it drops the fragment.
-fn coordinate_stage<L: Lane>(inputs: &[i64], conditions: &Conditions, observer: &mut impl Observer) -> Option<[L; 4]> {
-    let operation = match inputs[0] {
-        0 => ShaderOperation::None,
-        1 => ShaderOperation::PassThrough,
-        _ => ShaderOperation::CullFragment { drops_not_negative: [1, 2, 3, 4].map(|n| inputs[n] != 0) },
-    };
-    let idle = PlannedShaderStage { state: ShaderStage::conventional(0, false), unit: None, live: 0, dots: false };
-    let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
-    let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
-    let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {
-        let setup = &ShaderSetup::new(shader, &[], at.triangle, vertices);
-        let scale = conditions.policies.dependent_scale;
-        let chain = Chain { shader, units: &[], setup, textures: &[], vertices, perspective: false, scale };
-        chain.run(at, (8, 8), observer)
-    });
-    run?.map(|[color, ..]| color)
+impl CoordinateStage {
+    /// Returns 1 and the colour of the stage of a row, or 0 if it drops the fragment.
+    fn run<L: Lane>(
+        &self,
+        inputs: &[i64],
+        _: impl Fn(usize) -> L,
+        conditions: &Conditions,
+        observer: &mut impl Observer,
+    ) -> [L; 5] {
+        let operation = match inputs[0] {
+            0 => ShaderOperation::None,
+            1 => ShaderOperation::PassThrough,
+            _ => ShaderOperation::CullFragment { drops_not_negative: [1, 2, 3, 4].map(|n| inputs[n] != 0) },
+        };
+        let idle = PlannedShaderStage { state: ShaderStage::conventional(0, false), unit: None, live: 0, dots: false };
+        let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
+        let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
+        let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {
+            let setup = &ShaderSetup::new(shader, &[], at.triangle, vertices);
+            let scale = conditions.policies.dependent_scale;
+            let chain = Chain { shader, units: &[], setup, textures: &[], vertices, perspective: false, scale };
+            chain.run(at, (8, 8), observer)
+        });
+        run.flatten().map_or([L::ZERO; 5], |[[r, g, b, a], ..]| [L::byte(1), r, g, b, a])
+    }
 }
 
 impl Unit for CoordinateStage {
@@ -114,15 +124,7 @@ impl Unit for CoordinateStage {
         }
     }
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let color = coordinate_stage::<i32>(inputs, conditions, &mut Silent);
-        results[0] = color.is_some().into();
-        put(&mut results[1..], color.unwrap_or_default());
-    }
-
-    fn trace(&self, inputs: &[i64], conditions: &Conditions, recorder: &mut Recorder) {
-        coordinate_stage::<Paired>(inputs, conditions, recorder);
-    }
+    computed!(run);
 }
 
 /// The offset of a coordinate by a bump map.

@@ -1,7 +1,7 @@
 //! Coordinates of texture units, and the linear filter.
 
 use super::raster::with_place;
-use super::{Column, Conditions, Kind, Reach, Unit, float, named, put};
+use super::{Column, Conditions, Kind, Reach, Unit, float, named, paired, put};
 use ninebit::number::{Lane, Paired};
 use ninebit::raster::interpolate::Sample;
 use ninebit::state::*;
@@ -63,8 +63,7 @@ fn place(inputs: &[i64], index: i64) -> [i64; 2] {
 }
 
 /// The nearest texel.
-#[derive(Debug)]
-pub struct NearestAddress;
+pub(super) struct NearestAddress;
 
 impl Unit for NearestAddress {
     known_as!(
@@ -89,8 +88,7 @@ impl Unit for NearestAddress {
 }
 
 /// The two texels of the linear filter along one axis.
-#[derive(Debug)]
-pub struct LinearAddress;
+pub(super) struct LinearAddress;
 
 impl Unit for LinearAddress {
     known_as!(
@@ -142,13 +140,13 @@ fn footprint_of_one_channel() -> [Column; 6] {
 }
 
 /// Returns a unit of which one channel is read. Channels do not affect each other.
-pub fn one_channel(signed: bool) -> PlannedUnit {
+pub(super) fn one_channel(signed: bool) -> PlannedUnit {
     let state = TextureUnit { signed: [signed; 4], ..TextureUnit::new(0) };
     PlannedUnit { live: 1, ..planned(state, TextureFormat::A8R8G8B8) }
 }
 
 /// Filters the texels of a row: four texels and two weights.
-fn mixed<L: Lane, O: Observer>(unit: &PlannedUnit, row: &[i64], observer: &mut O) -> [L; 4] {
+fn mixed<L: Lane>(unit: &PlannedUnit, row: &[i64], observer: &mut impl Observer) -> [L; 4] {
     // As the unit expands texels: s/128 in the ideal of a signed channel.
     let denominator = if unit.state.signed[0] { 128 } else { 255 };
     let texel = |n: usize| [L::texel(row[n] as i32, row[n] as i32, denominator); 4];
@@ -183,9 +181,7 @@ impl Unit for Bilinear {
         let texels = [0, 1, 2, 3].map(|n| inputs[n] as i32);
         let mut steps = results.iter_mut();
         filter::bilinear(texels, inputs[4] as i32, inputs[5] as i32, |value| {
-            if let Some(step) = steps.next() {
-                *step = value.into();
-            }
+            steps.next().into_iter().for_each(|step| *step = value.into());
             value
         });
     }
@@ -193,19 +189,26 @@ impl Unit for Bilinear {
     fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
         // Texels of 0 to 127 mean the same in signed and unsigned channels.
         let unit = one_channel(inputs[..4].iter().any(|t| *t < 0));
-        mixed::<Paired, _>(&unit, inputs, recorder);
+        mixed::<Paired>(&unit, inputs, recorder);
     }
 }
 
 /// A filtered channel, loaded into its register.
-#[derive(Debug)]
-pub struct FilteredChannel;
+pub(super) struct FilteredChannel;
 
-/// Returns the filtered texels of a row, and the register that they become.
-fn filtered<L: Lane, O: Observer>(inputs: &[i64], observer: &mut O) -> [L; 2] {
-    let unit = one_channel(inputs[0] != 0);
-    let mixed = mixed::<L, O>(&unit, &inputs[1..], observer);
-    [mixed[0], unit::load(&unit, mixed, "", observer)[0]]
+impl FilteredChannel {
+    /// Returns the filtered texels of a row, and the register that they become.
+    fn run<L: Lane>(
+        &self,
+        inputs: &[i64],
+        _: impl Fn(usize) -> L,
+        _: &Conditions,
+        observer: &mut impl Observer,
+    ) -> [L; 2] {
+        let unit = one_channel(inputs[0] != 0);
+        let mixed = mixed(&unit, &inputs[1..], observer);
+        [mixed[0], unit::load(&unit, mixed, "", observer)[0]]
+    }
 }
 
 impl Unit for FilteredChannel {
@@ -227,13 +230,7 @@ impl Unit for FilteredChannel {
         inputs[1..5].iter_mut().for_each(|t| *t = (*t & 255) + least);
     }
 
-    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        put(results, filtered::<i32, _>(inputs, &mut Silent));
-    }
-
-    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
-        filtered::<Paired, _>(inputs, recorder);
-    }
+    computed!(run);
 }
 
 /// Returns a unit with a cube map of one level.
@@ -256,19 +253,21 @@ fn met<O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer
 }
 
 /// A look-up in a cube map by an interpolated direction.
-#[derive(Debug)]
-pub struct CubeDirection;
+pub(super) struct CubeDirection;
 
-fn toward<O: Observer>(inputs: &[i64], observer: &mut O) -> Option<[i64; 3]> {
-    let (unit, direction) = (cube(inputs[0]), [inputs[1], inputs[2], inputs[3]]);
-    let [x, y, z] = direction.map(|n| n as f32);
-    with_place([x, y, z, 1.0], |at, vertices| {
-        // At the first vertex the direction is the numbers themselves.
-        let at = &Sample::new(at.triangle, [1, 0, 0]);
-        let coordinates = &Coordinates::Direction(direction.map(|n| [n, 0, 0]));
-        let place = Interpolated { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
-        met(&unit, &place, observer)
-    })
+impl CubeDirection {
+    fn run(&self, inputs: &[i64], _: &Conditions, observer: &mut impl Observer) -> [i64; 3] {
+        let (unit, direction) = (cube(inputs[0]), [inputs[1], inputs[2], inputs[3]]);
+        let [x, y, z] = direction.map(|n| n as f32);
+        let found = with_place([x, y, z, 1.0], |at, vertices| {
+            // At the first vertex the direction is the numbers themselves.
+            let at = &Sample::new(at.triangle, [1, 0, 0]);
+            let coordinates = &Coordinates::Direction(direction.map(|n| [n, 0, 0]));
+            let place = Interpolated { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
+            met(&unit, &place, observer)
+        });
+        found.unwrap_or_default()
+    }
 }
 
 impl Unit for CubeDirection {
@@ -298,23 +297,19 @@ impl Unit for CubeDirection {
         }
     }
 
-    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        put(results, toward(inputs, &mut Silent).unwrap_or_default());
-    }
-
-    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
-        toward(inputs, recorder);
-    }
+    computed!(plain run);
 }
 
 /// A look-up in a cube map by a direction of the dot unit.
 pub(super) struct CubeFace;
 
-fn toward_floats<O: Observer>(inputs: &[i64], observer: &mut O) -> [i64; 3] {
-    let unit = cube(inputs[0]);
-    let target = Target::Vector([1, 2, 3].map(|n| float(inputs[n])));
-    let real = target.followed(|| [0.0; 2]);
-    met(&unit, &Dependent { unit: &unit, target, real, quad: None }, observer)
+impl CubeFace {
+    fn run(&self, inputs: &[i64], _: &Conditions, observer: &mut impl Observer) -> [i64; 3] {
+        let unit = cube(inputs[0]);
+        let target = Target::Vector([1, 2, 3].map(|n| float(inputs[n])));
+        let real = target.followed(|| [0.0; 2]);
+        met(&unit, &Dependent { unit: &unit, target, real, quad: None }, observer)
+    }
 }
 
 impl Unit for CubeFace {
@@ -339,13 +334,7 @@ impl Unit for CubeFace {
         lattice.chain(infinite).collect()
     }
 
-    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        put(results, toward_floats(inputs, &mut Silent));
-    }
-
-    fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
-        toward_floats(inputs, recorder);
-    }
+    computed!(plain run);
 }
 
 /// The filter and the levels for a level of detail.

@@ -1,8 +1,9 @@
 //! One unit of the OpenGL texture environment.
 
-use super::program::{self, RULES, Through};
-use super::{Column, Conditions, Kind, Reach, Unit, bytes, colors, named};
+use super::program::{self, RULES, Through, lowered_by};
+use super::{Column, Conditions, Kind, Reach, Unit, bytes, colors, named, paired, put};
 use ninebit::state::{Combiners, Named, Profile, Register, Scale};
+use ninebit::trace::{Recorder, Silent};
 use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit as Environment,
@@ -30,19 +31,6 @@ fn lowered(unit: Environment, format: BaseFormat, profile: Profile) -> Option<Co
 /// Returns the registers of a pixel: the texture's inputs from `first` on, then those of the primary colour.
 fn places(first: usize) -> [(Register, usize); 2] {
     [(Register::Texture0, first), (Register::PrimaryColor, first + 4)]
-}
-
-/// Computes rows in block lanes. The columns of the constant follow those of the primary colour.
-fn block(
-    inputs: &[i64],
-    varying: usize,
-    first: usize,
-    conditions: &Conditions,
-    out: &mut [u8],
-    lower: impl Fn(&[i64]) -> Option<Combiners>,
-) -> Option<[u64; 2]> {
-    let through = if varying >= first + 8 { Through::Constant } else { Through::Register };
-    (varying >= first).then(|| program::block(inputs, varying, through, &places(first), conditions, out, lower))?
 }
 
 /// The modes of OpenGL 1.1.
@@ -90,13 +78,7 @@ impl Unit for Classic {
         inputs[2..6].copy_from_slice(&held);
     }
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        program::run(classic(inputs, conditions.profile), &places(2), inputs, conditions, results);
-    }
-
-    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        block(inputs, varying, 2, conditions, out, |inputs| classic(inputs, conditions.profile))
-    }
+    lowered_by!(classic, |_| places(2), |_, varying| Through::of_column(varying, 2, 10));
 }
 
 /// The combine functions.
@@ -168,11 +150,5 @@ impl Unit for Combine {
         }
     }
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        program::run(combine(inputs, conditions.profile), &places(7), inputs, conditions, results);
-    }
-
-    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        block(inputs, varying, 7, conditions, out, |inputs| combine(inputs, conditions.profile))
-    }
+    lowered_by!(combine, |_| places(7), |_, varying| Through::of_column(varying, 7, 15));
 }

@@ -1,9 +1,10 @@
 //! One Direct3D texture stage.
 
-use super::program::{self, RULES, Through};
+use super::program::{self, RULES, Through, lowered_by};
 use super::texture_environment::some;
-use super::{Column, Conditions, Reach, Unit, bytes, colors, named};
+use super::{Column, Conditions, Reach, Unit, bytes, colors, named, paired, put};
 use ninebit::state::{Combiners, Named, Profile, Register};
+use ninebit::trace::{Recorder, Silent};
 use ninebit_program::Spanned;
 use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
@@ -82,17 +83,7 @@ impl Unit for Stage {
         gives [program::results()]
     );
 
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let lowered = lowered(inputs, conditions.profile);
-        program::run(lowered, &places(inputs), inputs, conditions, results);
-    }
-
-    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
-        let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);
-        let through = if varying >= FACTOR { Through::Constant } else { Through::Register };
-        let has = varying >= CONFIGURATION;
-        has.then(|| program::block(inputs, varying, through, &places(inputs), conditions, out, lower))?
-    }
+    lowered_by!(lowered, places, |_, varying| Through::of_column(varying, CONFIGURATION, FACTOR));
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         // Inputs that are not read do not vary.

@@ -1,18 +1,13 @@
 //! The operation `ninebit op blend`: a fragment blended with what a surface holds.
 
 use clap::Args;
-use ninebit::combiner::registers::channel_name;
-use ninebit::engine;
 use ninebit::legality;
-use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::*;
-use ninebit::trace::Observer;
-use serde_json::json;
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::units::ConfiguredBlend;
 
-use super::{
-    Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, inputs, set, words,
-};
+use super::{Column, CommandLine, Common, Context, Failure, ProfileArgument, Setup, columns, inputs, set, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -46,12 +41,6 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// The planned draw of the pixel. Each case has its own colours.
-struct Pixel {
-    plan: Plan,
-    surface: SurfaceFormat,
-}
-
 /// The inputs: their names in traces and on the command line.
 const COLORS: [(&str, &str); 3] =
     [("fragment", "source"), ("destination", "destination"), ("blend_constant", "constant")];
@@ -66,31 +55,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         legality::surface::blending(arguments.surface, line.place(&["surface"])),
     ];
     line.accept(findings.into_iter().flatten(), context)?;
-    let corners = [[0.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 1.0]];
-    let draw = Draw {
-        vertices: corners.into_iter().map(|position| Vertex { position, ..Vertex::default() }).collect(),
-        indices: [0, 1, 2].into(),
-        combiners: Combiners::showing(FinalRegister::ConstantColor0),
-        blend: Some(Blend { equation, source, destination }),
-        ..Draw::default()
-    };
-    let targets = vec![Target::new(1, 1, arguments.surface)];
-    let scene = Scene { profile, targets, draws: vec![draw], ..Scene::default() };
-    // Each case has its own colours, so nothing may be pruned because of the draw's colours.
-    let options = PlanOptions { prune: false, ..PlanOptions::default() };
-    let mut plan = Plan::compile(&scene, &options).map_err(|_| Failure::fault("a pixel cannot be planned"))?;
-    for draw in &mut plan.draws {
-        draw.blended = draw.written;
-    }
+    let unit = ConfiguredBlend::new(Blend { equation, source, destination }, arguments.surface, profile)
+        .map_err(|_| Failure::fault("a pixel cannot be planned"))?;
     let stored = arguments.stored.map(|word| surface::read(arguments.surface, word).map(i64::from));
     let given = [arguments.source, stored.or(arguments.destination), Some(arguments.constant)];
-    let mut columns = Vec::new();
-    for ((name, option), color) in COLORS.into_iter().zip(given) {
-        let how = format!("write `--{option} R,G,B,A`, or give a table with `--inputs`");
-        let channels = [0, 1, 2, 3].map(|channel| format!("{name}.{}", channel_name(channel)));
-        let mut channels = channels.map(|name| Column::new((&name, &name), 0..=255, 255, how.as_str()));
-        set(&mut channels, color.into_iter().flatten())?;
-        columns.extend(channels);
+    let mut columns = columns(&unit, &[], |_| 255, "");
+    for ((own, (_, option)), color) in columns.chunks_mut(4).zip(COLORS).zip(given) {
+        for column in &mut *own {
+            column.how_to_give = format!("write `--{option} R,G,B,A`, or give a table with `--inputs`");
+        }
+        set(own, color.into_iter().flatten())?;
     }
     let find = |_: &[Column], name: &str| {
         let (color, channel) = name.split_once('.')?;
@@ -98,48 +72,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Some(4 * color + words::channel(channel)?)
     };
     let known = "source.r, source.g, source.b, source.a and so on for destination, constant";
-    let chip = Some((arguments.profile.profile, Policies::DEFAULT));
-    let pixel = Pixel { plan, surface: arguments.surface };
-    Setup { find, chip, ..Setup::new("blend", columns, known, pixel) }.drive(&arguments.common)
-}
-
-impl Operation for Pixel {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        // The ranges of the columns keep every value within a byte.
-        let color =
-            |n: usize| -> [u8; 4] { std::array::from_fn(|channel| values[4 * n + channel].clamp(0, 255) as u8) };
-        let mut plan = self.plan.clone();
-        for target in &mut plan.targets {
-            target.clear_color = color(1);
-        }
-        for draw in &mut plan.draws {
-            draw.final_combiner.state.constants[0] = color(0);
-            draw.blend_constant = color(2);
-        }
-        // The pixel exists, and the draw covers it.
-        let Ok(trace) = engine::trace(&plan, 0, (0, 0), None) else { return Results::new() };
-        let mut results = Results::new();
-        for step in trace.draws.into_iter().flat_map(|draw| draw.steps) {
-            if step.block != "blend" && step.block != "store" {
-                continue;
-            }
-            let blended = step.name.strip_prefix("blend.").filter(|rest| rest.len() == 1);
-            if blended.is_some() || step.name == "stored.word" {
-                results.push((step.name.clone(), json!(step.value)));
-            }
-            if O::ON {
-                observer.step(step);
-            }
-        }
-        let kept = surface::kept_channels(self.surface);
-        for (channel, bits) in surface::channel_bits(self.surface).into_iter().enumerate() {
-            if kept >> channel & 1 != 0 {
-                let field = (trace.word & bits) >> bits.trailing_zeros();
-                results.push((format!("field.{}", channel_name(channel)), json!(field)));
-            }
-        }
-        results
-    }
+    let conditions = Conditions { profile, policies: Policies::DEFAULT };
+    Setup { find, conditions, depends: true, ..Setup::new(&unit, columns, known) }.drive(&arguments.common)
 }
 
 fn word(text: &str) -> Result<u32, String> {

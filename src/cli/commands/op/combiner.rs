@@ -1,15 +1,12 @@
 //! The operation `ninebit op combiner`: one portion of a general stage.
 
 use clap::{Args, ValueEnum};
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
-use ninebit::combiner::registers::{self, channel_name};
 use ninebit::legality::{self, Help, Notation};
 use ninebit::place::{Part, Place, Places};
-use ninebit::state::{Bias, Combiners, Component, GeneralStage, MuxSelect, Policies, Register, Scale};
-use ninebit::trace::Observer;
-use serde_json::json;
+use ninebit::state::{Bias, Combiners, Component, GeneralStage, MuxSelect, Register, Scale};
+use ninebit_vectors::units::ConfiguredStage;
 
-use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, Operation, Results, inputs, words};
+use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -63,22 +60,15 @@ enum Half {
     Alpha,
 }
 
-/// A stage with the contents of registers.
-struct Stage {
-    stage: GeneralStage,
-    half: Half,
-    mux_select: MuxSelect,
-    policies: Policies,
-}
-
 /// Runs one general stage.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    arguments.contents.drive("combiner", |profile, policies| {
+    arguments.contents.drive(|profile| {
         let line = CommandLine::of_this_process();
         let (stage, places) = stage(arguments, &line);
         let combiners = Combiners { stages: vec![stage], ..Combiners::default() };
         line.accept(legality::check(&combiners, profile, &places, &Options).findings, context)?;
-        Ok(Stage { stage, half: arguments.portion, mux_select: arguments.mux_select, policies })
+        let portion = if arguments.portion == Half::Alpha { Component::Alpha } else { Component::Rgb };
+        Ok(ConfiguredStage { stage, portion, mux_select: arguments.mux_select })
     })
 }
 
@@ -145,34 +135,5 @@ fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
         (false, _) if arguments.mux => [None, None, Some(Register::Spare0)],
         (false, true) => [Some(Register::Spare0), Some(Register::Spare1), None],
         (false, false) => [Some(Register::Spare0), None, None],
-    }
-}
-
-impl Operation for Stage {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let mut registers = inputs::load(values);
-        let stage = PlannedStage {
-            index: 0,
-            rgb: PlannedPortion::whole(self.stage.rgb, 7),
-            alpha: PlannedPortion::whole(self.stage.alpha, 8),
-            constants: self.stage.constants,
-            // The registers have the constants already.
-            reads_constants: false,
-        };
-        general::run(&stage, self.mux_select, &self.policies, &mut registers, observer);
-        let (portion, channels) = match self.half {
-            Half::Rgb => (&stage.rgb, 0..3),
-            Half::Alpha => (&stage.alpha, 3..4),
-        };
-        let mut results = Results::new();
-        let outputs = [portion.portion.ab_output, portion.portion.cd_output, portion.portion.sum_output];
-        for (n, register) in outputs.into_iter().enumerate().filter(|(n, _)| portion.live[*n] != 0) {
-            let blue = portion.blue_to_alpha.get(n).is_some_and(|blue| *blue).then_some(3);
-            for channel in channels.clone().chain(blue) {
-                let name = format!("{}.{}", registers::name(register), channel_name(channel));
-                results.push((name, json!(registers.read(register, channel).fixed)));
-            }
-        }
-        results
     }
 }

@@ -1,17 +1,10 @@
 //! The operation `ninebit op cube`: a direction to a face of a cube map and coordinates on it.
 
 use clap::Args;
-use ninebit::state::{AddressMode, Named, TextureFormat, TextureKind};
-use ninebit::texture::cube::Face;
-use ninebit::trace::Observer;
-use ninebit_vectors::units::{CubeDirection, LinearAddress, NearestAddress};
-use serde_json::json;
+use ninebit::state::{TextureFormat, TextureKind};
+use ninebit_vectors::units::ConfiguredCube;
 
-use super::address::addressed;
-use super::unit::plain_row;
-use super::{
-    Column, CommandLine, Common, Context, Failure, Operation, ProfileArgument, Results, Setup, set, texture_checks,
-};
+use super::{CommandLine, Common, Context, Failure, ProfileArgument, Setup, columns, set, texture_checks};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -27,14 +20,6 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// The operation: looks up a direction in a cube map.
-struct Cube {
-    side: u32,
-}
-
-/// Largest component of a direction. It has as many bits as on the chip (TEX-12).
-const MAX_COMPONENT: i64 = 1 << 28;
-
 /// Looks up a cube map.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let side = arguments.size;
@@ -42,25 +27,11 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let (kind, format) = (TextureKind::Cube, TextureFormat::R5G6B5);
     let finding = texture_checks(&arguments.profile).sides(kind, format, [side; 2], line.place(&["size"]));
     line.accept(finding, context)?;
+    let unit = ConfiguredCube { side };
     let how = "write `--direction X,Y,Z`, or give a table with `--inputs`";
-    let names = [("unit0.N_x0", "x"), ("unit0.N_y0", "y"), ("unit0.N_z0", "z")];
-    let mut columns = names.map(|names| Column::new(names, -MAX_COMPONENT..=MAX_COMPONENT, 1, how));
+    let mut columns = columns(&unit, &["x", "y", "z"], |_| 1, how);
     set(&mut columns, arguments.direction.into_iter().flatten())?;
-    Setup::new("cube", columns.into(), "x, y, z", Cube { side }).drive(&arguments.common)
-}
-
-impl Operation for Cube {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let found = plain_row(&CubeDirection, &[&[self.side.into()], values].concat(), observer);
-        let clamped = (AddressMode::ClampToEdge, self.side);
-        let [x, y] = [found[1], found[2]].map(|c| addressed(&NearestAddress, clamped, c)[2]);
-        let linear = [found[1], found[2]].map(|c| addressed(&LinearAddress, clamped, c)).map(|of| [of[3], of[5]]);
-        let names = ["face", "u", "v", "x", "y", "linear_x", "linear_y"].map(str::to_owned);
-        let face = Face::NAMES[found[0] as usize];
-        let values =
-            [json!(face), json!(found[1]), json!(found[2]), json!(x), json!(y), json!(linear[0]), json!(linear[1])];
-        names.into_iter().zip(values).collect()
-    }
+    Setup::new(&unit, columns, "x, y, z").drive(&arguments.common)
 }
 
 /// Reads three decimal numbers, as integers of the same ratios.

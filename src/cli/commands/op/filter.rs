@@ -1,15 +1,9 @@
 //! The operation `ninebit op filter`: four texels mixed, or one chosen.
 
 use clap::Args;
-use ninebit::number::Paired;
-use ninebit::texture::report::Report;
-use ninebit::texture::unit;
-use ninebit::trace::{Observer, Rule};
-use ninebit_vectors::units::{FilteredChannel, one_channel};
-use serde_json::json;
+use ninebit_vectors::units::ConfiguredFilter;
 
-use super::unit::plain_row;
-use super::{COORDINATES, Column, Common, Failure, Operation, Results, Setup, set, words};
+use super::{Common, Failure, Setup, columns, set, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -29,50 +23,26 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// The operation: filters four texels with weights, or at coordinates.
-struct Mix {
-    signed: bool,
-    /// Whether the last two columns are coordinates instead of weights.
-    coordinates: bool,
-}
-
 /// Runs the operation.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let coordinates = arguments.at.is_some();
-    let texel = |name: &str| {
-        let range = if arguments.signed { -128..=127 } else { 0..=255 };
-        let column =
-            Column::new((&format!("unit0.texel{name}.r"), &format!("t{name}")), range, 255, "write `--texels A,B,C,D`");
-        Column { signed_texel: arguments.signed, ..column }
+    let unit = ConfiguredFilter { signed: arguments.signed, coordinates: arguments.at.is_some() };
+    let (short, known) = match unit.coordinates {
+        true => (["u", "v"], "u, v"),
+        false => (["wu", "wv"], "wu, wv (or u, v, with `--at 0,0`)"),
     };
-    let (names, range, known) = match coordinates {
-        true => ([("unit0.u", "u"), ("unit0.v", "v")], COORDINATES, "u, v"),
-        false => {
-            let names = [("unit0.weight_u", "wu"), ("unit0.weight_v", "wv")];
-            (names, 0..=255, "wu, wv (or u, v, with `--at 0,0`)")
-        }
-    };
-    let mut texels = ["00", "10", "01", "11"].map(texel);
-    set(&mut texels, arguments.texels.into_iter().flatten())?;
-    let mut last = names.map(|names| Column::new(names, range.clone(), 256, "write `--weights U,V` or `--at U,V`"));
-    set(&mut last, arguments.at.or(arguments.weights).into_iter().flatten())?;
-    let known = format!("t00, t10, t01, t11 (column, row), {known}");
-    let columns = texels.into_iter().chain(last).collect();
-    Setup::new("filter", columns, known, Mix { signed: arguments.signed, coordinates }).drive(&arguments.common)
-}
-
-impl Operation for Mix {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let mut row = [&[self.signed.into()], values].concat();
-        if self.coordinates {
-            let (unit, at) = (one_channel(self.signed), [values[4], values[5]]);
-            let (report, ideal) = (Report { unit: &unit, prefix: "" }, at.map(|c| c as f64));
-            let (_, weights) = unit::footprint_weights::<Paired, O>(&report, at, ideal, Rule::Int4, observer);
-            row[5..].copy_from_slice(&weights.map(|weight| weight.fixed.into()));
-        }
-        let results = plain_row(&FilteredChannel, &row, observer);
-        vec![("mix".to_owned(), json!(results[0])), ("register".to_owned(), json!(results[1]))]
+    let names = ["t00", "t10", "t01", "t11", short[0], short[1]];
+    let per_one = |n| if n < 4 { 255 } else { 256 };
+    let mut columns = columns(&unit, &names, per_one, "write `--texels A,B,C,D`");
+    for column in &mut columns[..4] {
+        column.signed_texel = arguments.signed;
     }
+    for column in &mut columns[4..] {
+        column.how_to_give = "write `--weights U,V` or `--at U,V`".to_owned();
+    }
+    set(&mut columns[..4], arguments.texels.into_iter().flatten())?;
+    set(&mut columns[4..], arguments.at.or(arguments.weights).into_iter().flatten())?;
+    let known = format!("t00, t10, t01, t11 (column, row), {known}");
+    Setup::new(&unit, columns, known).drive(&arguments.common)
 }
 
 fn texels(text: &str) -> Result<[i64; 4], String> {

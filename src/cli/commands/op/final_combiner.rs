@@ -1,17 +1,14 @@
 //! The operation `ninebit op final`: the final combiner on given registers.
 
 use clap::Args;
-use ninebit::combiner::final_combiner::{self, PlannedFinal};
-use ninebit::combiner::registers::channel_name;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality;
 use ninebit::place::{Place, Places};
-use ninebit::state::{Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, Policies, Profile};
-use ninebit::trace::Observer;
-use serde_json::json;
+use ninebit::state::{Combiners, Component, FinalCombiner, FinalRegister, GeneralStage};
+use ninebit_vectors::units::ConfiguredFinal;
 
 use super::combiner::Options;
-use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, Operation, Results, inputs, words};
+use super::{CommandLine, Contents, Context, Failure, FourInputs, Input, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -39,22 +36,14 @@ pub(crate) struct Arguments {
     contents: Contents,
 }
 
-/// The final combiner with the contents of registers.
-struct Final {
-    planned: PlannedFinal,
-    profile: Profile,
-    policies: Policies,
-}
-
 /// Runs the final combiner.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    arguments.contents.drive("final combiner", |profile, policies| {
+    arguments.contents.drive(|profile| {
         let line = CommandLine::of_this_process();
         let (combiners, places, findings) = program(arguments, &line);
         let checked = legality::check(&combiners, profile, &places, &Options);
         line.accept(findings.into_iter().chain(checked.findings), context)?;
-        let state = combiners.final_combiner;
-        Ok(Final { planned: planned(state, arguments.g.is_some()), profile, policies })
+        Ok(ConfiguredFinal { state: combiners.final_combiner, alpha: arguments.g.is_some() })
     })
 }
 
@@ -76,30 +65,4 @@ fn program(arguments: &Arguments, line: &CommandLine) -> (Combiners, Places, Vec
     (state.invert_spare0, state.invert_secondary) = (arguments.invert_spare0, arguments.invert_secondary);
     let stages = vec![GeneralStage::default()];
     (Combiners { stages, final_combiner: state, ..Combiners::default() }, places, findings)
-}
-
-/// Plans the final combiner, all of which is needed.
-pub(super) fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
-    let reads = |register: FinalRegister| state.inputs[..4].iter().any(|input| input.register == register);
-    let product = reads(FinalRegister::ETimesF) || state.inputs[4..].iter().any(|input| !input.is_zero());
-    PlannedFinal {
-        state,
-        live: if alpha { 15 } else { 7 },
-        product: if product { 7 } else { 0 },
-        sum: if reads(FinalRegister::Spare0PlusSecondary) { 7 } else { 0 },
-        // The registers have the constants already.
-        reads_constants: false,
-        lerps: true,
-    }
-}
-
-impl Operation for Final {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let mut registers = inputs::load(values);
-        let fragment = final_combiner::run(&self.planned, self.profile, &self.policies, &mut registers, observer);
-        (0..4)
-            .filter(|channel| self.planned.live >> channel & 1 != 0)
-            .map(|channel| (format!("fragment.{}", channel_name(channel)), json!(fragment[channel].fixed)))
-            .collect()
-    }
 }

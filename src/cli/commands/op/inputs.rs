@@ -1,14 +1,12 @@
 //! Register contents on the command line and in tables.
 
-use std::ops::RangeInclusive;
-
 use clap::Args;
-use ninebit::combiner::registers::{self, Registers, channel_name};
-use ninebit::number::Paired;
-use ninebit::state::{Named, Policies, Profile, Register};
-use ninebit_vectors::units;
+use ninebit::state::{Combiners, Named, Profile, Register};
+use ninebit_vectors::Unit;
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::units::ConfiguredProgram;
 
-use super::{Column, Common, Failure, Input, Operation, PolicyArguments, ProfileArgument, Setup, set, words};
+use super::{Column, Common, Failure, Input, PolicyArguments, ProfileArgument, Setup, set, words};
 
 /// A name and four numbers, as `--in` gives them.
 #[derive(Clone, Debug)]
@@ -69,32 +67,24 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    /// Runs an operation on registers. `operation` returns it for a chip and policies.
-    pub(super) fn drive<T: Operation>(
-        &self,
-        name: &'static str,
-        operation: impl FnOnce(Profile, Policies) -> Result<T, Failure>,
-    ) -> Result<(), Failure> {
-        let (profile, policies) = (self.profile.profile, self.policies.policies()?);
-        let mut columns = register_columns();
+    /// Runs a unit on registers. `unit` returns it for a chip.
+    pub(super) fn drive<U: Unit>(&self, unit: impl FnOnce(Profile) -> Result<U, Failure>) -> Result<(), Failure> {
+        let conditions = Conditions { profile: self.profile.profile, policies: self.policies.policies()? };
+        let idle = ConfiguredProgram { combiners: Combiners::default() };
+        let mut columns = register_columns(&idle);
         assign(&mut columns, &self.registers)?;
         for (register, color) in [(Register::ConstantColor0, self.const0), (Register::ConstantColor1, self.const1)] {
             set(&mut columns[4 * register as usize..], color.into_iter().flatten())?;
         }
-        on_registers(name, columns, (profile, policies), operation(profile, policies)?).drive(&self.common)
+        on_registers(&unit(conditions.profile)?, columns, conditions).drive(&self.common)
     }
 }
 
-/// Sets up an operation on registers, with their columns.
-pub(super) fn on_registers<T: Operation>(
-    name: &'static str,
-    columns: Vec<Column>,
-    chip: (Profile, Policies),
-    operation: T,
-) -> Setup<T> {
+/// Sets up a unit on registers, with their columns.
+pub(super) fn on_registers(unit: &dyn Unit, columns: Vec<Column>, conditions: Conditions) -> Setup<'_> {
     let known = "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, spare0, spare1, const0, const1, fog";
     let find = |_: &[Column], name: &str| register_column(name);
-    Setup { find, chip: Some(chip), ..Setup::new(name, columns, known, operation) }
+    Setup { find, conditions, depends: true, ..Setup::new(unit, columns, known) }
 }
 
 /// Reads R, G, B, A. One number is used for all four, and three numbers leave alpha at 255, as in scenes.
@@ -116,26 +106,14 @@ fn four(numbers: &[i64]) -> [i64; 4] {
     }
 }
 
-/// Range of a general register.
-const SIGNED: RangeInclusive<i64> = -256..=255;
-/// Range of a constant.
-const BYTE: RangeInclusive<i64> = 0..=255;
-
-/// Returns a column for each channel of each register, all 0.
-pub(super) fn register_columns() -> Vec<Column> {
-    let channels = Register::ALL.iter().flat_map(|register| (0..4).map(|channel| (*register, channel)));
-    channels
-        .map(|(register, channel)| {
-            let range = match register {
-                Register::Zero => 0..=0,
-                Register::ConstantColor0 | Register::ConstantColor1 => BYTE,
-                _ => SIGNED,
-            };
-            let name = format!("{}.{}", registers::name(register), channel_name(channel));
-            let how = format!("write `--in {name}=N`");
-            Column { value: Some(0), ..Column::new((&name, &name), range, 255, how) }
-        })
-        .collect()
+/// Returns the columns of a unit on registers, all 0.
+pub(super) fn register_columns(unit: &dyn Unit) -> Vec<Column> {
+    let mut columns = super::columns(unit, &[], |_| 255, "");
+    for column in &mut columns {
+        column.how_to_give = format!("write `--in {}=N`", column.input.name);
+        column.value = Some(0);
+    }
+    columns
 }
 
 /// Returns the index of the column of `REGISTER.CHANNEL` among [`register_columns`].
@@ -161,15 +139,4 @@ pub(super) fn assign(columns: &mut [Column], assignments: &[Assignment]) -> Resu
         set(&mut columns[4 * register as usize..], four(values))?;
     }
     Ok(())
-}
-
-/// Returns the registers. Each integer is also the ideal's real number.
-pub(super) fn load(values: &[i64]) -> Registers<Paired> {
-    let mut registers = Registers::new();
-    for (register, values) in Register::ALL.iter().zip(values.chunks(4)) {
-        for (channel, value) in values.iter().enumerate() {
-            registers.write(*register, channel, units::paired(*value));
-        }
-    }
-    registers
 }

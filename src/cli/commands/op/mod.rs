@@ -24,7 +24,7 @@ use super::program_file::ProgramArguments;
 use super::{Context, Exit, Failure, Format, PolicyArguments, Report, vectors};
 use command_line::CommandLine;
 use inputs::{Assignment, Contents, FourInputs};
-use operation::{COORDINATES, Column, Common, Operation, ProfileArgument, Results, Setup, set};
+use operation::{Column, Common, ProfileArgument, Setup, columns, set};
 use words::Input;
 
 #[derive(Debug, Subcommand)]

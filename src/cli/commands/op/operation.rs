@@ -1,9 +1,8 @@
-//! What all operations share: integers with names as inputs, a trace, and results with names.
+//! What all operations share: a unit, its inputs as options or as a table, a trace, and results with names.
 
 use std::collections::HashSet;
 use std::ffi::OsString;
 use std::fmt::Write;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -11,7 +10,9 @@ use ninebit::number::{Lane, Paired};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit::trace::{Observer, Recorder, Step};
 use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
+use ninebit_vectors::Unit;
 use ninebit_vectors::column::{Column as Input, Domain, Kind};
+use ninebit_vectors::unit::{Conditions, observed};
 use serde_json::{Map, Value, json};
 
 use super::words::{self, number};
@@ -39,7 +40,7 @@ pub(super) struct Common {
     output: Option<OsString>,
 }
 
-/// An integer input of an operation.
+/// An input of a unit.
 #[derive(Clone, Debug)]
 pub(super) struct Column {
     /// Its name in traces, and the numbers that it takes.
@@ -57,17 +58,6 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// Returns a column of integers without a value.
-    pub(super) fn new(
-        (name, short): (&str, &str),
-        range: RangeInclusive<i64>,
-        per_one: i64,
-        how_to_give: impl Into<String>,
-    ) -> Column {
-        let input = Input::signed(name, 64, *range.start(), *range.end());
-        Column { per_one, ..Column::from_input(input, short, how_to_give) }
-    }
-
     /// Returns a column without a value.
     pub(super) fn from_input(input: Input, short: &str, how_to_give: impl Into<String>) -> Column {
         let (short, how_to_give) = (short.to_owned(), how_to_give.into());
@@ -113,6 +103,16 @@ impl Column {
     }
 }
 
+/// Returns the columns of a unit without values. `short` are their short names, if they have some, and `per_one` returns the number that stands
+/// for 1.0 in a column.
+pub(super) fn columns(unit: &dyn Unit, short: &[&str], per_one: fn(usize) -> i64, how_to_give: &str) -> Vec<Column> {
+    let columns = unit.inputs().into_iter().enumerate().map(|(n, input)| {
+        let short = short.get(n).map_or_else(|| input.name.clone(), |short| (*short).to_owned());
+        Column { per_one: per_one(n), ..Column::from_input(input, &short, how_to_give) }
+    });
+    columns.collect()
+}
+
 /// Sets the values of columns, from the first on.
 pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>) -> Result<(), Failure> {
     for (column, value) in columns.iter_mut().zip(values) {
@@ -124,48 +124,65 @@ pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>)
     Ok(())
 }
 
-/// Range of coordinates, in texels or in 1/256 texel.
-pub(super) const COORDINATES: RangeInclusive<i64> = -16_777_216..=16_777_215;
-
 /// The results in order: names and values.
 pub(super) type Results = Vec<(String, Value)>;
 
-/// An operation on integers.
-pub(super) trait Operation {
-    /// Returns an error if the values of the columns do not go together.
-    fn check(&self, _values: &[i64]) -> Result<(), String> {
-        Ok(())
-    }
-
-    /// Runs the operation on one value for each column.
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results;
-}
-
-/// An operation with its columns.
-pub(super) struct Setup<T> {
-    /// Title of the results.
-    pub(super) name: &'static str,
+/// A unit with the values of its inputs.
+pub(super) struct Setup<'u> {
+    /// The unit.
+    pub(super) unit: &'u dyn Unit,
+    /// The chip and the policies.
+    pub(super) conditions: Conditions,
+    /// Whether the results depend on chip and policies, which are then printed.
+    pub(super) depends: bool,
     /// The inputs.
     pub(super) columns: Vec<Column>,
     /// Returns the index of the column with a name, which may be a short one.
     pub(super) find: fn(&[Column], &str) -> Option<usize>,
     /// Names that `find` knows, for messages.
     pub(super) known: String,
-    /// Chip and policies, if the operation depends on them.
-    pub(super) chip: Option<(Profile, Policies)>,
-    /// The operation.
-    pub(super) operation: T,
+    /// Returns a result as it is printed.
+    pub(super) written: fn(&Input, i64) -> Value,
 }
 
-impl<T: Operation> Setup<T> {
-    /// Sets up an operation that is the same on all chips and whose columns are found by their own names.
-    pub(super) fn new(name: &'static str, columns: Vec<Column>, known: impl Into<String>, operation: T) -> Setup<T> {
+/// Returns a result as JSON has it: a number, or the text of tables.
+fn written(column: &Input, value: i64) -> Value {
+    match column.kind {
+        Kind::Unsigned(_) | Kind::Signed(_) => json!(value),
+        _ => json!(column.kind.write(value)),
+    }
+}
+
+impl<'u> Setup<'u> {
+    /// Sets up a unit that is the same on all chips and whose columns are found by their own names.
+    pub(super) fn new(unit: &'u dyn Unit, columns: Vec<Column>, known: impl Into<String>) -> Setup<'u> {
         let find =
             |columns: &[Column], name: &str| columns.iter().position(|c| c.input.name == name || c.short == name);
-        Setup { name, columns, find, known: known.into(), chip: None, operation }
+        let conditions = Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT };
+        Setup { unit, conditions, depends: false, columns, find, known: known.into(), written }
     }
 
-    /// Runs the operation on the given values, or on a table of cases.
+    /// Returns the results of a row. Columns of one name are one result, an array. The observer receives the steps.
+    pub(super) fn results(&self, values: &[i64], observer: &mut impl Observer) -> Results {
+        let mut results = Results::new();
+        for (column, value) in self.unit.results().iter().zip(observed(self.unit, values, &self.conditions, observer)) {
+            let value = (self.written)(column, value);
+            match results.last_mut().filter(|(name, _)| *name == column.name) {
+                Some((_, Value::Array(all))) => all.push(value),
+                Some((_, first)) => *first = json!([first, value]),
+                None => results.push((column.name.clone(), value)),
+            }
+        }
+        results
+    }
+
+    /// Returns an error if the values of the columns do not go together.
+    pub(super) fn check(&self, values: &[i64]) -> Result<(), String> {
+        let fits = self.unit.accepts(values, self.conditions.profile);
+        if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.unit.name())) }
+    }
+
+    /// Computes and prints the results of the given values, or of a table of cases.
     pub(super) fn drive(&self, common: &Common) -> Result<(), Failure> {
         if let Some(path) = &common.inputs {
             return table::run(self, path, common.output.as_deref());
@@ -176,19 +193,19 @@ impl<T: Operation> Setup<T> {
             column.value.ok_or_else(missing)
         };
         let values = self.columns.iter().map(value).collect::<Result<Vec<i64>, Failure>>()?;
-        self.operation
-            .check(&values)
+        self.check(&values)
             .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
         let mut recorder = Recorder::default();
-        let results = self.operation.run(&values, &mut recorder);
+        let results = self.results(&values, &mut recorder);
+        let Conditions { profile, policies } = &self.conditions;
         let mut steps = given(&self.columns, &values, &recorder.steps);
         steps.append(&mut recorder.steps);
         let json = || {
             let value = json!({
                 "format": "ninebit-op-1",
-                "operation": self.name,
-                "profile": self.chip.map(|(profile, _)| profile.name()),
-                "policies": self.chip.map(|(_, policies)| policies_value(&policies)),
+                "operation": self.unit.name(),
+                "profile": self.depends.then(|| profile.name()),
+                "policies": self.depends.then(|| policies_value(policies)),
                 "steps": steps_value(&steps),
                 "results": results.iter().cloned().collect::<Map<String, Value>>(),
             });
@@ -199,8 +216,9 @@ impl<T: Operation> Setup<T> {
 
     fn text(&self, steps: &[Step], results: &Results) -> String {
         let mut out = String::new();
-        if let Some((profile, policies)) = &self.chip {
-            let _ = writeln!(out, "{}, profile {}", self.name, profile.name());
+        if self.depends {
+            let Conditions { profile, policies } = &self.conditions;
+            let _ = writeln!(out, "{}, profile {}", self.unit.name(), profile.name());
             out.push_str(&policies_text(policies));
         }
         if !steps.is_empty() {
@@ -216,7 +234,7 @@ impl<T: Operation> Setup<T> {
     }
 }
 
-/// Returns steps for the given integers that the operation reads.
+/// Returns steps for the given integers that the unit reads.
 fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
     let mut made: HashSet<&str> = HashSet::new();
     let mut read: HashSet<&str> = HashSet::new();

@@ -3,18 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::combiner::final_combiner;
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
-use ninebit::combiner::registers::channel_name;
-use ninebit::state::{Combiners, Policies, Profile, Register};
-use ninebit::trace::{Observer, Step};
+use ninebit::state::{Combiners, Register};
 use ninebit_scene::ProgramLanguage;
-use serde_json::json;
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::units::ConfiguredProgram;
 
-use super::final_combiner::planned;
-use super::{
-    Assignment, Common, Context, Failure, Operation, PolicyArguments, ProgramArguments, Results, Setup, inputs,
-};
+use super::{Assignment, Common, Context, Failure, PolicyArguments, ProgramArguments, Setup, inputs};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -35,20 +29,13 @@ pub(crate) struct Arguments {
     common: Common,
 }
 
-/// A program with the registers of a pixel.
-struct Program {
-    combiners: Combiners,
-    profile: Profile,
-    policies: Policies,
-}
-
 /// Registers that a pixel does not have: constants belong to the program, and SPARE0's alpha begins as TEXTURE0's (CMB-13).
 const OWN: [Register; 4] = [Register::ConstantColor0, Register::ConstantColor1, Register::Spare0, Register::Spare1];
 
 /// Runs a whole pixel program.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let policies = arguments.policies.policies()?;
-    let mut columns = inputs::register_columns();
+    let mut columns = inputs::register_columns(&ConfiguredProgram { combiners: Combiners::default() });
     inputs::assign(&mut columns, &arguments.registers)?;
     let own = |n: usize| OWN.iter().any(|register| n / 4 == *register as usize);
     if let Some((_, column)) = columns.iter().enumerate().find(|(n, column)| own(*n) && column.value != Some(0)) {
@@ -66,41 +53,13 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Failure::usage("which language the program is in is not said", help)
     })?;
     let (scene, _) = arguments.program.read(file, language, context)?;
-    let combiners = scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default();
-    let profile = scene.profile;
-    let program = Program { combiners, profile, policies };
+    let unit =
+        ConfiguredProgram { combiners: scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default() };
+    let conditions = Conditions { profile: scene.profile, policies };
     let setup = Setup {
         find: |_, name| inputs::register_column(name).filter(|n| OWN.iter().all(|own| n / 4 != *own as usize)),
         known: "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, fog".to_owned(),
-        ..inputs::on_registers("program", columns, (profile, policies), program)
+        ..inputs::on_registers(&unit, columns, conditions)
     };
     setup.drive(&arguments.common)
-}
-
-impl Operation for Program {
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let mut registers = inputs::load(values);
-        registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
-        if O::ON {
-            let value = i64::from(registers.read(Register::Spare0, 3).fixed);
-            observer.step(Step::given("given", "CMB-13", "spare0.a", value).per(255).ideal(value as f64));
-        }
-        let constants = |colors: [[u8; 4]; 2], block: &str, observer: &mut O| {
-            for (n, channel) in (0..2).flat_map(|n| (0..4).map(move |channel| (n, channel))).filter(|_| O::ON) {
-                let (name, value) = (format!("constant{n}.{}", channel_name(channel)), i64::from(colors[n][channel]));
-                observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(value as f64));
-            }
-        };
-        for (index, stage) in self.combiners.stages.iter().enumerate() {
-            constants(stage.constants, &format!("general stage {index}"), observer);
-            let (rgb, alpha) = (PlannedPortion::whole(stage.rgb, 7), PlannedPortion::whole(stage.alpha, 8));
-            let planned = PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants: true };
-            general::run(&planned, self.combiners.mux_select, &self.policies, &mut registers, observer);
-        }
-        let state = self.combiners.final_combiner;
-        constants(state.constants, "final combiner", observer);
-        let planned = final_combiner::PlannedFinal { reads_constants: true, ..planned(state, true) };
-        let fragment = final_combiner::run(&planned, self.profile, &self.policies, &mut registers, observer);
-        (0..4).map(|c| (format!("fragment.{}", channel_name(c)), json!(fragment[c].fixed))).collect()
-    }
 }

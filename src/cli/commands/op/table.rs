@@ -10,13 +10,13 @@ use ninebit::trace::Silent;
 use ninebit_files::output::{Destination, write_stdout};
 use ninebit_files::read::{self, Kind, ReadError};
 
-use super::{Exit, Failure, Operation, Report, Setup, operation::shown as written};
+use super::{Exit, Failure, Report, Setup, operation::shown as written};
 
 /// Largest number of refused rows that are listed.
 const MAX_ERRORS: usize = 16;
 
-/// Runs an operation on each line of a table.
-pub(super) fn run(setup: &Setup<impl Operation>, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
+/// Computes each line of a table.
+pub(super) fn run(setup: &Setup<'_>, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
     let destination = output.map(Destination::from);
     let text = read(path)?;
     let results = evaluate(setup, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
@@ -51,7 +51,7 @@ fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Returns the table with its results.
-fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<String, Failure> {
+fn evaluate(setup: &Setup<'_>, path: &Path, text: &str) -> Result<String, Failure> {
     // Empty lines and those that begin with # are not cases.
     let mut lines = (1_usize..)
         .zip(text.lines())
@@ -72,7 +72,7 @@ fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<St
         match row(setup, &columns, &names, &fields, &mut values) {
             Ok(()) if errors.rows > 0 => {}
             Ok(()) => {
-                let results = setup.operation.run(&values, &mut Silent);
+                let results = setup.results(&values, &mut Silent);
                 if out.is_empty() {
                     let results = results.iter().map(|(name, _)| format!("result.{name}"));
                     let all: Vec<String> = names.iter().map(|name| (*name).to_owned()).chain(results).collect();
@@ -98,7 +98,7 @@ fn evaluate(setup: &Setup<impl Operation>, path: &Path, text: &str) -> Result<St
 }
 
 /// Returns the operation's column for each column of the table.
-fn header_columns<T>(setup: &Setup<T>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
+fn header_columns(setup: &Setup<'_>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
     let wrong = |column: usize, what: String| {
         let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
         Failure::invalid("NB0532", message, columns_help(&setup.known))
@@ -128,7 +128,7 @@ fn columns_help(known: &str) -> String {
 
 /// Reads the values of one line.
 fn row(
-    setup: &Setup<impl Operation>,
+    setup: &Setup<'_>,
     columns: &[usize],
     names: &[&str],
     fields: &[&str],
@@ -145,7 +145,7 @@ fn row(
             format!("column {} (`{}`): `{field}` is not {}", index + 1, names[index], column.wants())
         })?;
     }
-    setup.operation.check(values)
+    setup.check(values)
 }
 
 /// The first refused rows as text, and the number of all.

@@ -1,14 +1,12 @@
 //! `ninebit op unit`: any unit of the conformance vectors on given numbers.
 
 use clap::Args;
-use ninebit::state::{Policies, Profile};
-use ninebit::trace::{Observer, Recorder};
+use ninebit::state::Profile;
 use ninebit_vectors::Unit;
-use ninebit_vectors::column::{Column as UnitColumn, Kind};
+use ninebit_vectors::column::Column as UnitColumn;
 use ninebit_vectors::unit::Conditions;
-use serde_json::{Value, json};
 
-use super::{Column, Common, Failure, Operation, PolicyArguments, Results, Setup, vectors, words};
+use super::{Column, Common, Failure, PolicyArguments, Setup, vectors, words};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -47,10 +45,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let columns: Vec<Column> = unit.inputs().into_iter().map(column).collect();
     let known = columns.iter().map(|column| column.input.name.as_str()).collect::<Vec<_>>().join(", ");
     let policies = arguments.policies.policies()?;
-    let mut setup = Setup {
-        chip: Some((profile, policies)),
-        ..Setup::new(unit.name(), columns, known, (unit, Conditions { profile, policies }))
-    };
+    let conditions = Conditions { profile, policies };
+    let mut setup = Setup { conditions, depends: true, ..Setup::new(unit, columns, known) };
     for (name, text) in &arguments.given {
         let Some(place) = (setup.find)(&setup.columns, name) else {
             let message = format!("`{}` has no input `{name}`", unit.name());
@@ -60,40 +56,4 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         column.value = Some(column.read(text).ok_or_else(|| column.refuses(format!("`{text}`")))?);
     }
     setup.drive(&arguments.common)
-}
-
-/// Returns the results of a unit for a row of inputs. The observer receives the steps.
-fn row<O: Observer>(unit: &dyn Unit, inputs: &[i64], conditions: &Conditions, observer: &mut O) -> Vec<i64> {
-    if O::ON {
-        let mut recorder = Recorder::default();
-        unit.trace(inputs, conditions, &mut recorder);
-        recorder.steps.into_iter().for_each(|step| observer.step(step));
-    }
-    let mut results = vec![0; unit.results().len()];
-    unit.evaluate(inputs, conditions, &mut results);
-    results
-}
-
-/// Like [`row`], for a unit that is the same on all chips.
-pub(super) fn plain_row<O: Observer>(unit: &dyn Unit, inputs: &[i64], observer: &mut O) -> Vec<i64> {
-    row(unit, inputs, &Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT }, observer)
-}
-
-impl Operation for (&'static dyn Unit, Conditions) {
-    fn check(&self, values: &[i64]) -> Result<(), String> {
-        let fits = self.0.accepts(values, self.1.profile);
-        if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.0.name())) }
-    }
-
-    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let columns = self.0.results();
-        let results = row(self.0, values, &self.1, observer);
-        let written = |column: &UnitColumn, value: i64| -> Value {
-            match column.kind {
-                Kind::Unsigned(_) | Kind::Signed(_) => json!(value),
-                _ => json!(column.kind.write(value)),
-            }
-        };
-        columns.iter().zip(results).map(|(column, value)| (column.name.clone(), written(column, value))).collect()
-    }
 }

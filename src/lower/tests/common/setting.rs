@@ -1,4 +1,4 @@
-//! Settings of the tests of printed text, and what their random cases start with.
+//! Settings of the tests of printed code, and the parts that their random cases share.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +12,7 @@ pub fn setting(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is no number: {text}")))
 }
 
-/// The registers that a pixel loads.
+/// The registers that hold interpolated or sampled values when a program begins.
 pub const GIVEN: [Register; 7] = [
     Register::PrimaryColor,
     Register::SecondaryColor,
@@ -61,7 +61,7 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Makes a Python command that runs a script of the tests, which renders in software.
+/// Returns a command that runs one of the tests' Python scripts with software rendering.
 pub fn drawing(script: &str) -> Command {
     let mut command = Command::new(python());
     command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe").env("WGPU_BACKEND_TYPE", "Vulkan");

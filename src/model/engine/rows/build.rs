@@ -133,7 +133,7 @@ fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 
 enum Source {
     /// The first channel that always has the same value.
     Channel(usize),
-    /// Always 255.
+    /// The channel is always 255.
     One,
 }
 

@@ -1,7 +1,7 @@
-//! Weights, coordinates and faces of the rows against the definition, by the million.
+//! Compares weights, coordinates and faces of the rows with the definition, for millions of pixels.
 //!
-//! `NINEBIT_EQUIVALENCE_PIXELS=250000000 cargo test --release --lib rows::equivalence_tests` compares 10^9 quotients of 2D coordinates and weights; without
-//! the variable a small part of it runs.
+//! `NINEBIT_EQUIVALENCE_PIXELS=250000000 cargo test --release --lib rows::equivalence_tests` compares 10^9 quotients of 2D coordinates and
+//! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::band::{batch, common, few};
@@ -25,7 +25,7 @@ use crate::texture::coordinates::SampleCoordinates;
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
 
-/// The sequence of the tests.
+/// The random numbers of the tests.
 struct Random(crate::random::Random);
 
 impl Random {
@@ -42,10 +42,11 @@ impl Random {
     }
 }
 
-/// Tiny, slivers, far beyond the frame, one w, few-valued w and coordinates, steep w, one texel a pixel, and round right triangles, whose
-/// weights and coordinates are full of ties. `small`: all of them tiny, with everything else as it is.
+/// Returns a random triangle: tiny ones, slivers, ones far beyond the frame, with one w, with few values of w and coordinates, with steep
+/// w, with one texel for each pixel, and right triangles whose weights and coordinates have many ties. If `small` is set, all of these are
+/// tiny.
 fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
-    // Half of them are tiny: they have few pixels each.
+    // Half of the triangles are tiny, because these have only few pixels each.
     let kind = r.below(18);
     let kind = if kind < 9 { kind } else { 0 };
     let aligned = r.below(3) == 0;
@@ -115,11 +116,11 @@ fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
     vertices
 }
 
-/// Formats of depths.
+/// The texture formats with depths.
 const DEPTHS: &[TextureFormat] =
     &[TextureFormat::Z16, TextureFormat::Z24S8, TextureFormat::Z16F, TextureFormat::Z24S8F];
 
-/// What makes an r of 0 to 1 cover what it is for, or less.
+/// Returns a factor for an r of 0 to 1, after which r spans the layers or the range of the depth format, or a part of it.
 fn steps(r: &mut Random, third: Third) -> f32 {
     match third {
         Third::Reference(format) => match format.depth() {
@@ -130,7 +131,7 @@ fn steps(r: &mut Random, third: Third) -> f32 {
     }
 }
 
-/// No function, or one whose factors lie between 0 and 1 for some coordinates.
+/// Returns a fog function whose factors lie between 0 and 1 for some coordinates, or `None`.
 fn fog(r: &mut Random) -> Option<FogFunction> {
     let round = r.below(3) == 0;
     let [p0, p1] = match r.below(4) {
@@ -142,18 +143,19 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
     Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1, p2: 0.0, per_vertex: r.below(4) == 0 })
 }
 
-/// What the third coordinate is for.
+/// The purpose of the third coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Third {
     Nothing,
     /// Layers of a volume, with an address mode.
     Layers(AddressMode),
-    /// To be compared with depths.
+    /// A depth that is compared with texels of this format.
     Reference(TextureFormat),
 }
 
-/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, the latter two perhaps
-/// with levels, levels of another, and the fog factor, and test depth or w. The first may have several taps. With a third coordinate the projected texture and the other are volumes or depths.
+/// Returns a scene of triangles that read the diffuse colour, a plane texture, a cube map and a projected texture, and fog, and that test
+/// depth or w. All textures are filtered or none is. `cube` and `projected` give the latter two textures levels that are mixed. The first
+/// texture may be anisotropic. With a third coordinate, the last two textures are volumes or depths.
 fn scene(
     vertices: Vec<Vertex>,
     filter: Filter,
@@ -318,7 +320,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     varying: &mut Varying,
     rows: &mut [Lanes256],
 ) {
-    // What an earlier batch left must not pass for this one's.
+    // Results of an earlier batch must not pass for those of this one.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
     interpolators.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
     super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
@@ -387,13 +389,13 @@ fn rows_interpolate_what_the_definition_does() {
     rows_interpolate(0x9e37_79b9_7f4a_7c15);
 }
 
-/// The other half: tests run side by side.
+/// Tests the other half of the pixels. The two tests run in parallel.
 #[test]
 fn rows_interpolate_what_the_definition_does_elsewhere() {
     rows_interpolate(0xbf58_476d_1ce4_e5b9);
 }
 
-/// Half of the pixels, at random places.
+/// Compares half of the pixels, at random places.
 fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
@@ -405,7 +407,7 @@ fn rows_interpolate(seed: u64) {
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let depth = random.of(DepthFormat::ALL);
         let fog = fog(&mut random);
-        // Small ones at last, so many that their textures pay.
+        // The last triangles are small, and so many that building their tables pays.
         let small = pixels >= wanted;
         let mixes = [0; 2].map(|_| random.below(2) == 0);
         let mut vertices: Vec<Vertex> =
@@ -416,7 +418,7 @@ fn rows_interpolate(seed: u64) {
             _ => Third::Nothing,
         };
         let w_buffer = random.below(3) == 0;
-        // r of as many steps as the format has, and w of many.
+        // r covers as many steps as the format has, and w covers many.
         let (of_r, of_w) = (steps(&mut random, third), random.of(&[1.0, 1.0, 64.0, 65536.0, 1e9]));
         for vertex in &mut vertices {
             vertex.texture_coordinates.iter_mut().skip(2).for_each(|set| set[2] *= of_r);
@@ -430,7 +432,7 @@ fn rows_interpolate(seed: u64) {
             panic!("one")
         };
         assert_eq!(compiled.samplers.len(), 4);
-        // The first one, in every place that a sampler can have.
+        // The first sampler is put in every place that a sampler can have.
         let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
         let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
@@ -503,7 +505,7 @@ fn rows_interpolate(seed: u64) {
     );
 }
 
-/// A number of any size, or one of a few.
+/// Returns a number of any magnitude, or one of a few common numbers.
 fn wild(r: &mut Random) -> f32 {
     let sign = if r.below(2) == 0 { 1.0 } else { -1.0 };
     match r.below(8) {
@@ -515,7 +517,8 @@ fn wild(r: &mut Random) -> f32 {
     }
 }
 
-/// Numbers that the vertices give texture shaders, of any size, and coordinates that stages move, on triangles of all kinds.
+/// Compares the numbers that vertices give to texture shaders, of any magnitude, and coordinates that stages move, on triangles of all
+/// kinds.
 #[test]
 fn texture_shaders_take_what_the_definition_takes() {
     use ShaderOperation as O;
@@ -544,7 +547,7 @@ fn texture_shaders_take_what_the_definition_takes() {
         let mut scene =
             scene(vertices, filter, DepthFormat::Z24S8, None, [false; 2], (Third::Nothing, round % 3 == 0, 1));
         let draw = &mut scene.draws[0];
-        // What has been drawn before shows wherever a fragment is dropped.
+        // A dropped fragment shows what was drawn before.
         draw.depth_test = if round % 4 < 2 { None } else { draw.depth_test.take() };
         let unit = |bound| if bound { draw.textures[0] } else { None };
         draw.textures = program.map(|operation| unit(operation.samples()));

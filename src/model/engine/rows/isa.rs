@@ -105,27 +105,27 @@ text! {
         v4: "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true;
     }
     {
-        /// [`band::flush`].
+        /// Calls [`band::flush`] with this instruction set.
         fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
-        /// [`band::enter`].
+        /// Calls [`band::enter`] with this instruction set.
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
-        /// [`band::cover`].
+        /// Calls [`band::cover`] with this instruction set.
         fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
-        /// [`band::plain`].
+        /// Calls [`band::plain`] with this instruction set.
         fn plain(context: &mut TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// [`band::coverage`].
+        /// Calls [`band::coverage`] with this instruction set.
         fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
-        /// [`band::row`].
+        /// Calls [`band::row`] with this instruction set.
         fn row(interpolators: &Interpolators<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
-        /// [`band::row_attributes`].
+        /// Calls [`band::row_attributes`] with this instruction set.
         fn row_attributes(context: &TriangleContext<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
-        /// [`band::box_attributes`].
+        /// Calls [`band::box_attributes`] with this instruction set.
         fn box_attributes(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
-        /// [`band::row_depths`].
+        /// Calls [`band::row_depths`] with this instruction set.
         fn row_depths(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block);
-        /// [`band::box_depths`].
+        /// Calls [`band::box_depths`] with this instruction set.
         fn box_depths(context: &TriangleContext<'_>, block: &mut Block);
-        /// [`band::shade`].
+        /// Calls [`band::shade`] with this instruction set.
         fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }
 }

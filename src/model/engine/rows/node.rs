@@ -57,7 +57,7 @@ impl Pairs {
 pub(super) struct Mapping {
     /// CMB-2 to CMB-5.
     pub(super) of: InputMapping,
-    /// CMB-3.
+    /// CMB-3: the centre of the expand mappings.
     pub(super) centre: ExpandCentre,
     /// CMB-4. With 127.5 the mapping yields halves.
     pub(super) half: HalfBiasConstant,

@@ -19,7 +19,7 @@ use std::ops::Range;
 /// Coordinates of three pixels of each quad: u and v in 1/65536 texel, whole numbers.
 pub(super) type AtQuads = [[PerLane<f64>; 2]; 3];
 
-/// What a unit derives from a quad.
+/// A result that a unit derives from the coordinates at a quad.
 pub(super) trait Measure: Copy {
     /// Returns the result for a quad that is behind the viewer in part.
     fn behind(unit: &PlannedUnit) -> Self;

@@ -45,7 +45,7 @@ pub(super) const SMALL_BATCH: usize = 8;
 /// Columns and rows of a batch's pixels, relative to its first.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
-    /// Columns.
+    /// Columns of the pixels.
     pub(super) x: &'a [i32],
     /// Rows; unused if all pixels are on one row.
     pub(super) y: &'a [i32],

@@ -1,4 +1,4 @@
-//! What all interpolators share: a triangle, a batch of its pixels, and quotients of planes by D.
+//! The common parts of all interpolators: a triangle, a batch of its pixels, and quotients of planes by D.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{Reason, Reasons};

@@ -79,7 +79,7 @@ impl Axis {
 /// Decoded texels: R, G, B, A from the lowest byte up. 128 is added to signed channels, so that they are filtered like unsigned ones.
 #[derive(Clone, Debug)]
 pub(super) enum Texels {
-    /// Single texels.
+    /// Texels that are read one at a time.
     Single(Vec<u32>),
     /// Texels for footprints: one more at the end of each row, and one more row at the end of each face, so that neighbours lie side by
     /// side.

@@ -6,7 +6,7 @@
 
 use std::f64::consts::{LN_2, SQRT_2};
 
-/// Returns 2^x.
+/// Returns 2^x, rounded to single precision.
 pub fn exponential(x: f32) -> f32 {
     power_of_two(f64::from(x)) as f32
 }

@@ -31,10 +31,12 @@ macro_rules! opcodes {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Opcode { $($(#[$meta])* $name),+ }
         impl Opcode {
-            /// All opcodes.
+            /// All opcodes in the order of their declaration.
             pub const ALL: &'static [Opcode] = &[$(Opcode::$name),+];
-            /// Returns the word of the language, in lower case.
-            pub fn word(self) -> &'static str { match self { $(Opcode::$name => $word),+ } }
+            /// The words of the language, in lower case and in the order of [`ALL`](Self::ALL).
+            pub const WORDS: &'static [&'static str] = &[$($word),+];
+            /// Returns the word of the language.
+            pub fn word(self) -> &'static str { Self::WORDS[self as usize] }
             /// Returns the number of sources, 1 to 3.
             pub fn sources(self) -> usize { match self { $(Opcode::$name => $sources),+ } }
             /// Returns the number of [`SLOTS`] that an instruction takes.
@@ -198,7 +200,7 @@ pub struct Destination {
 /// An instruction of a program.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// The operation.
+    /// The operation of the instruction.
     pub opcode: Opcode,
     /// The register and the components that are written.
     pub destination: Destination,

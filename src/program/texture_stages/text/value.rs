@@ -31,7 +31,7 @@ pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Optio
     }
 }
 
-/// Reads D3DTOP.
+/// Reads a value of the enumeration D3DTOP.
 pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<Operation> {
     let part = one(value, "operation", findings)?;
     if let PartKind::Integer(number) = part.kind {
@@ -76,7 +76,7 @@ pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnos
     StageArgument::from_value(bits)
 }
 
-/// Reads D3DTSS_RESULTARG.
+/// Reads a value of D3DTSS_RESULTARG.
 pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<ResultArgument> {
     let part = one(value, "result", findings)?;
     if let PartKind::Integer(number) = part.kind {
@@ -105,7 +105,7 @@ pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Diagnostic>
     flags(value, "source of coordinates", "D3DTSS_TCI_", &words, findings)
 }
 
-/// Reads D3DTSS_TEXTURETRANSFORMFLAGS.
+/// Reads a value of D3DTSS_TEXTURETRANSFORMFLAGS.
 pub(super) fn transform_flags(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let words = [("Disable", 0), ("Count1", 1), ("Count2", 2), ("Count3", 3), ("Count4", 4), ("Projected", 256)];
     flags(value, "transform flag", "D3DTTFF_", &words, findings)
