@@ -246,9 +246,8 @@ impl Expectation {
         let sha256 = masked_digest(width, height, &mut pixels, &compared);
         if sha256 == self.sha256 {
             let depth = self.depth.as_ref().map(|expected| (expected, depth_digest(surface)));
-            return Ok(depth
-                .filter(|(expected, sha256)| *expected != sha256)
-                .map(|(_, sha256)| Mismatch::Depth { sha256 }));
+            let other = depth.filter(|(expected, sha256)| *expected != sha256);
+            return Ok(other.map(|(_, sha256)| Mismatch::Depth { sha256 }));
         }
         let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
         let expected = self.image(folder, &allowance.picture)?;

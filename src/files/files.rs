@@ -43,11 +43,13 @@ pub fn note(path: &Path) {
 fn place(path: &Path) -> Option<PathBuf> {
     match path.canonicalize() {
         Ok(place) => place.is_file().then_some(place),
-        Err(_) => {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            Some(folder.canonicalize().ok()?.join(path.file_name()?))
-        }
+        Err(_) => Some(folder_around(path).canonicalize().ok()?.join(path.file_name()?)),
     }
+}
+
+/// Returns the folder that a path is in.
+pub(crate) fn folder_around(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 impl Seen {

@@ -277,7 +277,7 @@ impl PendingFolder {
     /// # Errors
     /// The folder around it cannot be made or written.
     pub fn create(place: &Path) -> Result<PendingFolder, OutputError> {
-        let around = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let around = files::folder_around(place);
         make_folder(around)?;
         let mut builder = tempfile::Builder::new();
         builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
@@ -344,26 +344,18 @@ impl PendingFile {
             return Err(refused(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")));
         }
         let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
-        let folder = match place.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
+        let folder = files::folder_around(&place);
         let mut builder = tempfile::Builder::new();
         builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-        let permissions = match &existing {
-            Some(metadata) => Some(metadata.permissions()),
-            None => ordinary_permissions(),
-        };
-        if let Some(permissions) = permissions {
+        let permissions = existing.as_ref().map(std::fs::Metadata::permissions);
+        if let Some(permissions) = permissions.or_else(ordinary_permissions) {
             // On systems where the mode of new files is subject to the user's mask, this one is as well.
             builder.permissions(permissions);
         }
         let made = Pending::enter(|| builder.tempfile_in(folder), |file| file.path());
         let (temporary, pending) = made.map_err(|error| refused(without_path(error)))?;
-        Ok(PendingFile {
-            path: path.to_path_buf(),
-            target: Target::Temporary(BufWriter::new(temporary), place, pending),
-        })
+        let target = Target::Temporary(BufWriter::new(temporary), place, pending);
+        Ok(PendingFile { path: path.to_path_buf(), target })
     }
 
     /// Turns an error of writing this file into an [`OutputError`].

@@ -16,6 +16,16 @@ pub enum Operand {
     Line(u32),
 }
 
+impl Operand {
+    /// Returns the index of the line that the value is the result of; `None` if it is a constant.
+    pub(crate) fn line(self) -> Option<usize> {
+        match self {
+            Operand::Constant(_) => None,
+            Operand::Line(line) => Some(line as usize),
+        }
+    }
+}
+
 /// Kind of a value: a number, or the bits of a stored word or texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
@@ -159,6 +169,11 @@ impl Operation {
 /// The least and the largest value of a range, both inclusive.
 pub type Range = (i64, i64);
 
+/// Returns the range that encloses all ranges.
+pub(crate) fn enclosing(ranges: impl Iterator<Item = Range>) -> Range {
+    ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)))
+}
+
 /// A line of code: an operation and what is known of its result.
 #[derive(Clone, Debug)]
 pub struct Line {
@@ -187,10 +202,8 @@ impl Code {
         let mut used = vec![false; lines.len()];
         let mut open: Vec<Operand> = roots.to_vec();
         while let Some(operand) = open.pop() {
-            if let Operand::Line(line) = operand
-                && !std::mem::replace(&mut used[line as usize], true)
-            {
-                open.extend(lines[line as usize].operation.operands());
+            if let Some(line) = operand.line().filter(|line| !std::mem::replace(&mut used[*line], true)) {
+                open.extend(lines[line].operation.operands());
             }
         }
         let mut number = 0;
@@ -241,16 +254,9 @@ impl Code {
         }
     }
 
-    /// Returns the operation of a line.
-    pub(crate) fn operation_at(&self, line: u32) -> Operation {
-        self.lines.borrow()[line as usize].operation
-    }
-
-    fn operation(&self, operand: Operand) -> Option<Operation> {
-        match operand {
-            Operand::Constant(_) => None,
-            Operand::Line(line) => Some(self.operation_at(line)),
-        }
+    /// Returns the operation whose result a value is; `None` if it is a constant.
+    pub(crate) fn operation(&self, operand: Operand) -> Option<Operation> {
+        Some(self.lines.borrow()[operand.line()?].operation)
     }
 
     /// Returns the result of an operation: that of a simpler or an existing line if it is equal, otherwise that of a new line.
@@ -264,21 +270,19 @@ impl Code {
             Err(operation) => operation,
         };
         let range = self.range_of(&operation);
-        if range.0 == range.1 {
-            return Operand::Constant(range.0);
-        }
-        let mut lines = self.lines.borrow_mut();
-        Operand::Line(*self.known.borrow_mut().entry(operation).or_insert_with(|| {
-            lines.push(Line { operation, range, rule: self.rule.get(), name: None });
-            lines.len() as u32 - 1
-        }))
+        if range.0 == range.1 { Operand::Constant(range.0) } else { self.line(operation, range, self.rule.get()) }
     }
 
     /// Returns the value of an input, whose range may be known to be narrower than usual.
     pub(crate) fn input(&self, input: Input, range: Range) -> Operand {
+        self.line(Operation::Input(input), range, "")
+    }
+
+    /// Returns the result of the line with this operation, which is added if there is none.
+    fn line(&self, operation: Operation, range: Range, rule: &'static str) -> Operand {
         let mut lines = self.lines.borrow_mut();
-        Operand::Line(*self.known.borrow_mut().entry(Operation::Input(input)).or_insert_with(|| {
-            lines.push(Line { operation: Operation::Input(input), range, rule: "", name: None });
+        Operand::Line(*self.known.borrow_mut().entry(operation).or_insert_with(|| {
+            lines.push(Line { operation, range, rule, name: None });
             lines.len() as u32 - 1
         }))
     }
@@ -316,12 +320,8 @@ impl Code {
             | Operation::Up(a, 0)
             | Operation::Or(a, Constant(0))
             | Operation::Or(Constant(0), a) => return Ok(a),
-            Operation::Multiply(a, Constant(c)) => {
-                if let Some(Operation::Multiply(Constant(d), a)) = self.operation(a) {
-                    return Ok(self.make(Operation::Multiply(Constant(c * d), a)));
-                }
-                return Ok(self.make(Operation::Multiply(Constant(c), a)));
-            }
+            // A constant factor goes first.
+            Operation::Multiply(a, Constant(c)) => return Ok(self.make(Operation::Multiply(Constant(c), a))),
             Operation::Multiply(Constant(c), a) => {
                 if let Some(Operation::Multiply(Constant(d), a)) = self.operation(a) {
                     return Ok(self.make(Operation::Multiply(Constant(c * d), a)));
@@ -331,30 +331,22 @@ impl Code {
             Operation::Least(a, b) if range(b).1 <= range(a).0 => return Ok(b),
             Operation::Greatest(a, b) if range(a).0 >= range(b).1 => return Ok(a),
             Operation::Greatest(a, b) if range(b).0 >= range(a).1 => return Ok(b),
-            Operation::Bits(a, mask) | Operation::And(a, Constant(mask)) | Operation::And(Constant(mask), a) => {
-                let all = (mask + 1) & mask == 0 && range(a).1 <= mask;
-                if all {
-                    return Ok(a);
-                }
+            Operation::Bits(a, mask) | Operation::And(a, Constant(mask)) | Operation::And(Constant(mask), a)
+                if (mask + 1) & mask == 0 && range(a).1 <= mask =>
+            {
+                return Ok(a);
             }
+            Operation::Select(_, [c, d]) if c == d => return Ok(c),
             Operation::Select(test, [c, d]) => {
-                if c == d {
-                    return Ok(c);
-                }
                 if let Some(holds) = self.decided(test) {
                     return Ok(if holds { c } else { d });
                 }
             }
-            Operation::Number(a) => {
-                if let Some(Operation::Word(a)) = self.operation(a) {
-                    return Ok(a);
-                }
-            }
-            Operation::Word(a) => {
-                if let Some(Operation::Number(a)) = self.operation(a) {
-                    return Ok(a);
-                }
-            }
+            Operation::Number(a) | Operation::Word(a) => match (operation, self.operation(a)) {
+                (Operation::Number(_), Some(Operation::Word(a))) => return Ok(a),
+                (Operation::Word(_), Some(Operation::Number(a))) => return Ok(a),
+                _ => {}
+            },
             // Where 8 bits are repeated, nothing remains of the second copy.
             Operation::Down(a, bits) if range(a).1 >> bits == 0 => return Ok(Constant(0)),
             _ => {}
@@ -409,7 +401,7 @@ impl Code {
             } else {
                 vec![of(a.0, b.0), of(a.0, b.1), of(a.1, b.0), of(a.1, b.1)]
             };
-            (all.iter().copied().fold(i64::MAX, i64::min), all.iter().copied().fold(i64::MIN, i64::max))
+            enclosing(all.into_iter().map(|value| (value, value)))
         };
         match *operation {
             Operation::Input(input) => input.range(),

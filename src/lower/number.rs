@@ -5,7 +5,7 @@ use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
 use ninebit::number::{self, Blend, Factor as _, Register};
 use ninebit::state::{CompareFunction, RegisterFloor};
 
-use crate::code::{Code, Operand, Operation, Range, Test};
+use crate::code::{Code, Operand, Operation, Range, Test, enclosing};
 
 /// A number: a constant, or the result of a line of code.
 #[derive(Clone, Copy, Debug)]
@@ -74,9 +74,7 @@ impl<'a> Number<'a> {
     /// Narrows the range of a number that lies between others, because it is a mixture of them.
     pub(crate) fn between(self, others: &[Number<'a>]) -> Number<'a> {
         if let Number::Of(code, _) = self {
-            let ranges = others.iter().map(|other| other.range());
-            let range = ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)));
-            code.narrow(self.operand(), range);
+            code.narrow(self.operand(), enclosing(others.iter().map(|other| other.range())));
         }
         self
     }
@@ -86,13 +84,11 @@ impl<'a> Number<'a> {
         let code = self.code().or_else(|| others.iter().find_map(|other| other.code()));
         match code {
             Some(code) => Number::new(code, code.make(operation)),
-            None => {
-                // Constants alone do not need the caller's code.
-                match Code::default().make(operation) {
-                    Operand::Constant(value) => Constant(value),
-                    Operand::Line(_) => Constant(0),
-                }
-            }
+            // Constants alone do not need the caller's code.
+            None => match Code::default().make(operation) {
+                Operand::Constant(value) => Constant(value),
+                Operand::Line(_) => Constant(0),
+            },
         }
     }
 
@@ -210,7 +206,7 @@ fn over(value: Number<'_>, steps: i64) -> Option<Number<'_>> {
         Constant(value) => (value % steps == 0).then_some(Constant(value / steps)),
         Number::Of(code, line) => {
             let of = |operand| over(Number::new(code, operand), steps);
-            match code.operation_at(line) {
+            match code.operation(Operand::Line(line))? {
                 Operation::Multiply(Operand::Constant(by), x) if by % steps == 0 => {
                     Some(Number::new(code, x).multiplied(Constant(by / steps)))
                 }

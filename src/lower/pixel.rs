@@ -61,15 +61,6 @@ pub struct Function {
     pub uniform: bool,
 }
 
-/// State of the raster operations.
-struct Raster {
-    alpha_test: Option<AlphaTest>,
-    blend: Option<Blend>,
-    blend_constant: [u8; 4],
-    surface: SurfaceFormat,
-    write_mask: u32,
-}
-
 /// Makes the inputs of a function.
 struct Builder<'a> {
     code: &'a Code,
@@ -118,34 +109,35 @@ impl<'a> Builder<'a> {
         combiners.evaluate(registers, constants, &mut listing).map(|channel| channel.limited(0, 255))
     }
 
-    fn stored(&self, raster: &Raster, fragment: [Number<'a>; 4]) -> Result {
+    /// Applies the raster operations of a draw.
+    fn stored(&self, draw: &Draw, surface: SurfaceFormat, fragment: [Number<'a>; 4]) -> Result {
         let code = self.code;
         let mut listing = Listing::new(code, self.options.policies);
         listing.enter(Block::Raster);
         code.by("ROP-1");
-        let test = raster.alpha_test.map(|test| {
+        let test = draw.alpha_test.map(|test| {
             let [reference] = self.constants([test.reference], |_| Input::AlphaReference);
             fragment[3].compared(test.function, reference)
         });
         let held = Word(self.given(Input::Destination));
         let mut channels = fragment;
-        if let Some(state) = &raster.blend {
-            let source = blend::truncated(raster.surface, fragment, &mut listing);
+        if let Some(state) = draw.blend.as_ref().filter(|_| surface::blends(surface)) {
+            let source = blend::truncated(surface, fragment, &mut listing);
             code.by("ROP-5");
-            let destination = surface::channels(raster.surface, held).map(Word::number);
+            let destination = surface::channels(surface, held).map(Word::number);
             for (n, name) in ["r", "g", "b", "a"].into_iter().enumerate() {
                 code.name(destination[n].operand(), || format!("destination_{name}"));
             }
-            let constant = self.constants(raster.blend_constant, Input::BlendConstant);
+            let constant = self.constants(draw.blend_constant, Input::BlendConstant);
             channels = blend::blend(state, 15, &constant, &source, &destination, &mut listing);
             for (n, name) in ["r", "g", "b", "a"].into_iter().enumerate() {
                 code.name(channels[n].operand(), || format!("blend_{name}"));
             }
         }
         code.by("ROP-5");
-        let word = surface::packed(raster.surface, channels.map(|channel| channel.limited(0, 255).word()));
+        let word = surface::packed(surface, channels.map(|channel| channel.limited(0, 255).word()));
         code.by("ROP-6");
-        let word = surface::masked(held, word, raster.write_mask);
+        let word = surface::masked(held, word, surface::write_mask(surface, draw.color_mask));
         code.name(word.0.operand(), || "stored".to_string());
         match test.and_then(|test| code.decided(test)) {
             // Every fragment is dropped, whatever its alpha.
@@ -208,15 +200,7 @@ impl Function {
         let result = if options.fragment {
             Result::Fragment(fragment.map(Number::operand))
         } else {
-            let surface = scene.targets[draw.target].format;
-            let raster = Raster {
-                alpha_test: draw.alpha_test,
-                blend: draw.blend.filter(|_| surface::blends(surface)),
-                blend_constant: draw.blend_constant,
-                surface,
-                write_mask: surface::write_mask(surface, draw.color_mask),
-            };
-            builder.stored(&raster, fragment)
+            builder.stored(draw, scene.targets[draw.target].format, fragment)
         };
         Function::new(code, result, options)
     }

@@ -8,6 +8,10 @@ use crate::Span;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::*;
 
+/// The registers of the texture units.
+pub(crate) const TEXTURES: [Register; TEXTURE_UNITS] =
+    [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+
 /// Source of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
@@ -330,10 +334,7 @@ impl Cascade {
             Source::Zero => plain(Register::Zero),
             Source::Primary => plain(Register::PrimaryColor),
             Source::Secondary => plain(Register::SecondaryColor),
-            Source::Texture(0) => plain(Register::Texture0),
-            Source::Texture(1) => plain(Register::Texture1),
-            Source::Texture(2) => plain(Register::Texture2),
-            Source::Texture(_) => plain(Register::Texture3),
+            Source::Texture(unit) => plain(TEXTURES[unit.min(3)]),
             Source::Current => self.current,
             Source::Temporary => self.temporary.unwrap_or(plain(Register::Zero)),
             Source::Constant(color) => plain(self.constant(color, span)),

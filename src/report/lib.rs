@@ -17,3 +17,11 @@ pub use json::{policies_value, steps_value, trace_json, trace_value, write_trace
 pub use side_by_side::{SideBySideLine, side_by_side, side_by_side_text};
 pub(crate) use text::planes;
 pub use text::{policies_text, steps_text, trace_text, write_trace_text};
+
+/// Returns what `write` writes.
+fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out);
+    out
+}

@@ -75,10 +75,7 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
 
 /// Returns the lines as a text table. `titles` are the headings of the first and second trace. Lines that differ begin with `>`.
 pub fn side_by_side_text(titles: [&str; 2], lines: &[SideBySideLine]) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(&mut out, titles, lines);
-    out
+    crate::written(|out| write(out, titles, lines))
 }
 
 fn write(out: &mut String, titles: [&str; 2], lines: &[SideBySideLine]) -> std::fmt::Result {

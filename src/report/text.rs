@@ -10,21 +10,16 @@ use ninebit::trace::{Operand, SINGLE, Step};
 use std::fmt::Write;
 use std::io;
 
+use crate::written;
+
 /// Returns the trace of a pixel as text.
 pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(&mut out, plan, trace);
-    out
-}
-
-fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result {
     let PixelTrace { target, x, y, cleared, left_out, .. } = trace;
-    write_head(out, plan, target, (*x, *y), *cleared, *left_out)?;
-    for draw in &trace.draws {
-        write_draw(out, draw)?;
-    }
-    write_end(out, trace.draws.is_empty(), &TraceEnd { shown: trace.shown, word: trace.word })
+    written(|out| {
+        write_head(out, plan, target, (*x, *y), *cleared, *left_out)?;
+        trace.draws.iter().try_for_each(|draw| write_draw(out, draw))?;
+        write_end(out, trace.draws.is_empty(), &TraceEnd { shown: trace.shown, word: trace.word })
+    })
 }
 
 /// Writes a trace as text while the pixel is traced, fragment by fragment.
@@ -32,19 +27,14 @@ fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result 
 /// # Errors
 /// Those of `out`.
 pub fn write_trace_text(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_>) -> io::Result<()> {
-    let mut text = String::new();
-    let _ = write_head(&mut text, plan, &tracer.target().name, tracer.pixel(), tracer.cleared(), tracer.left_out());
-    out.write_all(text.as_bytes())?;
+    let (target, cleared, left_out) = (&tracer.target().name, tracer.cleared(), tracer.left_out());
+    write!(out, "{}", written(|out| write_head(out, plan, target, tracer.pixel(), cleared, left_out)))?;
     let mut empty = true;
     let end = tracer.run(|draw| {
         empty = false;
-        text.clear();
-        let _ = write_draw(&mut text, &draw);
-        out.write_all(text.as_bytes())
+        write!(out, "{}", written(|out| write_draw(out, &draw)))
     })?;
-    text.clear();
-    let _ = write_end(&mut text, empty, &end);
-    out.write_all(text.as_bytes())
+    write!(out, "{}", written(|out| write_end(out, empty, &end)))
 }
 
 fn write_head(
@@ -90,9 +80,7 @@ pub fn policies_text(policies: &Policies) -> String {
 
 /// Returns steps as a table: one line each, under the name of their hardware block.
 pub fn steps_text(steps: &[Step]) -> String {
-    let mut out = String::new();
-    let _ = write_steps(&mut out, steps, |_| None);
-    out
+    written(|out| write_steps(out, steps, |_| None))
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
@@ -197,13 +185,9 @@ pub(super) fn expression(step: &Step) -> String {
             let [x, y, z] = direction(&step.inputs);
             format!("largest of ({x}, {y}, {z})")
         }
-        "floor_face_u" | "floor_face_v" => {
-            let (s, m) = on_face(step);
-            format!("floor(128 * {} * ({s} + {m}) / {m})", value(13))
-        }
-        "quad_face_u" | "quad_face_v" => {
-            let (s, m) = on_face(step);
-            format!("floor(32768 * {} * ({s} + {m}) / {m})", value(13))
+        "floor_face_u" | "floor_face_v" | "quad_face_u" | "quad_face_v" => {
+            let ((s, m), steps) = (on_face(step), if step.operation.starts_with("quad") { 32768 } else { 128 });
+            format!("floor({steps} * {} * ({s} + {m}) / {m})", value(13))
         }
         "quad_plane" => format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)"),
         "quad_ratio" => format!("floor(65536 * {} * N_{axis} / N_q)", value(9)),

@@ -91,13 +91,7 @@ fn texture(bytes: &[u8], limits: &ImageLimits) -> Result<Dds, ImageFault> {
     let damaged = ImageFault::Damaged;
     let header = header(bytes)?;
     let Header { cube, layers, format, width, height, levels, before, .. } = header;
-    if width == 0 || height == 0 {
-        return Err(damaged(format!("it is {width} x {height}")));
-    }
-    let limit = limits.maximum_side.min(LARGEST_SIDE);
-    if width > limit || height > limit {
-        return Err(ImageFault::Side { width, height, limit });
-    }
+    limits.check_sides(width, height, limits.maximum_side.min(LARGEST_SIDE))?;
     if let Some(layers) = layers
         && !(1..=LARGEST_VOLUME).contains(&layers)
     {
@@ -113,23 +107,25 @@ fn texture(bytes: &[u8], limits: &ImageLimits) -> Result<Dds, ImageFault> {
     let faces = if cube { CUBE_FACES } else { 1 };
     let decoded: u64 =
         u64::from(faces) * sides(&header).map(|(w, h, layers)| 4 * layers * words(format, w, h)).sum::<u64>();
-    if decoded > limits.maximum_decoded_bytes {
-        return Err(ImageFault::DecodedBytes { bytes: decoded, limit: limits.maximum_decoded_bytes });
-    }
+    limits.check_decoded(decoded)?;
     let palette = match (format, bytes.get(HEADER..HEADER + PALETTE)) {
         (TextureFormat::P8, None) => return Err(damaged("its palette is cut off".to_owned())),
         (TextureFormat::P8, Some(palette)) => Some(entries(palette)),
         _ => None,
     };
     let texels = bytes.get(before..).unwrap_or_default();
-    let Some(rows) = row_layout(&header, texels.len() as u64) else {
-        let (has, needs) = (texels.len(), faces as u64 * stored(&header, false));
-        let what = if (has as u64) < needs { "is cut off" } else { "is longer than its header says" };
+    let [needs, padded] = [false, true].map(|padded| u64::from(faces) * stored(&header, padded));
+    // Rows are padded only if the pitch of level 0 says so.
+    let row = u64::from(format.bytes()) * u64::from(width);
+    let may_be_padded = !format.is_compressed() && u64::from(header.pitch) == row.next_multiple_of(4);
+    let has = texels.len() as u64;
+    let mut words = if has == needs {
+        texels::from_bytes(texels, format)
+    } else if may_be_padded && has == padded {
+        texels::from_bytes(&without_padding(&header, texels), format)
+    } else {
+        let what = if has < needs { "is cut off" } else { "is longer than its header says" };
         return Err(damaged(format!("it {what}: {has} bytes of texels, {needs} are expected")));
-    };
-    let mut words = match rows {
-        Rows::Tight => texels::from_bytes(texels, format),
-        Rows::Padded => texels::from_bytes(&without_padding(&header, texels), format),
     };
     let levels = if layers.is_some() { 1 } else { levels };
     if let Some(layers) = layers {
@@ -149,31 +145,29 @@ fn header(bytes: &[u8]) -> Result<Header, ImageFault> {
     }
     let (mut cube, caps, mut before) = (field(112) & CUBE != 0, field(112), HEADER);
     let mut layers = (caps & VOLUME != 0).then(|| field(24));
-    let four_characters = fixed[84..88].first_chunk::<4>().copied().unwrap_or_default();
     let pixels = pixel_format::PixelFormat {
         flags: field(80),
-        four_characters,
+        four_characters: field(84).to_le_bytes(),
         bits: field(88),
         masks: [92, 96, 100, 104].map(field),
     };
-    let layers_of_header = field(24);
     let format = if pixels.has_further_header() {
         let Some(further) = bytes.get(HEADER..HEADER + FURTHER) else {
             return Err(damaged("the header is cut off"));
         };
-        let field =
+        let word =
             |n: usize| u32::from_le_bytes([further[4 * n], further[4 * n + 1], further[4 * n + 2], further[4 * n + 3]]);
-        match field(1) {
+        match word(1) {
             3 => {}
-            4 => layers = Some(layers_of_header),
+            4 => layers = Some(field(24)),
             _ => return Err(unsupported("a texture of one dimension".to_owned())),
         }
-        if field(3) > 1 {
-            return Err(unsupported(format!("an array of {} textures", field(3))));
+        if word(3) > 1 {
+            return Err(unsupported(format!("an array of {} textures", word(3))));
         }
-        cube |= field(2) & 4 != 0;
+        cube |= word(2) & 4 != 0;
         before += FURTHER;
-        pixel_format::of_number(field(0)).map_err(unsupported)?
+        pixel_format::of_number(word(0)).map_err(unsupported)?
     } else {
         if cube && caps & ALL_FACES != ALL_FACES {
             let missing = (0..6).filter(|face| caps >> (10 + face) & 1 == 0).map(|face| FACES[face]).collect();
@@ -207,29 +201,7 @@ fn words(format: TextureFormat, width: u32, height: u32) -> u64 {
     }
 }
 
-/// How the rows of a level lie in the file.
-enum Rows {
-    /// Each row follows the one before at once.
-    Tight,
-    /// Each row is filled up to a multiple of four bytes.
-    Padded,
-}
-
-/// Returns the layout that has exactly `bytes` bytes; `None` if neither has. Rows can only be padded if the pitch of level 0 says so.
-fn row_layout(header: &Header, bytes: u64) -> Option<Rows> {
-    let faces = if header.cube { u64::from(CUBE_FACES) } else { 1 };
-    let row = u64::from(header.format.bytes()) * u64::from(header.width);
-    let may_be_padded = !header.format.is_compressed() && u64::from(header.pitch) == row.next_multiple_of(4);
-    if bytes == faces * stored(header, false) {
-        Some(Rows::Tight)
-    } else if may_be_padded && bytes == faces * stored(header, true) {
-        Some(Rows::Padded)
-    } else {
-        None
-    }
-}
-
-/// Returns the number of bytes of all levels of a face in the file.
+/// Returns the number of bytes of all levels of a face in the file. Rows follow each other at once, or each is filled up to a multiple of four bytes.
 fn stored(header: &Header, padded: bool) -> u64 {
     let level = |(width, height, layers): (u32, u32, u64)| {
         if header.format.is_compressed() {

@@ -39,6 +39,21 @@ impl ImageLimits {
     pub(super) fn file(&self) -> FileLimit {
         Limits { image_file_bytes: self.maximum_file_bytes, ..Limits::default() }.image_file()
     }
+
+    /// Refuses an image without pixels, or with a side above `limit`.
+    pub(super) fn check_sides(&self, width: u32, height: u32, limit: u32) -> Result<(), ImageFault> {
+        match width.max(height) {
+            _ if width == 0 || height == 0 => Err(ImageFault::Damaged(format!("it is {width} x {height}"))),
+            longer if longer > limit => Err(ImageFault::Side { width, height, limit }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses an image that decodes to too many bytes.
+    pub(super) fn check_decoded(&self, bytes: u64) -> Result<(), ImageFault> {
+        let limit = self.maximum_decoded_bytes;
+        if bytes > limit { Err(ImageFault::DecodedBytes { bytes, limit }) } else { Ok(()) }
+    }
 }
 
 /// A decoded image.
@@ -244,7 +259,8 @@ fn picture(bytes: &[u8], path: &Path, limits: &ImageLimits, bits: u8) -> Result<
     } else {
         return Err(ImageFault::Format("neither a PNG nor a TGA file"));
     };
-    check_header(header, limits)?;
+    limits.check_sides(header.width, header.height, limits.maximum_side)?;
+    limits.check_decoded(4 * u64::from(header.width) * u64::from(header.height))?;
     if header.bits > bits {
         return Err(ImageFault::Depth(header.bits));
     }
@@ -278,21 +294,6 @@ fn tga_header(bytes: &[u8]) -> Option<Header> {
     let header: &[u8; 18] = bytes.first_chunk()?;
     let side = |low: usize| u32::from(u16::from_le_bytes([header[low], header[low + 1]]));
     Some(Header { width: side(12), height: side(14), bits: 8 })
-}
-
-/// Compares a header with the limits.
-fn check_header(Header { width, height, .. }: Header, limits: &ImageLimits) -> Result<(), ImageFault> {
-    if width == 0 || height == 0 {
-        return Err(ImageFault::Damaged(format!("it is {width} x {height}")));
-    }
-    if width > limits.maximum_side || height > limits.maximum_side {
-        return Err(ImageFault::Side { width, height, limit: limits.maximum_side });
-    }
-    let bytes = u64::from(width) * u64::from(height) * 4;
-    if bytes > limits.maximum_decoded_bytes {
-        return Err(ImageFault::DecodedBytes { bytes, limit: limits.maximum_decoded_bytes });
-    }
-    Ok(())
 }
 
 /// Converts the decoder's pixels into R, G, B, A. Grey stands for all three colours.

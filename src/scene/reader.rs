@@ -248,13 +248,11 @@ impl<'a> Reader<'a> {
         let (head, rest) = raw.split();
         let list = quoted(known);
         let diagnostic = if head.is_empty() {
-            Diagnostic::error(KIND, self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
-                .label("wrong kind of value")
-                .help(format!("write one of {list}"))
+            let message = format!("expected a {what}, found {}", describe(raw.text));
+            finding(KIND, self.span(raw), message, "wrong kind of value", format!("write one of {list}"))
         } else if known.contains(&head) {
-            Diagnostic::error(KIND, self.range(rest), format!("`{head}` takes nothing in parentheses"))
-                .label("not expected here")
-                .help(format!("write just `{head}`"))
+            let message = format!("`{head}` takes nothing in parentheses");
+            finding(KIND, self.range(rest), message, "not expected here", format!("write just `{head}`"))
         } else {
             let help = match closest(head, known.iter().copied()) {
                 Some(name) => format!("did you mean `{name}`? All of them: {list}"),
@@ -338,8 +336,8 @@ impl<'a> Reader<'a> {
         if range.contains(&value) {
             return Some(value);
         }
-        let finding = Diagnostic::error(RANGE, self.span(raw), format!("{what} cannot be {value}"));
-        self.refuse(said(finding.label("out of range").help(format!("write {} to {}", range.start(), range.end()))))
+        let help = format!("write {} to {}", range.start(), range.end());
+        self.refuse(said(finding(RANGE, self.span(raw), format!("{what} cannot be {value}"), "out of range", help)))
     }
 
     /// Reads a whole number from 1 to `limit`; `code` is the code of numbers beyond it.
@@ -374,12 +372,9 @@ impl<'a> Reader<'a> {
 
     /// Records that the format reserves something that is not implemented.
     pub(super) fn not_built(&mut self, span: Span, what: &str) {
-        self.push(
-            Diagnostic::error("NB0401", span, format!("not built yet: {what}"))
-                .label("reserved for a later version")
-                .note("the format reserves this so that it can be added without a change of version")
-                .help("leave it out"),
-        );
+        let (message, label) = (format!("not built yet: {what}"), "reserved for a later version");
+        let note = "the format reserves this so that it can be added without a change of version";
+        self.push(finding("NB0401", span, message, label, "leave it out").note(note));
     }
 
     /// Refuses a field that is written on NV10 if it `needs` NV2A. `what` is its name in the message.
@@ -445,14 +440,12 @@ impl<'a> Reader<'a> {
                     Some(name) => format!("did you mean `{name}`? Fields here: {list}"),
                     None => format!("fields here: {list}"),
                 };
-                Diagnostic::error(UNKNOWN, self.range(field), format!("there is no field `{}` here", shorten(field)))
-                    .label("unknown field")
-                    .help(help)
+                let message = format!("there is no field `{}` here", shorten(field));
+                finding(UNKNOWN, self.range(field), message, "unknown field", help)
             }
             Mismatch::Twice(field) => {
-                Diagnostic::error(TWICE, self.range(field), format!("`{}` is given twice", shorten(field)))
-                    .label("again here")
-                    .help("keep one of them")
+                let message = format!("`{}` is given twice", shorten(field));
+                finding(TWICE, self.range(field), message, "again here", "keep one of them")
             }
         }
     }
@@ -463,14 +456,9 @@ impl<'a> Reader<'a> {
         let examples = "see docs/scene-format.md for examples";
         let (message, help) = match &kind {
             FaultKind::Nesting => {
-                let levels = self.limits.nesting;
-                return Diagnostic::error(
-                    "NB0602",
-                    place,
-                    format!("more than {levels} levels of brackets inside each other"),
-                )
-                .label("one level too many")
-                .help("no part of a scene needs more than a dozen levels: look for brackets that were not closed");
+                let message = format!("more than {} levels of brackets inside each other", self.limits.nesting);
+                let help = "no part of a scene needs more than a dozen levels: look for brackets that were not closed";
+                return finding("NB0602", place, message, "one level too many", help);
             }
             FaultKind::Start => (
                 "a scene starts with an opening parenthesis".into(),
@@ -505,10 +493,10 @@ impl<'a> Reader<'a> {
             }
         };
         let label = if kind == FaultKind::Comma { "a comma before this?" } else { "here" };
-        let finding = Diagnostic::error("NB0101", place, message).label(label).help(help);
+        let found = finding("NB0101", place, message, label, help);
         match kind {
-            FaultKind::End(Some(open)) => finding.related(open..open + 1, "this bracket is still open"),
-            _ => finding,
+            FaultKind::End(Some(open)) => found.related(open..open + 1, "this bracket is still open"),
+            _ => found,
         }
     }
 }
@@ -548,5 +536,5 @@ pub(super) fn too_many(
 ) -> Diagnostic {
     let message =
         format!("{count} {what} are {} more than the limit `{limit}` of {most} allows", count.saturating_sub(most));
-    Diagnostic::error(code, place, message).label("too many").help("`ninebit limits` prints what is allowed")
+    finding(code, place, message, "too many", "`ninebit limits` prints what is allowed")
 }

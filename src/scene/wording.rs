@@ -3,14 +3,14 @@
 use super::diagnostic::Diagnostic;
 pub(super) use super::diagnostic::shorten;
 use ninebit::place::Span;
+use ninebit_program::finding;
 pub(super) use ninebit_program::spelling::closest;
 
 /// Makes the finding that a name is defined twice.
 pub(super) fn twice(what: &str, name: &str, place: Span, first: Span) -> Diagnostic {
-    Diagnostic::error("NB0209", place, format!("the {what} \"{}\" is defined twice", shorten(name)))
-        .label("again here")
+    let message = format!("the {what} \"{}\" is defined twice", shorten(name));
+    finding("NB0209", place, message, "again here", "give one of them another name")
         .related(first, "first defined here")
-        .help("give one of them another name")
 }
 
 /// Writes the name of a type as words: "ShadeModel" as "shade model".

@@ -55,10 +55,9 @@ pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
     let found = compare(plan, &options);
     let largest = |errors: &[f32; 4]| errors.iter().filter(|e| !e.is_nan()).fold(0.0_f32, |most, e| most.max(e.abs()));
     let differing = found.errors.iter().filter(|errors| largest(errors) > 0.0).count();
-    let worst = found.worst.iter().map(|worst| {
-        let error =
-            json!({ "error": worst.error(), "ideal": worst.ideal, "shown": worst.shown, "channel": worst.channel });
-        json!({ "first": [worst.x, worst.y], "worst": error })
+    let worst = found.worst.iter().map(|w| {
+        let error = json!({ "error": w.error(), "ideal": w.ideal, "shown": w.shown, "channel": w.channel });
+        json!({ "first": [w.x, w.y], "worst": error })
     });
     let answer = json!({
         "width": found.width, "height": found.height, "differing": differing, "drawn": found.drawn,

@@ -22,28 +22,20 @@ pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {
             "ab_blue_to_alpha": portion.ab_blue_to_alpha, "cd_blue_to_alpha": portion.cd_blue_to_alpha,
         })
     };
-    let stages: Vec<Value> = stages
-        .iter()
-        .map(
-            |stage| json!({ "rgb": portion(&stage.rgb), "alpha": portion(&stage.alpha), "constants": stage.constants }),
-        )
-        .collect();
-    let words: Vec<Value> = describe(&encode(&draw.combiners, scene.profile))
-        .iter()
-        .map(|word| {
-            let (method, value) = (format!("{:04x}", word.method), format!("{:08x}", word.value));
-            json!({ "method": method, "name": word.name, "value": value, "meaning": word.meaning })
-        })
-        .collect();
+    let stage = |GeneralStage { rgb, alpha, constants }: &GeneralStage| json!({ "rgb": portion(rgb), "alpha": portion(alpha), "constants": constants });
+    let words = describe(&encode(&draw.combiners, scene.profile)).into_iter().map(|word| {
+        let (method, value) = (format!("{:04x}", word.method), format!("{:08x}", word.value));
+        json!({ "method": method, "name": word.name, "value": value, "meaning": word.meaning })
+    });
     json!({
-        "stages": stages,
+        "stages": stages.iter().map(stage).collect::<Value>(),
         "mux_select": mux_select.name(),
         "final": {
             "inputs": last.inputs.iter().chain([&last.g]).map(final_input).collect::<Vec<_>>(),
             "color_sum_clamp": last.color_sum_clamp, "invert_spare0": last.invert_spare0, "invert_secondary": last.invert_secondary,
             "constants": last.constants,
         },
-        "words": words,
+        "words": words.collect::<Value>(),
         "text": print(&draw.combiners),
         "origin": ninebit_report::origins(&draw.program_origin),
         "choices": {
@@ -107,18 +99,12 @@ fn set(combiners: &mut Combiners, path: &[&str], value: &Value) -> Result<(), Re
         ["final", "color_sum_clamp"] => switch(&mut last.color_sum_clamp, value),
         ["final", "invert_spare0"] => switch(&mut last.invert_spare0, value),
         ["final", "invert_secondary"] => switch(&mut last.invert_secondary, value),
-        ["final", "constants", n] => {
-            last.constants[index(n, 2)?] = color(value)?;
-            Ok(())
-        }
+        ["final", "constants", n] => recolor(&mut last.constants, n, value),
         ["stages", n, rest @ ..] => {
             let number = index(n, combiners.stages.len())?;
             let stage = &mut combiners.stages[number];
             match rest {
-                ["constants", n] => {
-                    stage.constants[index(n, 2)?] = color(value)?;
-                    Ok(())
-                }
+                ["constants", n] => recolor(&mut stage.constants, n, value),
                 ["rgb", rest @ ..] => set_portion(&mut stage.rgb, rest, value),
                 ["alpha", rest @ ..] => set_portion(&mut stage.alpha, rest, value),
                 _ => Err(unknown(path.join("."))),
@@ -169,6 +155,11 @@ fn choose<T: Named>(field: &mut T, value: &Value) -> Result<(), Refused> {
 
 fn switch(field: &mut bool, value: &Value) -> Result<(), Refused> {
     *field = value.as_bool().ok_or("neither true nor false")?;
+    Ok(())
+}
+
+fn recolor(constants: &mut [[u8; 4]; 2], n: &str, value: &Value) -> Result<(), Refused> {
+    constants[index(n, 2)?] = color(value)?;
     Ok(())
 }
 

@@ -76,10 +76,8 @@ impl Session {
             "open" => Ok(self.open(text("text")?, text("name")?)),
             "policies" => {
                 self.policies = policies(&request["values"])?;
-                if let Some((_, plan)) = &mut self.loaded {
-                    plan.policies = self.policies;
-                }
-                if let Some((_, plan)) = &mut self.stepped {
+                let (loaded, stepped) = (self.loaded.iter_mut(), self.stepped.iter_mut());
+                for plan in loaded.map(|(_, plan)| plan).chain(stepped.map(|(_, plan)| plan)) {
                     plan.policies = self.policies;
                 }
                 Ok(json!({}))

@@ -99,12 +99,8 @@ fn scene_findings<'a>(
     let name = scene.targets[target].name.clone();
     let (width, height) = (scene.targets[target].width, scene.targets[target].height);
     let other_size = || {
-        let message = format!(
-            "target `{name}` of `{}` is {width} x {height}, the pictures are {} x {}",
-            shown::path(path),
-            difference.width,
-            difference.height
-        );
+        let (columns, rows, path) = (difference.width, difference.height, shown::path(path));
+        let message = format!("target `{name}` of `{path}` is {width} x {height}, the pictures are {columns} x {rows}");
         Failure::invalid("NB0522", message, "choose the target that they show with `--target`, or change its size")
     };
     if (width, height) != (difference.width, difference.height) {
@@ -141,14 +137,7 @@ fn draw(destination: &Destination, arguments: &Arguments, a: &Rgba, b: &Rgba) ->
 }
 
 fn different_sizes(arguments: &Arguments, a: &Rgba, b: &Rgba) -> Failure {
-    let message = format!(
-        "the pictures differ in size: `{}` is {} x {}, `{}` is {} x {}",
-        shown::path(&arguments.a),
-        a.width,
-        a.height,
-        shown::path(&arguments.b),
-        b.width,
-        b.height
-    );
+    let of = |path: &Path, picture: &Rgba| format!("`{}` is {} x {}", shown::path(path), picture.width, picture.height);
+    let message = format!("the pictures differ in size: {}, {}", of(&arguments.a, a), of(&arguments.b, b));
     Failure::invalid("NB0521", message, "compare pictures of one size: take the screenshot unscaled, or crop it")
 }

@@ -326,10 +326,9 @@ fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
     let mut picture = occlusion::picture(&height, &options);
     if let Some(path) = normal_map {
         let Rgba { width, height, pixels } = image::load(path, &ImageLimits::default())?;
-        let of_field = (picture.width, picture.height);
-        if (width, height) != of_field {
-            let message =
-                format!("the normal map is {width} x {height}, the height field {} x {}", of_field.0, of_field.1);
+        let (columns, rows) = (picture.width, picture.height);
+        if (width, height) != (columns, rows) {
+            let message = format!("the normal map is {width} x {height}, the height field {columns} x {rows}");
             return Err(Failure::invalid("NB0521", message, "make the normal map from this height field"));
         }
         for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&pixels) {

@@ -3,6 +3,7 @@
 use super::*;
 
 use ninebit::plan::PlanOptions;
+use ninebit::state::Named as _;
 use ninebit_files::output::write_below;
 use ninebit_lower::{Function, Generic, Language, Named, Options, Sources, Textures};
 use ninebit_program::{registers, text};
@@ -83,24 +84,20 @@ impl Form {
 
 /// Prints programs in another form.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let program = &arguments.program;
     let Some(path) = &arguments.source else { return generic(arguments) };
-    let alone = program.language(path);
-    let scene = match alone {
-        Some(language) => program.read(path, language, context)?.0,
-        None => load(path, &arguments.policies, context)?.0,
-    };
+    let alone = arguments.program.language(path).is_some();
+    let scene = arguments.program.scene(path, &arguments.policies, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
     let out = match arguments.to.language() {
-        Some(language) => functions(arguments, path, language, &scene, &draws, alone.is_some())?,
-        None => programs(arguments, &scene, &draws, alone.is_some()),
+        Some(language) => functions(arguments, path, language, &scene, &draws, alone)?,
+        None => programs(arguments, &scene, &draws, alone),
     };
     Ok(write_text(&out)?)
 }
 
 /// Prints or writes the generic text.
 fn generic(arguments: &Arguments) -> Result<(), Failure> {
-    let text = Generic { chip: arguments.program.profile(), policies: arguments.policies.policies()? };
+    let text = Generic { chip: arguments.program.profile, policies: arguments.policies.policies()? };
     match (arguments.to, &arguments.output) {
         (Form::C99, Some(folder)) => {
             let Sources { header, source } = text.c99();
@@ -166,22 +163,17 @@ fn functions(
         let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
         Failure::invalid("NB0322", message, "`ninebit check` says where")
     })?;
-    let made: Vec<(String, String, Function)> = draws
-        .iter()
-        .map(|(number, draw)| {
-            if alone {
-                let about = format!("{} on {}", shown::path(path), arguments.program.profile_name());
-                let function = Function::of_program(&draw.combiners, &options);
-                return ("ninebit_program".to_string(), about, function);
-            }
-            let about = format!("draw {number} `{}`", shown::name(&draw.name));
-            let function = Function::of_draw(scene, draw, &plan.draws[*number], &options);
-            (format!("ninebit_draw{number}"), about, function)
-        })
-        .collect();
-    let named: Vec<Named<'_>> = made
-        .iter()
-        .map(|(name, about, function)| Named { name: name.clone(), about: about.clone(), function })
-        .collect();
-    Ok(language.print(&named))
+    let made = |(number, draw): &(usize, &Draw)| {
+        if alone {
+            let about = format!("{} on {}", shown::path(path), scene.profile.name());
+            let function = Function::of_program(&draw.combiners, &options);
+            return ("ninebit_program".to_string(), about, function);
+        }
+        let about = format!("draw {number} `{}`", shown::name(&draw.name));
+        let function = Function::of_draw(scene, draw, &plan.draws[*number], &options);
+        (format!("ninebit_draw{number}"), about, function)
+    };
+    let made: Vec<(String, String, Function)> = draws.iter().map(made).collect();
+    let named = made.iter().map(|(name, about, function)| Named { name: name.clone(), about: about.clone(), function });
+    Ok(language.print(&named.collect::<Vec<_>>()))
 }

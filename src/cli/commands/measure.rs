@@ -64,13 +64,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 /// Writes the truth of the first target, rounded to bytes; black where there is none.
 fn write_truth(plan: &Plan, truth: &Truth, destination: &Destination) -> Result<(), Failure> {
     let frame = evaluate(plan, truth, 0);
-    let pixels: Vec<[u8; 4]> = frame
-        .pixels
-        .iter()
-        .map(|pixel| {
-            let [r, g, b] = pixel.as_ref().map_or([0; 3], |pixel| pixel.color.map(byte));
-            [r, g, b, 255]
-        })
-        .collect();
+    let colors = frame.pixels.iter().map(|pixel| pixel.as_ref().map_or([0; 3], |pixel| pixel.color.map(byte)));
+    let pixels: Vec<[u8; 4]> = colors.map(|[r, g, b]| [r, g, b, 255]).collect();
     Ok(destination.write(&encode_png(frame.width, frame.height, &pixels, Compression::Small)?)?)
 }

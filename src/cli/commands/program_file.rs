@@ -9,7 +9,7 @@ use ninebit::plan::Plan;
 use ninebit::state::{Named, Profile, Scene};
 use ninebit_scene::{ProgramLanguage, load_program};
 
-use super::scene::refused_beside;
+use super::scene::{PolicyArguments, load, refused_beside};
 use super::{Context, Failure};
 
 /// Returns the language that a file's extension implies.
@@ -35,7 +35,7 @@ pub(crate) struct ProgramArguments {
     language: Option<ProgramLanguage>,
     /// The chip of a program that stands alone: nv10 or nv2a
     #[arg(long, value_name = "PROFILE", default_value = "nv2a", value_parser = super::op::words::profile)]
-    profile: Profile,
+    pub(crate) profile: Profile,
 }
 
 impl ProgramArguments {
@@ -56,13 +56,11 @@ impl ProgramArguments {
         loaded.map_err(|error| refused_beside(error, note, context))
     }
 
-    /// Returns the chip.
-    pub(crate) fn profile(&self) -> Profile {
-        self.profile
-    }
-
-    /// Returns the chip's name, as messages write it.
-    pub(crate) fn profile_name(&self) -> &'static str {
-        self.profile.name()
+    /// Reads the scene, or the program where the file is one.
+    pub(crate) fn scene(&self, path: &Path, policies: &PolicyArguments, context: Context) -> Result<Scene, Failure> {
+        match self.language(path) {
+            Some(language) => Ok(self.read(path, language, context)?.0),
+            None => Ok(load(path, policies, context)?.0),
+        }
     }
 }

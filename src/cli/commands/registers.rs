@@ -27,11 +27,7 @@ pub(crate) struct Arguments {
 
 /// Prints the programs of a scene, or a program from a file of its own, as register words.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (path, program) = (&arguments.source, &arguments.program);
-    let scene = match program.language(path) {
-        Some(language) => program.read(path, language, context)?.0,
-        None => load(path, &arguments.policies, context)?.0,
-    };
+    let scene = arguments.program.scene(&arguments.source, &arguments.policies, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
     let words =
         draws.iter().map(|(number, draw)| (*number, &draw.name, describe(&encode(&draw.combiners, scene.profile))));
@@ -45,20 +41,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             write_text(&out)?;
         }
         Format::Json => {
-            let draws: Vec<Value> = words
-                .map(|(number, name, words)| {
-                    let words: Vec<Value> = words
-                        .iter()
-                        .map(|word| {
-                            json!({
-                                "method": format!("{:04x}", word.method), "name": word.name,
-                                "value": format!("{:08x}", word.value), "meaning": word.meaning,
-                            })
-                        })
-                        .collect();
-                    json!({ "draw": number, "name": name, "words": words })
+            let word = |word: &Description| {
+                json!({
+                    "method": format!("{:04x}", word.method), "name": word.name,
+                    "value": format!("{:08x}", word.value), "meaning": word.meaning,
                 })
-                .collect();
+            };
+            let draws = words.map(|(number, name, words)| {
+                json!({ "draw": number, "name": name, "words": words.iter().map(word).collect::<Value>() })
+            });
+            let draws: Value = draws.collect();
             let value = json!({ "format": "ninebit-registers-1", "profile": scene.profile.name(), "draws": draws });
             write_json(&format!("{value:#}"))?;
         }

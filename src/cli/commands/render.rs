@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use ninebit::engine;
 use ninebit::frame::Surface;
-use ninebit::state::DepthFormat;
+use ninebit::state::{DepthFormat, Target};
 use ninebit_files::output::encode_grey_png;
+use serde_json::{Map, Value};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -84,23 +85,15 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     clock.lap("write");
 
     if statistics_wanted {
-        let targets: Vec<_> = scene
-            .targets
-            .iter()
-            .zip(&frames.surfaces)
-            .map(|(target, surface)| {
-                json!({
-                    "name": target.name, "width": surface.width, "height": surface.height,
-                    "format": surface.format.name(), "sha256": ninebit_files::picture::surface_digest(surface),
-                })
+        let target = |(target, surface): (&Target, &Surface)| {
+            json!({
+                "name": target.name, "width": surface.width, "height": surface.height,
+                "format": surface.format.name(), "sha256": ninebit_files::picture::surface_digest(surface),
             })
-            .collect();
-        let draws: Vec<_> = scene
-            .draws
-            .iter()
-            .zip(&statistics.shaded_pixels)
-            .map(|(draw, shaded)| json!({ "name": draw.name, "shaded_pixels": shaded }))
-            .collect();
+        };
+        let targets: Value = scene.targets.iter().zip(&frames.surfaces).map(target).collect();
+        let draws = scene.draws.iter().zip(&statistics.shaded_pixels);
+        let draws: Value = draws.map(|(draw, shaded)| json!({ "name": draw.name, "shaded_pixels": shaded })).collect();
         let value = json!({
             "format": "ninebit-stats-1",
             "version": env!("CARGO_PKG_VERSION"),
@@ -136,12 +129,12 @@ fn little_endian(words: &[u32], bytes: usize) -> Vec<u8> {
 /// Stopwatch for the wall-clock times of steps.
 struct Clock {
     last: Instant,
-    laps: serde_json::Map<String, serde_json::Value>,
+    laps: Map<String, Value>,
 }
 
 impl Clock {
     fn start() -> Self {
-        Clock { last: Instant::now(), laps: serde_json::Map::new() }
+        Clock { last: Instant::now(), laps: Map::new() }
     }
 
     /// Ends a step and records its time.

@@ -9,7 +9,7 @@ use ninebit::shown;
 use ninebit::state::{Draw, Policies, Scene};
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_scene::truth::Truth;
-use ninebit_scene::{self as scene, ErrorKind, Loaded, SceneError};
+use ninebit_scene::{self as scene, Loaded, SceneError};
 use serde::Serialize;
 
 use super::terminal::{self, Level};
@@ -89,12 +89,7 @@ impl PolicyArguments {
 
 /// Converts a scene's errors to a failure.
 pub(crate) fn refused(error: SceneError) -> Failure {
-    let exit = match error.kind() {
-        ErrorKind::Invalid => Exit::Invalid,
-        ErrorKind::Missing => Exit::Missing,
-        ErrorKind::Limit => Exit::Limit,
-    };
-    Failure { exit, report: Report::Scene(Box::new(error)) }
+    Failure { exit: Exit::from_code(error.exit_code()), report: Report::Scene(Box::new(error)) }
 }
 
 /// Converts the errors of options or a program that were read as a scene. `note` is printed below them.
@@ -129,17 +124,15 @@ pub(crate) fn each<T>(
 ) -> Batch<T> {
     let mut each = Batch { made: Vec::new(), failed: Vec::new(), exit: Exit::Success };
     for scene in scenes {
-        let failure = match isolated(scene, || work(scene)) {
-            Ok(made) => {
-                each.made.push(made);
-                continue;
+        match isolated(scene, || work(scene)) {
+            Ok(made) => each.made.push(made),
+            Err(failure) => {
+                terminal::print(Level::Error, &failure.report, context.color);
+                let (exit, message) = (failure.exit as u8, failure.report.plain());
+                each.failed.push(Failed { scene: shown::lossless(scene), exit, message });
+                each.exit = Exit::from_code(exit.max(each.exit as u8));
             }
-            Err(failure) => failure,
-        };
-        terminal::print(Level::Error, &failure.report, context.color);
-        let (exit, message) = (failure.exit as u8, failure.report.plain());
-        each.failed.push(Failed { scene: shown::lossless(scene), exit, message });
-        each.exit = Exit::from_code(exit.max(each.exit as u8));
+        }
     }
     each
 }
@@ -173,14 +166,18 @@ pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, 
 
 /// Returns the selected draws with their numbers: one, or all.
 pub(crate) fn chosen_draws(scene: &Scene, number: Option<usize>) -> Result<Vec<(usize, &Draw)>, Failure> {
-    let all = scene.draws.iter().enumerate();
-    let Some(number) = number else { return Ok(all.collect()) };
-    if number >= scene.draws.len() {
-        let names: Vec<String> = all.take(16).map(|(n, draw)| format!("{n} `{}`", draw.name)).collect();
-        let message = format!("the scene has no draw {number}");
-        return Err(Failure::usage(message, format!("its draws: {}", names.join(", "))));
+    let Some(number) = number else { return Ok(scene.draws.iter().enumerate().collect()) };
+    match scene.draws.get(number) {
+        Some(draw) => Ok(vec![(number, draw)]),
+        None => Err(Failure::usage(format!("the scene has no draw {number}"), known_draws(scene))),
     }
-    Ok(all.skip(number).take(1).collect())
+}
+
+/// Returns advice that lists the draws of a scene.
+pub(crate) fn known_draws(scene: &Scene) -> String {
+    let draws = scene.draws.iter().take(16).enumerate();
+    let names: Vec<String> = draws.map(|(n, draw)| format!("{n} `{}`", draw.name)).collect();
+    format!("its draws: {}", names.join(", "))
 }
 
 #[cfg(test)]

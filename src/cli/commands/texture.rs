@@ -89,11 +89,10 @@ fn describe(opened: &Opened) -> String {
     let sides: Vec<String> = chain.iter().map(|level| format!("{} x {}", level.width, level.height)).collect();
     let unit = if format.is_compressed() { "block of 4 x 4 texels" } else { "texel" };
     let bytes = opened.faces() as usize * words * format.bytes().min(4) as usize;
-    let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
     let mut text = format!("{}\n", shown::name(&opened.name));
     let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<9}{value}\n"));
     line("kind", opened.kind.name().to_owned());
-    line("format", format!("{}, {} a {unit}", format.name(), counted(format.bytes(), "byte")));
+    line("format", format!("{}, {} a {unit}", format.name(), shown::count(format.bytes().into(), "byte")));
     if opened.kind == TextureKind::Cube {
         line("faces", format!("{CUBE_FACES}: {}", FACES.join(", ")));
     }

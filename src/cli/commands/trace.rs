@@ -1,5 +1,6 @@
 //! The command `ninebit trace`: prints every step of a pixel.
 
+use super::scene::known_draws;
 use super::*;
 use ninebit::engine::{FRAGMENTS, TraceError, Tracer};
 use ninebit_files::output::write_stdout_with;
@@ -32,7 +33,7 @@ pub(crate) struct Arguments {
 /// Prints the steps of one pixel, or of a rectangle of pixels.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
-    let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
+    let target = chosen_target(&scene, arguments.target.as_deref())?;
     let Arguments { pixel, rectangle, draw, fragments, .. } = *arguments;
     let pixels = match (pixel, rectangle) {
         (Some(pixel), _) => vec![pixel],
@@ -75,11 +76,7 @@ fn outside(scene: &Scene, error: &TraceError) -> Failure {
         TraceError::Pixel { width, height, .. } => {
             format!("columns run from 0 to {}, rows from 0 to {}", width - 1, height - 1)
         }
-        TraceError::Draw { .. } => {
-            let names: Vec<String> =
-                scene.draws.iter().take(16).enumerate().map(|(n, d)| format!("{n} `{}`", d.name)).collect();
-            format!("its draws: {}", names.join(", "))
-        }
+        TraceError::Draw { .. } => known_draws(scene),
     };
     Failure::usage(error.to_string(), help)
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::outcome::{Outcome, Problem, ProblemKind};
 use crate::expectation::{Expectation, ExpectationError, depth_digest, masked_digest};
+use ninebit::diagnostic::ErrorKind;
 use ninebit::frame::Surface;
 use ninebit::shown;
 use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_file};
@@ -53,7 +54,6 @@ pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
 
 /// Returns the problem of an output that was not written.
 pub(super) fn unwritten(error: OutputError) -> Problem {
-    let (code, message, help) = (error.code(), error.to_string(), error.help());
-    let text = format!("error[{code}]: {message}\n  help: {help}");
-    Problem { kind: ProblemKind::Output, code, message, text, place: None }
+    let problem = Problem::new(ErrorKind::Invalid, error.code(), error.to_string(), error.help());
+    Problem { kind: ProblemKind::Output, ..problem }
 }

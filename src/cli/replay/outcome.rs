@@ -81,9 +81,8 @@ impl Problem {
 
     /// Returns the problem for a fault of this program.
     pub(super) fn internal(panic: &Panic) -> Self {
-        let (code, message) = (Panic::CODE, panic.to_string());
-        let text = format!("error[{code}]: {message}\n  help: {}", Panic::HELP);
-        Problem { kind: ProblemKind::Internal, code, message, text, place: None }
+        let problem = Problem::new(ErrorKind::Invalid, Panic::CODE, panic.to_string(), Panic::HELP);
+        Problem { kind: ProblemKind::Internal, ..problem }
     }
 
     /// Returns the exit status of the problem.
@@ -180,17 +179,12 @@ impl Difference {
     pub fn verdict(&self) -> String {
         let mut text = match (&self.known, &self.mismatch) {
             (Some(known), _) => {
-                let (difference, first) = (&known.difference, &known.first);
+                let Pixel { x, y, expected, drawn } = known.first;
+                let (different, all) = (known.difference.different, known.difference.pixels());
+                let (part, largest) = (share(different, all), known.difference.largest());
+                let (expected, drawn, all) = (color(expected), color(drawn), pixels(all));
                 format!(
-                    "{} of {} ({}), by {} at most; first {},{}: {} expected, {} drawn",
-                    difference.different,
-                    pixels(difference.pixels()),
-                    share(difference.different, difference.pixels()),
-                    difference.largest(),
-                    first.x,
-                    first.y,
-                    color(first.expected),
-                    color(first.drawn),
+                    "{different} of {all} ({part}), by {largest} at most; first {x},{y}: {expected} expected, {drawn} drawn"
                 )
             }
             (None, Mismatch::Digest { .. }) => {
@@ -209,12 +203,8 @@ impl Difference {
     /// Returns the full description in several lines.
     pub fn text(&self) -> String {
         let mut text = format!("{}\n\n", self.verdict());
-        text += &format!(
-            "target    {}\nexpected  {}\ndrawn     {}\n",
-            shown::name(&self.target),
-            shown::name(&self.expected),
-            self.drawn
-        );
+        let (target, expected) = (shown::name(&self.target), shown::name(&self.expected));
+        text += &format!("target    {target}\nexpected  {expected}\ndrawn     {}\n", self.drawn);
         for remark in &self.remarks {
             text += &format!("{}\n", shown::name(remark));
         }

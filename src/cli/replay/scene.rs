@@ -26,21 +26,20 @@ use ninebit_scene::image::{self, ImageLimits, Rgba};
 /// Replays one scene.
 pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
     let mut unwritten = Vec::new();
+    let path = shown::path(&entry.path);
     let outcome = match &entry.kind {
-        EntryKind::Scene => draw(entry, options, &mut unwritten).unwrap_or_else(Outcome::Failed),
-        EntryKind::Orphan => Outcome::Failed(Problem::new(
-            ErrorKind::Missing,
-            "NB1203",
-            format!("`{}` has no scene beside it", shown::path(&entry.path)),
-            "remove it, or bring the scene back",
-        )),
-        EntryKind::Unreadable(reason) => Outcome::Failed(Problem::new(
-            ErrorKind::Invalid,
-            "NB1204",
-            format!("`{}` cannot be read: {reason}", shown::path(&entry.path)),
-            "check its permissions; whatever lies in it has not been replayed",
-        )),
+        EntryKind::Scene => draw(entry, options, &mut unwritten),
+        EntryKind::Orphan => {
+            let message = format!("`{path}` has no scene beside it");
+            Err(Problem::new(ErrorKind::Missing, "NB1203", message, "remove it, or bring the scene back"))
+        }
+        EntryKind::Unreadable(reason) => {
+            let message = format!("`{path}` cannot be read: {reason}");
+            let help = "check its permissions; whatever lies in it has not been replayed";
+            Err(Problem::new(ErrorKind::Invalid, "NB1204", message, help))
+        }
     };
+    let outcome = outcome.unwrap_or_else(Outcome::Failed);
     let mut replayed = Replayed { name: entry.name.clone(), path: entry.path.clone(), outcome, unwritten };
     if let Some(folder) = &options.artifacts {
         write_artifacts(&mut replayed, folder);
@@ -112,12 +111,8 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
             return bless::write(&path, folder, &name, &surface, None);
         }
         let message = format!("`{}` has no expectation beside it", shown::path(&entry.path));
-        return Err(Problem::new(
-            ErrorKind::Missing,
-            "NB1202",
-            message,
-            "`ninebit replay --bless` writes one; look at the picture first",
-        ));
+        let help = "`ninebit replay --bless` writes one; look at the picture first";
+        return Err(Problem::new(ErrorKind::Missing, "NB1202", message, help));
     };
     let compare = |surface: &Surface| expectation.compare(surface, folder);
     match compare(&surface).map_err(|error| refused(&path, &error))? {
@@ -166,9 +161,8 @@ struct Subject<'a> {
 impl Subject<'_> {
     fn look_into(&self, mismatch: Mismatch, surface: &Surface) -> Result<Difference, Problem> {
         let (width, height) = (surface.width, surface.height);
-        let internal = |error: OutputError| unwritten(error);
         let drawn = Rgba { width, height, pixels: surface.rgba8() };
-        let picture = png(width, height, &drawn.pixels).map_err(internal)?;
+        let picture = png(width, height, &drawn.pixels).map_err(unwritten)?;
         let mut difference = Difference {
             target: self.expectation.target.clone(),
             expected: self.expectation.sha256.clone(),
@@ -265,13 +259,10 @@ impl Subject<'_> {
             Some((found, expected)) if found.plan.policies != self.plan.policies => {
                 let lines = side_by_side(&expected, &drawn);
                 let parted = lines.iter().find(|line| line.differs());
-                let text = format!(
-                    "pixel {},{}: as expected, and as it is drawn; `>` where they differ{}\n{}",
-                    first.x,
-                    first.y,
-                    parted.map_or(String::new(), |line| format!(", first in {} ({})", line.name, line.rule)),
-                    side_by_side_text(["expected", "drawn"], &lines)
-                );
+                let parted = parted.map_or(String::new(), |line| format!(", first in {} ({})", line.name, line.rule));
+                let (Pixel { x, y, .. }, both) = (first, side_by_side_text(["expected", "drawn"], &lines));
+                let text =
+                    format!("pixel {x},{y}: as expected, and as it is drawn; `>` where they differ{parted}\n{both}");
                 Traces { text, lines, drawn: value, expected: Some(trace_value(&found.plan, &expected)) }
             }
             _ => Traces { text: trace_text(self.plan, &drawn), lines: Vec::new(), drawn: value, expected: None },

@@ -56,10 +56,8 @@ fn of_dot_product(plan: &Plan, truth: &Truth, space: Space, unit: usize, measure
         told.filter(|draw| draw.stored).find_map(read)
     };
     let vectors: Vec<Option<(Vector, Vector)>> = on_threads(0, || measured.par_iter().map(|at| one(*at)).collect());
-    let mut normals = Normals { stored: Vec::new(), ideal: Vec::new(), space };
     let pixels = measured.last().map_or(0, |last| last + 1);
-    normals.stored.resize(pixels, None);
-    normals.ideal.resize(pixels, None);
+    let mut normals = Normals { stored: vec![None; pixels], ideal: vec![None; pixels], space };
     for (at, (stored, ideal)) in measured.iter().zip(vectors).filter_map(|(at, read)| Some((*at, read?))) {
         (normals.stored[at], normals.ideal[at]) = (Some(stored), Some(ideal));
     }

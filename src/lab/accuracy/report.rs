@@ -1,6 +1,6 @@
 //! Prints an accuracy measurement as text and as JSON.
 
-use super::{Accuracy, FrameCost, HardwareCost};
+use super::{Accuracy, Cause, FrameCost, HardwareCost};
 use ninebit_report::compare::{Statistics, statistics_value};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -67,15 +67,11 @@ fn write_cost(out: &mut String, cost: &HardwareCost) -> std::fmt::Result {
 pub fn accuracy_value(a: &Accuracy) -> Value {
     let channels: Map<String, Value> =
         ["r", "g", "b"].iter().zip(&a.channels).map(|(name, e)| ((*name).to_owned(), statistics_value(e))).collect();
-    let causes: Vec<Value> = a
-        .causes
-        .iter()
-        .map(|cause| {
-            let mut value = statistics_value(&cause.errors);
-            value["cause"] = cause.name.into();
-            value
-        })
-        .collect();
+    let cause = |cause: &Cause| {
+        let mut value = statistics_value(&cause.errors);
+        value["cause"] = cause.name.into();
+        value
+    };
     let normals = a.normals.as_ref().map(|normals| {
         let (degrees, lengths) = (&normals.degrees, &normals.lengths);
         json!({
@@ -88,7 +84,7 @@ pub fn accuracy_value(a: &Accuracy) -> Value {
         "width": a.width, "height": a.height, "pixels": a.pixels, "without_truth": a.without,
         "errors": statistics_value(&a.errors),
         "channels": channels,
-        "causes": causes,
+        "causes": a.causes.iter().map(cause).collect::<Value>(),
         "normals": normals,
         "highlight": {
             "pixels": b.pixels, "levels": b.levels, "truth_levels": b.truth_levels,

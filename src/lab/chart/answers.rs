@@ -2,7 +2,7 @@
 //! decide them, and the thresholds.
 
 use super::evaluators::Evaluator;
-use super::page::number;
+use super::page::{Row, number, row};
 use super::questions::Light;
 use super::report::Measured;
 use super::tables::degrees;
@@ -14,13 +14,6 @@ use ninebit::state::{ExpandCentre, InputMapping, Policies};
 const MAX_ERROR_RATIO: f64 = 1.25;
 /// Largest deviation from a claimed relative speed (in per cent) at which the claim counts as confirmed.
 const MAX_SPEED_DEVIATION: f64 = 10.0;
-
-/// A row of table cells.
-type Row = Vec<String>;
-
-fn row(cells: &[&str]) -> Row {
-    cells.iter().map(|cell| (*cell).to_owned()).collect()
-}
 
 /// Describes a technique with its error and its cost on the chip.
 fn describe(way: &Technique) -> String {

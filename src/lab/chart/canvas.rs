@@ -4,23 +4,13 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use kuva::backend::png::PngBackend;
 use kuva::backend::svg::SvgBackend;
-use kuva::render::render::{Primitive, Scene, TextAnchor};
+pub(super) use kuva::render::render::TextAnchor;
+use kuva::render::render::{Primitive, Scene};
 use std::fmt::Write;
 
 use super::labels::Rect;
-use super::picture::{Picture, SCALE, encode_error};
+use super::picture::{Picture, SCALE, encode_error, text};
 use ninebit_files::output::{Compression, OutputError, encode_png};
-
-/// The point of a text that its position refers to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
-    /// Its left end.
-    Left,
-    /// Its middle, halfway between the ends.
-    Middle,
-    /// Its right end.
-    Right,
-}
 
 /// A picture of opaque pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,14 +38,8 @@ impl Canvas {
     }
 
     /// Adds a text whose baseline is at `y`.
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], side: Side, size: u32, color: &str, text: &str) {
-        let anchor = match side {
-            Side::Left => TextAnchor::Start,
-            Side::Middle => TextAnchor::Middle,
-            Side::Right => TextAnchor::End,
-        };
-        let (content, color) = (text.to_owned(), Some(color.into()));
-        self.scene.add(Primitive::Text { x, y, content, size, anchor, rotate: None, bold: false, color });
+    pub(super) fn text(&mut self, at: [f64; 2], anchor: TextAnchor, size: u32, color: &str, content: &str) {
+        self.scene.add(text(at, anchor, size, Some(color), content));
     }
 
     /// Adds a straight line.
@@ -128,7 +112,7 @@ mod tests {
         let mut canvas = Canvas::new(60.0, 40.0);
         let image = Image { width: 2, pixels: vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]] };
         canvas.image(Rect { x: 10.0, y: 20.0, width: 10.0, height: 10.0 }, image);
-        canvas.text([2.0, 12.0], Side::Left, 10, "#000000", "a < b");
+        canvas.text([2.0, 12.0], TextAnchor::Start, 10, "#000000", "a < b");
         let picture = canvas.draw().unwrap();
         assert!(picture.svg.contains("a &lt; b") && picture.svg.contains("data:image/png;base64,"));
         assert!(picture.svg.ends_with("</svg>\n") && picture.svg.matches("</svg>").count() == 1);

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::page::row;
 use super::questions::Light;
 use super::report::Measured;
 use super::tables::{cause, causes, degrees};
@@ -94,9 +95,8 @@ impl Measured {
             ["`parameter`", "the number that the name ends in; empty if there is none"],
             ["`truth`", "which light was meant: techniques of one truth are ways to the same picture"],
         ];
-        let fixed = fixed.map(|row| row.map(str::to_owned).to_vec());
         let columns = self.columns().into_iter().map(|column| vec![format!("`{}`", column.name), column.meaning]);
-        fixed.into_iter().chain(columns).collect()
+        fixed.iter().map(|cells| row(cells)).chain(columns).collect()
     }
 
     /// Returns all measurements of the page as one JSON document.

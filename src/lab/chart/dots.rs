@@ -1,6 +1,6 @@
 //! Charts of the cost on the chip: a row per method, with its error on an axis and its counts beside it.
 
-use super::canvas::{Canvas, Side};
+use super::canvas::{Canvas, TextAnchor};
 use super::labels::{Rect, text_width};
 use super::page::{number, plain};
 use super::picture::{Axis, ticks};
@@ -67,25 +67,25 @@ fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
     let top = 66.0 + 16.0 * says.len() as f64;
     let bottom = top + ROW * lines as f64 + 6.0;
     let mut canvas = Canvas::new(WIDTH, bottom + 30.0);
-    canvas.text([16.0, 26.0], Side::Left, 15, INK, title);
+    canvas.text([16.0, 26.0], TextAnchor::Start, 15, INK, title);
     for (n, line) in says.iter().enumerate() {
-        canvas.text([16.0, 46.0 + 16.0 * n as f64], Side::Left, 11, PALE, line);
+        canvas.text([16.0, 46.0 + 16.0 * n as f64], TextAnchor::Start, 11, PALE, line);
     }
     let axis = Axis::logarithmic("", all().map(Technique::rms));
     let at = |value: f64| AXIS[0] + (AXIS[1] - AXIS[0]) * axis.share(value);
-    canvas.text([AXIS[0], top - 10.0], Side::Left, 11, INK, "rms error against the truth, 8-bit steps");
+    canvas.text([AXIS[0], top - 10.0], TextAnchor::Start, 11, INK, "rms error against the truth, 8-bit steps");
     for tick in ticks(&axis) {
         canvas.line([at(tick), top], [at(tick), bottom], GRID, 1.0);
-        canvas.text([at(tick), bottom + 16.0], Side::Middle, 11, PALE, &plain(tick));
+        canvas.text([at(tick), bottom + 16.0], TextAnchor::Middle, 11, PALE, &plain(tick));
     }
     for (n, name) in COUNTS.iter().enumerate() {
-        canvas.text([column(n), top - 10.0], Side::Left, 11, INK, name);
+        canvas.text([column(n), top - 10.0], TextAnchor::Start, 11, INK, name);
     }
     let most = all().flat_map(|way| counts(way).map(|[asked, _]| asked)).fold(1.0, f64::max);
     let mut y = top + ROW / 2.0;
     for group in groups {
         if let Some(heading) = group.heading {
-            canvas.text([16.0, y + 5.0], Side::Left, 12, INK, heading);
+            canvas.text([16.0, y + 5.0], TextAnchor::Start, 12, INK, heading);
             canvas.line([16.0, y + ROW / 2.0], [WIDTH - 16.0, y + ROW / 2.0], GRID, 1.0);
             y += ROW;
         }
@@ -104,15 +104,18 @@ fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
 
 fn row(canvas: &mut Canvas, way: &Technique, best: bool, x: f64, y: f64, most: f64) {
     let color = if best { BEST } else { PALE };
-    canvas.text([NAMES, y + 4.0], Side::Right, 11, color, &way.entry.name());
+    canvas.text([NAMES, y + 4.0], TextAnchor::End, 11, color, &way.entry.name());
     canvas.disc([x, y], 4.5, color, best);
-    let (side, beside) = if x > AXIS[1] - 50.0 { (Side::Right, x - 9.0) } else { (Side::Left, x + 9.0) };
     let rms = number(way.rms());
     let width = text_width(&rms, 10.0);
-    let left = if side == Side::Right { beside - width } else { beside };
+    let (anchor, beside, left) = if x > AXIS[1] - 50.0 {
+        (TextAnchor::End, x - 9.0, x - 9.0 - width)
+    } else {
+        (TextAnchor::Start, x + 9.0, x + 9.0)
+    };
     // Clears the background so that the line of the front does not cross the number.
     canvas.rectangle(Rect { x: left, y: y - 6.0, width, height: 12.0 }, "#ffffff");
-    canvas.text([beside, y + 4.0], side, 10, INK, &rms);
+    canvas.text([beside, y + 4.0], anchor, 10, INK, &rms);
     for (n, [asked, pruned]) in counts(way).into_iter().enumerate() {
         let x = column(n);
         let length = |count: f64| BAR * count / most;
@@ -125,7 +128,13 @@ fn row(canvas: &mut Canvas, way: &Technique, best: bool, x: f64, y: f64, most: f
             format!("{} → {}", number(asked), number(pruned))
         };
         let color = if asked == 0.0 { PALE } else { INK };
-        canvas.text([x + length(asked) + if asked == 0.0 { 0.0 } else { 4.0 }, y + 4.0], Side::Left, 10, color, &text);
+        canvas.text(
+            [x + length(asked) + if asked == 0.0 { 0.0 } else { 4.0 }, y + 4.0],
+            TextAnchor::Start,
+            10,
+            color,
+            &text,
+        );
     }
 }
 

@@ -25,6 +25,14 @@ pub(crate) fn fill(template: &str, parts: &[(String, String)]) -> String {
     page
 }
 
+/// A row of table cells.
+pub(crate) type Row = Vec<String>;
+
+/// Returns a row of the given cells.
+pub(crate) fn row(cells: &[&str]) -> Row {
+    cells.iter().map(|cell| (*cell).to_owned()).collect()
+}
+
 /// Returns a Markdown table of a heading row and other rows. The first column is left-aligned, the others right-aligned.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let Some((heading, rows)) = rows.split_first() else { return String::new() };
@@ -80,10 +88,6 @@ pub fn replace_section(page: &str, name: &str, section: &str) -> Option<String> 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn row(cells: &[&str]) -> Vec<String> {
-        cells.iter().map(|cell| (*cell).to_owned()).collect()
-    }
 
     #[test]
     fn places_are_filled() {

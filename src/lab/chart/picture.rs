@@ -245,16 +245,7 @@ impl Drawing {
         let plot = Rect { x: left, y: top, width: self.size[0] - left - right, height: self.size[1] - top - bottom };
         self.write_names(&mut scene, &plot);
         // The label of the vertical axis stands above it, where it can be read horizontally.
-        scene.add(Primitive::Text {
-            x: 12.0,
-            y: top - 10.0,
-            content: self.y.label.clone(),
-            size: BODY,
-            anchor: TextAnchor::Start,
-            rotate: None,
-            bold: false,
-            color: None,
-        });
+        scene.add(text([12.0, top - 10.0], TextAnchor::Start, BODY, None, &self.y.label));
         scene
     }
 
@@ -279,18 +270,15 @@ impl Drawing {
         for series in self.series.iter().filter(|series| series.join != Join::None) {
             lines.extend(series.marks.windows(2).map(|pair| (at(&pair[0]), at(&pair[1]))));
         }
+        let marks = self.series.iter().flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
         let marks: Vec<(&Series, &Mark)> =
-            self.series.iter().flat_map(|series| series.marks.iter().map(move |mark| (series, mark))).collect();
-        let marks: Vec<(&Series, &Mark)> =
-            marks.into_iter().filter(|(series, mark)| series.shape.is_some() || !mark.name.is_empty()).collect();
+            marks.filter(|(series, mark)| series.shape.is_some() || !mark.name.is_empty()).collect();
         let size = f64::from(NAME);
-        let named: Vec<Named> = marks
-            .iter()
-            .map(|(_, mark)| {
-                let height = if mark.name.is_empty() { 0.0 } else { size + 2.0 };
-                Named { at: at(mark), size: [labels::text_width(&mark.name, size), height] }
-            })
-            .collect();
+        let named = |(_, mark): &(&Series, &Mark)| {
+            let height = if mark.name.is_empty() { 0.0 } else { size + 2.0 };
+            Named { at: at(mark), size: [labels::text_width(&mark.name, size), height] }
+        };
+        let named: Vec<Named> = marks.iter().map(named).collect();
         let places = labels::place(&named, plot, &lines);
         for (((series, mark), named), place) in marks.iter().zip(&named).zip(&places) {
             if mark.name.is_empty() {
@@ -308,18 +296,15 @@ impl Drawing {
             } else {
                 (place.x + place.width / 2.0, TextAnchor::Middle)
             };
-            scene.add(Primitive::Text {
-                x,
-                y: place.y + size - 0.5,
-                content: mark.name.clone(),
-                size: NAME,
-                anchor,
-                rotate: None,
-                bold: false,
-                color: Some(series.color.into()),
-            });
+            scene.add(text([x, place.y + size - 0.5], anchor, NAME, Some(series.color), &mark.name));
         }
     }
+}
+
+/// Returns a text whose baseline is at `y`.
+pub(super) fn text([x, y]: [f64; 2], anchor: TextAnchor, size: u32, color: Option<&str>, content: &str) -> Primitive {
+    let (content, color) = (content.to_owned(), color.map(Into::into));
+    Primitive::Text { x, y, content, size, anchor, rotate: None, bold: false, color }
 }
 
 /// Returns the text of an SVG.

@@ -1,6 +1,6 @@
 //! Strips of pictures: the picture of each technique for a light, and its error below.
 
-use super::canvas::{Canvas, Image, Side};
+use super::canvas::{Canvas, Image, TextAnchor};
 use super::labels::{Rect, text_width};
 use super::page::number;
 use super::questions::Light;
@@ -28,8 +28,8 @@ pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let height = CAPTION + 2.0 * TILE + GAP + 10.0;
     let width = (2.0 * GAP + across as f64 * (TILE + GAP)).max(text_width(LEGEND, 11.0) + 32.0);
     let mut canvas = Canvas::new(width, 66.0 + rows as f64 * height);
-    canvas.text([16.0, 26.0], Side::Left, 15, INK, &light.title);
-    canvas.text([16.0, 46.0], Side::Left, 11, PALE, LEGEND);
+    canvas.text([16.0, 26.0], TextAnchor::Start, 15, INK, &light.title);
+    canvas.text([16.0, 46.0], TextAnchor::Start, 11, PALE, LEGEND);
     let place = |n: usize| [16.0 + (n % ACROSS) as f64 * (TILE + GAP), 62.0 + (n / ACROSS) as f64 * height];
     if let Some(first) = ways.first() {
         let [x, y] = place(0);
@@ -62,9 +62,9 @@ fn caption(canvas: &mut Canvas, [x, y]: [f64; 2], name: &str, below: &str) {
         }
     }
     for (n, line) in lines.iter().take(2).enumerate() {
-        canvas.text([x, y + 12.0 + 14.0 * n as f64], Side::Left, 11, INK, line);
+        canvas.text([x, y + 12.0 + 14.0 * n as f64], TextAnchor::Start, 11, INK, line);
     }
-    canvas.text([x, y + CAPTION - 6.0], Side::Left, 11, PALE, below);
+    canvas.text([x, y + CAPTION - 6.0], TextAnchor::Start, 11, PALE, below);
 }
 
 /// Scales a picture to a fixed size by nearest sampling.

@@ -1,7 +1,7 @@
 //! The tables of the page on speed and accuracy.
 
 use super::evaluators::Evaluator;
-use super::page::{number, table};
+use super::page::{Row, number, row, table};
 use super::questions::{Light, MAX_SHOWN};
 use super::report::{FOLDER, Measured};
 use super::surfaces::SurfaceCost;
@@ -11,9 +11,6 @@ use crate::accuracy::FrameCost;
 
 /// Error budgets: rms in 8-bit steps.
 const BUDGETS: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
-
-/// A row of table cells.
-type Row = Vec<String>;
 
 impl Measured {
     /// Returns the section of a light with its charts.
@@ -136,7 +133,7 @@ impl Measured {
 }
 
 fn heading(names: &[&str]) -> impl Iterator<Item = Row> {
-    std::iter::once(names.iter().map(|name| (*name).to_owned()).collect())
+    std::iter::once(row(names))
 }
 
 /// Returns all causes of some techniques, in the order of the steps from the truth to the picture.

@@ -2,35 +2,20 @@
 
 use super::*;
 
-/// Treatment of light that comes from below the surface.
-#[derive(Clone, Copy)]
-enum Shadow {
-    /// None: bumps are lit.
-    None,
-    /// Multiplication by the light's height above the surface, times four.
-    Term,
-}
-
 pub(super) fn behind() -> Experiment {
-    let method = |name: &str, shadow: Shadow, works: f64| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |elevation| Ok(largest(&light(elevation, 30.0, shadow)?.0))),
-        works,
-        fails: -15.0,
+    let method = |name: &str, shadowed: bool, works: f64, fails: f64| {
+        Method::new(name, [works, fails], move |elevation| Ok(largest(&light(elevation, 30.0, shadowed)?.0)))
     };
     Experiment::new("light-behind", "A light that sinks below the surface")
         .moving("height of the light, degrees", Scale::Real(0.05), steps(-40.0, 40.0, 81))
         .measuring("largest error, 8-bit steps", 16.0)
-        .by([
-            method("N . L", Shadow::None, 20.0),
-            Method { fails: 1.0, ..method("N . L times 4 L.z", Shadow::Term, 30.0) },
-        ])
+        .by([method("N . L", false, 20.0, -15.0), method("N . L times 4 L.z", true, 30.0, 1.0)])
 }
 
 pub(super) fn grazing() -> Experiment {
     let method = |name: &str, bumps: f64| {
         Method::new(name, [60.0, 0.25], move |elevation| {
-            let (errors, ideal) = light(elevation, bumps, Shadow::None)?;
+            let (errors, ideal) = light(elevation, bumps, false)?;
             Ok(100.0 * root_mean_square(&errors) / root_mean_square(&ideal).max(1e-9))
         })
     };
@@ -40,15 +25,16 @@ pub(super) fn grazing() -> Experiment {
         .by([method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)])
 }
 
-/// Returns the errors and the expected values, in steps.
-fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
+/// Returns the errors and the expected values, in steps. With `shadowed`, light that comes from below the surface is multiplied by its height above
+/// the surface, times four; otherwise it lights bumps.
+fn light(elevation: f64, bumps: f64, shadowed: bool) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
     let elevation = elevation.to_radians();
     let tilt = |at: f64| angle(-bumps, bumps, at);
     let normals = leaning(WIDTH, |x| tilt(centre(x, WIDTH)));
     let [r, g, b] = encode([cos(elevation), 0.0, sin(elevation)]);
     let direction = expanded(Register::ConstantColor0);
     let mut stages = vec![dot_product(expanded(Register::Texture0), direction)];
-    if matches!(shadow, Shadow::Term) {
+    if shadowed {
         let term = &mut stages[0].alpha;
         term.inputs[0] = CombinerInput { component: Component::Blue, ..direction };
         term.inputs[1].mapping = InputMapping::UnsignedInvert;

@@ -204,22 +204,9 @@ fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn experiment(scale: Scale, method: Method) -> Experiment {
-        Experiment {
-            name: "",
-            title: "",
-            parameter: "",
-            error: "",
-            limit: 4.0,
-            scale,
-            shown: Vec::new(),
-            methods: vec![method],
-        }
-    }
-
     fn found(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
-        let measure = Box::new(move |value| Ok(measure(value)));
-        let experiment = experiment(scale, Method { name: String::new(), measure, works, fails });
+        let method = Method::new("", [works, fails], move |value| Ok(measure(value)));
+        let experiment = Experiment::new("", "").moving("", scale, Vec::new()).measuring("", 4.0).by([method]);
         threshold(&experiment, &experiment.methods[0]).unwrap()
     }
 

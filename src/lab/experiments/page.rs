@@ -117,12 +117,8 @@ fn drawing(measured: &Measured) -> Drawing {
         marks: experiment.shown.iter().zip(curve).map(|(x, y)| Mark { x: *x, y: *y, name: String::new() }).collect(),
     });
     let errors = || curves.iter().flatten().copied().chain([experiment.limit]);
-    let wide = match experiment.shown[..] {
-        [first, .., last] => first > 0.0 && last / first > 30.0,
-        _ => false,
-    };
     let x = match experiment.shown[..] {
-        [low, .., high] if wide => {
+        [low, .., high] if low > 0.0 && high / low > 30.0 => {
             Axis { label: experiment.parameter.to_owned(), low: low / 1.04, high: high * 1.04, logarithmic: true }
         }
         _ => Axis::linear(experiment.parameter, experiment.shown.iter().copied(), false),

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::Generic;
-use super::pieces::{Case, Piece, pieces};
-use crate::code::{Operation, Range};
+use super::pieces::{Case, Piece, pieces, range};
+use crate::code::Operation;
 use crate::input::Local;
 use crate::language::{Body, Language, ROUNDING, port};
 
@@ -43,9 +43,7 @@ fn module(piece: &Piece) -> String {
             format!("input {} {}", port(local.kind, local.range), syntax.input(crate::Input::Local(*local)))
         }),
     );
-    let range: Range =
-        piece.cases.iter().fold((i64::MAX, i64::MIN), |all, case| (all.0.min(case.range.0), all.1.max(case.range.1)));
-    let wide = port(piece.kind, range);
+    let wide = port(piece.kind, range(&piece.cases));
     ports.extend((0..results).map(|n| format!("output {wide} {}", result(n))));
     let mut out = format!("// {}\nmodule {} (\n    {}\n);\n", piece.about, piece.name, ports.join(",\n    "));
     for case in &piece.cases {
@@ -54,7 +52,7 @@ fn module(piece: &Piece) -> String {
         let _ = writeln!(out, "    generate if (1) begin : case_{:x}{name}", case.value);
         body.declarations.iter().for_each(|line| _ = writeln!(out, "        {line}"));
         for (n, one) in case.results.iter().enumerate() {
-            let (value, rules) = body.result(syntax, *one, piece.kind);
+            let (value, rules) = body.result(*one, piece.kind);
             let rules = if rules.is_empty() { String::new() } else { format!(" // {rules}") };
             let _ = writeln!(out, "        wire {wide} yields{n} = {value};{rules}");
         }

@@ -9,7 +9,7 @@ use ninebit::rop::{blend, surface};
 use ninebit::state::*;
 use ninebit_program::registers::{OPERATIONS, raster};
 
-use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test};
+use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test, enclosing};
 use crate::input::{Input, Local};
 use crate::number::{Factor, Number, Sum, Word};
 use crate::order::{Block, Listing};
@@ -139,8 +139,7 @@ impl Maker {
         let halvings = if self.policies.half_bias == HalfBiasConstant::Half127And5 { 2 } else { 0 };
         let results: Vec<Operand> =
             of(&mut Reader { code: &code, listing, halvings }).into_iter().map(Number::operand).collect();
-        let ranges = results.iter().map(|result| code.range(*result));
-        let range = ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+        let range = enclosing(results.iter().map(|result| code.range(*result)));
         let (lines, renamed) = code.kept(&results);
         Case { value, name: name.to_string(), lines, results: results.into_iter().map(renamed).collect(), range }
     }
@@ -165,8 +164,8 @@ impl Maker {
 }
 
 /// Returns the range of the results of all cases.
-fn range(cases: &[Case]) -> Range {
-    cases.iter().fold((i64::MAX, i64::MIN), |all, case| (all.0.min(case.range.0), all.1.max(case.range.1)))
+pub(super) fn range(cases: &[Case]) -> Range {
+    enclosing(cases.iter().map(|case| case.range))
 }
 
 /// Returns all pieces, in the order in which a pixel passes through them.
@@ -363,37 +362,26 @@ pub(super) fn writes() -> Vec<Write> {
     let code = Code::default();
     let mut listing = Listing::new(&code, Policies::DEFAULT);
     listing.enter(Block::Piece);
-    let portion = |component| {
-        let outputs = Portion {
-            ab_output: Register::Spare0,
-            cd_output: Register::Spare0,
-            sum_output: Register::Spare0,
-            ..Portion::idle(component)
-        };
-        match component {
-            Component::Rgb => Portion { ab_blue_to_alpha: true, cd_blue_to_alpha: true, ..outputs },
-            _ => outputs,
-        }
+    let portion = |component| Portion {
+        ab_output: Register::Spare0,
+        cd_output: Register::Spare0,
+        sum_output: Register::Spare0,
+        ..Portion::idle(component)
     };
-    let (rgb, alpha) = (portion(Component::Rgb), portion(Component::Alpha));
-    let stage = general::PlannedStage::whole(0, &GeneralStage { rgb, alpha, constants: [[0; 4]; 2] });
+    let rgb = Portion { ab_blue_to_alpha: true, cd_blue_to_alpha: true, ..portion(Component::Rgb) };
+    let stage = GeneralStage { rgb, alpha: portion(Component::Alpha), constants: [[0; 4]; 2] };
+    let stage = general::PlannedStage::whole(0, &stage);
     let mut registers = Registers::from_value(Number::ZERO);
     let values = general::evaluate(&stage, MuxSelect::Lsb, &registers, &mut listing);
     listing.take_sites();
     general::write(&stage, &values, &mut registers, &mut listing);
-    let blue = |site: Site| (0..2).find(|n| site == Site::blue_to_alpha(*n));
-    let channel = |site: Site| {
-        let all = (0..3).flat_map(|output| (0..4).map(move |channel| (output, channel)));
-        all.into_iter().find(|(output, channel)| site == Site::write(*output, *channel))
-    };
-    let sites = listing.take_sites().into_iter();
-    sites
-        .filter_map(|site| match (blue(site), channel(site)) {
-            (Some(output), _) => Some(Write::BlueToAlpha { output }),
-            (None, Some((output, channel))) => Some(Write::Channel { output, channel }),
-            (None, None) => None,
-        })
-        .collect()
+    let blue = (0..2).map(|output| (Site::blue_to_alpha(output), Write::BlueToAlpha { output }));
+    let channels = (0..3).flat_map(|output| {
+        (0..4).map(move |channel| (Site::write(output, channel), Write::Channel { output, channel }))
+    });
+    let known: Vec<(Site, Write)> = blue.chain(channels).collect();
+    let write = |site: Site| known.iter().find(|(known, _)| *known == site).map(|(_, write)| *write);
+    listing.take_sites().into_iter().filter_map(write).collect()
 }
 
 /// Returns what SPARE0 holds before the first stage (CMB-13): for each channel, the channel of TEXTURE0 that it copies, or `None` if it is 0.
@@ -409,11 +397,8 @@ pub(super) fn initial_spare0() -> [Option<usize>; 4] {
     let texture = [0, 1, 2, 3].map(|c| Number::new(&code, code.input(Input::Texture(0, c), BYTE)));
     registers.load(Register::Texture0, texture);
     let fragment = program.evaluate(registers, |_, _, _| [[Number::ZERO; 4]; 2], &mut listing);
-    fragment.map(|value| match value.operand() {
-        Operand::Line(line) => match code.operation_at(line) {
-            Operation::Input(Input::Texture(_, channel)) => Some(channel),
-            _ => None,
-        },
-        Operand::Constant(_) => None,
+    fragment.map(|value| match code.operation(value.operand()) {
+        Some(Operation::Input(Input::Texture(_, channel))) => Some(channel),
+        _ => None,
     })
 }

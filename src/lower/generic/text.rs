@@ -6,7 +6,7 @@ use ninebit::combiner::general::component_channel;
 use ninebit::combiner::registers::channel_name;
 use ninebit::state::{FinalRegister, Named, Profile};
 use ninebit_program::registers::layout::{self, Field};
-use ninebit_program::registers::{Word, component, raster, register_code};
+use ninebit_program::registers::{Word, component, raster, register_code as code};
 
 use super::pieces::{Case, Piece, Write, initial_spare0, mapped, pieces, writes};
 use super::{Generic, Sources};
@@ -140,11 +140,6 @@ fn unrolled(text: &str) -> String {
         }
     }
     out
-}
-
-/// Returns the code of a register.
-fn code(register: FinalRegister) -> u32 {
-    register_code(register)
 }
 
 /// Returns an expression for a field of a word.
@@ -282,7 +277,7 @@ impl Printer<'_> {
         );
         for (case, row) in piece.cases.iter().zip(rows) {
             let body = Body::from_lines(self.syntax, &case.lines, &case.results, &[]);
-            let (_, rules) = body.result(self.syntax, case.results[0], piece.kind);
+            let (_, rules) = body.result(case.results[0], piece.kind);
             let _ = writeln!(out, "    {{ /* {}{}{rules} */", case.name, if rules.is_empty() { "" } else { ": " });
             for line in row.chunks(32) {
                 let numbers: Vec<String> = line.iter().map(i64::to_string).collect();
@@ -299,7 +294,7 @@ impl Printer<'_> {
         let declares = !body.declarations.is_empty() && piece.chooses.is_some();
         let mut inner: Vec<String> = body.declarations.clone();
         for (n, result) in case.results.iter().enumerate() {
-            let (value, rules) = body.result(self.syntax, *result, piece.kind);
+            let (value, rules) = body.result(*result, piece.kind);
             let comment = if rules.is_empty() { String::new() } else { format!(" /* {rules} */") };
             let equals = if piece.array.is_none() && piece.chooses.is_none() { "" } else { " =" };
             // A value that does not change needs no assignment.
@@ -564,31 +559,25 @@ fn operands(inputs: Mapped) -> String {
 
 /// Prints the functions from the fragment to the stored word.
 fn store() -> String {
-    let name = |method: raster::Method| format!("@s.{}", method.name());
-    let format = field(&name(raster::Method::SurfaceFormat), raster::SURFACE_COLOR);
+    use raster::Method;
+    let name = |method: Method| format!("@s.{}", method.name());
+    let format = field(&name(Method::SurfaceFormat), raster::SURFACE_COLOR);
+    let [tests, compare, reference] = [Method::AlphaTestEnable, Method::AlphaFunc, Method::AlphaRef].map(name);
+    let [blends, equation, constant] = [Method::BlendEnable, Method::BlendEquation, Method::BlendColor].map(name);
+    let [source, destination] = [Method::BlendFuncSfactor, Method::BlendFuncDfactor].map(name);
+    let mask = name(Method::ColorMask);
     let all = raster::COLOR_MASK.iter().fold(0, |all, field| all | field.put(1));
     format!(
-        "@public int nb_kept(@state, @in @int fragment[4])\n{{\n    if ({} == 0u) return 1;\n    return nb_passes({}, fragment[3], @int({} & 255u));\n}}\n\n\
+        "@public int nb_kept(@state, @in @int fragment[4])\n{{\n    if ({tests} == 0u) return 1;\n    return nb_passes({compare}, fragment[3], @int({reference} & 255u));\n}}\n\n\
          @public @uint nb_stored(@state, @in @int fragment[4], @uint destination)\n{{\n    @uint format = {format}, mask;\n\
          \x20   @int channels[4], source[4], held[4], constant[4], factors[4], other[4];\n\
-         \x20   if ({} == 0u && ({} & {all:#x}u) == {all:#x}u && nb_whole(format) != 0) return nb_packed(format, fragment); /* ROP-6 */\n\
-         \x20   mask = nb_write_mask(format, {});\n    for (@int c = 0; c < 4; c++) channels[c] = fragment[c];\n\
-         \x20   if ({} != 0u && nb_blends(format) != 0) {{\n        nb_truncated(format, fragment, source);\n        nb_channels(format, destination, held);\n\
-         \x20       nb_color({}, constant);\n        nb_blend_factors({}, source, held, constant, factors);\n        nb_blend_factors({}, source, held, constant, other);\n\
-         \x20       for (@int c = 0; c < 4; c++) channels[c] = nb_blended({}, source[c], held[c], factors[c], other[c]);\n    }}\n\
+         \x20   if ({blends} == 0u && ({mask} & {all:#x}u) == {all:#x}u && nb_whole(format) != 0) return nb_packed(format, fragment); /* ROP-6 */\n\
+         \x20   mask = nb_write_mask(format, {mask});\n    for (@int c = 0; c < 4; c++) channels[c] = fragment[c];\n\
+         \x20   if ({blends} != 0u && nb_blends(format) != 0) {{\n        nb_truncated(format, fragment, source);\n        nb_channels(format, destination, held);\n\
+         \x20       nb_color({constant}, constant);\n        nb_blend_factors({source}, source, held, constant, factors);\n        nb_blend_factors({destination}, source, held, constant, other);\n\
+         \x20       for (@int c = 0; c < 4; c++) channels[c] = nb_blended({equation}, source[c], held[c], factors[c], other[c]);\n    }}\n\
          \x20   return (destination & ~mask) | (nb_packed(format, channels) & mask); /* ROP-6 */\n}}\n\n\
          @flatten@public @uint nb_pixel(@state, @inputs)\n{{\n    @int fragment[4];\n    nb_fragment(state, inputs, fragment);\n\
          \x20   return nb_kept(state, fragment) != 0 ? nb_stored(state, fragment, @i.destination) : @i.destination;\n}}\n",
-        name(raster::Method::AlphaTestEnable),
-        name(raster::Method::AlphaFunc),
-        name(raster::Method::AlphaRef),
-        name(raster::Method::BlendEnable),
-        name(raster::Method::ColorMask),
-        name(raster::Method::ColorMask),
-        name(raster::Method::BlendEnable),
-        name(raster::Method::BlendColor),
-        name(raster::Method::BlendFuncSfactor),
-        name(raster::Method::BlendFuncDfactor),
-        name(raster::Method::BlendEquation),
     )
 }

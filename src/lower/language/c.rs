@@ -43,10 +43,9 @@ static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a 
 
 impl Syntax for C99 {
     fn head(&self, functions: &[Named<'_>]) -> String {
-        let [.., constants] = needs(functions);
         let mut out = format!("/* {}\n   {}\n   {} */\n#include <stdint.h>\n\n", ROUNDING[0], ROUNDING[1], ROUNDING[2]);
         out.push_str(PIXEL);
-        if constants {
+        if reads_constants(functions) {
             out.push_str(CONSTANTS);
         }
         out + HELPERS

@@ -6,7 +6,6 @@ pub(super) struct Glsl;
 
 impl Syntax for Glsl {
     fn head(&self, functions: &[Named<'_>]) -> String {
-        let [.., constants] = needs(functions);
         let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
         out.push_str("// For GLSL 3.30 and GLSL ES 3.00: the line that tells the version stands above.\nprecision highp int;\n\n");
         out.push_str("// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
@@ -22,7 +21,7 @@ impl Syntax for Glsl {
         (0..4).for_each(|n| out.push_str(&format!("    int weight{n}[5];\n")));
         out.push_str("    ivec4 outside;    // bit n of a unit's: its texel n is the border colour\n");
         out.push_str("    uint destination; // the word that the surface holds\n};\n");
-        if constants {
+        if reads_constants(functions) {
             out.push_str("\n// Constants of a draw: R, G, B, A, 0 to 255.\nstruct NinebitConstants {\n");
             out.push_str("    ivec4 stage[16]; // constant colours 0 and 1 of each general stage\n");
             out.push_str("    ivec4 final[2];  // of the final combiner\n    ivec4 fog;       // fog colour\n");

@@ -48,7 +48,7 @@ impl Language {
         let mut out = syntax.head(functions);
         for named in functions {
             out.push('\n');
-            out.push_str(&syntax.function(named));
+            out.push_str(&function(syntax, named));
         }
         out
     }
@@ -78,20 +78,6 @@ pub(crate) trait Syntax {
     fn fragment(&self, channels: [String; 4]) -> String;
     /// Prints the end of a function that yields a word, unless the fragment fails `test`.
     fn stored(&self, word: String, test: Option<String>) -> String;
-    /// Prints a whole function.
-    fn function(&self, named: &Named<'_>) -> String {
-        let body = Body::new(self, named.function);
-        let lines: String = body.declarations.iter().map(|line| format!("    {line}\n")).collect();
-        let end = match named.function.result {
-            Result::Fragment(channels) => {
-                self.fragment(channels.map(|channel| body.operand(self, channel, Kind::Number).open()))
-            }
-            Result::Stored { word, test } => {
-                self.stored(body.operand(self, word, Kind::Word).open(), test.map(|test| body.test(self, test)))
-            }
-        };
-        self.opening(named) + &lines + &end
-    }
     /// Returns how an input is read.
     fn input(&self, input: Input) -> String;
     /// Prints a constant as a value of the given kind.
@@ -111,6 +97,24 @@ pub(crate) trait Syntax {
     fn compares_names(&self) -> bool {
         false
     }
+}
+
+/// Prints a whole function.
+fn function(syntax: &'static dyn Syntax, named: &Named<'_>) -> String {
+    let (lines, result) = (&named.function.lines, named.function.result);
+    let test = match result {
+        Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
+        _ => Vec::new(),
+    };
+    let body = Body::from_lines(syntax, lines, &result.operands(), &test);
+    let lines: String = body.declarations.iter().map(|line| format!("    {line}\n")).collect();
+    let end = match result {
+        Result::Fragment(channels) => syntax.fragment(body.open(channels, Kind::Number)),
+        Result::Stored { word, test } => {
+            syntax.stored(body.operand(word, Kind::Word).open(), test.map(|test| body.test(test)))
+        }
+    };
+    syntax.opening(named) + &lines + &end
 }
 
 /// An operation that languages write differently.
@@ -152,48 +156,34 @@ impl Text {
 pub(crate) struct Body<'f> {
     /// Declarations in order.
     pub(crate) declarations: Vec<String>,
+    syntax: &'static dyn Syntax,
     lines: &'f [Line],
     texts: Vec<(Text, BTreeSet<&'static str>)>,
 }
 
 impl<'f> Body<'f> {
-    fn new(syntax: &(impl Syntax + ?Sized), function: &'f Function) -> Body<'f> {
-        let test = match function.result {
-            Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
-            _ => Vec::new(),
-        };
-        Body::from_lines(syntax, &function.lines, &function.result.operands(), &test)
-    }
-
     /// Prints lines whose results are `results`; the values `test` are compared.
     pub(crate) fn from_lines(
-        syntax: &(impl Syntax + ?Sized),
+        syntax: &'static dyn Syntax,
         lines: &'f [Line],
         results: &[Operand],
         test: &[Operand],
     ) -> Body<'f> {
         let mut uses = vec![0; lines.len()];
         let all = lines.iter().flat_map(|line| line.operation.operands()).chain(results.iter().copied());
-        for operand in all {
-            if let Operand::Line(line) = operand {
-                uses[line as usize] += 1;
-            }
-        }
+        all.filter_map(Operand::line).for_each(|line| uses[line] += 1);
         let compared = lines.iter().flat_map(|line| match line.operation {
             Operation::Least(a, b) | Operation::Greatest(a, b) | Operation::Select(Test(_, [a, b]), _) => vec![a, b],
             Operation::Word(a) => vec![a],
             _ => Vec::new(),
         });
         let mut named = vec![false; lines.len()];
-        for operand in compared.chain(test.iter().copied()) {
-            if let Operand::Line(line) = operand {
-                named[line as usize] = syntax.compares_names();
-            }
-        }
-        let mut body = Body { declarations: Vec::new(), lines, texts: Vec::with_capacity(lines.len()) };
+        let compared = compared.chain(test.iter().copied()).filter_map(Operand::line);
+        compared.for_each(|line| named[line] = syntax.compares_names());
+        let mut body = Body { declarations: Vec::new(), syntax, lines, texts: Vec::with_capacity(lines.len()) };
         let (mut names, mut unnamed) = (BTreeSet::new(), 0);
         for (n, line) in lines.iter().enumerate() {
-            let (text, mut rules) = body.text(syntax, line);
+            let (text, mut rules) = body.text(line);
             let is_input = matches!(line.operation, Operation::Input(_));
             if is_input || (line.name.is_none() && uses[n] < 2 && !named[n]) {
                 body.texts.push((text, rules));
@@ -224,28 +214,23 @@ impl<'f> Body<'f> {
     }
 
     /// Prints an operand of the given kind.
-    fn operand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> Text {
+    fn operand(&self, operand: Operand, kind: Kind) -> Text {
         match operand {
-            Operand::Constant(value) if value < 0 => Text::Open(syntax.constant(value, kind)),
-            Operand::Constant(value) => Text::Term(syntax.constant(value, kind)),
+            Operand::Constant(value) if value < 0 => Text::Open(self.syntax.constant(value, kind)),
+            Operand::Constant(value) => Text::Term(self.syntax.constant(value, kind)),
             Operand::Line(line) => self.texts[line as usize].0.clone(),
         }
     }
 
     /// Prints a result. Also returns the rules that no declaration has mentioned.
-    pub(crate) fn result(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> (String, String) {
-        let rules = match operand {
-            Operand::Constant(_) => String::new(),
-            Operand::Line(line) => {
-                let rules = self.texts[line as usize].1.iter().copied().filter(|rule| !rule.is_empty());
-                rules.collect::<Vec<_>>().join(", ")
-            }
-        };
-        (self.operand(syntax, operand, kind).open(), rules)
+    pub(crate) fn result(&self, operand: Operand, kind: Kind) -> (String, String) {
+        let rules = operand.line().into_iter().flat_map(|line| &self.texts[line].1);
+        let rules: Vec<&str> = rules.copied().filter(|rule| !rule.is_empty()).collect();
+        (self.operand(operand, kind).open(), rules.join(", "))
     }
 
-    fn test(&self, syntax: &(impl Syntax + ?Sized), Test(function, operands): Test) -> String {
-        let [a, b] = operands.map(|operand| self.operand(syntax, operand, Kind::Number).term());
+    fn test(&self, Test(function, operands): Test) -> String {
+        let [a, b] = operands.map(|operand| self.operand(operand, Kind::Number).term());
         let operator = match function {
             CompareFunction::Never => return format!("{a} != {a}"),
             CompareFunction::Always => return format!("{a} == {a}"),
@@ -260,23 +245,19 @@ impl<'f> Body<'f> {
     }
 
     /// Prints an operation. Also returns the rules of everything that is part of the text.
-    fn text(&self, syntax: &(impl Syntax + ?Sized), line: &Line) -> (Text, BTreeSet<&'static str>) {
-        let operation = line.operation;
+    fn text(&self, line: &Line) -> (Text, BTreeSet<&'static str>) {
+        let (syntax, operation) = (self.syntax, line.operation);
         let mut rules = BTreeSet::from([line.rule]);
-        for operand in operation.operands() {
-            if let Operand::Line(line) = operand {
-                rules.extend(&self.texts[line as usize].1);
-            }
-        }
+        rules.extend(operation.operands().into_iter().filter_map(Operand::line).flat_map(|line| &self.texts[line].1));
         let kind = operation.takes();
-        let term = |operand: Operand| self.operand(syntax, operand, kind).term();
+        let term = |operand: Operand| self.operand(operand, kind).term();
         let number = |value: i64| syntax.constant(value, kind);
         let shift = |bits: u32| syntax.constant(bits.into(), Kind::Word);
         let infix = |a: String, operator: &str, b: String| Text::Open(format!("{a} {operator} {b}"));
         let text = match operation {
             Operation::Input(input) => return (Text::Term(syntax.input(input)), BTreeSet::new()),
-            Operation::Add(a, b) => infix(self.summand(syntax, a, true), "+", self.summand(syntax, b, false)),
-            Operation::Subtract(a, b) => infix(self.summand(syntax, a, true), "-", self.summand(syntax, b, false)),
+            Operation::Add(a, b) => infix(self.summand(a, true), "+", self.summand(b, false)),
+            Operation::Subtract(a, b) => infix(self.summand(a, true), "-", self.summand(b, false)),
             Operation::Multiply(a, b) | Operation::Times(a, b) => infix(term(a), "*", term(b)),
             Operation::Quotient(a, by) => infix(term(a), "/", number(by)),
             Operation::Bits(a, mask) => infix(term(a), "&", number(mask)),
@@ -285,42 +266,34 @@ impl<'f> Body<'f> {
             Operation::Or(a, b) => infix(term(a), "|", term(b)),
             Operation::Down(a, bits) => infix(term(a), ">>", shift(bits)),
             Operation::Up(a, bits) => infix(term(a), "<<", shift(bits)),
-            Operation::Least(a, b) => syntax.call(Call::Least, &self.open([a, b], syntax, kind)),
-            Operation::Greatest(a, b) => syntax.call(Call::Greatest, &self.open([a, b], syntax, kind)),
-            Operation::Number(a) => syntax.call(Call::Number, &self.open([a], syntax, kind)),
-            Operation::Word(a) => syntax.call(Call::Word, &self.open([a], syntax, kind)),
-            Operation::Select(test, [c, d]) => syntax.call(Call::Select, &[self.test(syntax, test), term(c), term(d)]),
+            Operation::Least(a, b) => syntax.call(Call::Least, &self.open([a, b], kind)),
+            Operation::Greatest(a, b) => syntax.call(Call::Greatest, &self.open([a, b], kind)),
+            Operation::Number(a) => syntax.call(Call::Number, &self.open([a], kind)),
+            Operation::Word(a) => syntax.call(Call::Word, &self.open([a], kind)),
+            Operation::Select(test, [c, d]) => syntax.call(Call::Select, &[self.test(test), term(c), term(d)]),
         };
         (text, rules)
     }
 
-    fn open<const N: usize>(&self, operands: [Operand; N], syntax: &(impl Syntax + ?Sized), kind: Kind) -> [String; N] {
-        operands.map(|operand| self.operand(syntax, operand, kind).open())
+    fn open<const N: usize>(&self, operands: [Operand; N], kind: Kind) -> [String; N] {
+        operands.map(|operand| self.operand(operand, kind).open())
     }
 
     /// Prints an operand of a sum. Products need no parentheses there, nor do sums if they come first.
-    fn summand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, first: bool) -> String {
-        let text = self.operand(syntax, operand, Kind::Number);
-        let binds = |line: u32| match self.lines[line as usize].operation {
+    fn summand(&self, operand: Operand, first: bool) -> String {
+        let text = self.operand(operand, Kind::Number);
+        let binds = operand.line().is_some_and(|line| match self.lines[line].operation {
             Operation::Add(..) | Operation::Subtract(..) => first,
             Operation::Multiply(..) | Operation::Quotient(..) => true,
             _ => false,
-        };
-        match operand {
-            Operand::Line(line) if binds(line) => text.open(),
-            _ => text.term(),
-        }
+        });
+        if binds { text.open() } else { text.term() }
     }
 }
 
-/// Returns whether some functions yield fragments, whether some yield stored words, and whether some have constants as inputs.
-fn needs(functions: &[Named<'_>]) -> [bool; 3] {
-    let any = |has: fn(&Function) -> bool| functions.iter().any(|named| has(named.function));
-    [
-        any(|function| matches!(function.result, Result::Fragment(_))),
-        any(|function| matches!(function.result, Result::Stored { .. })),
-        any(|function| function.uniform),
-    ]
+/// Returns whether some functions have constants as inputs.
+fn reads_constants(functions: &[Named<'_>]) -> bool {
+    functions.iter().any(|named| named.function.uniform)
 }
 
 /// Returns the letter of a channel.

@@ -6,7 +6,6 @@ pub(super) struct Wgsl;
 
 impl Syntax for Wgsl {
     fn head(&self, functions: &[Named<'_>]) -> String {
-        let [_, stored, constants] = needs(functions);
         let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
         out.push_str("\n// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
         out.push_str("struct NinebitPixel {\n    primary: vec4<i32>,   // interpolated diffuse, 0 to 255\n");
@@ -21,7 +20,7 @@ impl Syntax for Wgsl {
         (0..4).for_each(|n| out.push_str(&format!("    weight{n}: array<i32, 5>,\n")));
         out.push_str("    outside: vec4<i32>,   // bit n of a unit's: its texel n is the border colour\n");
         out.push_str("    destination: u32,     // the word that the surface holds\n}\n");
-        if constants {
+        if reads_constants(functions) {
             out.push_str("\n// Constants of a draw: R, G, B, A, 0 to 255.\nstruct NinebitConstants {\n");
             out.push_str("    stage: array<vec4<i32>, 16>,       // constant colours 0 and 1 of each general stage\n");
             out.push_str(
@@ -32,7 +31,7 @@ impl Syntax for Wgsl {
                 "    border: array<vec4<i32>, 4>,       // border colour of each unit\n    alpha_reference: i32,\n}\n",
             );
         }
-        if stored {
+        if functions.iter().any(|named| matches!(named.function.result, Result::Stored { .. })) {
             out.push_str("\n// The word that the surface holds afterwards, and whether the alpha test passed.\n");
             out.push_str("struct NinebitStored {\n    passed: bool,\n    word: u32,\n}\n");
         }

@@ -10,7 +10,7 @@ use crate::Span;
 use std::collections::HashMap;
 
 use super::cursor::{Cursor, GivenUp};
-use super::finding::finding;
+use super::finding::{finding, warning};
 use super::lexer::{Kind, Language};
 use ninebit::diagnostic::{Diagnostic, shorten};
 pub(super) use value::{Part, PartKind, Value, integer, known, meant, one, out_of_range, without_prefix, wrong_kind};
@@ -147,8 +147,7 @@ impl<'t> Reader<'t> {
             return;
         }
         self.passed.push(name);
-        let finding = Diagnostic::warning("NB0917", span, message).label(label).help(help);
-        self.asides.push(Aside { finding, field: None });
+        self.asides.push(Aside { finding: warning("NB0917", span, message, label, help), field: None });
     }
 
     /// Makes a note about a state for which the draw has a field, once for each name.

@@ -115,9 +115,7 @@ impl<'t> Reader<'t> {
                 let text = self.word(&span).trim_end_matches("[0]");
                 parts.push(Part { text, span, kind: PartKind::Name });
             }
-            _ => {
-                return self.expected("a number or a name of the API");
-            }
+            _ => return self.expected("a number or a name of the API"),
         }
         Some(())
     }

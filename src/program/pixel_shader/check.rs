@@ -1,7 +1,7 @@
 //! Checks the rules of the language, as Direct3D's validator does.
 
 use super::*;
-use crate::finding::finding;
+use crate::finding::{finding, warning};
 
 /// Largest number of arithmetic instructions of a shader, where a pair counts as one.
 const MAX_ARITHMETIC_SLOTS: usize = 8;
@@ -72,13 +72,12 @@ impl Check<'_> {
     }
 
     fn warn(&mut self, code: &'static str, span: &Span, message: String, label: &str, help: &str) {
-        self.findings.push(Diagnostic::warning(code, span.clone(), message).label(label).help(help));
+        self.findings.push(warning(code, span.clone(), message, label, help));
     }
 
     /// Returns the place of the first instruction.
     fn first(&self) -> Option<usize> {
-        let first = |texture: &TextureInstruction| texture.span.start;
-        let texture = self.program.textures.first().map(first);
+        let texture = self.program.textures.first().map(|instruction| instruction.span.start);
         let arithmetic = self.program.arithmetic.first().map(|instruction| instruction.span.start);
         texture.into_iter().chain(arithmetic).min()
     }

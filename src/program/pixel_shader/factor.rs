@@ -135,16 +135,13 @@ impl Lowering {
             (Component::Alpha, false) if value.alpha_is_blue => Component::Rgb,
             (component, _) => component,
         };
+        let limit = half.limit.then_some(register);
         match modifier {
-            Modifier::Plain if half.limit => {
+            Modifier::Plain if unsigned || half.limit => {
                 let factor = Factor::unsigned(register, component, InputMapping::UnsignedIdentity);
-                Factor { limit: Some(register), ..factor }
+                Factor { limit, ..factor }
             }
-            Modifier::Plain if unsigned => Factor::unsigned(register, component, InputMapping::UnsignedIdentity),
-            Modifier::Plain => {
-                let mappings = [InputMapping::SignedIdentity, InputMapping::SignedNegate];
-                Factor { positive: !half.negative, ..Factor::new(register, component, mappings) }
-            }
+            Modifier::Plain => Factor { positive: !half.negative, ..modified(register, component, modifier) },
             _ => modified(register, component, modifier),
         }
     }
@@ -185,10 +182,7 @@ impl Lowering {
         let (register, component) = found.ok_or(Need::Constant(index))?;
         let factor = match source.modifier {
             Modifier::Plain if unsigned => Factor::unsigned(register, component, InputMapping::UnsignedIdentity),
-            Modifier::Plain => {
-                let mappings = [InputMapping::SignedIdentity, InputMapping::SignedNegate];
-                Factor { positive: true, ..Factor::new(register, component, mappings) }
-            }
+            modifier @ Modifier::Plain => Factor { positive: true, ..modified(register, component, modifier) },
             modifier => modified(register, component, modifier),
         };
         Ok(if negative { factor.minus() } else { factor })

@@ -3,7 +3,7 @@
 use super::constants::{Pool, Signed, signed, values};
 use super::scratch::{Set, contains, hardware, live};
 use super::*;
-use crate::cascade::{End, final_combiner, too_many_stages};
+use crate::cascade::{End, TEXTURES, final_combiner, too_many_stages};
 use crate::finding::finding;
 use ninebit::state::{
     Combiners, DotMapping, GeneralStage, MuxSelect, Portion, Profile, Register, ShaderOperation, StageOrigin,
@@ -98,9 +98,6 @@ pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Di
     let (combiners, origins) = lowering.finish(program, context.fog)?;
     Ok(Lowered { combiners, origins, units })
 }
-
-pub(super) const TEXTURES: [Register; 4] =
-    [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
 
 /// What is known about the colour or the alpha of a register.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,7 +3,7 @@
 use super::words::Word;
 use super::*;
 use crate::cursor::Cursor;
-use crate::finding::{finding, foreign, header};
+use crate::finding::{finding, foreign, header, warning};
 use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
@@ -99,9 +99,9 @@ impl Parser<'_> {
                 return None;
             }
             None => {
-                let warning =
-                    Diagnostic::warning("NB0906", span, "this shader does not say its version: read as ps.1.1");
-                self.findings.push(warning.label("before this").help("write `ps.1.1` in the first line"));
+                let message = "this shader does not say its version: read as ps.1.1";
+                let help = "write `ps.1.1` in the first line";
+                self.findings.push(warning("NB0906", span, message, "before this", help));
             }
         }
         Some(())
@@ -234,20 +234,15 @@ impl Parser<'_> {
         let name = operation.name();
         let unit = self.plain_register(Bank::Texture, name, "a texture register")?;
         let wanted = operation.operands();
-        let source = match operation.has_source() {
-            true => {
-                self.comma(name, start, wanted, 1)?;
-                Some(self.texture_source(operation)?)
-            }
-            false => None,
-        };
-        let eye = match operation {
-            TextureOperation::Texm3x3spec => {
-                self.comma(name, start, wanted, 2)?;
-                Some(self.plain_register(Bank::Constant, name, "the eye from a constant")?)
-            }
-            _ => None,
-        };
+        let (mut source, mut eye) = (None, None);
+        if operation.has_source() {
+            self.comma(name, start, wanted, 1)?;
+            source = Some(self.texture_source(operation)?);
+        }
+        if operation == TextureOperation::Texm3x3spec {
+            self.comma(name, start, wanted, 2)?;
+            eye = Some(self.plain_register(Bank::Constant, name, "the eye from a constant")?);
+        }
         self.program.textures.push(TextureInstruction { operation, unit, source, eye, span });
         Some(())
     }

@@ -2,11 +2,11 @@
 
 use super::constants::Pool;
 use super::factor::Need;
-use super::lower::{Lowering, TEXTURES, Written};
+use super::lower::{Lowering, Written};
 use super::scratch::{Set, free};
 use super::{Arithmetic, Operation, print};
 use crate::Span;
-use crate::cascade::{one, too_many_constants};
+use crate::cascade::{TEXTURES, one, too_many_constants};
 use crate::finding::finding;
 use ninebit::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
 
@@ -18,10 +18,10 @@ impl Lowering {
         let ([rgb, alpha], what) = match need {
             Need::Limit(register) => (
                 [self.limited(register, false), self.limited(register, true)],
-                format!("{} limited to 0..1", self.name(register)),
+                format!("{} limited to 0..1", name(register)),
             ),
             Need::Alpha(register) => {
-                ([idle(Component::Rgb), self.copied_alpha(register)], format!("the alpha of {}", self.name(register)))
+                ([idle(Component::Rgb), self.copied_alpha(register)], format!("the alpha of {}", name(register)))
             }
             Need::Constant(index) => {
                 let register = self.scratch(live, span)?;
@@ -78,14 +78,10 @@ impl Lowering {
         if self.profile == Profile::Nv10 {
             self.pool = pool;
         }
-        let instruction = self.described(slot);
+        let instruction = slot.first().map(|first| format!(", for {}", print::instruction(first))).unwrap_or_default();
         let origin = format!("pixel shader: {what}{instruction}");
         self.push(rgb, alpha, pool, StageOrigin { rgb: origin.clone(), alpha: origin }, span.clone());
         Some(())
-    }
-
-    fn described(&self, slot: &[Arithmetic]) -> String {
-        slot.first().map_or(String::new(), |first| format!(", for {}", print::instruction(first)))
     }
 
     /// Makes a portion that loads a constant with both signs, as the difference of two constants.
@@ -98,10 +94,8 @@ impl Lowering {
             let found = if alpha { pool.alpha(byte(a)) } else { pool.color([r, g, b].map(byte)) };
             found.map(|(register, component)| CombinerInput { register, component, mapping })
         };
-        portion.inputs[0] = input(1, InputMapping::SignedIdentity)?;
-        portion.inputs[1] = one(alpha);
-        portion.inputs[2] = input(-1, InputMapping::SignedNegate)?;
-        portion.inputs[3] = one(alpha);
+        let (positive, negative) = (input(1, InputMapping::SignedIdentity)?, input(-1, InputMapping::SignedNegate)?);
+        portion.inputs = [positive, one(alpha), negative, one(alpha)];
         portion.sum_output = register;
         Some((portion, false))
     }
@@ -126,15 +120,6 @@ impl Lowering {
         self.findings.push(finding("NB0379", span.clone(), message, "for a value in between", help).rule("CMB-12"));
     }
 
-    fn name(&self, register: Register) -> String {
-        let texture = TEXTURES.iter().position(|texture| *texture == register);
-        match (register, texture) {
-            (_, Some(unit)) => format!("t{unit}"),
-            (Register::Spare0, _) => "r0".to_owned(),
-            _ => "r1".to_owned(),
-        }
-    }
-
     /// Makes a portion that replaces x by max(0, x), if that is still to be done.
     fn limited(&self, register: Register, alpha: bool) -> Written {
         let value = self.value(register);
@@ -142,29 +127,33 @@ impl Lowering {
             return self.copied_alpha(register);
         }
         let component = if alpha { Component::Alpha } else { Component::Rgb };
-        let mut portion = Portion::idle(component);
-        if value.halves[usize::from(alpha)].limit {
-            portion.inputs[0] = CombinerInput { register, component, mapping: InputMapping::UnsignedIdentity };
-            portion.inputs[1] = one(alpha);
-            portion.ab_output = register;
+        if !value.halves[usize::from(alpha)].limit {
+            return (Portion::idle(component), true);
         }
-        (portion, true)
+        (rewritten(register, component, InputMapping::UnsignedIdentity, alpha), true)
     }
 
     /// Makes a portion that copies blue to alpha, unchanged.
     pub(super) fn copied_alpha(&self, register: Register) -> Written {
-        let mut portion = Portion::idle(Component::Alpha);
-        portion.inputs[0] = CombinerInput {
-            register,
-            component: Component::Blue,
-            mapping: match self.value(register).halves[1].limit {
-                true => InputMapping::UnsignedIdentity,
-                false => InputMapping::SignedIdentity,
-            },
-        };
-        portion.inputs[1] = one(true);
-        portion.ab_output = register;
         let half = self.value(register).halves[1];
-        (portion, half.limit || !half.negative)
+        let mapping = if half.limit { InputMapping::UnsignedIdentity } else { InputMapping::SignedIdentity };
+        (rewritten(register, Component::Blue, mapping, true), half.limit || !half.negative)
     }
+}
+
+/// Returns the shader's name of a register.
+fn name(register: Register) -> String {
+    match TEXTURES.iter().position(|texture| *texture == register) {
+        Some(unit) => format!("t{unit}"),
+        None if register == Register::Spare0 => "r0".to_owned(),
+        None => "r1".to_owned(),
+    }
+}
+
+/// Makes a portion that writes a mapped component of a register to the register itself.
+fn rewritten(register: Register, component: Component, mapping: InputMapping, alpha: bool) -> Portion {
+    let mut portion = Portion::idle(if alpha { Component::Alpha } else { Component::Rgb });
+    (portion.inputs[0], portion.inputs[1]) = (CombinerInput { register, component, mapping }, one(alpha));
+    portion.ab_output = register;
+    portion
 }

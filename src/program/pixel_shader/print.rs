@@ -30,12 +30,8 @@ pub fn instruction(arithmetic: &Arithmetic) -> String {
     let Arithmetic { operation, scale, saturate, target: Spanned { value: target, .. }, sources, paired, .. } =
         arithmetic;
     let plus = if *paired { "+ " } else { "" };
-    let scale = match scale {
-        Scale::One => "",
-        Scale::Two => "_x2",
-        Scale::Four => "_x4",
-        Scale::Half => "_d2",
-    };
+    let scale = words::SCALES.iter().find(|(_, known)| known == scale);
+    let scale = scale.map_or(String::new(), |(name, _)| format!("_{name}"));
     let saturate = if *saturate { "_sat" } else { "" };
     let mut text = format!("{plus}{}{scale}{saturate} {}{}", operation.name(), target.register, target.mask.name());
     for Spanned { value: Source { register, selector, modifier, negate }, .. } in sources {

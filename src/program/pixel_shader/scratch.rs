@@ -1,6 +1,7 @@
 //! Finds the registers whose values are read later, and those that are free for intermediate values.
 
 use super::{Arithmetic, Bank, PixelShader, ShaderRegister};
+use crate::cascade::TEXTURES;
 use ninebit::state::{Profile, Register};
 
 /// Returns the register of the combiners for a register of the language; constants have none.
@@ -11,10 +12,7 @@ pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {
         (Bank::Temporary, _) => Register::Spare1,
         (Bank::Color, 0) => Register::PrimaryColor,
         (Bank::Color, _) => Register::SecondaryColor,
-        (Bank::Texture, 0) => Register::Texture0,
-        (Bank::Texture, 1) => Register::Texture1,
-        (Bank::Texture, 2) => Register::Texture2,
-        (Bank::Texture, _) => Register::Texture3,
+        (Bank::Texture, unit) => TEXTURES[usize::from(unit).min(3)],
     })
 }
 
@@ -29,14 +27,11 @@ fn bit(register: Register) -> Set {
 pub(super) fn live(program: &PixelShader) -> Vec<Set> {
     // The final combiner reads r0.
     let mut live = bit(Register::Spare0);
-    let mut sets: Vec<Set> = program
-        .slots()
-        .rev()
-        .map(|slot| {
-            live = before(slot, live);
-            live
-        })
-        .collect();
+    let mut sets = Vec::new();
+    for slot in program.slots().rev() {
+        live = before(slot, live);
+        sets.push(live);
+    }
     sets.reverse();
     sets
 }

@@ -89,11 +89,7 @@ pub(super) fn selector(word: &str) -> Option<Selector> {
 
 /// Finds the modifier that a source's suffix stands for.
 pub(super) fn modifier(word: &str) -> Option<Modifier> {
-    match word {
-        "bias" => Some(Modifier::Bias),
-        "bx2" => Some(Modifier::SignedScale),
-        _ => None,
-    }
+    Modifier::from_name(&format!("_{word}"))
 }
 
 /// Suffixes of instructions that scale the result.

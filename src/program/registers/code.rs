@@ -81,7 +81,7 @@ pub(super) fn output_word(portion: &Portion) -> u32 {
         | ab_dot.put(portion.ab_dot_product.into())
         | cd_dot.put(portion.cd_dot_product.into())
         | layout::MUX.put(portion.mux.into())
-        | layout::OPERATION.put(operation.map_or(0, |(code, _, _)| *code))
+        | layout::OPERATION.put(operation.map_or(0, |(code, ..)| *code))
         | ab_blue.put(portion.ab_blue_to_alpha.into())
         | cd_blue.put(portion.cd_blue_to_alpha.into())
 }
@@ -117,13 +117,8 @@ fn taken(word: Word, index: usize, chip: Profile) -> u32 {
     match (word, chip) {
         (Word::RcInAlpha | Word::RcInRgb | Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1, _) => !0,
         (Word::RcOutAlpha, _) => 0x3_cfff,
-        (Word::RcOutRgb, Profile::Nv10) => {
-            if index == 0 {
-                0x3_ffff
-            } else {
-                0x3803_ffff
-            }
-        }
+        (Word::RcOutRgb, Profile::Nv10) if index == 0 => 0x3_ffff,
+        (Word::RcOutRgb, Profile::Nv10) => 0x3803_ffff,
         (Word::RcOutRgb, Profile::Nv2a) => 0xf_ffff,
         (Word::RcFinal0, _) => 0x3f3f_3f3f,
         (Word::RcFinal1, _) => 0x3f3f_3fe0,
@@ -135,9 +130,9 @@ fn taken(word: Word, index: usize, chip: Profile) -> u32 {
 pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Refusal> {
     let name = word.label(chip, index);
     let refuse = |code, message: String, help: String| Some(Refusal { word, index, code, message, help });
-    if let Some(code) = operation(word, value)
-        && !OPERATIONS.iter().any(|(known, _, _)| *known == code)
-    {
+    let code = layout::OPERATION.of(value);
+    let is_output = matches!(word, Word::RcOutAlpha | Word::RcOutRgb);
+    if is_output && !OPERATIONS.iter().any(|(known, ..)| *known == code) {
         let message = format!("{name} is {value:08x}: operation code {code} (bits 15 to 17) is a bias with x4 or x1/2");
         return refuse("NB0362", message, "the codes are 0 none, 1 bias, 2 x2, 3 bias and x2, 4 x4, 6 x1/2".to_owned());
     }
@@ -172,17 +167,12 @@ pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Re
     None
 }
 
-fn operation(word: Word, value: u32) -> Option<u32> {
-    matches!(word, Word::RcOutAlpha | Word::RcOutRgb).then_some(layout::OPERATION.of(value))
-}
-
 /// The use of a register field, which determines its valid codes.
 #[derive(Clone, Copy)]
 enum Field {
     Input,
     Output,
     Sum,
-    Product,
 }
 
 impl Field {
@@ -217,7 +207,7 @@ fn registers(word: Word) -> Vec<(&'static str, u32, Field)> {
     match word {
         Word::RcInAlpha | Word::RcInRgb => four(Field::Input),
         Word::RcFinal0 => four(Field::Sum),
-        Word::RcFinal1 => vec![("E", 24, Field::Product), ("F", 16, Field::Product), ("G", 8, Field::Product)],
+        Word::RcFinal1 => vec![("E", 24, Field::Input), ("F", 16, Field::Input), ("G", 8, Field::Input)],
         Word::RcOutAlpha | Word::RcOutRgb => {
             vec![("the result of CD", 0, Field::Output), ("of AB", 4, Field::Output), ("of the sum", 8, Field::Output)]
         }

@@ -1,7 +1,7 @@
 //! Describes words in the terms of the combiner language.
 
 use super::code::{final_of, input_of, portion_of};
-use super::{RegisterWords, Word};
+use super::{RegisterWords, Word, layout};
 use crate::text::words::{final_operand, operand, register};
 use ninebit::shown;
 use ninebit::state::{Bias, Named, Profile, Register, Scale};
@@ -38,24 +38,16 @@ pub fn describe(words: &RegisterWords) -> Vec<Description> {
 fn meaning(words: &RegisterWords, word: Word, index: usize) -> String {
     let chip = words.chip;
     let value = words.get(word, index);
-    let count = match chip {
-        Profile::Nv10 => words.get(Word::RcOutRgb, 1) >> 28 & 3,
-        Profile::Nv2a => words.get(Word::RcConfig, 0) & 15,
-    };
+    let (config, at) = layout::config(chip);
+    let count = layout::stages(chip).of(words.get(config, at));
     let idle = index as u32 >= count;
     match word {
-        Word::RcInAlpha | Word::RcInRgb if idle => "stage not used".to_owned(),
+        Word::RcInAlpha | Word::RcInRgb | Word::RcOutAlpha if idle => "stage not used".to_owned(),
         Word::RcInAlpha | Word::RcInRgb => {
             let alpha = word == Word::RcInAlpha;
             named("ABCD", [24, 16, 8, 0].map(|shift| operand(&input_of(value >> shift, alpha), alpha)))
         }
-        Word::RcOutAlpha => {
-            if idle {
-                "stage not used".to_owned()
-            } else {
-                outputs(value, true)
-            }
-        }
+        Word::RcOutAlpha => outputs(value, true),
         Word::RcOutRgb => {
             let what = if idle { "stage not used".to_owned() } else { outputs(value, false) };
             if chip == Profile::Nv10 && index == 1 { format!("{what}; {}", stages(count, value >> 27)) } else { what }

@@ -13,7 +13,7 @@ pub struct Field {
 }
 
 impl Field {
-    const fn new(shift: u32, bits: u32) -> Field {
+    pub(super) const fn new(shift: u32, bits: u32) -> Field {
         Field { shift, bits }
     }
 

@@ -70,25 +70,19 @@ pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
             words.set(outputs, n, output_word(portion));
         }
     }
-    let msb = layout::mux_by_msb(chip).put((combiners.mux_select == MuxSelect::Msb).into());
-    let counted = layout::stages(chip).put(count as u32) | msb;
-    match chip {
-        Profile::Nv10 => {
-            let second = words.get(Word::RcOutRgb, 1);
-            words.set(Word::RcOutRgb, 1, second | counted);
-        }
-        Profile::Nv2a => {
-            let mut config = counted;
-            for (k, word) in [Word::RcConstantColor0, Word::RcConstantColor1].into_iter().enumerate() {
-                let own = stages.windows(2).any(|pair| pair[0].constants[k] != pair[1].constants[k]);
-                config |= layout::OWN_CONSTANTS[k].put(own.into());
-                for (n, stage) in stages.iter().enumerate().take(if own { count } else { 1 }) {
-                    words.set(word, n, color_word(stage.constants[k]));
-                }
+    let (word, index) = layout::config(chip);
+    let mut config = words.get(word, index) | layout::stages(chip).put(count as u32);
+    config |= layout::mux_by_msb(chip).put((combiners.mux_select == MuxSelect::Msb).into());
+    if chip == Profile::Nv2a {
+        for (k, word) in [Word::RcConstantColor0, Word::RcConstantColor1].into_iter().enumerate() {
+            let own = stages.windows(2).any(|pair| pair[0].constants[k] != pair[1].constants[k]);
+            config |= layout::OWN_CONSTANTS[k].put(own.into());
+            for (n, stage) in stages.iter().enumerate().take(if own { count } else { 1 }) {
+                words.set(word, n, color_word(stage.constants[k]));
             }
-            words.set(Word::RcConfig, 0, config);
         }
     }
+    words.set(word, index, config);
     let state = &combiners.final_combiner;
     for (n, constant) in state.constants.into_iter().enumerate() {
         words.set(Word::RcColor, n, color_word(constant));
@@ -115,10 +109,7 @@ fn color_word([r, g, b, a]: [u8; 4]) -> u32 {
 /// Returns the word and the index that hold a part of a program.
 pub(crate) fn word_of(place: Place, chip: Profile) -> (Word, usize) {
     match place {
-        Place::Stages | Place::Stage(_) => match chip {
-            Profile::Nv10 => (Word::RcOutRgb, 1),
-            Profile::Nv2a => (Word::RcConfig, 0),
-        },
+        Place::Stages | Place::Stage(_) => layout::config(chip),
         Place::StageConstants(stage) => match chip {
             Profile::Nv10 => (Word::RcColor, 0),
             Profile::Nv2a => (Word::RcConstantColor0, stage),

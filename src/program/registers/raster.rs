@@ -33,15 +33,10 @@ named! {
 }
 
 /// The field of [`Method::SurfaceFormat`] with the format of the colour.
-pub const SURFACE_COLOR: Field = Field { shift: 0, bits: 4 };
+pub const SURFACE_COLOR: Field = Field::new(0, 4);
 
 /// The fields R, G, B, A of [`Method::ColorMask`].
-pub const COLOR_MASK: [Field; 4] = [
-    Field { shift: 16, bits: 1 },
-    Field { shift: 8, bits: 1 },
-    Field { shift: 0, bits: 1 },
-    Field { shift: 24, bits: 1 },
-];
+pub const COLOR_MASK: [Field; 4] = [Field::new(16, 1), Field::new(8, 1), Field::new(0, 1), Field::new(24, 1)];
 
 /// Returns the value of a comparison.
 pub fn compare_function(function: CompareFunction) -> u32 {
@@ -57,17 +52,12 @@ pub fn blend_factor(factor: BlendFactor) -> u32 {
     BLEND_FACTORS[factor as usize]
 }
 
+/// The values of blend equations, in the order of [`BlendEquation`].
+const BLEND_EQUATIONS: [u32; BlendEquation::ALL.len()] = [0x8006, 0x800a, 0x800b, 0x8007, 0x8008, 0xf006, 0xf005];
+
 /// Returns the value of a blend equation.
 pub fn blend_equation(equation: BlendEquation) -> u32 {
-    match equation {
-        BlendEquation::Add => 0x8006,
-        BlendEquation::Min => 0x8007,
-        BlendEquation::Max => 0x8008,
-        BlendEquation::Subtract => 0x800a,
-        BlendEquation::ReverseSubtract => 0x800b,
-        BlendEquation::SignedReverseSubtract => 0xf005,
-        BlendEquation::SignedAdd => 0xf006,
-    }
+    BLEND_EQUATIONS[equation as usize]
 }
 
 /// Returns the value of a surface format, for [`SURFACE_COLOR`].

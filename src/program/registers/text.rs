@@ -114,9 +114,8 @@ impl Piece<'_> {
     /// Parses a number, which is hexadecimal if it has `0x` or eight digits.
     fn number(&self) -> Option<u32> {
         let hexadecimal = self.text.strip_prefix("0x").or_else(|| self.text.strip_prefix("0X"));
-        match hexadecimal {
+        match hexadecimal.or(Some(self.text).filter(|text| text.len() == 8)) {
             Some(digits) => u32::from_str_radix(digits, 16).ok(),
-            None if self.text.len() == 8 => u32::from_str_radix(self.text, 16).ok(),
             None => self.text.parse().ok(),
         }
     }
@@ -144,11 +143,11 @@ pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
                     statement.push(Piece { text: cursor.text(&span), bracketed, span });
                 }
                 Some(Kind::Sign(sign)) if ";,:={}[]()".contains(sign) => {}
-                _ => findings.push(
-                    Diagnostic::error("NB0103", span, "this is no part of a list of register words")
-                        .label("here")
-                        .help("write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`"),
-                ),
+                _ => {
+                    let help =
+                        "write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`";
+                    findings.push(finding("NB0103", span, "this is no part of a list of register words", "here", help));
+                }
             }
             let ended = cursor.take(';');
             if !ended {
@@ -212,11 +211,11 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
     for (n, token) in values.iter().enumerate() {
         match token.number() {
             Some(value) => written.set(word, index + n, value, token.span.clone()),
-            None => findings.push(
-                Diagnostic::error("NB0205", token.span.clone(), format!("`{}` is no word of 32 bits", token.text))
-                    .label("not a number")
-                    .help("write it with `0x`, or as eight hexadecimal digits, or in decimal"),
-            ),
+            None => {
+                let message = format!("`{}` is no word of 32 bits", token.text);
+                let help = "write it with `0x`, or as eight hexadecimal digits, or in decimal";
+                findings.push(finding("NB0205", token.span.clone(), message, "not a number", help));
+            }
         }
     }
 }

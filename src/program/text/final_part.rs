@@ -2,9 +2,8 @@
 
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{find, registers};
-use crate::finding::finding;
+use crate::finding::{finding, warning};
 use crate::{Place, Span};
-use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 
 /// What the statements so far have set, with their places.
@@ -83,27 +82,27 @@ impl Final {
 
     /// Returns the place of the first statement that only serves others.
     fn aside(&self) -> Option<Span> {
-        let product = self.product.as_ref().map(|(_, span)| span.clone());
-        product.or(self.sum.as_ref().map(|(_, span)| span.clone())).or(self.clamp.clone())
+        let product = self.product.as_ref().map(|(_, span)| span);
+        product.or(self.sum.as_ref().map(|(_, span)| span)).or(self.clamp.as_ref()).cloned()
     }
 
     /// Returns the state of the final combiner. Without any statement it is OpenGL's initial state; otherwise an output that is not written is 0.
     pub(super) fn finish(self, parser: &mut Parser<'_>, constants: [[u8; 4]; 2]) -> FinalCombiner {
         let initial = FinalCombiner::initial(constants);
+        let mut half = |span: &Span, message: &str, help: &str| {
+            let label = "the final combiner has no other output";
+            parser.findings.push(warning("NB0915", span.clone(), message, label, help).rule("FIN-1"));
+        };
         match (&self.rgb, &self.alpha, self.aside()) {
             (Some(_), Some(_), _) | (None, None, None) => {}
-            (Some((_, span)), None, _) => parser.warn(
-                Diagnostic::warning("NB0915", span.clone(), "without `out.a` the alpha is 0")
-                    .label("the final combiner has no other output")
-                    .rule("FIN-1")
-                    .help("write `out.a = spare0.a;` for the alpha that the stages made, or `out.a = zero;`"),
-            ),
-            (None, Some((_, span)), _) => parser.warn(
-                Diagnostic::warning("NB0915", span.clone(), "without `out.rgb` the colour is black")
-                    .label("the final combiner has no other output")
-                    .rule("FIN-1")
-                    .help("write `out.rgb = spare0;` for the colour that the stages made, or `out.rgb = zero;`"),
-            ),
+            (Some((_, span)), None, _) => {
+                let help = "write `out.a = spare0.a;` for the alpha that the stages made, or `out.a = zero;`";
+                half(span, "without `out.a` the alpha is 0", help);
+            }
+            (None, Some((_, span)), _) => {
+                let help = "write `out.rgb = spare0;` for the colour that the stages made, or `out.rgb = zero;`";
+                half(span, "without `out.rgb` the colour is black", help);
+            }
             (None, None, Some(span)) => {
                 let help = "write `out.rgb = ...;`, or leave the whole final combiner out";
                 parser.give_up(finding("NB0202", span, "this final combiner has no `out.rgb`", "without it", help));
@@ -217,11 +216,9 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
         return Err(parser.give_up(finding));
     }
     if function == "lerp" {
-        let finding = Diagnostic::error("NB0104", parser.cursor.span(), "`lerp` is not an input")
-            .label("not here")
-            .rule("FIN-1")
-            .help("a final combiner has one: `out.rgb = lerp(a, b, c) + d;`");
-        return Err(parser.give_up(finding));
+        let help = "a final combiner has one: `out.rgb = lerp(a, b, c) + d;`";
+        let finding = finding("NB0104", parser.cursor.span(), "`lerp` is not an input", "not here", help);
+        return Err(parser.give_up(finding.rule("FIN-1")));
     }
     let mapped = matches!(function, "unsigned" | "unsigned_invert");
     if mapped {

@@ -78,8 +78,7 @@ impl<'t> Parser<'t> {
             "b" => Component::Blue,
             _ => return None,
         };
-        self.cursor.advance();
-        self.cursor.advance();
+        self.cursor.at += 2;
         Some((component, span))
     }
 
@@ -110,11 +109,6 @@ impl<'t> Parser<'t> {
             Some((_, first)) => self.twice(again, first.clone(), what),
             None => *slot = Some((value, span)),
         }
-    }
-
-    /// Records a warning.
-    pub(super) fn warn(&mut self, finding: Diagnostic) {
-        self.findings.push(finding);
     }
 
     pub(super) fn give_up(&mut self, finding: Diagnostic) -> GivenUp {
@@ -161,12 +155,8 @@ impl<'t> Parser<'t> {
 
     /// Records that a statement, which has been read to its end, was given before.
     pub(super) fn twice(&mut self, span: Span, first: Span, what: &str) {
-        self.findings.push(
-            Diagnostic::error("NB0364", span, format!("{what} is given twice"))
-                .label("again here")
-                .related(first, "first here")
-                .help("keep one of them"),
-        );
+        let finding = finding("NB0364", span, format!("{what} is given twice"), "again here", "keep one of them");
+        self.findings.push(finding.related(first, "first here"));
     }
 
     /// Returns the place of the character that ends at `end`.

@@ -2,9 +2,9 @@
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, find, registers};
+use crate::cascade::one;
 use crate::finding::finding;
 use crate::{Part, Place, Span};
-use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::only_final;
 use ninebit::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};
 
@@ -93,11 +93,9 @@ impl PortionReader {
         }
         let n = self.products.len();
         if n == 2 {
-            let finding = Diagnostic::error("NB0364", start..parser.cursor.end(), "a portion has two products")
-                .label("the third")
-                .rule("CMB-12")
-                .help("use another stage; `sum()` and `mux()` give the two products together");
-            return Err(parser.give_up(finding));
+            let (span, message) = (start..parser.cursor.end(), "a portion has two products");
+            let help = "use another stage; `sum()` and `mux()` give the two products together";
+            return Err(parser.give_up(finding("NB0364", span, message, "the third", help).rule("CMB-12")));
         }
         let first = self.operand(parser, 2 * n)?;
         let sign = parser.cursor.span();
@@ -106,8 +104,7 @@ impl PortionReader {
             self.operand(parser, 2 * n + 1)?
         } else {
             // A single register is multiplied by one.
-            let component = if self.alpha { Component::Alpha } else { Component::Rgb };
-            CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
+            one(self.alpha)
         };
         let mut blue = None;
         if parser.cursor.take(',') {
@@ -120,23 +117,22 @@ impl PortionReader {
         if !parser.cursor.take(';') {
             return Err(parser.expected("`*`, `.` or `;`"));
         }
-        parser.places.set(self.at(Part::Output(n)), written);
-        if dot {
-            parser.places.set(self.at(Part::Dot(n)), sign);
-        }
-        if let Some(span) = blue.clone() {
-            parser.places.set(self.at(Part::BlueToAlpha(n)), span);
-        }
-        self.products.push(start..parser.cursor.end());
-        self.portion.inputs[2 * n] = first;
-        self.portion.inputs[2 * n + 1] = second;
         let portion = &mut self.portion;
+        (portion.inputs[2 * n], portion.inputs[2 * n + 1]) = (first, second);
         let (out, is_dot, to_alpha) = if n == 0 {
             (&mut portion.ab_output, &mut portion.ab_dot_product, &mut portion.ab_blue_to_alpha)
         } else {
             (&mut portion.cd_output, &mut portion.cd_dot_product, &mut portion.cd_blue_to_alpha)
         };
         (*out, *is_dot, *to_alpha) = (output, dot, blue.is_some());
+        parser.places.set(self.at(Part::Output(n)), written);
+        if dot {
+            parser.places.set(self.at(Part::Dot(n)), sign);
+        }
+        if let Some(span) = blue {
+            parser.places.set(self.at(Part::BlueToAlpha(n)), span);
+        }
+        self.products.push(start..parser.cursor.end());
         Ok(())
     }
 
@@ -149,8 +145,7 @@ impl PortionReader {
         }
         let register = find(parser.cursor.word()).and_then(general);
         let Some(register) = register.filter(|register| *register != Register::Zero) else {
-            let known = registers().take(12).skip(4).chain(["discard"]).chain(CALLS);
-            let known: Vec<&str> = known.collect();
+            let known: Vec<&str> = registers().take(12).skip(4).chain(["discard"]).chain(CALLS).collect();
             return Err(parser.unknown_or_expected("destination or statement", &known));
         };
         parser.cursor.advance();
@@ -179,12 +174,9 @@ impl PortionReader {
             Some((_, mapping, _)) if !negative => *mapping,
             Some((_, _, Some(negated))) => *negated,
             Some((name, _, None)) => {
-                let finding =
-                    Diagnostic::error("NB0311", start..parser.cursor.span().end, format!("there is no `-{name}`"))
-                        .label("not negated")
-                        .rule("CMB-5")
-                        .help("a plain register can be negated, `expand` and `half_bias` too");
-                return Err(parser.give_up(finding));
+                let (span, message) = (start..parser.cursor.span().end, format!("there is no `-{name}`"));
+                let help = "a plain register can be negated, `expand` and `half_bias` too";
+                return Err(parser.give_up(finding("NB0311", span, message, "not negated", help).rule("CMB-5")));
             }
             None if negative => InputMapping::SignedNegate,
             None => InputMapping::SignedIdentity,
@@ -193,8 +185,7 @@ impl PortionReader {
             parser.cursor.advance();
             parser.sign('(')?;
         } else if find(parser.cursor.word()).is_none() && !parser.cursor.word().is_empty() {
-            let known = registers().take(12).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
-            let known: Vec<&str> = known.collect();
+            let known: Vec<&str> = registers().take(12).chain(MAPPINGS.iter().map(|(name, ..)| *name)).collect();
             return Err(parser.unknown("input", &known));
         }
         let Source { register, component, span } = parser.register()?;

@@ -4,12 +4,12 @@ use super::Program;
 use super::final_part::Final;
 use super::parser::{Parser, Read};
 use super::portion::PortionReader;
-use crate::finding::finding;
+use crate::finding::{finding, warning};
 use crate::lexer::Kind;
 use crate::{Place, Span};
 use ninebit::diagnostic::{Diagnostic, Severity, shorten};
 use ninebit::number::convert::constant;
-use ninebit::state::{Combiners, Component, GeneralStage, MuxSelect, Portion};
+use ninebit::state::{Combiners, GeneralStage, MuxSelect, Portion};
 
 /// Number of findings after which reading stops.
 const MAX_FINDINGS: usize = 64;
@@ -108,11 +108,8 @@ impl Parser<'_> {
             self.places.set(Place::StageConstants(index), first..last);
         }
         let [rgb, alpha] = portions.map(|portion| portion.map(|(portion, _)| portion));
-        let stage = GeneralStage {
-            rgb: rgb.unwrap_or(Portion::idle(Component::Rgb)),
-            alpha: alpha.unwrap_or(Portion::idle(Component::Alpha)),
-            constants: [[0; 4]; 2],
-        };
+        let idle = GeneralStage::idle([[0; 4]; 2]);
+        let stage = GeneralStage { rgb: rgb.unwrap_or(idle.rgb), alpha: alpha.unwrap_or(idle.alpha), ..idle };
         stages.push((stage, own));
         Ok(())
     }
@@ -184,19 +181,19 @@ impl Parser<'_> {
     fn number(&mut self, span: Span, negative: bool, byte: bool) -> Option<u8> {
         let written = self.cursor.text(&span);
         let digits = written.trim_start_matches(['+', '-']).trim_start();
-        let limited = if negative { "0" } else { "1" };
         // NUM-0. Digits and a point are always a number, though it may be infinite.
         let value = match digits.parse::<f32>() {
             _ if byte => digits.parse::<u8>().ok().filter(|byte| !negative || *byte == 0),
             Ok(value) if value == 0.0 || !negative && value <= 1.0 => Some(constant(value)),
             Ok(_) => {
-                let message = format!("`{}` is limited to {limited}", shorten(written));
-                let finding = Diagnostic::warning("NB0916", span, message).label("a part of a colour is 0.0 to 1.0");
-                self.findings.push(finding.rule("NUM-0").help(match negative {
-                    true => "write 0; registers hold negative numbers, constants do not",
-                    false => "write 1; for bytes write `bytes(255, 128, 0, 255)`",
-                }));
-                return Some(if negative { 0 } else { 255 });
+                let (limit, byte, help) = match negative {
+                    true => (0, 0, "write 0; registers hold negative numbers, constants do not"),
+                    false => (1, 255, "write 1; for bytes write `bytes(255, 128, 0, 255)`"),
+                };
+                let message = format!("`{}` is limited to {limit}", shorten(written));
+                let label = "a part of a colour is 0.0 to 1.0";
+                self.findings.push(warning("NB0916", span, message, label, help).rule("NUM-0"));
+                return Some(byte);
             }
             Err(_) => None,
         };
@@ -207,7 +204,7 @@ impl Parser<'_> {
                 ("a part of a colour is a number from 0.0 to 1.0", "for bytes write `bytes(255, 128, 0, 255)`")
             };
             let message = format!("`{}` is not a part of this colour", shorten(written));
-            self.findings.push(Diagnostic::error("NB0206", span, message).label("out of range").note(range).help(help));
+            self.findings.push(finding("NB0206", span, message, "out of range", help).note(range));
         }
         value
     }

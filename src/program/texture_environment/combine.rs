@@ -159,13 +159,8 @@ fn read(mode: Mode, half: &Half) -> Vec<EnvironmentSource> {
 
 /// Returns the unit that a source names by number, if it does.
 fn other(source: EnvironmentSource) -> Option<usize> {
-    match source {
-        EnvironmentSource::Texture0 => Some(0),
-        EnvironmentSource::Texture1 => Some(1),
-        EnvironmentSource::Texture2 => Some(2),
-        EnvironmentSource::Texture3 => Some(3),
-        _ => None,
-    }
+    let unit = (source as usize).checked_sub(EnvironmentSource::Texture0 as usize);
+    unit.filter(|unit| *unit < TEXTURE_UNITS)
 }
 
 /// Makes the arguments of a unit's equations.

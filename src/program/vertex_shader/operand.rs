@@ -7,17 +7,19 @@ use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 use ninebit::vertex::shader::*;
 
-/// Kinds of registers: the name in lower case, the name in documents, the number of registers, and what they are.
-const FAMILIES: &[(&str, &str, usize, &str)] = &[
-    ("v", "v", INPUTS, "inputs"),
-    ("r", "r", TEMPORARIES, "temporaries"),
-    ("c", "c", CONSTANTS, "constants"),
-    ("a", "a", 1, "address register"),
-    ("opos", "oPos", 0, "position"),
-    ("ofog", "oFog", 0, "fog factor"),
-    ("opts", "oPts", 0, "point size"),
-    ("od", "oD", 2, "colours"),
-    ("ot", "oT", COORDINATES, "sets of texture coordinates"),
+/// A kind of registers: the name in documents, the number of registers, what they are, and a function that returns the register of a number.
+type Family = (&'static str, usize, &'static str, fn(usize) -> Register);
+
+const FAMILIES: &[Family] = &[
+    ("v", INPUTS, "inputs", |n| Register::Source(SourceRegister::Input(n))),
+    ("r", TEMPORARIES, "temporaries", |n| Register::Source(SourceRegister::Temporary(n))),
+    ("c", CONSTANTS, "constants", |n| Register::Source(SourceRegister::Constant { index: n, relative: false })),
+    ("a", 1, "address register", |_| Register::Destination(DestinationRegister::Address)),
+    ("oPos", 0, "position", |_| Register::Destination(DestinationRegister::Position)),
+    ("oFog", 0, "fog factor", |_| Register::Destination(DestinationRegister::Fog)),
+    ("oPts", 0, "point size", |_| Register::Destination(DestinationRegister::PointSize)),
+    ("oD", 2, "colours", |n| Register::Destination(DestinationRegister::Color(n))),
+    ("oT", COORDINATES, "sets of texture coordinates", |n| Register::Destination(DestinationRegister::Coordinates(n))),
 ];
 
 const ALL: &str = "v0 to v15, r0 to r11, c0 to c95, a0, oPos, oD0, oD1, oT0 to oT3, oFog, oPts";
@@ -91,10 +93,9 @@ fn register(parser: &mut Parser<'_>) -> Read<(Register, Span)> {
     if word.is_empty() {
         return Err(parser.expected("a register"));
     }
-    let lower = word.to_ascii_lowercase();
-    let letters = lower.trim_end_matches(|c: char| c.is_ascii_digit());
-    let digits = &lower[letters.len()..];
-    let Some((name, written, count, what)) = FAMILIES.iter().find(|(name, ..)| *name == letters) else {
+    let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    let digits = &word[letters.len()..];
+    let Some((name, count, what, of)) = FAMILIES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(letters)) else {
         return Err(unknown(parser, &word, span));
     };
     if digits.is_empty() != (*count == 0) {
@@ -106,23 +107,12 @@ fn register(parser: &mut Parser<'_>) -> Read<(Register, Span)> {
         let have = if *count == 1 { "there is one".to_owned() } else { format!("there are {count}") };
         let message = format!("there is no register {}: {have} {what}", shorten(&word));
         let help = match *count {
-            1 => format!("write {written}0"),
-            count => format!("write {written}0 to {written}{}", count - 1),
+            1 => format!("write {name}0"),
+            count => format!("write {name}0 to {name}{}", count - 1),
         };
         return Err(parser.refuse("NB0206", span, &message, "out of range", &help));
     }
-    let register = match *name {
-        "v" => Register::Source(SourceRegister::Input(number)),
-        "r" => Register::Source(SourceRegister::Temporary(number)),
-        "c" => Register::Source(SourceRegister::Constant { index: number, relative: false }),
-        "a" => Register::Destination(DestinationRegister::Address),
-        "opos" => Register::Destination(DestinationRegister::Position),
-        "ofog" => Register::Destination(DestinationRegister::Fog),
-        "opts" => Register::Destination(DestinationRegister::PointSize),
-        "od" => Register::Destination(DestinationRegister::Color(number)),
-        _ => Register::Destination(DestinationRegister::Coordinates(number)),
-    };
-    Ok((register, span))
+    Ok((of(number), span))
 }
 
 fn unknown(parser: &mut Parser<'_>, word: &str, span: Span) -> GivenUp {

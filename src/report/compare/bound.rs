@@ -16,17 +16,12 @@ const NEAREST: f64 = 127.0 / 255.0;
 pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     let policies = &plan.policies;
     let symmetric = |n: f64| Some((-n, n));
+    let floor = |slack: f64| Some((-1.0 - slack, slack));
     match rule {
         Rule::Num4 => symmetric(0.5 + 255.0 / 16384.0),
         // The floor to 4096ths, then that of NUM-6.
-        Rule::Num6 => {
-            let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
-            Some((-1.0 - slack, slack))
-        }
-        Rule::Fog2 => {
-            let slack = fog_slack(plan) + 255.0 / 4096.0;
-            Some((-1.0 - slack, slack))
-        }
+        Rule::Num6 => floor(2.0 * 255.0 * weights(plan) + 255.0 / 4096.0),
+        Rule::Fog2 => floor(fog_slack(plan) + 255.0 / 4096.0),
         // Entries and bytes are rounded, the chord of a segment lies up to 0.96 above the curve, and e is floored to 4096ths where its slope
         // is up to 16 ln 2; at the table's end the curve is 1.
         Rule::Fog4 => {
@@ -35,18 +30,15 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and the error of the weights.
-        Rule::Int4 => Some((-1.0 - coordinate_slack(plan, 0.0), coordinate_slack(plan, 0.0))),
+        Rule::Int4 => floor(coordinate_slack(plan, 0.0)),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
-        Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        Rule::Tsh4 | Rule::Tsh6 => floor(1e-6),
         // A quotient by q magnifies the error of the weights, as in TEX-15.
         Rule::Tsh7 if projects(plan) => None,
-        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan, SHORTFALL), coordinate_slack(plan, SHORTFALL))),
-        Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
-        Rule::Tsh9 => {
-            let slack = number_slack(plan) + 255.0 / 4096.0;
-            Some((-1.0 - slack, slack))
-        }
+        Rule::Tsh7 => floor(coordinate_slack(plan, SHORTFALL)),
+        Rule::Tsh8 => floor(255.0 / 4096.0),
+        Rule::Tsh9 => floor(number_slack(plan) + 255.0 / 4096.0),
         // Each byte of a 16-bit half is off by up to the value of the other byte.
         Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
@@ -80,8 +72,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             RegisterFloor::Full => Some((-1.0, 0.0)),
             RegisterFloor::Symmetric => symmetric(0.0),
         },
-        Rule::Fin2 | Rule::Fin4 => symmetric(NEAREST),
-        Rule::Rop2 => symmetric(NEAREST),
+        Rule::Fin2 | Rule::Fin4 | Rule::Rop2 => symmetric(NEAREST),
         // Truncation to 5 bits loses up to 7 steps; the value read back is up to 7 steps below and, widened, up to 7 above.
         Rule::Rop5 => symmetric(7.0),
     }

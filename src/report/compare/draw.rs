@@ -3,7 +3,7 @@
 
 use super::meter::Counts;
 use super::*;
-use ninebit::engine::pixel::DepthStencil;
+use ninebit::engine::pixel::{DepthStencil, Fragment, Stored, TriangleContext};
 use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
@@ -11,7 +11,7 @@ use ninebit::rop::surface;
 use ninebit::state::{Named, Texture, TextureImage};
 use ninebit::texture::planned::Image;
 use ninebit::threads::on_threads;
-use ninebit::trace::{Decision, Part, Rule};
+use ninebit::trace::{Decision, Observer, Part, Rule};
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
@@ -57,6 +57,38 @@ impl<L> Band<'_, L> {
     /// Returns the index of pixel (i, j).
     pub(super) fn at(&self, i: i64, j: i64) -> usize {
         (j as usize - self.first_row) * self.width + i as usize
+    }
+
+    /// Shades pixel (i, j) for the definition, and keeps its word and its depth.
+    pub(super) fn shade<S: Lane>(
+        &mut self,
+        context: &TriangleContext<'_>,
+        (i, j): (i64, i64),
+        destination: Option<[S; 4]>,
+        images: &[Image<'_, S>],
+        observer: &mut impl Observer,
+    ) -> Option<Stored<S>> {
+        let at = self.at(i, j);
+        let mut depth = DepthStencil::new(self.depth.get(at).copied().unwrap_or(0));
+        let e = context.triangle.edges(i, j);
+        let fragment = Fragment { pixel: (i, j), e, stored: self.words[at], weights: None };
+        let stored = context.shade(&fragment, &mut depth, destination, images, observer);
+        if let Some(slot) = self.depth.get_mut(at) {
+            *slot = depth.word();
+        }
+        let stored = stored?;
+        self.words[at] = stored.word;
+        self.states[at].drawn = true;
+        Some(stored)
+    }
+}
+
+impl<L: Copy> Band<'_, L> {
+    /// Keeps the lane's colours of the channels that a draw writes.
+    pub(super) fn hold(&mut self, at: usize, planned: &PlannedDraw, channels: &[L; 4]) {
+        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+            self.held[at][n] = channels[n];
+        }
     }
 }
 

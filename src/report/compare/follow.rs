@@ -2,7 +2,6 @@
 
 use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Meter};
-use ninebit::engine::pixel::{DepthStencil, Fragment};
 use ninebit::engine::walk;
 use ninebit::number::{IDEAL_TRACKS, Ideal, IdealTracks, Paired};
 use ninebit::rop::surface;
@@ -49,20 +48,10 @@ fn follow<I: Ideal>(draw: &Draw<'_, Paired<I>>, band: &mut Band<'_, Paired<I>>, 
     let planned = draw.planned;
     walk::covered(draw.plan, planned, band.rows(), |context, i, j| {
         let at = band.at(i, j);
-        let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
-        let fragment =
-            Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
         let read = surface::read(planned.surface, band.words[at]);
         let destination = std::array::from_fn(|n| Paired { fixed: i32::from(read[n]), ..band.held[at][n] });
-        let stored = context.shade(&fragment, &mut depth, Some(destination), &draw.images.lane, observer);
-        if let Some(slot) = band.depth.get_mut(at) {
-            *slot = depth.word();
-        }
-        let Some(stored) = stored else { return };
-        band.words[at] = stored.word;
-        band.states[at].drawn = true;
-        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
-            band.held[at][n] = stored.channels[n];
+        if let Some(stored) = band.shade(context, (i, j), Some(destination), &draw.images.lane, observer) {
+            band.hold(at, planned, &stored.channels);
         }
     });
 }

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Log};
-use ninebit::engine::pixel::{DepthStencil, Fragment, TriangleContext};
+use ninebit::engine::pixel::{Fragment, TriangleContext};
 use ninebit::engine::walk;
 use ninebit::number::{Ideal, Lane};
 use ninebit::plan::PlannedDraw;
@@ -74,16 +74,7 @@ fn pixel(
     let mut logs = [(); 2].map(|()| Log { diverged: &draw.images.states, ..Log::default() });
     let [definition, ideal] = &mut logs;
     if let (true, Some(context)) = (covered.0, fixed) {
-        let fragment =
-            Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
-        let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
-        if let Some(stored) = context.shade::<i32, _>(&fragment, &mut depth, None, &draw.images.words, definition) {
-            band.words[at] = stored.word;
-            band.states[at].drawn = true;
-        }
-        if let Some(slot) = band.depth.get_mut(at) {
-            *slot = depth.word();
-        }
+        band.shade::<i32>(context, (i, j), None, &draw.images.words, definition);
     }
     // If the definition has no such triangle, the pixel is left out whatever the ideal holds.
     if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
@@ -121,9 +112,7 @@ fn real_side<L: Lane>(
     let (memory, held) = (&mut band.states[at].depth, band.held[at]);
     if let Some(stored) = context.shade::<L, _>(&fragment, memory, Some(held), &draw.images.lane, observer) {
         band.states[at].drawn = true;
-        for n in (0..4).filter(|n| draw.planned.written >> n & 1 != 0) {
-            band.held[at][n] = stored.channels[n];
-        }
+        band.hold(at, draw.planned, &stored.channels);
     }
 }
 

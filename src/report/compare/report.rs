@@ -2,8 +2,8 @@
 #![allow(clippy::float_arithmetic, reason = "display of errors")]
 
 use super::statistics::BINS;
-use super::{ChannelError, Comparison, Mode, Statistics};
-use crate::{policies_text, policies_value};
+use super::{ChannelError, Comparison, Decided, Mode, RuleError, Statistics, WorstPixel};
+use crate::{policies_text, policies_value, written};
 use ninebit::combiner::registers::channel_name;
 use ninebit::plan::Plan;
 use ninebit::state::Named;
@@ -12,10 +12,7 @@ use std::fmt::Write;
 
 /// Returns the comparison as text.
 pub fn comparison_text(plan: &Plan, comparison: &Comparison) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(&mut out, plan, comparison);
-    out
+    written(|out| write(out, plan, comparison))
 }
 
 fn write(out: &mut String, plan: &Plan, c: &Comparison) -> std::fmt::Result {
@@ -117,30 +114,18 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
         (channel_name(error.channel).to_string(), value)
     };
     let channels: Map<String, Value> = c.channels.iter().map(channel).collect();
-    let parts: Vec<Value> = c.parts.iter().map(|(part, e)| named(part.name(), "part", e)).collect();
-    let rules: Vec<Value> = c
-        .rules
-        .iter()
-        .map(|rule| {
-            let mut value = named(rule.rule.name(), "rule", &rule.errors);
-            value["bound"] = rule.bound.map_or(Value::Null, |(low, high)| json!([low, high]));
-            value["exceeds"] = rule.exceeds().into();
-            value
-        })
-        .collect();
-    let decisions: Vec<Value> = c
-        .decisions
-        .iter()
-        .map(|d| json!({ "decision": d.decision.name(), "taken": d.taken, "differing": d.differing }))
-        .collect();
-    let worst: Vec<Value> = c
-        .worst
-        .iter()
-        .map(|w| {
-            let channel = channel_name(w.channel);
-            json!({ "x": w.x, "y": w.y, "channel": channel, "model": w.shown, "ideal": w.ideal, "error": w.error() })
-        })
-        .collect();
+    let parts: Value = c.parts.iter().map(|(part, e)| named(part.name(), "part", e)).collect();
+    let rule = |rule: &RuleError| {
+        let mut value = named(rule.rule.name(), "rule", &rule.errors);
+        value["bound"] = rule.bound.map_or(Value::Null, |(low, high)| json!([low, high]));
+        value["exceeds"] = rule.exceeds().into();
+        value
+    };
+    let decision = |d: &Decided| json!({ "decision": d.decision.name(), "taken": d.taken, "differing": d.differing });
+    let worst = |w: &WorstPixel| {
+        let channel = channel_name(w.channel);
+        json!({ "x": w.x, "y": w.y, "channel": channel, "model": w.shown, "ideal": w.ideal, "error": w.error() })
+    };
     let value = json!({
         "format": "ninebit-comparison-1",
         "version": env!("CARGO_PKG_VERSION"),
@@ -155,9 +140,9 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
         "channels": channels,
         "parts": parts,
         "unexplained": c.unexplained,
-        "rules": rules,
-        "decisions": decisions,
-        "worst": worst,
+        "rules": c.rules.iter().map(rule).collect::<Value>(),
+        "decisions": c.decisions.iter().map(decision).collect::<Value>(),
+        "worst": c.worst.iter().map(worst).collect::<Value>(),
     });
     format!("{value:#}\n")
 }

@@ -11,10 +11,7 @@ use std::fmt::Write;
 
 /// Returns the explanation as text. `counted` are the counts of a run, if there was one.
 pub fn explanation_text(plan: &Plan, draws: &[DrawExplanation], counted: Option<&[DrawCounts]>) -> String {
-    let mut out = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(&mut out, plan, draws, counted);
-    out
+    crate::written(|out| write(out, plan, draws, counted))
 }
 
 fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Option<&[DrawCounts]>) -> std::fmt::Result {
@@ -46,15 +43,10 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
             writeln!(out, "    general stage {stage} rgb: {}", shown::name(&origin.rgb))?;
             writeln!(out, "    general stage {stage} alpha: {}", shown::name(&origin.alpha))?;
         }
-        if !draw.equations.is_empty() {
-            writeln!(out, "  computed:")?;
-        }
-        for line in &draw.equations {
-            writeln!(out, "    {}", shown::name(line))?;
-        }
-        if !draw.dropped.is_empty() {
-            writeln!(out, "  left out:")?;
-            for line in &draw.dropped {
+        let sections = [("computed", &draw.equations), ("left out", &draw.dropped)];
+        for (heading, lines) in sections.into_iter().filter(|(_, lines)| !lines.is_empty()) {
+            writeln!(out, "  {heading}:")?;
+            for line in lines {
                 writeln!(out, "    {}", shown::name(line))?;
             }
         }
@@ -125,38 +117,34 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
             "total": amounts(&cost.total()),
         })
     };
-    let draws: Vec<Value> = draws
-        .iter()
-        .enumerate()
-        .map(|(number, draw)| {
-            let mut value = json!({
-                "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
-                "cost": cost(&draw.cost), "cost_as_asked": cost(&draw.asked),
+    let draw = |(number, draw): (usize, &DrawExplanation)| {
+        let mut value = json!({
+            "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
+            "cost": cost(&draw.cost), "cost_as_asked": cost(&draw.asked),
+        });
+        if let Some(clipping) = &draw.clipping {
+            value["clipping"] = json!(clipping);
+        }
+        if !draw.program_origin.is_empty() {
+            value["program_origin"] = crate::origins(&draw.program_origin);
+        }
+        if let Some((program, vertices)) = &draw.vertex_program {
+            value["vertex_program"] = json!({
+                "text": program.text, "instructions": program.instructions, "slots": program.slots, "vertices": vertices,
             });
-            if let Some(clipping) = &draw.clipping {
-                value["clipping"] = json!(clipping);
-            }
-            if !draw.program_origin.is_empty() {
-                value["program_origin"] = crate::origins(&draw.program_origin);
-            }
-            if let Some((program, vertices)) = &draw.vertex_program {
-                value["vertex_program"] = json!({
-                    "text": program.text, "instructions": program.instructions, "slots": program.slots, "vertices": vertices,
-                });
-            }
-            if let Some(counts) = counted.map(|all| &all[number]) {
-                value["counted"] = json!({
-                    "fragments": counts.fragments, "stored": counts.stored, "work": amounts(&counts.work),
-                });
-            }
-            value
-        })
-        .collect();
+        }
+        if let Some(counts) = counted.map(|all| &all[number]) {
+            value["counted"] = json!({
+                "fragments": counts.fragments, "stored": counts.stored, "work": amounts(&counts.work),
+            });
+        }
+        value
+    };
     let value = json!({
         "format": "ninebit-explanation-1",
         "version": env!("CARGO_PKG_VERSION"),
         "profile": plan.profile.name(),
-        "draws": draws,
+        "draws": draws.iter().enumerate().map(draw).collect::<Value>(),
     });
     format!("{value:#}\n")
 }

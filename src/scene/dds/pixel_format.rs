@@ -66,16 +66,15 @@ impl PixelFormat {
             COLORS => (BY_MASKS, [red, green, blue, alpha]),
             _ => (BY_LUMINANCE, [red, 0, 0, alpha]),
         };
-        let found = formats.iter().find(|(_, bits, known)| (*bits, *known) == (self.bits, masks));
-        let found = found.map(|(format, ..)| *format);
-        found.ok_or_else(|| {
-            let of = if self.flags & LUMINANCE != 0 {
-                format!("luminance {red:#x}")
-            } else {
-                format!("red {red:#x}, green {green:#x}, blue {blue:#x}")
-            };
-            format!("texels of {} bits ({of}, alpha {alpha:#x})", self.bits)
-        })
+        if let Some((format, ..)) = formats.iter().find(|(_, bits, known)| (*bits, *known) == (self.bits, masks)) {
+            return Ok(*format);
+        }
+        let of = if self.flags & LUMINANCE != 0 {
+            format!("luminance {red:#x}")
+        } else {
+            format!("red {red:#x}, green {green:#x}, blue {blue:#x}")
+        };
+        Err(format!("texels of {} bits ({of}, alpha {alpha:#x})", self.bits))
     }
 }
 
@@ -88,8 +87,7 @@ fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
         _ if text.iter().all(u8::is_ascii_graphic) => Err(format!("{} texels", text.escape_ascii())),
         _ => {
             let number = u32::from_le_bytes(text);
-            let depths = DEPTHS.iter().find(|(known, _)| *known == number);
-            Err(match depths {
+            Err(match DEPTHS.iter().find(|(known, _)| *known == number) {
                 Some((_, name)) => format!("depths ({name})"),
                 None => format!("texels of Direct3D format {number}"),
             })
@@ -111,8 +109,7 @@ pub(super) fn of_number(number: u32) -> Result<TextureFormat, String> {
         88 => TextureFormat::X8R8G8B8,
         115 => TextureFormat::A4R4G4B4,
         _ => {
-            let known = REFUSED.iter().find(|(known, _)| *known == number);
-            return Err(match known {
+            return Err(match REFUSED.iter().find(|(known, _)| *known == number) {
                 Some((_, name)) => format!("{name} texels"),
                 None => format!("texels of DXGI format {number}"),
             });

@@ -166,10 +166,9 @@ fn objection(
     let texture = units.bound[index].and_then(|unit| reader.textures.list.get(unit.texture))?;
     (texture.kind == TextureKind::Cube).then(|| {
         let message = format!("texture {index} is a cube map, whose coordinates are not moved");
-        Diagnostic::error("NB0343", bump.span.clone(), message)
-            .label("moves coordinates of the next texture")
-            .rule("TSH-10")
-            .help("bind a two-dimensional texture to the next unit")
+        let label = "moves coordinates of the next texture";
+        let help = "bind a two-dimensional texture to the next unit";
+        finding("NB0343", bump.span.clone(), message, label, help).rule("TSH-10")
     })
 }
 

@@ -92,9 +92,9 @@ pub(super) fn place<'a>(
                 Some(_) => format!("this {what} has a position and a direction; one of them is enough"),
                 None => format!("this {what} has neither `position` nor `direction`"),
             };
-            reader.refuse(Diagnostic::error("NB0202", reader.opening(text), message).label("in here").help(
-                "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
-            ))
+            let help =
+                "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away";
+            reader.refuse(finding("NB0202", reader.opening(text), message, "in here", help))
         }
     }
 }

@@ -28,10 +28,8 @@ pub(super) fn draws<'a>(
     if let Some(raw) = raw
         && list.len() > reader.limits.draws
     {
-        reader.push(
-            too_many("NB0604", reader.span(raw), list.len(), "draws", "draws", reader.limits.draws)
-                .help("put several triangles into one draw; `ninebit limits` prints what is allowed"),
-        );
+        let found = too_many("NB0604", reader.span(raw), list.len(), "draws", "draws", reader.limits.draws);
+        reader.push(found.help("put several triangles into one draw; `ninebit limits` prints what is allowed"));
         return Vec::new();
     }
     let mut draws: Vec<Drawn> = Vec::with_capacity(list.len());
@@ -136,14 +134,11 @@ fn draw<'a>(
     };
     raster::operations(reader, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {
-        if let (Some(read), true) = (read, matches!(units.shader[unit].operation, ShaderOperation::None)) {
-            reader.push(
-                Diagnostic::warning("NB0902", read.clone(), format!("texture unit {unit} is read but has no texture"))
-                    .label("gives black, opaque")
-                    .related(place.clone(), "in this draw")
-                    .rule("TEX-16")
-                    .help("give the draw `textures: [...]` with an entry for this unit"),
-            );
+        if let (Some(read), ShaderOperation::None) = (read, units.shader[unit].operation) {
+            let message = format!("texture unit {unit} is read but has no texture");
+            let help = "give the draw `textures: [...]` with an entry for this unit";
+            let found = warning("NB0902", read.clone(), message, "gives black, opaque", help).rule("TEX-16");
+            reader.push(found.related(place.clone(), "in this draw"));
         }
     }
     let bound = units.bound.iter().zip(&units.places).filter_map(|(unit, place)| Some((unit.as_ref()?, place)));
@@ -168,12 +163,11 @@ fn clear<'a>(
     target: usize,
 ) -> Option<Drawn> {
     if let Some((name, text)) = fields.written().find(|(name, _)| !["name", "target", "clear"].contains(name)) {
-        reader.push(
-            Diagnostic::error("NB0225", reader.range(text), format!("a clear has no `{name}`"))
-                .label("belongs to a draw")
-                .related(reader.span(raw), "the clear")
-                .help("write the clear and the draw as two entries of `draws`; only `name` and `target` stand beside `clear`"),
-        );
+        let message = format!("a clear has no `{name}`");
+        let help =
+            "write the clear and the draw as two entries of `draws`; only `name` and `target` stand beside `clear`";
+        let found = finding("NB0225", reader.range(text), message, "belongs to a draw", help);
+        reader.push(found.related(reader.span(raw), "the clear"));
     }
     let mut draw = Draw { name, target, ..Draw::default() };
     raster::clear(reader, raw, &mut draw)?;
@@ -262,14 +256,11 @@ fn indices<'a>(
         let list = reader.read(&Raw::<source::List<'a, u32>>::new(raw.text));
         let place = list.and_then(|list| list.get(at).map(|raw| reader.span(raw)));
         let place = place.unwrap_or_else(|| reader.span(raw));
-        let (index, help) = (
-            indices[at],
-            match vertices {
-                0 => "add vertices first".to_owned(),
-                n => format!("indices run from 0 to {}", n - 1),
-            },
-        );
-        let message = format!("index {index} is past the vertices");
+        let help = match vertices {
+            0 => "add vertices first".to_owned(),
+            n => format!("indices run from 0 to {}", n - 1),
+        };
+        let message = format!("index {} is past the vertices", indices[at]);
         return reader.refuse(finding("NB0212", place, message, format!("this draw has {vertices} vertices"), help));
     }
     fits(reader, fields, indices.len(), topology);

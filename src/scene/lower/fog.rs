@@ -63,11 +63,9 @@ fn function<'a>(
     }
     if let Some(raw) = &fields.parameters {
         if let Some(field) = numbers.iter().find_map(|(field, _)| field.as_ref()) {
-            return reader.refuse(
-                Diagnostic::error("NB0223", reader.span(field), "fog has `parameters` or a range or density, not both")
-                    .label("one or the other")
-                    .related(reader.span(raw), "the parameters"),
-            );
+            let message = "fog has `parameters` or a range or density, not both";
+            let found = Diagnostic::error("NB0223", reader.span(field), message).label("one or the other");
+            return reader.refuse(found.related(reader.span(raw), "the parameters"));
         }
         let [p0, p1, p2, _] = fields.parameters(reader)?;
         let per_vertex = evaluation == FogEvaluation::PerVertex;

@@ -192,9 +192,9 @@ pub(super) fn vertex_side(
 fn beside_program(program: &VertexProgram, sets: bool, fog: &fog::FogFields, draw: &Span) -> Option<Diagnostic> {
     if sets {
         let message = "coordinates are generated or multiplied beside a vertex program";
-        return Some(Diagnostic::error("NB0389", draw.clone(), message).label("in this draw").rule("VTX-3").help(
-            "the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3",
-        ));
+        let help =
+            "the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3";
+        return Some(finding("NB0389", draw.clone(), message, "in this draw", help).rule("VTX-3"));
     }
     fog.state.function.as_ref()?;
     let finding = |message: &str, label: &str, help: &str| {

@@ -56,10 +56,9 @@ fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) 
 fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Option<Rows> {
     let parts = reader.read(raw)?.0;
     if parts.len() != 4 {
-        return reader.refuse(
-            Diagnostic::error("NB0211", reader.span(raw), format!("a matrix has four rows, not {}", parts.len()))
-                .label(format!("{} here", parts.len())),
-        );
+        let message = format!("a matrix has four rows, not {}", parts.len());
+        let label = format!("{} here", parts.len());
+        return reader.refuse(Diagnostic::error("NB0211", reader.span(raw), message).label(label));
     }
     let mut rows = IDENTITY;
     for (row, part) in rows.iter_mut().zip(&parts) {

@@ -151,20 +151,16 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
 /// Returns whether this program reads the scene's version of the format.
 fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Span) -> bool {
     let Some(raw) = &file.version else {
-        reader.push(
-            Diagnostic::error("NB0202", opening, "this scene has no `version`")
-                .label("`version` is missing")
-                .help("add `version: 1`"),
-        );
+        let message = "this scene has no `version`";
+        reader.push(finding("NB0202", opening, message, "`version` is missing", "add `version: 1`"));
         return false;
     };
-    let place = reader.range(raw.text);
     let version = reader.read(raw);
     if let Some(version) = version
         && version != 1
     {
         let message = format!("version {version} of the scene format is not known");
-        reader.push(finding("NB0214", place, message, "not known", "this program reads version 1"));
+        reader.push(finding("NB0214", reader.span(raw), message, "not known", "this program reads version 1"));
     }
     version == Some(1)
 }

@@ -55,8 +55,6 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
 
 /// Makes the finding that a texture's format reads no palette.
 pub(super) fn not_read(place: Span, format: TextureFormat) -> Diagnostic {
-    Diagnostic::error("NB0234", place, format!("a texture of format {} reads no palette", format.name()))
-        .label("never read")
-        .rule("TEX-1")
-        .help("leave `palette` out, or write `format: P8`")
+    let message = format!("a texture of format {} reads no palette", format.name());
+    finding("NB0234", place, message, "never read", "leave `palette` out, or write `format: P8`").rule("TEX-1")
 }

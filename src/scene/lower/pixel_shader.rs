@@ -173,10 +173,9 @@ fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
 fn objection(reader: &Reader<'_>, units: &Units, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
     let place = using.span.clone();
     if shader {
-        let error = Diagnostic::error("NB0352", place, "texture instructions beside a texture shader")
-            .label("becomes a texture shader itself")
-            .rule("TSH-10");
-        return Some(error.help("leave the draw's `texture_shader` out"));
+        let message = "texture instructions beside a texture shader";
+        let (label, help) = ("becomes a texture shader itself", "leave the draw's `texture_shader` out");
+        return Some(finding("NB0352", place, message, label, help).rule("TSH-10"));
     }
     if !using.operation.samples() {
         return None;
@@ -186,17 +185,15 @@ fn objection(reader: &Reader<'_>, units: &Units, index: usize, using: &UnitUse, 
             return None;
         }
         let message = format!("t{index} is sampled, but unit {index} has no texture");
-        let error = Diagnostic::error("NB0343", place, message).label("nothing to sample").rule("TSH-10");
-        return Some(error.help(format!("give the draw `textures: [...]` with an entry for unit {index}")));
+        let help = format!("give the draw `textures: [...]` with an entry for unit {index}");
+        return Some(finding("NB0343", place, message, "nothing to sample", help).rule("TSH-10"));
     };
     let texture = reader.textures.list.get(unit.texture)?;
     let fits = using.operation.kinds();
     (!fits.contains(&texture.kind)).then(|| {
         let names: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
         let message = format!("this does not sample a texture of kind {}, which unit {index} has", texture.kind.name());
-        Diagnostic::error("NB0343", place, message)
-            .label(format!("needs {}", names.join(" or ")))
-            .rule("TSH-10")
-            .help("give the unit another texture, or take the instruction for this kind")
+        let help = "give the unit another texture, or take the instruction for this kind";
+        finding("NB0343", place, message, format!("needs {}", names.join(" or ")), help).rule("TSH-10")
     })
 }

@@ -27,9 +27,12 @@ impl ProgramText {
     /// Reads `("...")` or `(file: "...")`. Returns `None` after recording what is wrong.
     pub(super) fn read<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Self> {
         let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
-        let program =
-            if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, text)? };
-        program.within_limit(reader)
+        if Raw::<String>::new(inside).is_text() {
+            return inline(reader, text)?.within_limit(reader);
+        }
+        let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
+        let raw = fields.file(reader)?;
+        Self::file(reader, &raw)
     }
 
     /// Reads a text in the scene. Returns `None` after recording what is wrong.
@@ -127,9 +130,8 @@ pub(super) fn placed(text: Option<&ProgramText>, findings: Vec<Diagnostic>) -> V
 }
 
 fn too_large(place: impl Into<Option<Span>>, most: FileLimit) -> Diagnostic {
-    Diagnostic::error("NB0610", place, format!("this text is larger than {most}"))
-        .label("too large")
-        .help("`ninebit limits` prints what is allowed")
+    let help = "`ninebit limits` prints what is allowed";
+    finding("NB0610", place, format!("this text is larger than {most}"), "too large", help)
 }
 
 fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
@@ -156,12 +158,6 @@ fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Program
     }
     places.push(start + literal.end());
     Some(ProgramText { text, origin: Origin::Scene(places), before: None })
-}
-
-fn from_file<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
-    let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
-    let raw = fields.file(reader)?;
-    ProgramText::file(reader, &raw)
 }
 
 /// Reads a text from a file in the scene's folder, within a limit. Returns `None` after recording what is wrong.
@@ -192,9 +188,7 @@ fn text_at(
     let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
     let bytes = match reader.assets.bytes(path, most) {
         Ok(bytes) => bytes,
-        Err(ReadError::TooLarge(most)) => {
-            return reader.refuse(too_large(named, most));
-        }
+        Err(ReadError::TooLarge(most)) => return reader.refuse(too_large(named, most)),
         Err(ReadError::Missing) => {
             let message = format!("`{}` does not exist", shorten(name));
             return reader.refuse(refuse("NB0502", message, "check the spelling and the folder"));

@@ -30,18 +30,18 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
         }
         if target.depth.is_none() {
             let message = format!("target \"{}\" has no depth buffer", target.name);
-            let finding = Diagnostic::error("NB0216", reader.span(raw), message).label("tests depth").rule("DEP-2");
-            reader
-                .push(reader.targets.beside(draw.target, finding.help("add `depth: Z24S8` (or `Z16`) to the target")));
+            let help = "add `depth: Z24S8` (or `Z16`) to the target";
+            let found = finding("NB0216", reader.span(raw), message, "tests depth", help).rule("DEP-2");
+            reader.push(reader.targets.beside(draw.target, found));
         }
     }
     if let Some(raw) = &fields.stencil_test {
         draw.stencil_test = reader.read(raw).map(|fields| stencil_test(reader, &fields));
         if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
             let message = format!("target \"{}\" has no stencil", target.name);
-            let finding =
-                Diagnostic::error("NB0216", reader.span(raw), message).label("tests the stencil").rule("STN-1");
-            reader.push(reader.targets.beside(draw.target, finding.help("give the target `depth: Z24S8`")));
+            let help = "give the target `depth: Z24S8`";
+            let found = finding("NB0216", reader.span(raw), message, "tests the stencil", help).rule("STN-1");
+            reader.push(reader.targets.beside(draw.target, found));
         }
     }
     draw.window_clip = fields.window_clip.as_ref().and_then(|raw| window_clip(reader, raw));
@@ -52,13 +52,9 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
     draw.blend_constant = color::bytes(fields.blend_constant(reader));
     draw.color_mask = fields.color_mask(reader);
     if fields.dither(reader) {
-        reader.push(
-            Diagnostic::error("NB0402", reader.place(&fields.dither), "what dithering does is not known")
-                .label("cannot be modelled")
-                .rule("ROP-7")
-                .note("no document and no capture gives the dither matrix")
-                .help("leave it out, or write `dither: false`"),
-        );
+        let (message, help) = ("what dithering does is not known", "leave it out, or write `dither: false`");
+        let found = finding("NB0402", reader.place(&fields.dither), message, "cannot be modelled", help);
+        reader.push(found.rule("ROP-7").note("no document and no capture gives the dither matrix"));
     }
     reader.reserve(&fields.logic_op, "logic operations");
 }
@@ -119,12 +115,9 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     let rectangles = reader.read(&list)?;
     if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
         let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
-        return reader.refuse(
-            Diagnostic::error("NB0211", reader.span(&list), message)
-                .label(format!("{} here", rectangles.len()))
-                .rule("CLP-1")
-                .help("leave `window_clip` out to draw everywhere, or draw in several draws"),
-        );
+        let help = "leave `window_clip` out to draw everywhere, or draw in several draws";
+        let label = format!("{} here", rectangles.len());
+        return reader.refuse(finding("NB0211", reader.span(&list), message, label, help).rule("CLP-1"));
     }
     let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
     let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
@@ -171,10 +164,7 @@ pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
     let color = fields.color.as_ref().map(|raw| color::constant(reader, raw));
-    draw.color_mask = [false; 4];
-    if color.is_some() {
-        draw.color_mask = fields.color_mask(reader);
-    }
+    draw.color_mask = if color.is_some() { fields.color_mask(reader) } else { [false; 4] };
     let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
     draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));
     let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));

@@ -42,12 +42,10 @@ pub(super) fn shader<'a>(
     if reader.accept(lacks).is_none() {
         return;
     }
-    let mut places: [Option<Places>; TEXTURE_UNITS] = [const { None }; TEXTURE_UNITS];
-    for (index, stage) in units.shader.iter_mut().enumerate() {
-        stage.operation = ShaderOperation::None;
-        let Some(raw) = list.get(index) else { continue };
-        places[index] = self::stage(reader, raw, stage);
-    }
+    let places: [Option<Places>; TEXTURE_UNITS] = std::array::from_fn(|index| {
+        units.shader[index].operation = ShaderOperation::None;
+        list.get(index).and_then(|raw| self::stage(reader, raw, &mut units.shader[index]))
+    });
     if let Some(extra) = list.get(TEXTURE_UNITS) {
         let message = format!("there is no texture unit {TEXTURE_UNITS}");
         let help = "units 0 to 3 are the entries of this list";
@@ -73,22 +71,18 @@ pub(super) fn shader<'a>(
 
 /// Reads one stage: an operation, or fields with an operation among them. Returns `None` after recording what is wrong.
 fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage: &mut ShaderStage) -> Option<Places> {
-    let mut places = Places { stage: reader.span(raw), previous: None, mapping: None };
     if !raw.text.starts_with('(') {
         stage.operation = operation(reader, &raw.as_other())?;
-        return Some(places);
+        return Some(Places { stage: reader.span(raw), previous: None, mapping: None });
     }
     let fields = reader.read(&raw.as_other::<source::StageState<'a>>())?;
-    let operation_raw = fields.operation(reader);
+    let raw = fields.operation(reader);
     stage.coordinate_set = fields.coordinates(reader).map_or(stage.coordinate_set, |set| set as usize);
     stage.previous = fields.previous(reader).map_or(stage.previous, |unit| unit as usize);
-    places.previous = reader.place(&fields.previous);
     stage.mapping = fields.mapping(reader);
-    places.mapping = reader.place(&fields.mapping);
-    let raw = operation_raw?;
-    places.stage = reader.span(&raw);
-    stage.operation = operation(reader, &raw)?;
-    Some(places)
+    stage.operation = operation(reader, raw.as_ref()?)?;
+    let (previous, mapping) = (reader.place(&fields.previous), reader.place(&fields.mapping));
+    Some(Places { stage: reader.place(&raw)?, previous, mapping })
 }
 
 fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>) -> Option<ShaderOperation> {
@@ -162,7 +156,7 @@ pub(super) fn bump_numbers<'a>(
 fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
     let ShaderStage { operation, previous, .. } = shader[index];
     let mut refuse = |place: &Span, message: String, label: &str, help: String| {
-        reader.push(Diagnostic::error("NB0342", place.clone(), message).label(label).rule("TSH-10").help(help));
+        reader.push(finding("NB0342", place.clone(), message, label, help).rule("TSH-10"));
     };
     if let Some(place) = &places.previous {
         if !operation.reads_previous() {
@@ -224,12 +218,8 @@ fn texture(reader: &mut Reader<'_>, units: &Units, index: usize, places: &Places
     if !fits.contains(&texture.kind) {
         let kinds: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
         let message = format!("{name} does not sample a texture of kind {}", texture.kind.name());
-        reader.push(
-            Diagnostic::error("NB0343", places.stage.clone(), message)
-                .label(format!("needs {}", kinds.join(" or ")))
-                .related(units.places[index].clone(), "the texture of its unit")
-                .rule("TSH-10")
-                .help("give the unit another texture, or take the operation for this kind"),
-        );
+        let help = "give the unit another texture, or take the operation for this kind";
+        let found = finding("NB0343", places.stage.clone(), message, format!("needs {}", kinds.join(" or ")), help);
+        reader.push(found.related(units.places[index].clone(), "the texture of its unit").rule("TSH-10"));
     }
 }

@@ -14,33 +14,37 @@ pub(super) fn sets<'a>(
     matrices: &Option<Raw<'a, source::List<'a, source::Matrix>>>,
 ) -> Option<[CoordinateSet; 4]> {
     let mut sets = [0, 1, 2, 3].map(CoordinateSet::given);
-    let list = generators.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
-    for (index, raw) in list.iter().enumerate().filter(|(_, raw)| raw.split() != ("None", "")) {
-        if exists(reader, index, reader.span(raw))
-            && let Some(set) = set(reader, raw, index)
-        {
-            sets[index] = set;
+    for (index, raw) in written(reader, generators) {
+        if exists(reader, index, reader.span(&raw)).is_some() {
+            sets[index] = set(reader, &raw, index).unwrap_or(sets[index]);
         }
     }
-    let list = matrices.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
-    for (index, raw) in list.iter().enumerate().filter(|(_, raw)| raw.split() != ("None", "")) {
-        if exists(reader, index, reader.span(raw)) {
-            sets[index].matrix = reader.value(raw);
+    for (index, raw) in written(reader, matrices) {
+        if exists(reader, index, reader.span(&raw)).is_some() {
+            sets[index].matrix = reader.value(&raw);
         }
     }
     (generators.is_some() || matrices.is_some()).then_some(sets)
 }
 
-/// Returns whether the chip has the coordinate set, after recording a finding if not.
-fn exists(reader: &mut Reader<'_>, index: usize, place: Span) -> bool {
+/// Returns the entries of a list that are not `None`, with their indices.
+fn written<'a, T>(
+    reader: &mut Reader<'a>,
+    list: &Option<Raw<'a, source::List<'a, T>>>,
+) -> impl Iterator<Item = (usize, Raw<'a, T>)> + use<'a, T> {
+    let list = list.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    list.into_iter().enumerate().filter(|(_, raw)| raw.split() != ("None", ""))
+}
+
+/// Checks that the chip has a coordinate set. Returns `None` after recording that it has not.
+fn exists(reader: &mut Reader<'_>, index: usize, place: Span) -> Option<()> {
     if index >= TEXTURE_UNITS {
         let message = format!("there is no coordinate set {index}");
         let help = "sets 0 to 3 are the entries of this list";
-        reader.push(finding("NB0319", place, message, "one too many", help).rule("TSH-11"));
-        return false;
+        return reader.refuse(finding("NB0319", place, message, "one too many", help).rule("TSH-11"));
     }
     let (what, lacks) = (format!("coordinate set {index}"), index >= reader.profile.texture_units());
-    reader.accept(target::needs_nv2a(reader.profile, lacks, "NB0319", place, &what, "TSH-11")).is_some()
+    reader.accept(target::needs_nv2a(reader.profile, lacks, "NB0319", place, &what, "TSH-11"))
 }
 
 fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, index: usize) -> Option<CoordinateSet> {
@@ -121,12 +125,9 @@ fn emboss<'a>(
 ) -> Option<CoordinateSet> {
     let place = reader.range(raw.split().0);
     if reader.profile != Profile::Nv10 {
-        return reader.refuse(
-            Diagnostic::error("NB0324", place.clone(), "Emboss exists on Nv10 only")
-                .label("not on this chip")
-                .rule("TSH-11")
-                .help("write `profile: Nv10`, or give the moved coordinates with the vertices"),
-        );
+        let (message, help) =
+            ("Emboss exists on Nv10 only", "write `profile: Nv10`, or give the moved coordinates with the vertices");
+        return reader.refuse(finding("NB0324", place, message, "not on this chip", help).rule("TSH-11"));
     }
     if index != 1 {
         let message = "Emboss makes coordinate set 1 only";

@@ -279,12 +279,7 @@ fn of_depths(
         let help = "give the target `depth: Z24S8`";
         return reader.refuse(finding("NB0216", place, message, "shows its depths", help).rule("SHD-1"));
     };
-    let own = match depth.format {
-        DepthFormat::Z16 => TextureFormat::Z16,
-        DepthFormat::Z24S8 => TextureFormat::Z24S8,
-        DepthFormat::Z16F => TextureFormat::Z16F,
-        DepthFormat::Z24S8F => TextureFormat::Z24S8F,
-    };
+    let own = TextureFormat::ALL.iter().copied().find(|format| format.depth() == Some(depth.format))?;
     let (format, format_place) = format.unwrap_or((own, place.clone()));
     if format.depth().is_none_or(|format| format.bits() != depth.format.bits()) {
         let message = format!("depths of {} cannot be read as {}", own.name(), format.name());

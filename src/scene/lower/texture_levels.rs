@@ -48,10 +48,9 @@ pub(super) fn number(reader: &mut Reader<'_>, wanted: Wanted, [width, height]: [
 fn too_many(number: u32, width: u32, height: u32, place: Span) -> Diagnostic {
     let most = Level::most(width, height);
     let has = if most == 1 { "1 level".to_owned() } else { format!("{most} levels") };
-    Diagnostic::error("NB0230", place, format!("a texture of {width} x {height} cannot have {number} levels"))
-        .label(format!("{has} at most"))
-        .rule("TEX-9")
-        .help("sides halve from level to level until both are 1; `levels: All` means all of them")
+    let message = format!("a texture of {width} x {height} cannot have {number} levels");
+    let help = "sides halve from level to level until both are 1; `levels: All` means all of them";
+    finding("NB0230", place, message, format!("{has} at most"), help).rule("TEX-9")
 }
 
 /// Brings the levels of a source to the number asked for, by dropping some or making smaller ones from level 0.
@@ -69,16 +68,14 @@ pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wa
         }
         return Some(());
     }
-    let reason = if own > 1 {
-        Some(format!("the source has {own} levels"))
-    } else if !texels::can_pack(given.format) {
-        Some(format!("the format is {}", given.format.name()))
-    } else if request.border {
-        Some("a border has no texels to make the next one from".to_owned())
-    } else {
-        None
-    };
-    if let Some(reason) = reason {
+    if own > 1 || !texels::can_pack(given.format) || request.border {
+        let reason = if own > 1 {
+            format!("the source has {own} levels")
+        } else if !texels::can_pack(given.format) {
+            format!("the format is {}", given.format.name())
+        } else {
+            "a border has no texels to make the next one from".to_owned()
+        };
         let message = format!("{number} levels cannot be made here: {reason}");
         let help = "leave `levels` out, or give every level a source in `mips`, or use a file that has them";
         return reader.refuse(finding("NB0230", given.place.clone(), message, "of this source", help));
@@ -86,11 +83,8 @@ pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wa
     let (mut width, mut height) = (given.width, given.height);
     for _ in 1..number {
         let next = [(width / 2).max(1), (height / 2).max(1)];
-        texture_source::afford(
-            reader,
-            given.place.clone(),
-            given.faces.len() as u64 * u64::from(next[0]) * u64::from(next[1]),
-        )?;
+        let words = given.faces.len() as u64 * u64::from(next[0]) * u64::from(next[1]);
+        texture_source::afford(reader, given.place.clone(), words)?;
         for levels in &mut given.faces {
             let smaller = levels.last().map(|words| texels::halve(words, width, height, given.format));
             levels.extend(smaller);

@@ -181,8 +181,8 @@ fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: 
     }
     let mut all = all.into_iter();
     let Some(mut first) = all.next() else {
-        let finding = Diagnostic::error("NB0334", place, "a volume has no layer").label("empty");
-        return reader.refuse(finding.rule("VOL-1").help("list a source for each layer"));
+        let help = "list a source for each layer";
+        return reader.refuse(finding("NB0334", place, "a volume has no layer", "empty", help).rule("VOL-1"));
     };
     first.faces.extend(all.flat_map(|layer| layer.faces));
     (first.place, first.volume) = (place, true);
@@ -286,13 +286,11 @@ fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Span, what
         return true;
     }
     let found = if face.faces.len() == 1 { found } else { "a whole cube map or volume".to_owned() };
-    reader.push(
-        Diagnostic::error("NB0231", place, format!("this {what} is {found}, the first one {expected}"))
-            .label("another picture than the first")
-            .related(first.place.clone(), format!("the first {what}"))
-            .rule(if what == "face" { "TEX-12" } else { "VOL-1" })
-            .help(format!("give every {what} the same size, format and number of levels")),
-    );
+    let message = format!("this {what} is {found}, the first one {expected}");
+    let help = format!("give every {what} the same size, format and number of levels");
+    let found = finding("NB0231", place, message, "another picture than the first", help);
+    let found = found.related(first.place.clone(), format!("the first {what}"));
+    reader.push(found.rule(if what == "face" { "TEX-12" } else { "VOL-1" }));
     false
 }
 
@@ -313,7 +311,6 @@ fn cannot_pack(format: TextureFormat, place: Span) -> Diagnostic {
     } else {
         "blocks come from `Raw(...)` or a DDS file, made by a tool that compresses"
     };
-    Diagnostic::error("NB0232", place, format!("this source cannot make texels of format {}", format.name()))
-        .label("does not go with the format")
-        .help(help)
+    let message = format!("this source cannot make texels of format {}", format.name());
+    finding("NB0232", place, message, "does not go with the format", help)
 }

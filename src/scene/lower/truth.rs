@@ -87,12 +87,10 @@ fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::mesh::Mesh>
         return None;
     }
     if drawn.mesh.is_none() {
-        reader.push(
-            Diagnostic::error("NB0390", drawn.spans.draw.clone(), "this draw has no mesh, so there is no truth of it")
-                .label("its vertices are listed")
-                .note("the truth needs positions, normals and tangents in object space")
-                .help("use a mesh, such as `mesh: Triangles(vertices: [...])`, or write `truth: false` in the draw"),
-        );
+        let message = "this draw has no mesh, so there is no truth of it";
+        let help = "use a mesh, such as `mesh: Triangles(vertices: [...])`, or write `truth: false` in the draw";
+        let found = finding("NB0390", drawn.spans.draw.clone(), message, "its vertices are listed", help);
+        reader.push(found.note("the truth needs positions, normals and tangents in object space"));
     }
     drawn.mesh.clone()
 }
@@ -123,12 +121,9 @@ fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &sourc
         return;
     }
     for (name, text) in fields.written().filter(|(name, _)| *name != "equation") {
-        reader.push(
-            Diagnostic::error("NB0393", reader.range(text), format!("`{name}` belongs to `equation: Lighting`"))
-                .label("not read by this equation")
-                .related(place.clone(), "this one")
-                .help("leave one of the two out"),
-        );
+        let message = format!("`{name}` belongs to `equation: Lighting`");
+        let (label, help) = ("not read by this equation", "leave one of the two out");
+        reader.push(finding("NB0393", reader.range(text), message, label, help).related(place.clone(), "this one"));
     }
 }
 
@@ -255,8 +250,7 @@ fn heights<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::HeightFile<'a>>) -
     let image = picture(reader, &file)?;
     let default = normal_map::Options::default();
     let scale = f64::from(fields.scale(reader));
-    let channel = fields.channel(reader)?;
-    let channel = [HeightChannel::Red, HeightChannel::Alpha][channel];
+    let channel = [HeightChannel::Red, HeightChannel::Alpha][fields.channel(reader)?];
     Some((image, normal_map::Options { scale, channel, ..default }))
 }
 

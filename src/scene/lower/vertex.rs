@@ -45,9 +45,9 @@ pub(super) fn list<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::VertexList
 
 /// Makes the finding that the scene has more vertices than the limit.
 pub(super) fn too_many(place: Span, count: usize, limit: usize) -> Diagnostic {
-    Diagnostic::error("NB0603", place, format!("{count} vertices are more than the {limit} that a scene may have"))
-        .label("too many")
-        .help("use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed")
+    let message = format!("{count} vertices are more than the {limit} that a scene may have");
+    let help = "use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed";
+    finding("NB0603", place, message, "too many", help)
 }
 
 fn vertex<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Option<(Vertex, Extra)> {
@@ -58,8 +58,7 @@ fn vertex<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Opt
     {
         vertex.position = values;
     }
-    vertex.diffuse = fields.diffuse(reader);
-    vertex.specular = fields.specular(reader);
+    (vertex.diffuse, vertex.specular) = (fields.diffuse(reader), fields.specular(reader));
     vertex.fog = fields.fog(reader);
     let fog_coordinate = fields.fog_coordinate(reader);
     let [x, y, z, _] = fields.normal(reader);

@@ -9,7 +9,9 @@ use obj::{IndexTuple, ObjData, ObjError};
 
 use super::Surface;
 use ninebit::diagnostic::{Diagnostic, shorten};
+use ninebit::place::Span;
 use ninebit_files::catch_panic;
+use ninebit_program::finding;
 
 /// Number of findings after which no more are looked for.
 const MAX_FINDINGS: usize = 16;
@@ -61,18 +63,18 @@ impl<'t> File<'t> {
         self.statements().filter(move |statement| statement.split_whitespace().next() == Some(name))
     }
 
-    /// Makes a finding about `part`, which is a slice of the text.
-    fn finding(self, code: &'static str, part: &str, message: impl Into<String>) -> Diagnostic {
+    /// Returns the place of a slice of the text.
+    fn span(self, part: &str) -> Span {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
-        Diagnostic::error(code, start..start + part.len(), message)
+        start..start + part.len()
     }
 
     fn refused(self, part: &str, message: impl Into<String>, help: &str) -> Diagnostic {
-        self.finding("NB0236", part, message).label("in this line").help(help)
+        finding("NB0236", self.span(part), message, "in this line", help)
     }
 
     fn too_many(self, code: &'static str, part: &str, message: String) -> Diagnostic {
-        self.finding(code, part, message).label("too many from here").help("`ninebit limits` prints what is allowed")
+        finding(code, self.span(part), message, "too many from here", "`ninebit limits` prints what is allowed")
     }
 
     /// Refuses a file with too many faces or corners before anything is built from it.
@@ -133,13 +135,14 @@ impl<'t> File<'t> {
         if lists.into_iter().all(finite) {
             return Vec::new();
         }
-        let lines = |name, whole: Vec<bool>| self.named(name).zip(whole).filter(|(_, whole)| !whole);
-        lines("v", data.position.iter().map(|position| finite(position)).collect())
-            .chain(lines("vt", data.texture.iter().map(|coordinates| finite(coordinates)).collect()))
-            .chain(lines("vn", data.normal.iter().map(|normal| finite(normal)).collect()))
-            .map(|(line, _)| self.refused(line, "a number is not finite", "write decimal numbers"))
-            .take(MAX_FINDINGS)
-            .collect()
+        let whole: [(&str, Vec<bool>); 3] = [
+            ("v", data.position.iter().map(|position| finite(position)).collect()),
+            ("vt", data.texture.iter().map(|coordinates| finite(coordinates)).collect()),
+            ("vn", data.normal.iter().map(|normal| finite(normal)).collect()),
+        ];
+        let lines = whole.into_iter().flat_map(|(name, whole)| self.named(name).zip(whole));
+        let broken = lines.filter(|(_, whole)| !whole).take(MAX_FINDINGS);
+        broken.map(|(line, _)| self.refused(line, "a number is not finite", "write decimal numbers")).collect()
     }
 
     /// Makes a vertex for each combination of indices, in the order in which faces use them.
@@ -180,8 +183,8 @@ impl<'t> File<'t> {
             }
         }
         if surface.indices.is_empty() && findings.is_empty() {
-            let finding = Diagnostic::error("NB0236", 0..0, "this file has no triangles");
-            findings.push(finding.label("here").help("a mesh needs faces: lines such as `f 1/1 2/2 3/3`"));
+            let help = "a mesh needs faces: lines such as `f 1/1 2/2 3/3`";
+            findings.push(finding("NB0236", 0..0, "this file has no triangles", "here", help));
         }
         surface
     }

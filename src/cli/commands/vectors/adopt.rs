@@ -34,11 +34,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let _ = writeln!(text, "{}: {} {}", shown::path(&place), adopted.grade, shown::name(&adopted.renderer));
     if adopted.behaviour_rev > BEHAVIOUR {
-        let _ = writeln!(
-            text,
-            "the model contradicts it: change the rules, set BEHAVIOUR to {} and tell it in CHANGELOG.md, Numerics",
-            adopted.behaviour_rev
-        );
+        let action = format!("change the rules, set BEHAVIOUR to {}", adopted.behaviour_rev);
+        let _ = writeln!(text, "the model contradicts it: {action} and tell it in CHANGELOG.md, Numerics");
     }
     Ok(write_text(&text)?)
 }

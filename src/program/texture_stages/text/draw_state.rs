@@ -5,29 +5,17 @@ use crate::finding::warning;
 use crate::{Aside, Span};
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
-/// A field of the draw with the states that it stands for, by name and D3DRS value.
-struct Group {
-    field: &'static str,
-    states: &'static [(&'static str, u32)],
-    /// Returns the field as a scene writes it, for the values of the states; `None` if the draw's default means the same.
-    written: fn(&Values) -> Option<String>,
-}
+/// A field of the draw, the states that it stands for, by name and D3DRS value, and a function that returns the field as a scene writes it for the
+/// values of the states; `None` if the draw's default means the same. The first of several states switches the others on.
+type Group = (&'static str, &'static [(&'static str, u32)], fn(&Values) -> Option<String>);
 
 const GROUPS: [Group; 8] = [
-    Group {
-        field: "blend",
-        states: &[("AlphaBlendEnable", 27), ("SrcBlend", 19), ("DestBlend", 20), ("BlendOp", 171)],
-        written: blend,
-    },
-    Group {
-        field: "alpha_test",
-        states: &[("AlphaTestEnable", 15), ("AlphaRef", 24), ("AlphaFunc", 25)],
-        written: alpha_test,
-    },
-    Group { field: "depth_test", states: &[("ZEnable", 7), ("ZWriteEnable", 14), ("ZFunc", 23)], written: depth_test },
-    Group {
-        field: "stencil_test",
-        states: &[
+    ("blend", &[("AlphaBlendEnable", 27), ("SrcBlend", 19), ("DestBlend", 20), ("BlendOp", 171)], blend),
+    ("alpha_test", &[("AlphaTestEnable", 15), ("AlphaRef", 24), ("AlphaFunc", 25)], alpha_test),
+    ("depth_test", &[("ZEnable", 7), ("ZWriteEnable", 14), ("ZFunc", 23)], depth_test),
+    (
+        "stencil_test",
+        &[
             ("StencilEnable", 52),
             ("StencilFail", 53),
             ("StencilZFail", 54),
@@ -37,11 +25,11 @@ const GROUPS: [Group; 8] = [
             ("StencilMask", 58),
             ("StencilWriteMask", 59),
         ],
-        written: stencil_test,
-    },
-    Group {
-        field: "fog",
-        states: &[
+        stencil_test,
+    ),
+    (
+        "fog",
+        &[
             ("FogEnable", 28),
             ("FogColor", 34),
             ("FogTableMode", 35),
@@ -51,16 +39,16 @@ const GROUPS: [Group; 8] = [
             ("RangeFogEnable", 48),
             ("FogVertexMode", 140),
         ],
-        written: fog,
-    },
-    Group { field: "cull", states: &[("CullMode", 22)], written: cull },
-    Group { field: "shade_model", states: &[("ShadeMode", 9)], written: shade_model },
-    Group { field: "color_mask", states: &[("ColorWriteEnable", 168)], written: color_mask },
+        fog,
+    ),
+    ("cull", &[("CullMode", 22)], cull),
+    ("shade_model", &[("ShadeMode", 9)], shade_model),
+    ("color_mask", &[("ColorWriteEnable", 168)], color_mask),
 ];
 
 /// Returns the names of all these states.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    GROUPS.iter().flat_map(|group| group.states.iter().map(|(name, _)| *name))
+    GROUPS.iter().flat_map(|(_, states, _)| states.iter().map(|(name, _)| *name))
 }
 
 /// Names of the API's render states that are skipped.
@@ -114,8 +102,8 @@ pub(super) struct DrawStates {
 impl DrawStates {
     /// Takes a state if it belongs to a group. Returns whether it does.
     pub(super) fn take(&mut self, name: &str, number: Option<u32>, span: &Span, value: &Value<'_>) -> bool {
-        for (group, slot) in GROUPS.iter().zip(&mut self.groups) {
-            let found = group.states.iter().find(|(known, n)| known.eq_ignore_ascii_case(name) || number == Some(*n));
+        for ((_, states, _), slot) in GROUPS.iter().zip(&mut self.groups) {
+            let found = states.iter().find(|(known, n)| known.eq_ignore_ascii_case(name) || number == Some(*n));
             if let Some((name, _)) = found {
                 let (_, values) = slot.get_or_insert_with(|| (span.clone(), Vec::new()));
                 values.retain(|(known, _)| known != name);
@@ -128,10 +116,13 @@ impl DrawStates {
 
     /// Returns a warning for each field, for draws that do not have it.
     pub(super) fn asides(self) -> Vec<Aside> {
-        let groups = GROUPS.iter().zip(self.groups);
-        let asides = groups.filter_map(|(group, taken)| {
+        let groups = GROUPS.into_iter().zip(self.groups);
+        let asides = groups.filter_map(|((field, states, written), taken)| {
             let (span, values) = taken?;
-            let written = (group.written)(&values)?;
+            if states.len() > 1 && off(&values, states[0].0) {
+                return None;
+            }
+            let written = written(&values)?;
             let names: Vec<String> = values.iter().map(|(name, _)| name.to_uppercase()).collect();
             let (last, rest) = names.split_last()?;
             let message = match rest {
@@ -140,7 +131,7 @@ impl DrawStates {
             };
             let help = format!("write it in the draw: `{written}`");
             let finding = warning("NB0918", span, message, "no part of a pixel program", help);
-            Some(Aside { finding, field: Some(group.field) })
+            Some(Aside { finding, field: Some(field) })
         });
         asides.collect()
     }
@@ -191,9 +182,6 @@ fn named(values: &Values, state: &str, (api, scene): Named, default: &'static st
 }
 
 fn blend(values: &Values) -> Option<String> {
-    if off(values, "AlphaBlendEnable") {
-        return None;
-    }
     let equation = match named(values, "BlendOp", EQUATIONS, "Add").as_str() {
         "Add" => String::new(),
         other => format!("equation: {other}, "),
@@ -204,9 +192,6 @@ fn blend(values: &Values) -> Option<String> {
 }
 
 fn alpha_test(values: &Values) -> Option<String> {
-    if off(values, "AlphaTestEnable") {
-        return None;
-    }
     let reference = match find(values, "AlphaRef") {
         Some(Told::Number(number)) => (number & 255).to_string(),
         Some(_) => "...".to_owned(),
@@ -217,17 +202,11 @@ fn alpha_test(values: &Values) -> Option<String> {
 }
 
 fn depth_test(values: &Values) -> Option<String> {
-    if off(values, "ZEnable") {
-        return None;
-    }
     let function = named(values, "ZFunc", FUNCTIONS, "LessOrEqual");
     Some(format!("depth_test: (function: {function}, write: {})", !off(values, "ZWriteEnable")))
 }
 
 fn stencil_test(values: &Values) -> Option<String> {
-    if off(values, "StencilEnable") {
-        return None;
-    }
     let mut fields = Vec::new();
     let mut field = |name: &str, state: &'static str, names: Option<Named>| {
         let Some(told) = find(values, state) else { return };
@@ -249,9 +228,6 @@ fn stencil_test(values: &Values) -> Option<String> {
 
 fn fog(values: &Values) -> Option<String> {
     const MODES: Named = ("EXP EXP2 LINEAR", &["Exp", "Exp2", "Linear"]);
-    if off(values, "FogEnable") {
-        return None;
-    }
     let none = |state| match find(values, state) {
         None | Some(Told::Number(0)) => true,
         Some(Told::Word(word)) => word == "NONE",

@@ -56,18 +56,12 @@ pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Reque
     let expected = words * u64::from(format.bytes().min(4));
     if bytes.len() as u64 != expected {
         let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
-        let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
-        return reader.refuse(
-            Diagnostic::error("NB0235", reader.span(&file), message)
-                .label("another length")
-                .note(format!(
-                    "{} of {} of {width} x {height} texels {}, one after another",
-                    counted(pictures, if layers.is_some() { "layer" } else { "face" }),
-                    counted(levels, "level"),
-                    format.name()
-                ))
-                .help("check `width`, `height`, `format`, `kind` and `levels`"),
-        );
+        let counted = |n: u32, what: &str| ninebit::shown::count(n.into(), what);
+        let pictures = counted(pictures, if layers.is_some() { "layer" } else { "face" });
+        let (levels, name) = (counted(levels, "level"), format.name());
+        let note = format!("{pictures} of {levels} of {width} x {height} texels {name}, one after another");
+        let help = "check `width`, `height`, `format`, `kind` and `levels`";
+        return reader.refuse(finding("NB0235", reader.span(&file), message, "another length", help).note(note));
     }
     let faces = divide(texels::from_bytes(&bytes, format), format, inside, pictures, levels, request.border);
     Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
@@ -83,19 +77,17 @@ pub(in crate::lower) fn read_file<'a, T>(
     let name = reader.read(raw)?;
     let place = reader.span(raw);
     let assets = reader.assets;
-    let refuse = |code, message: String, help| Diagnostic::error(code, place, message).label("this file").help(help);
     let path = match assets.resolve(reader.folder, &name) {
         Ok(path) => path,
-        Err(error) => return reader.refuse(refuse(error.code(), error.to_string(), error.help())),
+        Err(error) => return reader.refuse(finding(error.code(), place, error.to_string(), "this file", error.help())),
     };
-    match image::read(assets, &path, limit).and_then(|bytes| decode(&bytes, &path)) {
-        Ok(contents) => Some(contents),
-        Err(error) => {
-            // The message shows the name as the scene has it; where the folder lies does not matter here.
-            let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
-            reader.refuse(refuse(error.code(), message, error.help()))
-        }
-    }
+    let decoded = image::read(assets, &path, limit).and_then(|bytes| decode(&bytes, &path));
+    let refused = |error: ImageError| {
+        // The message shows the name as the scene has it; where the folder lies does not matter here.
+        let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
+        reader.push(finding(error.code(), place, message, "this file", error.help()));
+    };
+    decoded.map_err(refused).ok()
 }
 
 /// Splits words into faces and levels.

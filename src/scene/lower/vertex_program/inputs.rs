@@ -82,15 +82,10 @@ pub(super) fn sources<'a>(
                 let usual = usual(register, mesh);
                 if usual.is_none() {
                     let message = format!("nothing says what v{register} holds");
-                    let help = format!(
-                        "add it: `inputs: (v{register}: {})`",
-                        if mesh { "Tangent" } else { "TextureCoordinates1" }
-                    );
-                    let finding = Diagnostic::error("NB0387", place, message)
-                        .label("read here")
-                        .note("without being told, v0 is the position, v3 the normal, v7 the texture coordinates, of listed vertices v5 and v6 the colours")
-                        .help(help);
-                    reader.push(text.place(finding));
+                    let example = if mesh { "Tangent" } else { "TextureCoordinates1" };
+                    let help = format!("add it: `inputs: (v{register}: {example})`");
+                    let note = "without being told, v0 is the position, v3 the normal, v7 the texture coordinates, of listed vertices v5 and v6 the colours";
+                    reader.push(text.place(finding("NB0387", place, message, "read here", help).note(note)));
                 }
                 usual
             }
