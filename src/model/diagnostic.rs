@@ -145,7 +145,7 @@ impl Diagnostic {
 }
 
 /// Returns the finding that `what` requires nv2a.
-pub fn only_nv2a(code: &'static str, place: impl Into<Option<Span>>, what: &str, rule: &'static str) -> Diagnostic {
+pub(crate) fn only_nv2a(code: &'static str, place: Option<Span>, what: &str, rule: &'static str) -> Diagnostic {
     Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
         .label("not on this chip")
         .rule(rule)
@@ -161,7 +161,7 @@ pub fn needs_nv2a(
     what: &str,
     rule: &'static str,
 ) -> Option<Diagnostic> {
-    (needs && profile == Profile::Nv10).then(|| only_nv2a(code, place, what, rule))
+    (needs && profile == Profile::Nv10).then(|| only_nv2a(code, place.into(), what, rule))
 }
 
 /// A text and its name.

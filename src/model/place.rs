@@ -59,7 +59,7 @@ impl Places {
     }
 
     /// Returns the place of a part, or `None` if it is not written.
-    pub fn get(&self, place: Place) -> Option<Span> {
+    pub(crate) fn get(&self, place: Place) -> Option<Span> {
         self.0.iter().find(|(known, _)| *known == place).map(|(_, span)| span.clone())
     }
 }

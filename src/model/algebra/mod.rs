@@ -18,7 +18,7 @@
 
 mod trail;
 
-pub use trail::{Trail, Value};
+pub(crate) use trail::{Trail, Value};
 
 use crate::state::{Bias, InputMapping, MuxSelect, Policies, Scale};
 use crate::trace::Rule;
@@ -31,7 +31,7 @@ pub struct Site(pub u64);
 
 impl Site {
     /// Returns the site of input A, B, C or D of a portion after its mapping.
-    pub const fn factor(n: usize, channel: usize) -> Site {
+    pub(crate) const fn factor(n: usize, channel: usize) -> Site {
         Site(1 << (4 * n + channel))
     }
 
@@ -41,12 +41,12 @@ impl Site {
     }
 
     /// Returns the site of a portion's third output at full width.
-    pub const fn third(channel: usize) -> Site {
+    pub(crate) const fn third(channel: usize) -> Site {
         Site(1 << (24 + channel))
     }
 
     /// Returns the site of AB, CD or the third output of a portion as a register.
-    pub const fn output(n: usize, channel: usize) -> Site {
+    pub(crate) const fn output(n: usize, channel: usize) -> Site {
         Site(1 << (28 + 4 * n + channel))
     }
 
@@ -62,44 +62,44 @@ impl Site {
 
     /// Returns the site of the same step `channel` channels later.
     #[inline(always)]
-    pub const fn channel(self, channel: usize) -> Site {
+    pub(crate) const fn channel(self, channel: usize) -> Site {
         Site(self.0 << channel)
     }
 
     /// Returns the set of the sites of `count` channels, starting with this one.
     #[inline(always)]
-    pub const fn channels(self, count: usize) -> u64 {
+    pub(crate) const fn channels(self, count: usize) -> u64 {
         self.0 * ((1 << count) - 1)
     }
 
     /// Returns whether a stage writes the value to a register.
-    pub const fn writes(self) -> bool {
+    pub(crate) const fn writes(self) -> bool {
         self.0 >> 40 & 0x3fff != 0
     }
 
     /// Returns the set of all sites of a portion with the given channels: R, G, B (7) or A (8).
-    pub const fn of_channels(channels: u8) -> u64 {
+    pub(crate) const fn of_channels(channels: u8) -> u64 {
         let own = channels as u64 * 0x1_1111_1111_1111;
         if channels & 7 == 0 { own } else { own | 3 << 52 }
     }
 
     /// Returns the site of a channel of SPARE0 + SECONDARY (FIN-3).
-    pub const fn color_sum(channel: usize) -> Site {
+    pub(crate) const fn color_sum(channel: usize) -> Site {
         Site(1 << channel)
     }
 
     /// Returns the site of a channel of E times F, and of E and F (FIN-4).
-    pub const fn final_product(channel: usize) -> Site {
+    pub(crate) const fn final_product(channel: usize) -> Site {
         Site(1 << (4 + channel))
     }
 
     /// Returns the site of a channel of the fragment (FIN-2, FIN-4).
-    pub const fn fragment(channel: usize) -> Site {
+    pub(crate) const fn fragment(channel: usize) -> Site {
         Site(1 << (8 + channel))
     }
 
     /// Returns the site of a channel of A B + (1 - A) C, and of A, B and C (FIN-2).
-    pub const fn lerp(channel: usize) -> Site {
+    pub(crate) const fn lerp(channel: usize) -> Site {
         Site(1 << (12 + channel))
     }
 }

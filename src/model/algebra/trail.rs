@@ -7,7 +7,7 @@ use crate::trace::Rule;
 
 /// A value: its node, and its number if that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Value {
+pub(crate) struct Value {
     node: u32,
     /// The number in steps of 1/255, if it is the same in every pixel and under all policies.
     pub known: Option<i16>,
@@ -15,7 +15,7 @@ pub struct Value {
 
 /// Records the operands of each value.
 #[derive(Clone, Debug, Default)]
-pub struct Trail {
+pub(crate) struct Trail {
     /// Operands of each node, as a range of `operands`.
     nodes: Vec<(usize, usize)>,
     operands: Vec<u32>,
@@ -29,22 +29,22 @@ pub struct Trail {
 
 impl Trail {
     /// Creates a trail in which operations without effect return their operand.
-    pub fn folding() -> Trail {
+    pub(crate) fn folding() -> Trail {
         Trail { folds: true, ..Trail::default() }
     }
 
     /// Adds a value that does not come from the text.
-    pub fn input(&mut self, known: Option<i16>) -> Value {
+    pub(crate) fn input(&mut self, known: Option<i16>) -> Value {
         self.made_of(&[], known)
     }
 
     /// Takes the sites that the text has passed, with their values. Later sites are collected anew.
-    pub fn take_sites(&mut self) -> Vec<(Site, Value)> {
+    pub(crate) fn take_sites(&mut self) -> Vec<(Site, Value)> {
         std::mem::take(&mut self.sites)
     }
 
     /// Returns a predicate for whether a value is needed to compute the roots.
-    pub fn needed(&self, roots: &[Value]) -> impl Fn(Value) -> bool + use<> {
+    pub(crate) fn needed(&self, roots: &[Value]) -> impl Fn(Value) -> bool + use<> {
         let mut needed = vec![false; self.nodes.len()];
         for root in roots {
             needed[root.node as usize] = true;

@@ -35,7 +35,7 @@ impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
     /// Restricts the computation to the given set of [`Site`]s.
     #[inline(always)]
     #[must_use]
-    pub fn only(mut self, sites: u64) -> Self {
+    pub(crate) fn only(mut self, sites: u64) -> Self {
         self.sites = sites;
         self
     }

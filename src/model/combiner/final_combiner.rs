@@ -68,7 +68,7 @@ pub fn input<A: Algebra>(x: A::Register, invert: bool, a: &mut A) -> A::Register
 
 /// FIN-2: returns A B + (1 - A) C, where A is limited to 1.0.
 #[inline(always)]
-pub fn lerp<A: Algebra>([x, b, c]: [A::Register; 3], a: &mut A) -> A::Register {
+pub(crate) fn lerp<A: Algebra>([x, b, c]: [A::Register; 3], a: &mut A) -> A::Register {
     let one = a.byte(255);
     let x = a.least(x, one);
     let rest = a.complement(x);

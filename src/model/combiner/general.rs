@@ -233,7 +233,7 @@ fn write_portion<A: Algebra, const N: usize>(
 }
 
 /// Runs a stage in an algebra: loads its constants, then [`evaluate`] and [`write()`].
-pub fn stage<A: Algebra>(
+pub(crate) fn stage<A: Algebra>(
     stage: &PlannedStage,
     mux_select: MuxSelect,
     registers: &mut Registers<A::Register>,
@@ -246,7 +246,7 @@ pub fn stage<A: Algebra>(
 
 /// Loads the constant colours of a stage or of the final combiner.
 #[inline(always)]
-pub fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Registers<A::Register>, a: &mut A) {
+pub(crate) fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Registers<A::Register>, a: &mut A) {
     registers.load_constants(constants.map(|constant| constant.map(|byte| a.byte(byte))));
 }
 
@@ -286,12 +286,12 @@ impl PlannedPortion {
     }
 
     /// Returns whether nothing of the portion is needed.
-    pub fn is_idle(&self) -> bool {
+    pub(crate) fn is_idle(&self) -> bool {
         self.live == [0; 3] && self.blue_to_alpha == [false; 2]
     }
 
     /// Returns whether the portion has a mux that is needed.
-    pub fn muxes(&self) -> bool {
+    pub(crate) fn muxes(&self) -> bool {
         self.portion.mux && self.live[2] != 0
     }
 
@@ -363,7 +363,7 @@ const fn first_channel<const N: usize>() -> usize {
 
 /// Returns the channel of its register that an input reads for `channel`.
 #[inline(always)]
-pub fn source_channel(input: &CombinerInput, channel: usize) -> usize {
+pub(crate) fn source_channel(input: &CombinerInput, channel: usize) -> usize {
     component_channel(input.component, channel)
 }
 

@@ -30,7 +30,7 @@ pub fn map<L: Lane, const N: usize>(x: [L; N], mapping: InputMapping, policies: 
 
 /// Applies any mapping under any policy to one channel.
 #[inline(always)]
-pub fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
+pub(crate) fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
     match mapping {
         InputMapping::UnsignedIdentity => unsigned_identity(x).factor(),
         InputMapping::UnsignedInvert => unsigned_invert(x).factor(),
@@ -76,7 +76,7 @@ pub fn rule(mapping: InputMapping) -> Rule {
 }
 
 /// Returns the operation that traces show for a mapping.
-pub fn operation(mapping: InputMapping) -> &'static str {
+pub(crate) fn operation(mapping: InputMapping) -> &'static str {
     match mapping {
         InputMapping::UnsignedIdentity => "unsigned_identity",
         InputMapping::UnsignedInvert => "unsigned_invert",

@@ -31,7 +31,7 @@ pub fn finished<R: Register>(v: R, bias: Bias, scale: Scale, floor: RegisterFloo
 
 /// CMB-9=after: applies bias and scale at full width, then rounds. The result is not saturated.
 #[inline(always)]
-pub fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
+pub(crate) fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
     let raw = match bias {
         Bias::None => raw,
         Bias::NegativeHalf => raw - L::HALF.widened(),
@@ -52,7 +52,7 @@ pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Poli
 
 /// CMB-10: returns whether the mux takes CD, for SPARE0's alpha as an integer.
 #[inline(always)]
-pub fn takes_cd(v: i32, select: MuxSelect, negative: MuxNegative) -> bool {
+pub(crate) fn takes_cd(v: i32, select: MuxSelect, negative: MuxNegative) -> bool {
     match (select, negative) {
         (MuxSelect::Lsb, _) => v & 1 != 0,
         (MuxSelect::Msb, MuxNegative::Sign) => v >= 128,

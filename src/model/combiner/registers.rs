@@ -4,7 +4,7 @@ use crate::number::Lane;
 use crate::state::Register;
 
 /// Number of registers, including ZERO.
-pub const REGISTERS: usize = 12;
+pub(crate) const REGISTERS: usize = 12;
 
 /// The registers of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,12 +14,12 @@ pub struct Registers<L> {
 }
 
 /// Returns the bit of a register's channel in a set of channels of registers.
-pub fn bit(register: Register, channel: usize) -> u64 {
+pub(crate) fn bit(register: Register, channel: usize) -> u64 {
     1 << (4 * register as usize + channel)
 }
 
 /// Returns the bits of all four channels of a register.
-pub fn bits(register: Register) -> u64 {
+pub(crate) fn bits(register: Register) -> u64 {
     15 << (4 * register as usize)
 }
 
@@ -72,7 +72,7 @@ impl<L: Lane> Default for Registers<L> {
 
 /// Returns the channels that no document defines before a stage writes them: SPARE0's colour and SPARE1 (CMB-13). They
 /// are taken as 0.
-pub fn initially_undefined() -> u64 {
+pub(crate) fn initially_undefined() -> u64 {
     (bits(Register::Spare0) & !bit(Register::Spare0, 3)) | bits(Register::Spare1)
 }
 

@@ -182,7 +182,7 @@ impl<'a> TriangleContext<'a> {
 
     /// Returns the triangle's vertices.
     #[inline(always)]
-    pub fn vertices(&self) -> TriangleVertices<'a> {
+    pub(crate) fn vertices(&self) -> TriangleVertices<'a> {
         self.draw.assembly.triangle(self.number)
     }
 

@@ -42,7 +42,7 @@ pub(super) fn draw<O: Observer>(
 }
 
 /// Rows and columns, as half-open ranges.
-pub type Window = ((i64, i64), (i64, i64));
+pub(crate) type Window = ((i64, i64), (i64, i64));
 
 /// Returns the parts of some rows that a draw may touch, in its windows; none if nothing of it can be seen.
 pub fn windows(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = Window> {

@@ -53,7 +53,7 @@ fn rnd255(n: i32) -> i32 {
 
 /// NUM-2 of a product of two bytes, computed in 16 bits.
 #[inline(always)]
-pub fn byte_product(a: i16, b: i16) -> i16 {
+pub(crate) fn byte_product(a: i16, b: i16) -> i16 {
     let t = a as u16 * b as u16 + 128;
     ((t + (t >> 8)) >> 8) as i16
 }

@@ -12,13 +12,13 @@ pub fn split(f: f32) -> (i64, i32) {
 
 /// Returns floor(n * 2^exponent). The result must fit; a shift to the right may have any size.
 #[inline]
-pub fn shift(n: i128, exponent: i32) -> i128 {
+pub(crate) fn shift(n: i128, exponent: i32) -> i128 {
     if exponent >= 0 { n << exponent.min(126) } else { n >> (-exponent).min(127) }
 }
 
 /// Returns floor(n * by * 2^exponent), which must fit. Avoids 128-bit arithmetic where it can.
 #[inline(always)]
-pub fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
+pub(crate) fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
     match n.checked_mul(by) {
         Some(n) if exponent <= 0 => n >> (-exponent).min(63),
         _ => scaled_in_128_bits(n, by, exponent),
@@ -35,7 +35,7 @@ fn scaled_in_128_bits(n: i64, by: i64, exponent: i32) -> i64 {
 /// keeps exactly `keep` bits (at most 62), and the others are floored to the same exponent. Returns the mantissas and
 /// that exponent.
 #[inline(always)]
-pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
+pub(crate) fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
     let mut top = i32::MIN;
     for (n, exponent) in values {
         let bits = 64 - n.unsigned_abs().leading_zeros() as i32 + exponent;
@@ -79,7 +79,7 @@ pub fn factor_byte(v: i64) -> u8 {
 
 /// Like [`factor_byte`], in 32 bits.
 #[inline(always)]
-pub fn factor(v: i32) -> i32 {
+pub(crate) fn factor(v: i32) -> i32 {
     ((v - (v >> 8)) >> 4) & 255
 }
 
@@ -117,7 +117,7 @@ pub fn snap(x: f32) -> i64 {
 }
 
 /// INT-6: cuts w to 16 significant bits, as nv10 does.
-pub fn w_16_bits(w: f32) -> f32 {
+pub(crate) fn w_16_bits(w: f32) -> f32 {
     f32::from_bits(w.to_bits() & !0xff)
 }
 

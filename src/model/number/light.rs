@@ -5,13 +5,13 @@
 //! is [`NAN`].
 
 /// The word of a NaN.
-pub const NAN: u32 = 0x7fff_fc00;
+pub(crate) const NAN: u32 = 0x7fff_fc00;
 
 /// The word of infinity.
-pub const INFINITY: u32 = 0x7f80_0000;
+pub(crate) const INFINITY: u32 = 0x7f80_0000;
 
 /// The word of the largest finite number.
-pub const LARGEST_FINITE: u32 = 0x7f7f_fc00;
+const LARGEST_FINITE: u32 = 0x7f7f_fc00;
 
 /// The bits of a pattern that are 0 in a word.
 const LOW: u32 = 0x3ff;

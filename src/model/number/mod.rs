@@ -55,10 +55,11 @@ mod part;
 mod real;
 mod scalar;
 
-pub use block::{Halved, Narrow, Quarter, Swar2, byte_product};
+pub(crate) use block::byte_product;
+pub use block::{Halved, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
 pub use lanes16::{LANES, Lanes16};
-pub use paired::{Paired, PairedFactor, PairedSum};
+pub use paired::Paired;
 pub use part::Part;
 pub use scalar::{Halves, Quarters};
 

@@ -14,10 +14,10 @@ pub struct Paired<I = f64, F = i32> {
 }
 
 /// A factor of [`Paired`] registers.
-pub type PairedFactor<I = f64> = Paired<I, Halves>;
+pub(crate) type PairedFactor<I = f64> = Paired<I, Halves>;
 
 /// A sum of products of [`PairedFactor`]s.
-pub type PairedSum<I = f64> = Paired<I, Quarters>;
+pub(crate) type PairedSum<I = f64> = Paired<I, Quarters>;
 
 impl<I: Add<Output = I>, F: Add<Output = F>> Add for Paired<I, F> {
     type Output = Self;

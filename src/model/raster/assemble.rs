@@ -1,7 +1,7 @@
 //! Assembly: converts the vertices of a draw to window coordinates, clips its triangles (RAS-6) and checks the limits
 //! of RAS-0.
 
-pub use super::triangles::{Assembled, Triangles};
+pub(crate) use super::triangles::{Assembled, Triangles};
 use super::{LARGEST_W, SMALLEST_W, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
@@ -48,7 +48,7 @@ pub struct Clipping {
 
 impl Clipping {
     /// Returns the piece that is triangle `number`, or `None` if that triangle was not cut.
-    pub fn piece(&self, number: usize) -> Option<&Piece> {
+    pub(crate) fn piece(&self, number: usize) -> Option<&Piece> {
         let at = self.pieces.binary_search_by_key(&number, |piece| piece.number).ok()?;
         self.pieces.get(at)
     }

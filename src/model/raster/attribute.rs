@@ -28,7 +28,7 @@ pub struct Attribute {
 
 /// The number numerator / denominator * 2^exponent, with a positive denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Quotient {
+pub(crate) struct Quotient {
     numerator: i128,
     denominator: i64,
     exponent: i32,
@@ -36,7 +36,7 @@ pub struct Quotient {
 
 impl Attribute {
     /// Returns g and the exponent, for observers.
-    pub fn numbers(&self) -> ([i64; 3], i32) {
+    pub(crate) fn numbers(&self) -> ([i64; 3], i32) {
         (self.g, self.exponent)
     }
 }
@@ -44,7 +44,7 @@ impl Attribute {
 impl Triangle {
     /// Returns the attribute with P_k x_k of three finite numbers. The products are exact, unless they differ so much
     /// that the smaller ones fall below 2^-62 of the largest; those are floored there (INT-4).
-    pub fn attribute(&self, x: [f32; 3]) -> Attribute {
+    pub(crate) fn attribute(&self, x: [f32; 3]) -> Attribute {
         let products: [(i64, i32); 3] = std::array::from_fn(|k| {
             let (mantissa, exponent) = split(x[k]);
             (mantissa * self.p[k], exponent)
@@ -57,7 +57,7 @@ impl Triangle {
 impl Sample<'_> {
     /// Returns the value of `attribute` at the sample. It is 0 if D is not positive, which happens only outside the
     /// triangle, beyond its horizon.
-    pub fn attribute(&self, attribute: &Attribute) -> Quotient {
+    pub(crate) fn attribute(&self, attribute: &Attribute) -> Quotient {
         if self.d <= 0 {
             return Quotient { numerator: 0, denominator: 1, exponent: 0 };
         }
@@ -65,7 +65,7 @@ impl Sample<'_> {
     }
 
     /// Returns floor(2^bits * value), lowering ties as INT-4t says. The triangle must cover the sample.
-    pub fn steps(&self, attribute: &Attribute, bits: i32) -> Floored {
+    pub(crate) fn steps(&self, attribute: &Attribute, bits: i32) -> Floored {
         let (value, exact) = self.attribute(attribute).floor_steps(bits);
         let lowered = i64::from(self.lowers_tie(exact, || self.shortfall(&attribute.g)));
         Floored { value: value - lowered, lowered }
@@ -74,19 +74,19 @@ impl Sample<'_> {
 
 impl Quotient {
     /// Returns the value as a binary number of at least 40 bits, truncated toward zero, or 0 if it is not positive.
-    pub fn binary(&self) -> Binary {
+    pub(crate) fn binary(&self) -> Binary {
         positive_ratio(self.numerator, i128::from(self.denominator), self.exponent)
     }
 
     /// Returns the ratio of this value to another of the same sample, converted like [`binary`](Self::binary). A
     /// division by 0 yields more than every depth.
-    pub fn binary_ratio(&self, by: &Quotient) -> Binary {
+    pub(crate) fn binary_ratio(&self, by: &Quotient) -> Binary {
         positive_ratio(self.numerator, by.numerator, self.exponent - by.exponent)
     }
 
     /// TSH-4: returns the nearest single-precision number, with ties to even. Too large values become infinite, and
     /// zero is positive.
-    pub fn rounded_f32(&self) -> f32 {
+    pub(crate) fn rounded_f32(&self) -> f32 {
         let sign = u32::from(self.numerator < 0) << 31;
         let Some((quotient, exponent, exact)) = self.digits() else { return 0.0 };
         let top = bits(quotient) + exponent;
@@ -111,7 +111,7 @@ impl Quotient {
 
     /// FOG-2: returns the first 24 significant bits, truncated toward zero, as (m, e) for m 2^e with 2^23 <= |m| <
     /// 2^24. Zero is (0, 0).
-    pub fn truncated_24(&self) -> (i64, i32) {
+    pub(crate) fn truncated_24(&self) -> (i64, i32) {
         let Some((quotient, exponent, _)) = self.digits() else { return (0, 0) };
         let drop = bits(quotient) - SIGNIFICANT;
         let mantissa = (quotient >> drop) as i64;
@@ -119,7 +119,7 @@ impl Quotient {
     }
 
     /// Returns floor(value * 2^bits), limited to 64 bits, and whether it is exact and one less would also fit.
-    pub fn floor_steps(&self, bits: i32) -> (i64, bool) {
+    fn floor_steps(&self, bits: i32) -> (i64, bool) {
         let (mut numerator, mut exponent) = (self.numerator, self.exponent + bits);
         if numerator == 0 {
             return (0, true);
@@ -140,7 +140,7 @@ impl Quotient {
     }
 
     /// Returns floor(value * scale), limited to 64 bits.
-    pub fn floor_times(&self, scale: i64) -> i64 {
+    pub(crate) fn floor_times(&self, scale: i64) -> i64 {
         let saturated = if (self.numerator < 0) == (scale < 0) { i64::MAX } else { i64::MIN };
         if self.numerator == 0 || scale == 0 {
             return 0;

@@ -162,7 +162,7 @@ const DEPTH_BITS: i32 = 29;
 
 /// DEP-1: sum, reciprocal and weights of edge numbers that are truncated to 24 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DepthWeights {
+pub(crate) struct DepthWeights {
     edges: [i64; 3],
     /// The sum S.
     pub sum: i64,
@@ -173,7 +173,7 @@ pub struct DepthWeights {
 impl DepthWeights {
     /// Computes the weights of edge functions.
     #[inline]
-    pub fn from_edges(e: [i64; 3]) -> DepthWeights {
+    pub(crate) fn from_edges(e: [i64; 3]) -> DepthWeights {
         DepthWeights::from_cut_edges(e.map(|e| significant(e, 24)))
     }
 
@@ -188,7 +188,7 @@ impl DepthWeights {
 
     /// Returns the weight b_k as a mantissa of at most 24 bits and an exponent.
     #[inline]
-    pub fn weight(&self, k: usize) -> (i64, i32) {
+    pub(crate) fn weight(&self, k: usize) -> (i64, i32) {
         let (mantissa, dropped) = first_24(i128::from(self.edges[k]) * i128::from(self.reciprocal.0));
         (mantissa, dropped - self.reciprocal.1)
     }
@@ -209,7 +209,7 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
 }
 
 /// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term truncated as in DEP-1.
-pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
+fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     let edges = std::array::from_fn(|k| {
         let (ratio, power) = w_ratio(w[1], w[k]);
         let (edge, of_edge) = first_24(i128::from(e[k]));
@@ -239,7 +239,7 @@ pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
 }
 
 /// DEP-6: returns w_1/w_k of two positive w as a mantissa of 24 bits and an exponent.
-pub fn w_ratio(first: f32, w: f32) -> (i64, i32) {
+pub(crate) fn w_ratio(first: f32, w: f32) -> (i64, i32) {
     let ((first, power_of_first), (mantissa, power)) = (split(first), split(w));
     let (ratio, dropped) = first_24((i128::from(first) << 62) / i128::from(mantissa.max(1)));
     (ratio, power_of_first - power - 62 + dropped)
@@ -270,7 +270,7 @@ fn sum_of_terms(terms: [(i64, i32); 3]) -> Binary {
 /// Returns the difference of two vertex depths in binary32, rounded to nearest. A difference below 2^-126 becomes zero.
 #[allow(clippy::float_arithmetic, reason = "DEP-1 names binary32 for this one difference")]
 #[inline(always)]
-pub fn difference(a: f32, b: f32) -> f32 {
+pub(crate) fn difference(a: f32, b: f32) -> f32 {
     let difference = a - b;
     if difference.is_subnormal() { 0.0 } else { difference }
 }
@@ -296,7 +296,7 @@ fn significant(n: i64, bits: u32) -> i64 {
 
 /// DEP-1: returns the reciprocal of a sum of at most 31 bits as a mantissa of 29 bits, which is low by 3/16 of its last
 /// bit, and the s of its scale 2^-s.
-pub fn reciprocal(sum: i64) -> (i64, i32) {
+pub(crate) fn reciprocal(sum: i64) -> (i64, i32) {
     let length = 63 - sum.leading_zeros() as i32;
     if sum & (sum - 1) == 0 {
         return (1 << 28, 28 + length);

@@ -11,13 +11,13 @@ use crate::number::convert::{factor_byte, shift, split};
 use crate::state::{FogFunction, FogMode};
 
 /// Number of fraction bits of 4096ths.
-pub const FACTOR_BITS: i32 = 12;
+pub(crate) const FACTOR_BITS: i32 = 12;
 
 /// 3/2 in 4096ths, which is subtracted from e.
-pub const CENTRE: i64 = 6144;
+pub(crate) const CENTRE: i64 = 6144;
 
 /// Distance from the centre at which the tables end, in 4096ths.
-pub const TABLE_END: i64 = 2048;
+pub(crate) const TABLE_END: i64 = 2048;
 
 /// Width of a segment of the tables, in 4096ths.
 const SEGMENT: i64 = 64;
@@ -130,7 +130,7 @@ impl FogPlane {
 }
 
 /// FOG-4, FOG-5: returns the byte of a triangle with a value that is not finite.
-pub fn not_finite(mode: FogMode) -> u8 {
+pub(crate) fn not_finite(mode: FogMode) -> u8 {
     match mode {
         FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 255,
         FogMode::Exp2 | FogMode::ExpAbs | FogMode::Exp2Abs => 0,
@@ -155,7 +155,7 @@ pub fn exponential(mode: FogMode, q: i64) -> u8 {
 impl Line {
     /// FOG-2: returns the factor v, 0..=4096, at the coordinate m 2^e given as (m, e) with |m| < 2^24. p0 and p1 must
     /// be finite.
-    pub fn at(&self, coordinate: (i64, i32)) -> i64 {
+    pub(crate) fn at(&self, coordinate: (i64, i32)) -> i64 {
         let ((m, e), (m1, e1)) = (coordinate, split(self.p1));
         let m = if self.absolute { m.abs() } else { m };
         // An exact product of 48 bits.

@@ -17,7 +17,7 @@ pub fn barycentrics(triangle: &Triangle, e: [i64; 3], w: [f32; 3], perspective: 
 }
 
 /// Returns the weights that are linear on the screen, from those that [`barycentrics`] returned.
-pub fn linear(weights: [f64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
+pub(crate) fn linear(weights: [f64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
     if !perspective {
         return weights;
     }
@@ -32,7 +32,7 @@ pub fn mix(weights: [f64; 3], values: [f64; 3]) -> f64 {
 }
 
 /// Returns a channel of a vertex colour in 255ths, limited to 0..1 but not rounded.
-pub fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
+pub(crate) fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
     match color {
         crate::state::VertexColor::Bytes(bytes) => f64::from(bytes[channel]),
         crate::state::VertexColor::Floats(floats) => f64::from(floats[channel]).clamp(0.0, 1.0) * 255.0,
@@ -40,7 +40,7 @@ pub fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
 }
 
 /// Returns a coordinate divided by q, or 0 for 0/0.
-pub fn quotient(coordinate: f64, q: f64) -> f64 {
+pub(crate) fn quotient(coordinate: f64, q: f64) -> f64 {
     let quotient = coordinate / q;
     if quotient.is_nan() { 0.0 } else { quotient }
 }
@@ -48,12 +48,12 @@ pub fn quotient(coordinate: f64, q: f64) -> f64 {
 /// Returns 255 times the fog factor: interpolated from factors of the vertices, or the function of their coordinates
 /// without rounding. e is p0 + p1 d + p2 d^2 at the vertices, or the value that they pass if the coordinate is not
 /// known.
-pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], coordinates: [Option<f32>; 3]) -> f64 {
+pub(crate) fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], known: [Option<f32>; 3]) -> f64 {
     let Some(function) = function else {
         return 255.0 * mix(weights, passed.map(|f| f64::from(super::fog::limited(f))));
     };
     let mode = function.mode;
-    let vertices: [f64; 3] = std::array::from_fn(|k| fog_of_vertex(function, passed[k], coordinates[k]));
+    let vertices: [f64; 3] = std::array::from_fn(|k| fog_of_vertex(function, passed[k], known[k]));
     let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (f64::from(function.p0), f64::from(function.p1)) };
     let finite = passed.iter().all(|n| n.is_finite()) && vertices.iter().all(|n| n.is_finite());
     if !finite || (mode.is_linear() && !(p0.is_finite() && p1.is_finite())) {
@@ -99,7 +99,7 @@ fn power_of_two(x: f64) -> f64 {
 
 /// Returns the depth in words of a buffer. If the buffer holds floats, values between two words are fractions between
 /// them.
-pub fn depth(
+pub(crate) fn depth(
     weights: [f64; 3],
     (z, w): ([f32; 3], [f32; 3]),
     test: &DepthTest,
@@ -124,7 +124,7 @@ pub fn depth(
 }
 
 /// Converts a depth in steps to words of a buffer, including fractions between words.
-pub fn in_words(format: DepthFormat, depth: f64) -> f64 {
+pub(crate) fn in_words(format: DepthFormat, depth: f64) -> f64 {
     let full = f64::from(format.largest());
     if !format.is_float() {
         return depth.clamp(0.0, full);

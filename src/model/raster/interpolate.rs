@@ -137,7 +137,7 @@ impl<'a> Sample<'a> {
     }
 
     /// INT-4t: returns whether weights 0 and 2 fall short. They do unless they dominate or the reciprocal is exact.
-    pub fn short(&self) -> [bool; 2] {
+    pub(crate) fn short(&self) -> [bool; 2] {
         if self.triangle.exact_reciprocal {
             return [false; 2];
         }
@@ -161,7 +161,7 @@ impl<'a> Sample<'a> {
 
     /// INT-4t: returns whether a quotient is one step lower, given whether it is exact and what its numerator loses.
     #[inline(always)]
-    pub fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
+    pub(crate) fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
         exact && !self.triangle.exact_reciprocal && shortfall() > 0
     }
 }

@@ -16,13 +16,13 @@ pub mod setup;
 pub mod triangles;
 
 /// RAS-0: limit of snapped window coordinates, which stay below it in magnitude: 4096 pixels in units of 1/16 pixel.
-pub const GUARD: i64 = 1 << 16;
+pub(crate) const GUARD: i64 = 1 << 16;
 /// RAS-0: largest texel coordinate, in texels.
-pub const TEXEL_LIMIT: i64 = 1 << 16;
+pub(crate) const TEXEL_LIMIT: i64 = 1 << 16;
 /// RAS-6: distance of the guard band's edges from the origin in pixels. It is the last position that RAS-1 keeps below
 /// [`GUARD`].
-pub const BAND: f32 = 4095.9375;
+pub(crate) const BAND: f32 = 4095.9375;
 /// RAS-0: smallest w, where clip-space triangles are clipped.
-pub const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
+pub(crate) const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
 /// RAS-0: largest w.
-pub const LARGEST_W: f32 = 1_048_576.0;
+pub(crate) const LARGEST_W: f32 = 1_048_576.0;

@@ -124,7 +124,7 @@ pub fn beyond(position: [f32; 4], viewport: &Viewport) -> u8 {
 }
 
 /// RAS-0: returns whether the rasteriser accepts a window position, which is within 4096 pixels of the origin.
-pub fn in_band([x, y, ..]: [f32; 4]) -> bool {
+pub(crate) fn in_band([x, y, ..]: [f32; 4]) -> bool {
     [x, y].iter().all(|n| n.abs() <= 4096.0 && snap(*n).abs() < super::GUARD)
 }
 

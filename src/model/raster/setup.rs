@@ -5,7 +5,7 @@ use crate::number::convert::{align, scaled, snap, split, w_16_bits};
 use crate::state::Profile;
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
-pub const PERSPECTIVE_BITS: i32 = 28;
+const PERSPECTIVE_BITS: i32 = 28;
 
 /// A triangle that is set up for drawing.
 ///
@@ -54,7 +54,7 @@ impl Triangle {
     /// Sets all fields that do not [depend on w](Self::weigh) from x and y after RAS-1, in 1/16 pixel. Returns `false`
     /// if the area is zero; the triangle is then unusable.
     #[inline(always)]
-    pub fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
+    pub(crate) fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
         let mut area = 0;

@@ -92,7 +92,7 @@ impl Triangles {
     ///
     /// # Panics
     /// Panics if there is no such triangle.
-    pub fn provoking(&self, number: usize) -> u32 {
+    pub(crate) fn provoking(&self, number: usize) -> u32 {
         match &self.provoking {
             Provoking::Corner(corner) => self.vertices(number)[*corner],
             Provoking::Each(vertices) => vertices[number],

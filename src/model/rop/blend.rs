@@ -46,7 +46,7 @@ pub fn factor<A: Algebra>(
 
 /// ROP-2, ROP-3: returns the blended channel before clamping. `fs` and `fd` are the factors.
 #[inline(always)]
-pub fn equation<A: Algebra>(
+pub(crate) fn equation<A: Algebra>(
     equation: BlendEquation,
     [s, d]: [A::Register; 2],
     [fs, fd]: [A::Register; 2],
@@ -145,16 +145,6 @@ pub fn blend<A: Algebra>(
     out
 }
 
-/// Returns whether the equation reads the source as two's complement (ROP-3).
-pub fn is_signed(equation: BlendEquation) -> bool {
-    matches!(equation, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
-}
-
-/// Returns whether the equation uses its factors.
-pub fn uses_factors(equation: BlendEquation) -> bool {
-    matches!(equation, BlendEquation::Add | BlendEquation::Subtract | BlendEquation::ReverseSubtract)
-}
-
 /// Blends the `channels` (bits R, G, B, A) of a fragment with the contents of the surface. The others are those of the
 /// source.
 ///
@@ -171,7 +161,7 @@ pub fn run<L: Lane, O: Observer>(
     let constant = constant.map(L::byte);
     let mut out = *source;
     for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
-        if O::MEASURES && is_signed(blend.equation) {
+        if O::MEASURES && matches!(blend.equation, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract) {
             let negative = |byte: i32| i64::from(byte >= 128);
             let s = source[channel];
             observer.decided(Decision::Sign, negative(s.decision()), || negative(s.ideal_decision()));
@@ -206,7 +196,7 @@ pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &m
 }
 
 /// Returns the operation that traces show for a comparison.
-pub fn compare_operation(function: crate::state::CompareFunction) -> &'static str {
+pub(crate) fn compare_operation(function: crate::state::CompareFunction) -> &'static str {
     use crate::state::CompareFunction;
     match function {
         CompareFunction::Never => "never",
@@ -234,7 +224,7 @@ fn report_channel<L: Lane, O: Observer>(
         report::register(format!("source.{suffix}"), source[channel]),
         report::register(format!("destination.{suffix}"), destination[channel]),
     ];
-    if uses_factors(blend.equation) {
+    if matches!(blend.equation, BlendEquation::Add | BlendEquation::Subtract | BlendEquation::ReverseSubtract) {
         for (name, kind, value) in [("Fs", blend.source, factors[0]), ("Fd", blend.destination, factors[1])] {
             let (operation, inputs) = factor_operation(kind, channel, source, destination, constant);
             let name = format!("blend.{name}.{suffix}");

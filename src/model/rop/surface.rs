@@ -9,7 +9,7 @@ use crate::texture::format;
 /// Returns the number of low bits of R, G and B that the surface drops, both from the source before blending and in the
 /// store.
 #[inline]
-pub fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
+pub(crate) fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
     match format {
         SurfaceFormat::R5G6B5 => [3, 2, 3],
         SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [3, 3, 3],

@@ -78,7 +78,7 @@ taps_in!(taps_of_far, i128, u128);
 
 /// Returns the taps of the ideal from s and t at the quad and the texture's sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's footprint")]
-pub fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Taps<f64, f64> {
+pub(crate) fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Taps<f64, f64> {
     let mut taps = Taps { count: 1, offsets: [[0.0; 2]; MAX_TAPS], weights: [0.0; MAX_TAPS] };
     taps.weights[0] = 256.0;
     let Some([origin, right, lower]) = quad else { return taps };

@@ -20,7 +20,7 @@ pub(super) fn as_lanes(unit: &PlannedUnit, key: &ColorKey) -> [i32; 4] {
 }
 
 /// Returns the key as a word of bytes with R lowest, and the mask of the bits that are compared.
-pub fn as_word(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
+pub(crate) fn as_word(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
     let mask = if compared(unit) == 4 { u32::MAX } else { 0x00ff_ffff };
     (u32::from_le_bytes(key.color) & mask, mask)
 }

@@ -63,7 +63,7 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
 }
 
 /// VOL-1: returns r of the vertices as a linear function over D, or r and q if the coordinates are ratios.
-pub fn layer_planes(
+pub(crate) fn layer_planes(
     triangle: &Triangle,
     coordinates: &Coordinates,
     [r, q]: [[f32; 3]; 2],
@@ -79,7 +79,7 @@ pub fn layer_planes(
 }
 
 /// Returns the linear functions of sc, tc and |ma| of a direction on a face.
-pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
+pub(crate) fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
     face.components().map(
         |Signed { axis, negative }| {
             if negative { direction[axis].map(|g| -g) } else { direction[axis] }
@@ -167,7 +167,7 @@ pub struct Interpolated<'a> {
 }
 
 /// Returns samples at the top-left pixel of a pixel's quad and at its right and lower neighbours.
-pub fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] {
+pub(crate) fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] {
     let (i, j) = (i & !1, j & !1);
     [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| Sample::new(triangle, triangle.edges(i, j)))
 }
@@ -240,7 +240,7 @@ impl Interpolated<'_> {
 
 /// TEX-12 in real numbers: returns the coordinates of a direction on the given face or, without one, on the face that
 /// it meets.
-pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
+pub(crate) fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
     let face = face.unwrap_or_else(|| Face::from_direction(direction, direction.map(f64::abs), 0.0));
     #[allow(clippy::float_arithmetic, reason = "the ideal's direction")]
     let [s, t, m] = face.components().map(|c| {

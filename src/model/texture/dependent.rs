@@ -43,19 +43,19 @@ pub struct Moved<'a> {
 
 impl Moved<'_> {
     /// Returns the entries of the matrix that multiply blue and green: along u, then along v.
-    pub fn entries(&self) -> [[f32; 2]; 2] {
+    pub(crate) fn entries(&self) -> [[f32; 2]; 2] {
         let [m0, m1, m2, m3] = self.matrix;
         [[m0, m3], [m1, m2]]
     }
 
     /// Returns the linear functions of a level.
-    pub fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
+    pub(crate) fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
         let shifts = unit.plane_shifts(level);
         std::array::from_fn(|n| self.planes[n].map(|g| g >> shifts[n]))
     }
 
     /// Returns the displacement on a level, in 2^-24 of 1/256 texel.
-    pub fn offsets(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
+    pub(crate) fn offsets(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
         let sides = unit.scale(level);
         std::array::from_fn(|n| shader::offset(self.entries()[n], self.blue_green, sides[n]))
     }
@@ -85,7 +85,7 @@ impl Moved<'_> {
 
 impl Target<'_> {
     /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
-    pub fn face(&self) -> Face {
+    pub(crate) fn face(&self) -> Face {
         match self {
             Target::Vector(vector) => {
                 let direction = shader::direction(*vector);
@@ -103,7 +103,7 @@ impl Target<'_> {
     }
 
     /// Returns u and v on a level, in 1/256 texel.
-    pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
+    pub(crate) fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let sides = unit.scale(level);
         let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Floored { value: of(n), lowered: 0 });
         match self {
@@ -119,7 +119,7 @@ impl Target<'_> {
 
     /// Returns u and v on level 0 and a face, in 1/65536 texel (TEX-11), or `None` if the direction points away from
     /// the face.
-    pub fn at_quad(&self, unit: &PlannedUnit, face: Face) -> Option<[i64; 2]> {
+    pub(crate) fn at_quad(&self, unit: &PlannedUnit, face: Face) -> Option<[i64; 2]> {
         let level = &unit.levels[0];
         let sides = unit.scale(level);
         let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];

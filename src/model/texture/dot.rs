@@ -23,12 +23,12 @@ impl Number for f64 {
 }
 
 /// A vector of three numbers, such as coordinates or a remapped colour.
-pub type Vector<N> = [N; 3];
+pub(crate) type Vector<N> = [N; 3];
 
 /// TSH-1, TSH-2 and TSH-3: returns three fractions, each a numerator and a denominator, of the bytes R, G, B, A of a
 /// colour. All have at most 24 bits.
 #[inline(always)]
-pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
+pub(crate) fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     let [r, g, b, a] = bytes;
     let each = |of: fn(u8) -> i32, whole: i32| [r, g, b].map(|byte| (of(byte), whole));
     let halves = [[a, r], [g, b]].map(u16::from_be_bytes);
@@ -72,14 +72,14 @@ pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
 
 /// TSH-4: returns the dot product.
 #[inline(always)]
-pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
+pub(crate) fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     sum(products(a, b))
 }
 
 /// TSH-7: returns the displacement of a coordinate, which is two matrix entries times blue and green. Each operation is
 /// rounded.
 #[inline(always)]
-pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
+pub(crate) fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 

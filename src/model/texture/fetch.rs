@@ -20,7 +20,7 @@ pub struct Texel {
 
 /// One image of a texture: a level of a face, or a layer of a volume.
 #[derive(Clone, Copy, Debug)]
-pub struct Slice<'a> {
+pub(crate) struct Slice<'a> {
     /// The unit that samples.
     pub unit: &'a PlannedUnit,
     /// The level that is read.
@@ -37,7 +37,7 @@ impl PlannedUnit {
 
     /// Returns the shifts in bits from linear functions of level 0 (INT-4) to those of a level. Shifting is exact
     /// because sides are powers of two and the floor of a floor is a floor.
-    pub fn plane_shifts(&self, level: &Level) -> [u32; 2] {
+    pub(crate) fn plane_shifts(&self, level: &Level) -> [u32; 2] {
         let (sides, whole) = (self.scale(level), self.scale(&self.levels[0]));
         [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]
     }
@@ -58,7 +58,7 @@ impl PlannedUnit {
     }
 
     /// Returns the lanes that are read, as bit n for lane n: channels R, G, B, A, or the high and the low half.
-    pub fn live_lanes(&self) -> u8 {
+    pub(crate) fn live_lanes(&self) -> u8 {
         let any = |channels: u8| u8::from(self.live & channels != 0);
         if self.is_wide() { any(1 | 8) | any(2 | 4) << 1 } else { self.live }
     }
@@ -78,14 +78,14 @@ impl PlannedUnit {
 impl Slice<'_> {
     /// Returns the texel at an index that may lie outside.
     #[inline(always)]
-    pub fn texel(&self, words: &[u32], x: i64, y: i64) -> Texel {
+    pub(crate) fn texel(&self, words: &[u32], x: i64, y: i64) -> Texel {
         let (x, y) = (self.column(x), self.row(y));
         self.inside(words, x, y)
     }
 
     /// TEX-8: returns the 2x2 footprint whose upper left texel is (x, y), row by row. Each index is wrapped separately.
     #[inline(always)]
-    pub fn footprint(&self, words: &[u32], x: i64, y: i64) -> [Texel; 4] {
+    pub(crate) fn footprint(&self, words: &[u32], x: i64, y: i64) -> [Texel; 4] {
         let (x0, x1) = (self.column(x), self.column(x + 1));
         let (y0, y1) = (self.row(y), self.row(y + 1));
         [self.inside(words, x0, y0), self.inside(words, x1, y0), self.inside(words, x0, y1), self.inside(words, x1, y1)]
@@ -126,20 +126,20 @@ impl Slice<'_> {
 }
 
 /// Returns the palette entry of an index, in A8R8G8B8 (TEX-1).
-pub fn palette_entry(unit: &PlannedUnit, index: u32) -> u32 {
+pub(crate) fn palette_entry(unit: &PlannedUnit, index: u32) -> u32 {
     let entries = unit.palette.as_deref().unwrap_or(&[0]);
     entries[index as usize & (entries.len() - 1)]
 }
 
 /// Returns the words of a texel's compressed block.
-pub fn block<'a>(unit: &PlannedUnit, words: &'a [u32], texel: &Texel) -> &'a [u32] {
+pub(crate) fn block<'a>(unit: &PlannedUnit, words: &'a [u32], texel: &Texel) -> &'a [u32] {
     let first = texel.word as usize;
     &words[first..first + unit.format.bytes() as usize / 4]
 }
 
 /// Returns the lanes of a texel.
 #[inline(always)]
-pub fn lanes<L: Lane, O: Observer>(
+pub(crate) fn lanes<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     image: &Image<'_, L>,
     texel: &Texel,
@@ -189,7 +189,7 @@ pub fn lanes<L: Lane, O: Observer>(
 }
 
 /// Returns the rule that decodes the compressed texels of a unit.
-pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
+fn compressed_rule(unit: &PlannedUnit) -> Rule {
     match (unit.format, unit.dithered) {
         (TextureFormat::Dxt1, true) => Rule::Tex3,
         (TextureFormat::Dxt1, false) => Rule::Tex4,
@@ -199,13 +199,13 @@ pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
 
 /// Returns the halves of a texel of a format that is filtered at 16 bits. The high half of Y16 is 255 in both bytes.
 /// The halves of a border colour are its bytes, A and R, G and B, for every format.
-pub fn halves(format: TextureFormat, texel: &Texel) -> [u32; 2] {
+pub(crate) fn halves(format: TextureFormat, texel: &Texel) -> [u32; 2] {
     let (high, low) = (texel.word >> 16, texel.word & 0xffff);
     if has_no_high_half(format, texel) { [0xffff, low] } else { [high, low] }
 }
 
 /// Returns whether the high half of a texel is constant instead of stored.
-pub fn has_no_high_half(format: TextureFormat, texel: &Texel) -> bool {
+pub(crate) fn has_no_high_half(format: TextureFormat, texel: &Texel) -> bool {
     format == TextureFormat::Y16 && texel.at.is_some()
 }
 
@@ -238,7 +238,7 @@ fn wide_lanes<L: Lane>(unit: &PlannedUnit, halves: [u32; 2]) -> [L; 4] {
 
 /// Returns the name that traces give to the format of an expanded texel, which is the format that [`format::expand`]
 /// takes.
-pub fn expanded_as(unit: &PlannedUnit, texel: &Texel) -> &'static str {
+pub(crate) fn expanded_as(unit: &PlannedUnit, texel: &Texel) -> &'static str {
     match unit.format {
         _ if texel.at.is_none() => TextureFormat::A8R8G8B8.name(),
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {

@@ -5,13 +5,13 @@ use crate::state::TextureFormat;
 
 /// Widens 5 bits to 8 by replication.
 #[inline]
-pub fn replicate5(v: u32) -> u8 {
+pub(crate) fn replicate5(v: u32) -> u8 {
     five_to_eight(v) as u8
 }
 
 /// Widens 6 bits to 8 by replication.
 #[inline]
-pub fn replicate6(v: u32) -> u8 {
+pub(crate) fn replicate6(v: u32) -> u8 {
     six_to_eight(v) as u8
 }
 
@@ -68,7 +68,7 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
 
 /// Returns whether the format has channels of 5 or 6 bits, which widening does not convert exactly. 1 and 4 bits are
 /// exact.
-pub fn is_narrow(format: TextureFormat) -> bool {
+pub(crate) fn is_narrow(format: TextureFormat) -> bool {
     fields(format).is_some()
 }
 
@@ -86,7 +86,7 @@ fn fields(format: TextureFormat) -> Option<[(u32, u32); 3]> {
 /// Returns [`expand`] in a lane. The ideal takes 5-bit channels as v/31 and 6-bit ones as v/63. Signed channels
 /// (TEX-18) are their two's complement value, s/128 in the ideal.
 #[inline(always)]
-pub fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [L; 4] {
+pub(crate) fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [L; 4] {
     let bytes = expand(format, word).map(i32::from);
     let mut plain = bytes.map(|byte| L::texel(byte, byte, 255));
     if let Some(fields) = fields(format) {

@@ -4,10 +4,10 @@ use super::planned::PlannedUnit;
 use crate::state::{Filter, MipFilter};
 
 /// The lod if it is unknown, or if the texture has no extent on the screen. It always magnifies.
-pub const LEAST: i32 = -32768;
+pub(crate) const LEAST: i32 = -32768;
 
 /// u and v at the top-left pixel of a quad and at its right and lower neighbours, in 1/65536 texel of level 0.
-pub type Quad = [[i64; 2]; 3];
+pub(crate) type Quad = [[i64; 2]; 3];
 
 /// Limit of coordinates in 1/65536 texel, beyond which all count as equally far.
 const FARTHEST: i64 = 1 << 60;
@@ -46,7 +46,7 @@ fn log2_128(n: u128) -> i32 {
 
 /// Returns the ideal's log2 ratio in 256ths, from s and t at the quad and the texture's sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's lod")]
-pub fn real_log2_ratio(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2]) -> f64 {
+pub(crate) fn real_log2_ratio(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2]) -> f64 {
     let Some([origin, right, lower]) = quad else { return f64::from(LEAST) };
     let squared = |p: [f64; 2]| {
         let along = |n: usize| (p[n] - origin[n]) * f64::from(sides[n]);
@@ -57,7 +57,7 @@ pub fn real_log2_ratio(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2]) -> f64 {
 
 /// [`biased`] for the ideal.
 #[allow(clippy::float_arithmetic, reason = "the ideal's lod")]
-pub fn real_biased(unit: &PlannedUnit, log2_ratio: f64) -> f64 {
+pub(crate) fn real_biased(unit: &PlannedUnit, log2_ratio: f64) -> f64 {
     let state = &unit.state;
     (log2_ratio + f64::from(state.lod_bias)).max(f64::from(state.min_lod)).min(f64::from(state.max_lod))
 }
@@ -75,7 +75,7 @@ pub struct Choice {
 
 impl Choice {
     /// Returns a number that identifies the filter and the levels.
-    pub fn code(&self) -> i64 {
+    pub(crate) fn code(&self) -> i64 {
         let next = self.next.map_or(0, |(next, _)| next as i64 + 1);
         next << 16 | (self.level as i64) << 8 | self.filter as i64
     }
@@ -99,7 +99,7 @@ pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
 
 /// TEX-9: returns the level, the second level (which may be the same) and its weight, 0..=255, for a lod that is not
 /// negative.
-pub fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
+pub(crate) fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
     Selection::from_unit(unit).levels(lod)
 }
 

@@ -8,7 +8,7 @@ use crate::state::DotMapping;
 
 /// A colour as the ideal reads it, in bytes and in halves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RealColor {
+pub(crate) struct RealColor {
     /// R, G, B, A in steps of a byte, 0 to 256.
     pub bytes: [f64; 4],
     /// A R and G B as one number each, 0 to 65536.
@@ -17,14 +17,14 @@ pub struct RealColor {
 
 impl RealColor {
     /// Returns the colour of these bytes.
-    pub fn from_bytes(bytes: [f64; 4]) -> RealColor {
+    pub(crate) fn from_bytes(bytes: [f64; 4]) -> RealColor {
         let [r, g, b, a] = bytes;
         RealColor { bytes, halves: [256.0 * a + r, 256.0 * g + b] }
     }
 
     /// Returns the colour that registers hold in steps of 1/255. Channels that are `doubled` hold a signed byte s as
     /// s/128 (TEX-18). If the unit filters halves (`wide`), the registers of the high bytes hold whole halves.
-    pub fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: bool) -> RealColor {
+    pub(crate) fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: bool) -> RealColor {
         let part = |n: usize, signed: f64, unsigned: f64| {
             let value = registers[n] / 255.0 * if doubled[n] { signed } else { unsigned };
             if value < 0.0 { value + 2.0 * signed } else { value }
@@ -37,13 +37,13 @@ impl RealColor {
     }
 
     /// Returns a byte as two's complement.
-    pub fn signed(&self, channel: usize) -> f64 {
+    pub(crate) fn signed(&self, channel: usize) -> f64 {
         let byte = self.bytes[channel];
         if byte < 128.0 { byte } else { byte - 256.0 }
     }
 
     /// TSH-1 to TSH-3: returns the vector that the colour is mapped to.
-    pub fn remap(&self, mapping: DotMapping) -> Vector<f64> {
+    pub(crate) fn remap(&self, mapping: DotMapping) -> Vector<f64> {
         let each = |of: &dyn Fn(usize) -> f64| [of(0), of(1), of(2)];
         match mapping {
             DotMapping::ZeroToOne => each(&|n| self.bytes[n] / 255.0),
@@ -60,18 +60,18 @@ impl RealColor {
 }
 
 /// TSH-7: returns the displacement of s and t by blue and green.
-pub fn offset([m0, m1, m2, m3]: [f32; 4], color: &RealColor) -> [f64; 2] {
+pub(crate) fn offset([m0, m1, m2, m3]: [f32; 4], color: &RealColor) -> [f64; 2] {
     let (blue, green) = (color.signed(2), color.signed(1));
     [[m0, m3], [m1, m2]].map(|[b, g]| (f64::from(b) * blue + f64::from(g) * green) / 128.0)
 }
 
 /// TSH-8: returns the factor of the colour for a red in steps of a byte. It is not negative.
-pub fn luminance(red: f64, [scale, offset]: [f32; 2]) -> f64 {
+pub(crate) fn luminance(red: f64, [scale, offset]: [f32; 2]) -> f64 {
     (red / 255.0 * f64::from(scale) + f64::from(offset)).max(0.0)
 }
 
 /// TSH-9: returns a coordinate as a channel in 255ths.
-pub fn pass_through(coordinate: f64) -> f64 {
+pub(crate) fn pass_through(coordinate: f64) -> f64 {
     255.0 * coordinate.clamp(0.0, 1.0)
 }
 
@@ -86,18 +86,18 @@ pub enum RealTarget {
 
 impl RealTarget {
     /// Returns displaced coordinates.
-    pub fn moved(st: [f64; 2], by: [f64; 2]) -> RealTarget {
+    pub(crate) fn moved(st: [f64; 2], by: [f64; 2]) -> RealTarget {
         RealTarget::Coordinates([st[0] + by[0], st[1] + by[1]])
     }
 
     /// Returns the coordinates of two bytes, where `whole` is 1.0.
-    pub fn bytes(st: [f64; 2], whole: f64) -> RealTarget {
+    pub(crate) fn bytes(st: [f64; 2], whole: f64) -> RealTarget {
         RealTarget::Coordinates(st.map(|byte| byte / whole))
     }
 
     /// Returns the coordinates, for a cube map on the given face or, without one, on their own. A vector with a
     /// component that is not finite counts as the zero vector.
-    pub fn real(&self, face: Option<Face>) -> Real {
+    pub(crate) fn real(&self, face: Option<Face>) -> Real {
         match *self {
             RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
             RealTarget::Vector(v) if v.iter().any(|c| !c.is_finite()) => real_direction([0.0; 3], face),

@@ -29,35 +29,35 @@ pub struct Report<'a> {
 }
 
 /// INT-4t: returns operands for the perspective weights of the vertices, and for whether weights 0 and 2 fall short.
-pub fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
+pub(crate) fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
     let [first, third] = at.short().map(i64::from);
     let weights = (0..3).map(|k| plain(format!("P{k}"), at.triangle.p[k]));
     weights.chain([plain("short0", first), plain("short2", third)]).collect()
 }
 
 /// Returns the name of a unit's block of the chip.
-pub fn block(index: usize) -> String {
+pub(crate) fn block(index: usize) -> String {
     format!("texture unit {index}")
 }
 
 impl Report<'_> {
     /// Returns the name of this unit's block.
-    pub fn block(&self) -> String {
+    pub(crate) fn block(&self) -> String {
         block(self.unit.index)
     }
 
     /// Returns the name of a value of this unit.
-    pub fn name(&self, suffix: &str) -> String {
+    pub(crate) fn name(&self, suffix: &str) -> String {
         format!("unit{}.{}{suffix}", self.unit.index, self.prefix)
     }
 
     /// Returns a step of this unit.
-    pub fn step(&self, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
+    pub(crate) fn step(&self, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
         Step::given(&self.block(), rule, self.name(suffix), value)
     }
 
     /// Reports the values of a linear function at the vertices, and returns them as operands.
-    pub fn planes<O: Observer>(
+    pub(crate) fn planes<O: Observer>(
         &self,
         rule: &'static str,
         letter: &str,
@@ -72,7 +72,7 @@ impl Report<'_> {
     }
 
     /// Reports a coordinate on a level.
-    pub fn coordinate<O: Observer>(
+    pub(crate) fn coordinate<O: Observer>(
         &self,
         rule: &'static str,
         letter: &str,
@@ -89,7 +89,7 @@ impl Report<'_> {
     }
 
     /// Reports a coordinate of a pixel of the quad.
-    pub fn quad_coordinate<O: Observer>(
+    pub(crate) fn quad_coordinate<O: Observer>(
         &self,
         (pixel, letter): (usize, &str),
         value: i64,

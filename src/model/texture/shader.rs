@@ -6,7 +6,7 @@ use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::DependentScale;
 
 /// Number of fraction bits of an [`offset`] below 1/256 texel.
-pub const OFFSET_BITS: u32 = 24;
+pub(crate) const OFFSET_BITS: u32 = 24;
 
 /// Limit of offsets, in 2^-24 of 1/256 texel. Larger ones are outside every image.
 const OFFSET_LIMIT: i128 = 1 << 50;
@@ -77,7 +77,7 @@ pub fn coordinate(f: f32, side: u32) -> i64 {
 }
 
 /// Like [`coordinate`], in 1/65536 texel for the lod (TEX-11).
-pub fn quad_coordinate(f: f32, side: u32) -> i64 {
+pub(crate) fn quad_coordinate(f: f32, side: u32) -> i64 {
     scaled(f, side, 16, 1 << 62)
 }
 
@@ -86,7 +86,7 @@ pub fn quad_coordinate(f: f32, side: u32) -> i64 {
 ///
 /// The largest component keeps 62 bits and the others are floored, which changes no texel: only the sign of a component
 /// below 2^-38 of the largest matters, and it is kept.
-pub fn direction(vector: [f32; 3]) -> [i64; 3] {
+pub(crate) fn direction(vector: [f32; 3]) -> [i64; 3] {
     if vector.iter().any(|c| !c.is_finite()) {
         return [0; 3];
     }
@@ -96,7 +96,7 @@ pub fn direction(vector: [f32; 3]) -> [i64; 3] {
 
 /// TEX-12: returns floor(2^bits size (s + m) / 2m) with the minor component s and the major component m of a
 /// [`direction`]. The zero vector yields 0.
-pub fn face_coordinate(s: i64, m: i64, size: u32, bits: u32) -> i64 {
+pub(crate) fn face_coordinate(s: i64, m: i64, size: u32, bits: u32) -> i64 {
     if m <= 0 {
         return 0;
     }

@@ -12,7 +12,7 @@ use crate::trace::{Decision, Observer};
 
 /// Returns whether a reference, which is a word of the unit's format, passes the comparison with a texel.
 #[inline]
-pub fn passes(shadow: ShadowComparison, reference: u32, texel: &Texel) -> bool {
+pub(crate) fn passes(shadow: ShadowComparison, reference: u32, texel: &Texel) -> bool {
     shadow.function.passes(reference, depth_of(texel.word))
 }
 

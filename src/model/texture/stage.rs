@@ -16,7 +16,7 @@ pub struct PlannedShader {
 
 impl PlannedShader {
     /// Returns whether a stage can drop fragments.
-    pub fn kills(&self) -> bool {
+    pub(crate) fn kills(&self) -> bool {
         self.stages.iter().any(|stage| matches!(stage.state.operation, ShaderOperation::CullFragment { .. }))
     }
 }
@@ -59,7 +59,7 @@ pub struct ShaderSetup(pub(super) [StageSetup; TEXTURE_UNITS]);
 impl ShaderSetup {
     /// Returns the coordinates at which a stage samples, before they are displaced. Returns `None` if the stage has no
     /// interpolated coordinates on an image.
-    pub fn coordinates(&self, index: usize) -> Option<&Coordinates> {
+    pub(crate) fn coordinates(&self, index: usize) -> Option<&Coordinates> {
         match &self.0[index] {
             StageSetup::Places(coordinates) => Some(coordinates),
             StageSetup::Nothing | StageSetup::Numbers(_) => None,

@@ -24,7 +24,7 @@ struct Chosen<L: Lane> {
 
 /// Samples a unit. Returns its register, and whether its colour key drops the fragment.
 #[inline]
-pub fn sample<L: Lane, O: Observer>(
+pub(crate) fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     image: &Image<'_, L>,
     place: &impl SampleCoordinates,

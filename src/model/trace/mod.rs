@@ -177,7 +177,7 @@ impl Step {
 
     /// Sets the address of the word.
     #[must_use]
-    pub fn at(mut self, texel: Option<TexelAddress>) -> Step {
+    pub(crate) fn at(mut self, texel: Option<TexelAddress>) -> Step {
         self.texel = texel;
         self
     }
@@ -193,13 +193,13 @@ impl Step {
 }
 
 /// Returns a step that yields a single-precision number.
-pub fn float_step(block: &str, rule: &'static str, name: impl Into<String>, value: f32, ideal: f64) -> Step {
+pub(crate) fn float_step(block: &str, rule: &'static str, name: impl Into<String>, value: f32, ideal: f64) -> Step {
     let Operand { value, per_one, .. } = float("", value);
     Step { per_one, ideal: Some(ideal), ..Step::given(block, rule, name, value) }
 }
 
 /// Returns a single-precision operand. All NaNs become the same one.
-pub fn float(name: impl Into<String>, value: f32) -> Operand {
+pub(crate) fn float(name: impl Into<String>, value: f32) -> Operand {
     let value = if value.is_nan() { f32::NAN } else { value };
     Operand { name: name.into(), value: i64::from(value.to_bits()), per_one: SINGLE }
 }
@@ -210,12 +210,12 @@ pub fn plain(name: impl Into<String>, value: impl Into<i64>) -> Operand {
 }
 
 /// Returns an operand in steps of 1/255.
-pub fn byte(name: impl Into<String>, value: impl Into<i64>) -> Operand {
+pub(crate) fn byte(name: impl Into<String>, value: impl Into<i64>) -> Operand {
     Operand { name: name.into(), value: value.into(), per_one: 255 }
 }
 
 /// Returns an operand in 256ths.
-pub fn part(name: impl Into<String>, value: impl Into<i64>) -> Operand {
+pub(crate) fn part(name: impl Into<String>, value: impl Into<i64>) -> Operand {
     Operand { name: name.into(), value: value.into(), per_one: 256 }
 }
 
@@ -225,18 +225,18 @@ pub mod report {
     use crate::number::Lane;
 
     /// Returns a register or byte as an operand.
-    pub fn register<L: Lane>(name: impl Into<String>, value: L) -> Operand {
+    pub(crate) fn register<L: Lane>(name: impl Into<String>, value: L) -> Operand {
         super::byte(name, value.observe().0)
     }
 
     /// Returns a factor as an operand, in 255ths, or in 510ths if it has a half bit.
-    pub fn factor<L: Lane>(name: impl Into<String>, value: L::Mapped) -> Operand {
+    pub(crate) fn factor<L: Lane>(name: impl Into<String>, value: L::Mapped) -> Operand {
         let (value, per_one) = whole(L::observe_factor(value).0, 2, 255);
         Operand { name: name.into(), value, per_one }
     }
 
     /// Returns a sum as an operand, in 65025ths, or in a finer unit if half bits are kept.
-    pub fn sum<L: Lane>(name: impl Into<String>, value: L::Full) -> Operand {
+    pub(crate) fn sum<L: Lane>(name: impl Into<String>, value: L::Full) -> Operand {
         let (value, per_one) = whole(L::observe_sum(value).0, 4, 65025);
         Operand { name: name.into(), value, per_one }
     }
@@ -248,8 +248,8 @@ pub mod report {
     }
 
     /// Returns a step that yields a factor.
-    pub fn factor_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Mapped) -> Step {
-        let (fixed, ideal) = L::observe_factor(value);
+    pub(crate) fn factor_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, v: L::Mapped) -> Step {
+        let (fixed, ideal) = L::observe_factor(v);
         let (value, per_one) = whole(fixed, 2, 255);
         // The ideal is in 255ths, whatever the unit of the step.
         let mut step = Step::given(block, rule, name, value).per(255).ideal(ideal);
@@ -258,7 +258,7 @@ pub mod report {
     }
 
     /// Returns a step that yields a sum.
-    pub fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
+    pub(crate) fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
         let (fixed, ideal) = L::observe_sum(value);
         let (value, per_one) = whole(fixed, 4, 65025);
         let mut step = Step::given(block, rule, name, value).per(65025).ideal(ideal);

@@ -83,7 +83,7 @@ pub fn exponential(mode: FogMode, density: f32, evaluation: FogEvaluation) -> Fo
 
 /// The numbers that the light unit computes from a fog coordinate at a vertex (FOG-3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LightFog {
+pub(crate) struct LightFog {
     /// The words of p0, p1 and p2 (FOG-1).
     pub parameters: [u32; 3],
     /// The words of d and d^2 (FOG-1).
@@ -96,7 +96,7 @@ pub struct LightFog {
 
 impl LightFog {
     /// Computes p0 + p1 d + p2 d^2 in 14 significant bits.
-    pub fn new(function: &FogFunction, d: f32) -> LightFog {
+    pub(crate) fn new(function: &FogFunction, d: f32) -> LightFog {
         let parameters = [function.p0, function.p1, function.p2].map(|p| light::word(p.to_bits()));
         let coordinates = [d, square(d)].map(|d| light::word(d.to_bits()));
         let products = [0, 1].map(|n| light::product(parameters[n + 1], coordinates[n]));
@@ -105,12 +105,12 @@ impl LightFog {
 }
 
 /// Returns d^2 as the light unit uses it, which is the single-precision product.
-pub fn square(d: f32) -> f32 {
+pub(crate) fn square(d: f32) -> f32 {
     d * d
 }
 
 /// INT-5n: returns e as the transform unit of nv10 passes it, where bit 10 of a finite word is a copy of bit 11.
-pub fn passed_by_nv10(e: u32) -> u32 {
+fn passed_by_nv10(e: u32) -> u32 {
     if f32::from_bits(e).is_finite() { e & !(1 << 10) | (e >> 11 & 1) << 10 } else { e }
 }
 

@@ -105,7 +105,7 @@ impl<'a> EyeVertex<'a> {
     }
 
     /// Returns the position as a point, divided by its w unless that is 0.
-    pub fn point(&self) -> [f32; 3] {
+    pub(crate) fn point(&self) -> [f32; 3] {
         let [x, y, z, w] = self.position;
         if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] }
     }

@@ -18,7 +18,7 @@ pub fn logarithm(x: f32) -> f32 {
 }
 
 /// Returns y^p of a positive y.
-pub fn power(y: f32, p: f32) -> f32 {
+pub(crate) fn power(y: f32, p: f32) -> f32 {
     if p == 0.0 {
         return 1.0;
     }

@@ -7,7 +7,7 @@ mod evaluate;
 mod function;
 
 pub use evaluate::{Outputs, evaluate};
-pub use function::{exponential, logarithm, power};
+pub use function::{exponential, logarithm};
 
 /// Number of constant registers, c0 to c95.
 pub const CONSTANTS: usize = 96;
