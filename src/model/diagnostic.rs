@@ -152,7 +152,7 @@ pub(crate) fn only_nv2a(code: &'static str, place: Option<Span>, what: &str, rul
         .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
 }
 
-/// Returns [`only_nv2a`] if `needs` is set and the profile is nv10.
+/// Returns `only_nv2a` if `needs` is set and the profile is nv10.
 pub fn needs_nv2a(
     profile: Profile,
     needs: bool,

@@ -58,6 +58,7 @@ fn examples_of_vertex_programs() {
             texture_coordinates: vec![[0.0, 1.0], [sign, 1.0], [0.0, 0.0]],
             indices: vec![0, 1, 2],
         })
+        .unwrap()
     };
     for (sign, tangent) in [(1.0, [1.0, 0.0, 0.0]), (-1.0, [-1.0, 0.0, 0.0])] {
         let [found, binormal, _] = triangle(sign).basis(1);

@@ -37,7 +37,8 @@ fn of_the_mesh() -> Vec<Vertex> {
         normals: vec![[0.0, 0.0, 1.0]; 8],
         texture_coordinates: corners.iter().map(|[.., s, t]| [*s, *t]).collect(),
         indices: vec![0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
-    });
+    })
+    .expect("as many normals as corners");
     let light = |n: usize| mesh.basis(n).map(|axis| (0..3).map(|k| f64::from(axis[k]) * LIGHT[k]).sum::<f64>());
     let places = [[0, WIDTH / 2], [WIDTH / 2, WIDTH]].map(|ends| ends.map(|x| x as f64));
     (0..2).flat_map(|half| quad(places[half], [4 * half, 4 * half + 1].map(|n| pointing(light(n))))).collect()

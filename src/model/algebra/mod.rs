@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | [`Direct`](crate::combiner::direct::Direct) | numbers of a lane | the pixel: scalar engine, traces, the ideal, vectors |
 //! | `engine::rows::graph::Graph` | nodes with ranges | what the fast engine computes |
-//! | [`Trail`] | nodes and what is known about them | what is read (liveness), and what is the same in every pixel
+//! | `Trail` | nodes and what is known about them | what is read (liveness), and what is the same in every pixel
 //! (folding) |
 //!
 //! The text checks policies where an alternative changes the order. Where an alternative changes a number, the reader

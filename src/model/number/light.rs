@@ -2,7 +2,7 @@
 //! FOG-3).
 //!
 //! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. There are no denormals, and the only NaN
-//! is [`NAN`].
+//! is `NAN`.
 
 /// The word of a NaN.
 pub(crate) const NAN: u32 = 0x7fff_fc00;

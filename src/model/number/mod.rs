@@ -45,7 +45,7 @@ macro_rules! componentwise {
     (@ $value:expr, $of:expr, $other:ident) => { $value.zip($other, $of) };
 }
 
-mod block;
+pub(crate) mod block;
 pub mod convert;
 mod ideal_tracks;
 mod lanes16;
@@ -55,7 +55,6 @@ mod part;
 mod real;
 mod scalar;
 
-pub(crate) use block::byte_product;
 pub use block::{Halved, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
 pub use lanes16::{LANES, Lanes16};

@@ -148,7 +148,7 @@ pub struct PlannedDraw {
     pub unbound: [u8; TEXTURE_UNITS],
     /// Whether SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
-    /// Registers that are read before anything writes them (CMB-13), as [`bits`](crate::combiner::registers::bit).
+    /// Registers that are read before anything writes them (CMB-13), as `bits`.
     pub undefined: u64,
     /// The general stages that are needed.
     pub stages: Vec<PlannedStage>,

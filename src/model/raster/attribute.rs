@@ -2,7 +2,7 @@
 //! and the fog coordinate.
 //!
 //! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An
-//! [`Attribute`] holds P x of the three vertices, a [`Quotient`] the ratio at a sample. Rounding the ratio to a float
+//! [`Attribute`] holds P x of the three vertices, a `Quotient` the ratio at a sample. Rounding the ratio to a float
 //! or to steps uses the exact remainder.
 
 use super::depth::Binary;

@@ -128,7 +128,7 @@ pub(crate) fn in_band([x, y, ..]: [f32; 4]) -> bool {
     [x, y].iter().all(|n| n.abs() <= 4096.0 && snap(*n).abs() < super::GUARD)
 }
 
-/// Returns the window position of a clip-space position whose w is at least [`SMALLEST_W`].
+/// Returns the window position of a clip-space position whose w is at least `SMALLEST_W`.
 pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     let w = clip[3];
     let ndc = [clip[0] / w, clip[1] / w, clip[2] / w];

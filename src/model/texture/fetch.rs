@@ -158,7 +158,11 @@ pub(crate) fn lanes<L: Lane, O: Observer>(
         TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
             let [x, y] = at.map(|i| i as u32);
             let decoded = compressed::decode(unit.format, unit.dithered, block(unit, image.words, texel), x, y);
-            rule = compressed_rule(unit);
+            rule = match (unit.format, unit.dithered) {
+                (TextureFormat::Dxt1, true) => Rule::Tex3,
+                (TextureFormat::Dxt1, false) => Rule::Tex4,
+                _ => Rule::Tex2,
+            };
             compressed_lanes(&decoded, &unit.state.signed)
         }
         TextureFormat::P8 => {
@@ -186,15 +190,6 @@ pub(crate) fn lanes<L: Lane, O: Observer>(
         }
     }
     lanes
-}
-
-/// Returns the rule that decodes the compressed texels of a unit.
-fn compressed_rule(unit: &PlannedUnit) -> Rule {
-    match (unit.format, unit.dithered) {
-        (TextureFormat::Dxt1, true) => Rule::Tex3,
-        (TextureFormat::Dxt1, false) => Rule::Tex4,
-        _ => Rule::Tex2,
-    }
 }
 
 /// Returns the halves of a texel of a format that is filtered at 16 bits. The high half of Y16 is 255 in both bytes.

@@ -252,18 +252,14 @@ pub mod report {
         let (fixed, ideal) = L::observe_factor(v);
         let (value, per_one) = whole(fixed, 2, 255);
         // The ideal is in 255ths, whatever the unit of the step.
-        let mut step = Step::given(block, rule, name, value).per(255).ideal(ideal);
-        step.per_one = per_one;
-        step
+        Step { per_one, ..Step::given(block, rule, name, value).per(255).ideal(ideal) }
     }
 
     /// Returns a step that yields a sum.
     pub(crate) fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
         let (fixed, ideal) = L::observe_sum(value);
         let (value, per_one) = whole(fixed, 4, 65025);
-        let mut step = Step::given(block, rule, name, value).per(65025).ideal(ideal);
-        step.per_one = per_one;
-        step
+        Step { per_one, ..Step::given(block, rule, name, value).per(65025).ideal(ideal) }
     }
 
     /// Removes a fraction from the unit if the value is a multiple of it.

@@ -90,7 +90,7 @@ fn triangles<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Mesh> {
             .collect(),
         indices,
     };
-    Some(mesh::mesh(&surface))
+    mesh::mesh(&surface)
 }
 
 /// Reads a mesh from a file; a file is read once, however many draws name it.
@@ -104,7 +104,7 @@ fn wavefront<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<Arc<Mesh>> {
     let file = ProgramText::file_up_to(reader, &raw, reader.limits.mesh_file());
     let mesh = file.and_then(|file| {
         let surface = mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices);
-        Some(Arc::new(mesh::mesh(&file.parsed(reader, surface)?)))
+        mesh::mesh(&file.parsed(reader, surface)?).map(Arc::new)
     });
     reader.names.mesh_files.insert(name, mesh.clone());
     mesh

@@ -78,7 +78,13 @@ fn bits(v: [f32; 3]) -> [u32; 3] {
 
 /// Makes a mesh with tangent bases. A vertex that is shared by triangles with a mirrored and an unmirrored texture is split: vertices for the
 /// mirrored triangles are added at the end.
-pub fn mesh(surface: &Surface) -> Mesh {
+///
+/// Returns `None` if the lists of vertices differ in length or an index is past them.
+pub fn mesh(surface: &Surface) -> Option<Mesh> {
+    let (count, lists) = (surface.positions.len(), [surface.normals.len(), surface.texture_coordinates.len()]);
+    if lists != [count; 2] || surface.indices.iter().any(|index| *index as usize >= count) {
+        return None;
+    }
     let corners =
         surface.indices.chunks_exact(3).map(|three| [three[0] as usize, three[1] as usize, three[2] as usize]);
     let faces: Vec<Option<Face>> = corners.map(|corners| face(surface, corners)).collect();
@@ -103,7 +109,7 @@ pub fn mesh(surface: &Surface) -> Mesh {
         let (tangent, binormal) = basis(wide(normal), sum, mirrored);
         mesh.push(surface.positions[vertex], [tangent, binormal, normal], surface.texture_coordinates[vertex]);
     }
-    mesh
+    Some(mesh)
 }
 
 /// Returns unit normals: the given ones, or else the weighted mean of the triangles at the same place.
@@ -181,6 +187,7 @@ pub(super) mod tests {
             texture_coordinates: mesh.texture_coordinates.clone(),
             indices: mesh.indices.to_vec(),
         })
+        .expect("a complete surface")
     }
 
     fn near(a: [f32; 3], b: [f32; 3]) -> bool {
@@ -217,7 +224,7 @@ pub(super) mod tests {
             let surface = Surface {
                 normals: normals[..count].to_vec(), texture_coordinates: coordinates[..count].to_vec(), positions, indices,
             };
-            let mesh = mesh(&surface);
+            let mesh = mesh(&surface).expect("a complete surface");
             check(&mesh)?;
             prop_assert_eq!(mesh.indices.len(), surface.indices.len());
             for (index, given) in mesh.indices.iter().zip(&surface.indices) {
@@ -250,7 +257,7 @@ pub(super) mod tests {
             let surface = Surface {
                 positions, normals: vec![[0.0; 3]; 3], texture_coordinates: coordinates.to_vec(), indices: vec![0, 1, 2],
             };
-            let mesh = mesh(&surface);
+            let mesh = mesh(&surface).expect("a complete surface");
             check(&mesh)?;
             let direction_u = unit(cross(direction_v, wide(mesh.normals[0])), 0.0).expect("a direction");
             let parallel = |a: [f32; 3], b: Vector| (dot(wide(a), b).abs() - 1.0).abs() < 1e-3;
@@ -280,7 +287,8 @@ pub(super) mod tests {
     #[test]
     fn mirrored_textures_split_their_vertices() {
         // s runs to the middle and back.
-        let mesh = mesh(&square([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]]));
+        let mesh = mesh(&square([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]]))
+            .expect("a complete surface");
         assert_eq!(mesh.positions.len(), 8);
         assert_eq!(mesh.indices[..], [0, 3, 4, 0, 4, 1, 6, 7, 5, 6, 5, 2]);
         for (vertex, tangent) in [(0, 1.0), (1, 1.0), (4, 1.0), (2, -1.0), (5, -1.0), (6, -1.0), (7, -1.0)] {
@@ -288,7 +296,8 @@ pub(super) mod tests {
             // Green still points up.
             assert!(near(mesh.binormals[vertex], [0.0, 1.0, 0.0]), "{vertex}");
         }
-        let plain = self::mesh(&square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]));
+        let plain = self::mesh(&square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]))
+            .expect("a complete surface");
         assert_eq!(plain.positions.len(), 6);
         assert!(
             plain.tangents.iter().all(|t| near(*t, [1.0, 0.0, 0.0]))
@@ -323,7 +332,7 @@ pub(super) mod tests {
             ],
             indices: vec![0, 2, 3, 0, 3, 1, 5, 7, 6, 5, 6, 4],
         };
-        let mesh = mesh(&surface);
+        let mesh = mesh(&surface).expect("a complete surface");
         assert_eq!(mesh.positions.len(), 8);
         for (first, last) in [(0, 4), (2, 6)] {
             assert_eq!(mesh.tangents[first], mesh.tangents[last]);
@@ -332,11 +341,17 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn incomplete_surfaces_are_refused() {
+        assert_eq!(super::mesh(&Surface { normals: Vec::new(), ..square([[0.0; 2]; 6]) }), None);
+        assert_eq!(super::mesh(&Surface { indices: vec![0, 1, 6], ..square([[0.0; 2]; 6]) }), None);
+    }
+
+    #[test]
     fn triangles_without_area_say_nothing() {
         let mut surface = square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]);
-        let before = mesh(&surface);
+        let before = mesh(&surface).expect("a complete surface");
         surface.indices.extend([0, 0, 4, 3, 4, 5]);
-        let after = mesh(&surface);
+        let after = mesh(&surface).expect("a complete surface");
         assert_eq!((before.tangents, before.normals), (after.tangents, after.normals));
     }
 

@@ -4,7 +4,7 @@ use super::node::{MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
 use crate::combiner::output;
-use crate::number::{Factor, Lane, Narrow, Quarters, Sum, byte_product};
+use crate::number::{Factor, Lane, Narrow, Quarters, Sum};
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
@@ -216,7 +216,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
         }
         Node::Bytes(a, b) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| byte_product(a[n], b[n]));
+            each(out, |n| crate::number::block::byte_product(a[n], b[n]));
         }
         Node::Difference(v) => {
             let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];
