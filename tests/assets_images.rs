@@ -56,15 +56,15 @@ fn pngs_of_every_kind_become_rgba() {
     let pixels = [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12], [0, 0, 0, 0], [255, 255, 255, 255], [128, 1, 128, 0]];
     let file = encode_png(3, 2, &pixels, Compression::Small).unwrap();
     let image = decode_as("any name", &file).unwrap();
-    assert_eq!((image.width, image.height, image.pixels.as_slice()), (3, 2, &pixels[..]));
+    assert_eq!((image.width(), image.height(), image.pixels()), (3, 2, &pixels[..]));
 
     let grey = png(&[header(1, 1, 8, 0), chunk(b"IDAT", &TWO_ZEROS), end()]);
-    assert_eq!(decode_as("x", &grey).unwrap().pixels, [[0, 0, 0, 255]]);
+    assert_eq!(decode_as("x", &grey).unwrap().pixels(), [[0, 0, 0, 255]]);
     let palette = chunk(b"PLTE", &[10, 20, 30]);
     let indexed = png(&[header(1, 1, 8, 3), palette.clone(), chunk(b"IDAT", &TWO_ZEROS), end()]);
-    assert_eq!(decode_as("x", &indexed).unwrap().pixels, [[10, 20, 30, 255]]);
+    assert_eq!(decode_as("x", &indexed).unwrap().pixels(), [[10, 20, 30, 255]]);
     let transparent = png(&[header(1, 1, 8, 3), palette, chunk(b"tRNS", &[99]), chunk(b"IDAT", &TWO_ZEROS), end()]);
-    assert_eq!(decode_as("x", &transparent).unwrap().pixels, [[10, 20, 30, 99]]);
+    assert_eq!(decode_as("x", &transparent).unwrap().pixels(), [[10, 20, 30, 99]]);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn gamma_and_profiles_change_nothing_and_are_never_unpacked() {
         chunk(b"IDAT", &TWO_ZEROS),
         end(),
     ]);
-    assert_eq!(decode_as("x", &grey).unwrap().pixels, [[0, 0, 0, 255]]);
+    assert_eq!(decode_as("x", &grey).unwrap().pixels(), [[0, 0, 0, 255]]);
 }
 
 #[test]
@@ -146,18 +146,18 @@ fn tgas_of_every_kind_become_rgba() {
     // Texels are stored as blue, green, red, alpha. The first row is the bottom one unless bit 5 is set.
     let two_rows = [1, 2, 3, 4, 5, 6, 7, 8];
     let bottom_up = decode_as("x.TGA", &tga(2, 1, 2, 32, 8, &two_rows)).unwrap();
-    assert_eq!(bottom_up.pixels, [[7, 6, 5, 8], [3, 2, 1, 4]]);
+    assert_eq!(bottom_up.pixels(), [[7, 6, 5, 8], [3, 2, 1, 4]]);
     let top_down = decode_as("x.tga", &tga(2, 1, 2, 32, 0x28, &two_rows)).unwrap();
-    assert_eq!(top_down.pixels, [[3, 2, 1, 4], [7, 6, 5, 8]]);
+    assert_eq!(top_down.pixels(), [[3, 2, 1, 4], [7, 6, 5, 8]]);
     let rgb = decode_as("x.tga", &tga(2, 1, 1, 24, 0, &[1, 2, 3])).unwrap();
-    assert_eq!(rgb.pixels, [[3, 2, 1, 255]]);
+    assert_eq!(rgb.pixels(), [[3, 2, 1, 255]]);
     let grey = decode_as("x.tga", &tga(3, 2, 1, 8, 0, &[9, 8])).unwrap();
-    assert_eq!(grey.pixels, [[9, 9, 9, 255], [8, 8, 8, 255]]);
+    assert_eq!(grey.pixels(), [[9, 9, 9, 255], [8, 8, 8, 255]]);
     let runs = decode_as("x.tga", &tga(10, 3, 1, 24, 0, &[0x81, 1, 2, 3, 0x00, 4, 5, 6])).unwrap();
-    assert_eq!(runs.pixels, [[3, 2, 1, 255], [3, 2, 1, 255], [6, 5, 4, 255]]);
+    assert_eq!(runs.pixels(), [[3, 2, 1, 255], [3, 2, 1, 255], [6, 5, 4, 255]]);
     let mut mapped = tga(1, 1, 1, 8, 0, &[1, 2, 3, 4, 5, 6, 1]);
     (mapped[1], mapped[5], mapped[7]) = (1, 2, 24);
-    assert_eq!(decode_as("x.tga", &mapped).unwrap().pixels, [[6, 5, 4, 255]]);
+    assert_eq!(decode_as("x.tga", &mapped).unwrap().pixels(), [[6, 5, 4, 255]]);
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn files_are_told_apart_by_what_they_are() {
 
     let file = encode_png(1, 1, &[[1, 2, 3, 4]], Compression::Small).unwrap();
     fs::write(place("png-inside.tga"), &file).unwrap();
-    assert_eq!(load(&place("png-inside.tga"), &limits).unwrap().pixels, [[1, 2, 3, 4]]);
+    assert_eq!(load(&place("png-inside.tga"), &limits).unwrap().pixels(), [[1, 2, 3, 4]]);
     let small = ImageLimits { maximum_file_bytes: file.len() as u64 - 1, ..limits };
     let error = load(&place("png-inside.tga"), &small).expect_err("too large");
     assert!(error.is_limit() && error.code() == "NB0514");
@@ -221,6 +221,6 @@ proptest! {
         let height = pixels.len() as u32 / width;
         let pixels = &pixels[..(width * height) as usize];
         let image = decode_as("x", &encode_png(width, height, pixels, Compression::Small).unwrap()).unwrap();
-        prop_assert_eq!(image.pixels.as_slice(), pixels);
+        prop_assert_eq!(image.pixels(), pixels);
     }
 }

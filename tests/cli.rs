@@ -387,7 +387,7 @@ fn scenes_are_rendered() {
     bench.run("render scene.ron -o frame.png").data();
     let limits = ninebit_scene::image::ImageLimits::default();
     let picture = ninebit_scene::image::load(&bench.path("frame.png"), &limits).unwrap();
-    assert_eq!((picture.width, picture.height, picture.pixels[3 * 8]), (8, 4, [255, 0, 0, 255]));
+    assert_eq!((picture.width(), picture.height(), picture.pixels()[3 * 8]), (8, 4, [255, 0, 0, 255]));
 
     let bytes = fs::read(bench.path("frame.png")).unwrap();
     for arguments in [

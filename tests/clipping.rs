@@ -7,8 +7,8 @@ use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::project::ClipPlane;
-use ninebit::state::Positions;
-use ninebit_scene as scene;
+use ninebit::state::{Positions, Scene};
+use ninebit_scene::{self as scene, Loaded};
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -49,7 +49,7 @@ fn a_floor_that_passes_the_viewer_reaches_from_near_to_far() {
     // At z = -10 the floor appears at y = -0.1, row 35.2. It covers the rows below, down to the last one at z = -1.
     let whole = plan(&floor(VIEW, 50.0, -500.0));
     assert_eq!(white(&whole), 64 * (64 - 35));
-    let planes: Vec<ClipPlane> = ClipPlane::in_set(whole.draws[0].assembly.clipping.planes).collect();
+    let planes: Vec<ClipPlane> = ClipPlane::in_set(whole.draws()[0].assembly.clipping.planes).collect();
     assert_eq!(planes, [ClipPlane::Near, ClipPlane::Far, ClipPlane::Left, ClipPlane::Right]);
     // A floor that already ends at both planes yields the same picture.
     assert_eq!(white(&plan(&floor(VIEW, -1.0, -10.0))), white(&whole));
@@ -78,7 +78,7 @@ fn what_lies_beyond_a_plane_is_not_drawn() {
         let plan = plan(&quad(matrix, z));
         let got = white(&plan);
         assert!(got.abs_diff(pixels) < 250 && (got == 0) == (pixels == 0), "{matrix} at {z}: {got}");
-        assert_eq!(plan.draws[0].assembly.clipping.removed, if pixels == 0 { 2 } else { 0 });
+        assert_eq!(plan.draws()[0].assembly.clipping.removed, if pixels == 0 { 2 } else { 0 });
     }
     // With clamped depths everything in front of the viewer is drawn.
     let clamped = quad(VIEW, -10.5).replace("vertices: [(", "viewport: (depth_clamp: true), vertices: [(");
@@ -129,7 +129,7 @@ fn pieces_of_random_scenes_are_in_order() {
     for _ in 0..600 {
         let scene = strategy.new_tree(&mut runner).unwrap().current();
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-        for (draw, planned) in scene.draws.iter().zip(&plan.draws) {
+        for (draw, planned) in scene.draws.iter().zip(plan.draws()) {
             let clipping = &planned.assembly.clipping;
             assert!(clipping.planes == 0 || matches!(draw.positions, Positions::Clip(_)));
             assert!(clipping.pieces.windows(2).all(|pair| pair[0].number < pair[1].number && pair[0].of <= pair[1].of));
@@ -146,14 +146,15 @@ fn pieces_of_random_scenes_are_in_order() {
 #[test]
 fn the_corridor_is_cut_on_all_sides() {
     let path = at("vectors/scenes/clipping/corridor.ron");
-    let plan = scene::load(&path, &Limits::default()).unwrap().plan;
-    let planes = plan.draws.iter().fold(0, |set, draw| set | draw.assembly.clipping.planes);
+    let Loaded { scene, plan, .. } = scene::load(&path, &Limits::default()).unwrap();
+    let planes = plan.draws().iter().fold(0, |set, draw| set | draw.assembly.clipping.planes);
     for plane in [ClipPlane::Near, ClipPlane::Far] {
         assert!(planes & plane.bit() != 0, "{plane:?}");
     }
     assert!(planes & !(ClipPlane::Near.bit() | ClipPlane::Far.bit() | ClipPlane::W.bit()) != 0, "no guard band");
     // The viewer stands inside the corridor, so every pixel is drawn except for those at the far end.
-    let clear = drawn(&Plan { draws: Vec::new(), ..plan.clone() }).surfaces[0].words[0];
+    let empty = Plan::compile(&Scene { draws: Vec::new(), ..scene }, &PlanOptions::default()).unwrap();
+    let clear = drawn(&empty).surfaces[0].words[0];
     let open = drawn(&plan).surfaces[0].words.iter().filter(|word| **word == clear).count();
     assert!(open < 480 * 360 / 50, "{open}");
 }
@@ -164,6 +165,6 @@ fn the_largest_target_is_within_reach() {
     let text = "(version: 1, profile: Nv2a, targets: [(name: \"a\", width: 4096, height: 4096)],
         draws: [(vertices: Matrix(mesh: Grid(columns: 1, rows: 1), matrix: Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -2, far: 2)))])";
     let plan = plan(text);
-    assert_eq!(plan.draws[0].assembly.clipping.removed, 0);
+    assert_eq!(plan.draws()[0].assembly.clipping.removed, 0);
     assert_eq!(white(&plan), 4096 * 4096);
 }

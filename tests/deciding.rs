@@ -40,15 +40,15 @@ fn picture(plan: &Plan, rule: &str, value: usize) -> Rgba {
     plan.policies = Policies::DEFAULT;
     plan.policies.choose(rule, value);
     let surface = render(&plan, &RenderOptions::default()).surfaces.swap_remove(0);
-    Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
+    Rgba::new(surface.width, surface.rgba8())
 }
 
 /// Returns the size of the largest region in which a channel of each pixel differs by `LEVELS` or more.
 fn apart(a: &Rgba, b: &Rgba) -> u64 {
     let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) >= LEVELS);
-    let marks = a.pixels.iter().zip(&b.pixels).map(far).map(|far| if far { [255; 4] } else { [0; 4] }).collect();
-    let nothing = Rgba { pixels: vec![[0; 4]; a.pixels.len()], ..a.clone() };
-    let found = compare(&nothing, &Rgba { pixels: marks, ..a.clone() }, &diff::Options::default()).unwrap();
+    let marks = a.pixels().iter().zip(b.pixels()).map(far).map(|far| if far { [255; 4] } else { [0; 4] }).collect();
+    let nothing = Rgba::new(a.width(), vec![[0; 4]; a.pixels().len()]);
+    let found = compare(&nothing, &Rgba::new(a.width(), marks), &diff::Options::default()).unwrap();
     found.regions.first().map_or(0, |region| region.pixels)
 }
 
@@ -99,15 +99,15 @@ fn a_scene_asks_one_question() {
 fn rows_name_the_answer() {
     for policy in POLICIES {
         let picture = picture(&scene_of(policy), policy.rule, 0);
-        let lit = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| *pixel == [255; 4]);
-        let dark = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| pixel[..3] == [0; 3]);
+        let lit = |y: u32| picture.pixels()[(y * 256) as usize..][..256].iter().all(|pixel| *pixel == [255; 4]);
+        let dark = |y: u32| picture.pixels()[(y * 256) as usize..][..256].iter().all(|pixel| pixel[..3] == [0; 3]);
         assert!((0..64).all(lit) && (64..128).all(dark), "{}", policy.rule);
     }
 }
 
 /// Returns the lengths of the runs of white pixels in a row of a picture.
 fn bars(picture: &Rgba, y: u32) -> Vec<usize> {
-    let row = &picture.pixels[(y * picture.width) as usize..][..picture.width as usize];
+    let row = &picture.pixels()[(y * picture.width()) as usize..][..picture.width() as usize];
     let runs = row.chunk_by(|a, b| a == b).filter(|run| run[0] == [255; 4]);
     runs.map(<[_]>::len).collect()
 }
@@ -135,9 +135,9 @@ const BAND: u32 = 48;
 
 /// Returns one band of a picture.
 fn band(picture: &Rgba, number: u32) -> Rgba {
-    let pixels = picture.width as usize * BAND as usize;
+    let pixels = picture.width() as usize * BAND as usize;
     let first = number as usize * pixels;
-    Rgba { height: BAND, pixels: picture.pixels[first..first + pixels].to_vec(), ..picture.clone() }
+    Rgba::new(picture.width(), picture.pixels()[first..first + pixels].to_vec())
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn bands_of_open_questions_look_different() {
         let loaded = scene::load(&folder().join(format!("{name}.ron")), &Limits::default()).unwrap();
         assert!(loaded.warnings.is_empty(), "{name}: {}", loaded.render_warnings(false));
         let picture = picture(&loaded.plan, "", 0);
-        assert_eq!(picture.height, bands * BAND, "{name}");
+        assert_eq!(picture.height(), bands * BAND, "{name}");
         let all: Vec<Rgba> = (0..bands).map(|number| band(&picture, number)).collect();
         for (n, a) in all.iter().enumerate().skip(1) {
             for (m, b) in all.iter().enumerate().skip(n + 1) {
@@ -155,10 +155,10 @@ fn bands_of_open_questions_look_different() {
         }
         // If the model does not refuse the draw, the first band shows its own reading, which is that of the second.
         if refused.is_empty() {
-            assert_eq!(all[0].pixels, all[1].pixels, "{name}");
+            assert_eq!(all[0].pixels(), all[1].pixels(), "{name}");
         } else {
             assert!(
-                all[0].pixels.iter().all(|pixel| *pixel == all[0].pixels[0]),
+                all[0].pixels().iter().all(|pixel| *pixel == all[0].pixels()[0]),
                 "{name}: somebody draws the card's band"
             );
         }
@@ -200,7 +200,7 @@ fn a_capture_is_recognised() {
     std::fs::write(place.path().join("scene.expect.ron"), expectation).unwrap();
     for (value, says) in [(0, None), (1, Some("CMB-4=127 draws")), (2, Some("CMB-4=127.5 draws"))] {
         let captured = picture(&plan, "CMB-4", value);
-        let png = encode_png(captured.width, captured.height, &captured.pixels, Compression::Fast).unwrap();
+        let png = encode_png(captured.width(), captured.height(), captured.pixels(), Compression::Fast).unwrap();
         std::fs::write(place.path().join("captured.png"), png).unwrap();
         let replayed = replay(&find(std::slice::from_ref(&file)).unwrap(), &Options::default(), &|_| {});
         let message = replayed[0].message();

@@ -13,16 +13,16 @@ use serde_json::Value;
 /// Returns the regions that differ, found pixel by pixel.
 fn naive_regions(a: &Rgba, b: &Rgba) -> Vec<Vec<(u32, u32)>> {
     let differs = |x: u32, y: u32| {
-        let at = (y * a.width + x) as usize;
-        a.pixels[at] != b.pixels[at]
+        let at = (y * a.width() + x) as usize;
+        a.pixels()[at] != b.pixels()[at]
     };
-    let mut seen = vec![false; a.pixels.len()];
+    let mut seen = vec![false; a.pixels().len()];
     let mut regions = Vec::new();
-    for (y, x) in (0..a.height).flat_map(|y| (0..a.width).map(move |x| (y, x))) {
+    for (y, x) in (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| (y, x))) {
         let mut region = Vec::new();
         let mut waiting = vec![(x, y)];
         while let Some((x, y)) = waiting.pop() {
-            let at = (y * a.width + x) as usize;
+            let at = (y * a.width() + x) as usize;
             if seen[at] || !differs(x, y) {
                 continue;
             }
@@ -30,7 +30,7 @@ fn naive_regions(a: &Rgba, b: &Rgba) -> Vec<Vec<(u32, u32)>> {
             region.push((y, x));
             for (y, x) in (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (y, x)))
             {
-                if x < a.width && y < a.height {
+                if x < a.width() && y < a.height() {
                     waiting.push((x, y));
                 }
             }
@@ -51,7 +51,7 @@ fn pictures() -> impl Strategy<Value = (Rgba, Rgba)> {
         prop::collection::vec(pixel, count).prop_map(move |pixels| {
             let a = pixels.iter().map(|(a, _, _)| *a).collect();
             let b = pixels.iter().map(|(a, b, keep)| if *keep == 0 { *b } else { *a }).collect();
-            (Rgba { width, height, pixels: a }, Rgba { width, height, pixels: b })
+            (Rgba::new(width, a), Rgba::new(width, b))
         })
     })
 }
@@ -61,7 +61,7 @@ proptest! {
     #[test]
     fn counts_are_those_of_a_naive_comparison((a, b) in pictures()) {
         let found = compare(&a, &b, &Options { ignore_alpha: false, regions: 1000 }).unwrap();
-        let pairs: Vec<_> = a.pixels.iter().zip(&b.pixels).collect();
+        let pairs: Vec<_> = a.pixels().iter().zip(b.pixels()).collect();
         prop_assert_eq!(found.different, pairs.iter().filter(|(a, b)| a != b).count() as u64);
         for n in 0..4 {
             let steps: Vec<i16> = pairs.iter().map(|(a, b)| i16::from(b[n]) - i16::from(a[n])).collect();
@@ -109,14 +109,14 @@ fn bench() -> Bench {
     for (x, y, pixel) in
         [(0, 3, [250, 0, 1, 255]), (1, 3, [250, 0, 0, 255]), (2, 2, [255, 90, 0, 255]), (7, 0, [0, 0, 0, 0])]
     {
-        picture.pixels[y * 8 + x] = pixel;
+        picture.pixels_mut()[y * 8 + x] = pixel;
     }
     write(&bench, "b.png", &picture);
     bench
 }
 
 fn write(bench: &Bench, name: &str, picture: &Rgba) {
-    let bytes = encode_png(picture.width, picture.height, &picture.pixels, Compression::Small).unwrap();
+    let bytes = encode_png(picture.width(), picture.height(), picture.pixels(), Compression::Small).unwrap();
     bench.write(name, bytes);
 }
 
@@ -152,10 +152,10 @@ fn a_picture_without_alpha_is_opaque() {
     let picture = load(&bench.path("a.png"), &ImageLimits::default()).unwrap();
     let mut tga = vec![0; 18];
     (tga[2], tga[12], tga[14], tga[16], tga[17]) = (2, 8, 4, 24, 0x20);
-    tga.extend(picture.pixels.iter().flat_map(|[r, g, b, _]| [*b, *g, *r]));
+    tga.extend(picture.pixels().iter().flat_map(|[r, g, b, _]| [*b, *g, *r]));
     bench.write("a.tga", &tga);
     assert!(bench.run("diff a.png a.tga").text().ends_with("\nequal\n"));
-    let glass = Rgba { pixels: picture.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b, 9]).collect(), ..picture };
+    let glass = Rgba::new(picture.width(), picture.pixels().iter().map(|[r, g, b, _]| [*r, *g, *b, 9]).collect());
     write(&bench, "glass.png", &glass);
     assert!(different(bench.run("diff glass.png a.tga")).contains("32 of 32 pixels (100.00 %), by 246 at most"));
     bench.run("diff glass.png a.tga --ignore-alpha").data();
@@ -185,8 +185,8 @@ fn the_difference_is_drawn() {
     let text = different(bench.run("diff a.png b.png -o d.png --ignore-alpha"));
     assert!(text.contains("d.png: |B - A| times 2 where"), "{text}");
     let drawn = load(&bench.path("d.png"), &ImageLimits::default()).unwrap();
-    let at = |x: usize, y: usize| drawn.pixels[y * 8 + x];
-    assert_eq!((drawn.width, drawn.height), (8, 4));
+    let at = |x: usize, y: usize| drawn.pixels()[y * 8 + x];
+    assert_eq!((drawn.width(), drawn.height()), (8, 4));
     assert_eq!((at(2, 2), at(0, 3), at(1, 2)), ([0, 180, 0, 255], [10, 0, 2, 255], [21, 21, 21, 255]));
     let json: Value = serde_json::from_str(&different(bench.run("diff a.png b.png -o d.png --format json"))).unwrap();
     assert_eq!((&json["picture"]["path"], &json["picture"]["scale"]), (&"d.png".into(), &1.into()));
@@ -221,7 +221,7 @@ fn depth_buffers_are_compared() {
 #[test]
 fn errors_say_what_to_do() {
     let bench = bench();
-    write(&bench, "small.png", &Rgba { width: 2, height: 2, pixels: vec![[0; 4]; 4] });
+    write(&bench, "small.png", &Rgba::new(2, vec![[0; 4]; 4]));
     bench.write("not.png", "GIF89a").write("broken.ron", "(version: 1,");
     for (command, status, said) in [
         ("diff a.png", 2, "<B.png>"),

@@ -10,7 +10,7 @@ use crate::scene_files;
 use crate::settings::number;
 use ninebit_test_support::random_scene;
 
-use ninebit::engine::{Engine, Isa, RenderOptions, render};
+use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, render};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
@@ -135,7 +135,7 @@ fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
                 compare(&plan(false), &best)?;
             }
             let plan = plan(true);
-            compare(&Plan { policies, ..plan.clone() }, ways).map_err(|why| format!("{policies:?}: {why}"))?;
+            compare(&plan.clone().under(policies), ways).map_err(|why| format!("{policies:?}: {why}"))?;
             compare(&plan, ways)
         }));
         compared.unwrap_or_else(|panic| {
@@ -157,6 +157,20 @@ fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
         }
     }
     println!("{count} scenes, digest {sum:016x}");
+}
+
+/// Frames that do not belong to a plan are replaced by its own.
+#[test]
+fn foreign_frames_are_replaced() {
+    let plan = scene::load(&at("vectors/scenes/clipping/corridor.ron"), &Limits::default()).unwrap().plan;
+    let renderer = Renderer::new(&plan, &RenderOptions::default());
+    let (own, _) = renderer.render();
+    let mut short = own.clone();
+    short.surfaces[0].words.pop();
+    for mut frames in [short, Frames { surfaces: Vec::new() }] {
+        renderer.redraw(&mut frames);
+        assert!(frames == own);
+    }
 }
 
 #[test]

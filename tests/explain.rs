@@ -106,7 +106,7 @@ fn draws_that_nothing_can_see_are_left_out() {
     ] {
         let scene = quad(&fields);
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-        assert_eq!(plan.draws[0].folded.invisible, expected, "{fields}");
+        assert_eq!(plan.draws()[0].folded.invisible, expected, "{fields}");
         let whole = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap();
         let [one, other] = [&plan, &whole].map(|plan| render(plan, &RenderOptions::default()));
         assert_eq!(one, other, "{fields}");
@@ -123,7 +123,7 @@ fn draws_that_nothing_can_see_are_left_out() {
 /// The scene reader refuses an empty scissor rectangle and a draw without triangles, but the state can have both.
 #[test]
 fn empty_draws_are_left_out() {
-    let invisible = |scene: &Scene| Plan::compile(scene, &PlanOptions::default()).unwrap().draws[0].folded.invisible;
+    let invisible = |scene: &Scene| Plan::compile(scene, &PlanOptions::default()).unwrap().draws()[0].folded.invisible;
     let mut scene = quad("");
     scene.draws[0].scissor = Some(Rectangle { x: 4, y: 0, width: 4, height: 4 });
     assert_eq!(invisible(&scene), Some(Invisible::NoPixels));
@@ -135,7 +135,7 @@ fn empty_draws_are_left_out() {
 fn a_blend_that_replaces_reads_nothing() {
     let scene = quad("blend: (equation: Add, source: One, destination: Zero),");
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    assert!(plan.draws[0].blend.is_none());
+    assert!(plan.draws()[0].blend.is_none());
     let counted = &count(&plan)[0];
     assert_eq!((counted.work[Work::BytesRead as usize], counted.work[Work::BytesWritten as usize]), (0, 64));
     assert!(explain(&scene, &plan)[0].dropped.iter().any(|line| line.contains("destination is not read")));

@@ -165,10 +165,10 @@ fn random_scenes_draw_something() {
     let mut runner = runner(400);
     let mut rich = || {
         let scene = strategy.new_tree(&mut runner).unwrap().current();
-        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-        let plain = Plan { draws: Vec::new(), ..plan.clone() };
-        let [before, after] = [&plain, &plan].map(|plan| {
-            let surfaces = render(plan, &RenderOptions::default()).surfaces;
+        let plain = Scene { draws: Vec::new(), ..scene.clone() };
+        let [before, after] = [&plain, &scene].map(|scene| {
+            let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
+            let surfaces = render(&plan, &RenderOptions::default()).surfaces;
             surfaces.into_iter().flat_map(|surface| surface.words).collect::<Vec<u32>>()
         });
         let changed = before.iter().zip(&after).filter(|(before, after)| before != after).count();

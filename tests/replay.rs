@@ -8,7 +8,6 @@ use std::path::Path;
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
-use ninebit::plan::Plan;
 use ninebit::state::Policies;
 use ninebit_cli::expectation::{Allowance, Expectation};
 use ninebit_cli::replay::{Options, Outcome, find, replay, report};
@@ -42,7 +41,7 @@ fn drawn(bench: &Bench, name: &str, policies: &[&str]) -> (Expectation, Vec<u8>)
     let loaded = scene::load(&bench.path(name), &Limits::default()).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let mut chosen = Policies::DEFAULT;
     policies.iter().for_each(|policy| chosen.set(policy).unwrap());
-    let surface = render(&Plan { policies: chosen, ..loaded.plan }, &RenderOptions::default()).surfaces.swap_remove(0);
+    let surface = render(&loaded.plan.under(chosen), &RenderOptions::default()).surfaces.swap_remove(0);
     let png = encode_png(surface.width, surface.height, &surface.rgba8(), Compression::Small).unwrap();
     (Expectation::from_surface("frame", &surface), png)
 }
@@ -85,8 +84,8 @@ fn differences_are_told_and_explained() {
 
     let picture = |name: &str| load(&bench.path(name), &ImageLimits::default()).unwrap();
     let panels = picture("found/a/two.difference.png");
-    assert_eq!((panels.width, panels.height), (3 * 24 + 16, 16));
-    assert_eq!((picture("found/a/two.drawn.png").width, picture("found/b.drawn.png").width), (24, 24));
+    assert_eq!((panels.width(), panels.height()), (3 * 24 + 16, 16));
+    assert_eq!((picture("found/a/two.drawn.png").width(), picture("found/b.drawn.png").width()), (24, 24));
     assert!(!bench.path("found/b.difference.png").exists() && !bench.path("found/a/one.txt").exists());
     let explained = fs::read_to_string(bench.path("found/a/two.txt")).unwrap();
     for part in ["  > stage0.rgb.AB.r", "CMB-8", "drawn less expected", "largest", "as expected, and as it is drawn"] {

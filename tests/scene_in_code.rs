@@ -551,7 +551,7 @@ fn hostile_scenes_are_planned_or_refused() {
                     return false;
                 }
             };
-            if plan.targets.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>() > MAX_PIXELS {
+            if plan.targets().iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>() > MAX_PIXELS {
                 return false;
             }
             let frames = render(&plan, &RenderOptions::default());

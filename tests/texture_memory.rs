@@ -32,7 +32,7 @@ fn plans_share_the_words() {
         TextureImage::Texels(texels) => texels.words.clone(),
         TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels expected"),
     };
-    let (ours, planned) = (words(&loaded.scene.textures[0]), words(&plan.textures[0]));
+    let (ours, planned) = (words(&loaded.scene.textures[0]), words(&plan.textures()[0]));
     assert!(Arc::ptr_eq(&ours, &planned));
     assert!(size_of_val(&ours[..]) as f64 <= 1.34 * f64::from(4 * SIDE * SIDE) + 64.0);
 }

@@ -58,9 +58,9 @@ fn pixels_and_draws_that_do_not_exist_are_refused() {
     let mut runner = TestRunner::deterministic();
     let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    let outside = (plan.targets[0].width, 0);
+    let outside = (plan.targets()[0].width, 0);
     assert!(matches!(engine::trace(&plan, 0, outside, None), Err(TraceError::Pixel { .. })));
-    assert!(matches!(engine::trace(&plan, 0, (0, 0), Some(plan.draws.len())), Err(TraceError::Draw { .. })));
+    assert!(matches!(engine::trace(&plan, 0, (0, 0), Some(plan.draws().len())), Err(TraceError::Draw { .. })));
 }
 
 /// Returns a scene with this number of triangles over the first pixel. Consecutive ones have different colours.

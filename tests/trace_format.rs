@@ -227,7 +227,7 @@ fn random_traces(page: &Page) -> Seen {
             }
         }
         let plan = Plan::compile(&scene, &PlanOptions { policies, prune: true }).unwrap();
-        for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
+        for (target, size) in plan.targets().iter().map(|t| (t.width, t.height)).enumerate() {
             for _ in 0..3 {
                 let document = trace(&plan, target, (random(size.0), random(size.1)));
                 for draw in document["draws"].as_array().unwrap() {
@@ -249,7 +249,7 @@ fn repository_traces(page: &Page) -> Seen {
     assert!(!files.is_empty());
     for path in files {
         let plan = plan_of(&path);
-        for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
+        for (target, size) in plan.targets().iter().map(|t| (t.width, t.height)).enumerate() {
             seen.document(page, &trace_of_text(&plan, target, (size.0 / 2, size.1 / 2)));
             seen.document(page, &trace_of_text(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
         }

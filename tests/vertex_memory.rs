@@ -21,7 +21,8 @@ fn text(columns: u32, rows: u32, width: u32, height: u32) -> String {
 fn what_vertices_have_in_common_is_held_once() {
     let loaded = scene::parse(&text(100, 50, 64, 64), Path::new("."), &Limits::default()).unwrap();
     let draw = &loaded.scene.draws[0];
-    let assembly = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap().draws.remove(0).assembly;
+    let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
+    let assembly = &plan.draws()[0].assembly;
     assert_eq!((draw.vertices.len(), assembly.triangles.len()), (101 * 51, 100 * 50 * 2));
     assert_eq!(draw.vertices.bytes(), 6 * 4 * draw.vertices.len());
     assert_eq!(assembly.vertices.bytes(), draw.vertices.bytes());

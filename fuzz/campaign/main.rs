@@ -149,7 +149,7 @@ fn outside(folder: &Path, arguments: &[String]) -> Outcome {
 fn explained(folder: &Path, case: &Case) -> Duration {
     let Some(scene) = &case.scene else { return Duration::ZERO };
     let Ok(loaded) = ninebit_scene::load(&folder.join(scene), &Limits::default()) else { return Duration::ZERO };
-    let pixels: u64 = loaded.plan.draws.iter().map(|draw| fragments(&loaded.plan, draw)).sum();
+    let pixels: u64 = loaded.plan.draws().iter().map(|draw| fragments(&loaded.plan, draw)).sum();
     PIXEL.saturating_mul(u32::try_from(pixels).unwrap_or(u32::MAX))
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 fuzz_target!(|bytes: &[u8]| {
     for name in ["texture.png", "texture.tga"] {
         if let Ok(image) = decode(bytes, Path::new(name), &ImageLimits::default()) {
-            assert_eq!(image.pixels.len(), image.width as usize * image.height as usize);
+            assert_eq!(image.pixels().len(), image.width() as usize * image.height() as usize);
         }
     }
 });

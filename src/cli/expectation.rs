@@ -252,7 +252,7 @@ impl Expectation {
         let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
         let expected = self.image(folder, &allowance.picture)?;
         let differing =
-            pixels.iter().zip(&expected.pixels).enumerate().filter(|(index, (a, b))| compared[*index] && a != b);
+            pixels.iter().zip(expected.pixels()).enumerate().filter(|(index, (a, b))| compared[*index] && a != b);
         let (mut count, mut difference, mut first) = (0, 0, None);
         for (index, (a, b)) in differing {
             count += 1;
@@ -271,7 +271,7 @@ impl Expectation {
     /// Returns an error if the mask cannot be used, or leaves another number of pixels than stated.
     pub fn compared(&self, folder: &Path) -> Result<Vec<bool>, ExpectationError> {
         let compared = match &self.mask {
-            Some(name) => self.image(folder, name)?.pixels.iter().map(|pixel| pixel[0] != 0).collect(),
+            Some(name) => self.image(folder, name)?.pixels().iter().map(|pixel| pixel[0] != 0).collect(),
             None => vec![true; self.width as usize * self.height as usize],
         };
         let found = compared.iter().filter(|compared| **compared).count() as u64;
@@ -303,8 +303,8 @@ impl Expectation {
     /// Returns an error if the image cannot be used, or has another size.
     pub fn image(&self, folder: &Path, name: &str) -> Result<Rgba, ExpectationError> {
         let image = image::load(&resolve(folder, name)?, &ImageLimits::default())?;
-        if [image.width, image.height] != [self.width, self.height] {
-            let (width, height) = (image.width, image.height);
+        if [image.width(), image.height()] != [self.width, self.height] {
+            let (width, height) = (image.width(), image.height());
             return Err(ExpectationError::Size { name: name.to_owned(), width, height });
         }
         Ok(image)

@@ -228,11 +228,13 @@ pub(crate) struct Cascade {
 
 /// The result of lowering a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Lowered {
+pub struct Lowered<U = ()> {
     /// The program as state of the chip.
     pub combiners: Combiners,
     /// What each general stage was made from.
     pub origins: Vec<StageOrigin>,
+    /// What the program changes in the texture units, if it can.
+    pub units: U,
 }
 
 impl Cascade {
@@ -373,8 +375,15 @@ impl Cascade {
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
 
-    /// Returns the program, or all findings: `all`, then those about the cascade. `what` is what messages call the program, such as "cascade".
-    pub(crate) fn finish(mut self, what: &str, end: End, mut all: Vec<Diagnostic>) -> Result<Lowered, Vec<Diagnostic>> {
+    /// Returns the program with its changes of the units, or all findings: `all`, then those about the cascade. `what` is what messages call the
+    /// program, such as "cascade".
+    pub(crate) fn finish<U>(
+        mut self,
+        what: &str,
+        end: End,
+        mut all: Vec<Diagnostic>,
+        units: U,
+    ) -> Result<Lowered<U>, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // No stage affects the result.
             let nothing = Cascade::new(self.profile, self.signed_textures);
@@ -400,7 +409,7 @@ impl Cascade {
         }
         let final_combiner = final_combiner(end, self.current.alpha_is_blue, constants);
         let combiners = Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner };
-        Ok(Lowered { combiners, origins: self.origins })
+        Ok(Lowered { combiners, origins: self.origins, units })
     }
 }
 

@@ -78,6 +78,20 @@ impl<'t> Cursor<'t> {
         self.at += 1;
     }
 
+    /// Takes a number and the sign before it, if there is one. Returns whether the number is negative, and the place of its digits; `None` if there
+    /// is no number.
+    pub(super) fn signed_number(&mut self) -> Option<(bool, Span)> {
+        let negative = self.take('-');
+        if !negative {
+            self.take('+');
+        }
+        let span = self.span();
+        (self.kind() == Some(Kind::Number)).then(|| {
+            self.advance();
+            (negative, span)
+        })
+    }
+
     /// Skips tokens until `stop` holds, or to the end.
     pub(super) fn skip_to(&mut self, stop: impl Fn(&Self) -> bool) {
         while !self.is_done() && !stop(self) {

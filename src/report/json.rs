@@ -123,7 +123,7 @@ fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
         "shown": draw.shown,
         "program_origin": origins(&draw.program_origin),
     });
-    value["steps"] = numbered(&draw.steps, &plan.textures);
+    value["steps"] = numbered(&draw.steps, plan.textures());
     if let Some(piece) = &draw.piece {
         let planes: Vec<&str> = ClipPlane::in_set(piece.planes).map(|plane| plane.name()).collect();
         value["clipped"] = json!({ "triangle": piece.of, "planes": planes });

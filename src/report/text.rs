@@ -48,7 +48,7 @@ fn write_head(
     let [r, g, b, a] = cleared;
     writeln!(out, "pixel {x},{y} of target `{}`, profile {}", shown::name(target), plan.profile.name())?;
     write!(out, "{}", policies_text(&plan.policies))?;
-    let is_given = plan.targets.iter().any(|other| other.name == *target && other.contents.is_some());
+    let is_given = plan.targets().iter().any(|other| other.name == *target && other.contents.is_some());
     writeln!(out, "{} R {r} G {g} B {b} A {a}", if is_given { "begins as" } else { "cleared to" })?;
     match left_out {
         0 => Ok(()),

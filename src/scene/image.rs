@@ -60,11 +60,40 @@ impl ImageLimits {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rgba {
     /// Number of columns.
-    pub width: u32,
+    pub(crate) width: u32,
     /// Number of rows.
-    pub height: u32,
+    pub(crate) height: u32,
     /// `width * height` pixels R, G, B, A, row by row from the top. Alpha is 255 if the file has none.
-    pub pixels: Vec<[u8; 4]>,
+    pub(crate) pixels: Vec<[u8; 4]>,
+}
+
+impl Rgba {
+    /// Returns the image of pixels R, G, B, A, row by row from the top. Pixels that do not fill a row are dropped.
+    pub fn new(width: u32, mut pixels: Vec<[u8; 4]>) -> Rgba {
+        let rows = pixels.len().checked_div(width as usize).unwrap_or(0);
+        pixels.truncate(rows * width as usize);
+        Rgba { width, height: rows as u32, pixels }
+    }
+
+    /// Returns the number of columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Returns the number of rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Returns the pixels R, G, B, A, row by row from the top.
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// Returns the pixels, which may be changed.
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        &mut self.pixels
+    }
 }
 
 /// Contents of an image file.

@@ -20,7 +20,7 @@ pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result
     part.draws.truncate(until + 1);
     let planned = Plan::compile(&part, &PlanOptions::default());
     let planned = planned.map_err(|errors| errors.into_iter().map(|error| error.message).collect::<String>())?;
-    Ok(Plan { policies, ..planned })
+    Ok(planned.under(policies))
 }
 
 /// Draws a target. The picture holds its colours or, with `depth`, the words of its depth buffer: depth with the lowest byte first, then the stencil.
@@ -46,7 +46,7 @@ pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<Shown, Ref
 fn picture(plan: &Plan, target: usize) -> Rgba {
     let frames = render(plan, &RenderOptions::default());
     let surface = &frames.surfaces[target];
-    Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
+    Rgba::new(surface.width, surface.rgba8())
 }
 
 /// Compares the definition with float64 arithmetic.
@@ -68,7 +68,7 @@ pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
 
 /// Compares the definition with itself under other policies.
 pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<Shown, Refused> {
-    let other = Plan { policies, ..plan.clone() };
+    let other = plan.clone().under(policies);
     between(&picture(plan, target), &picture(&other, target), false)
 }
 
@@ -95,9 +95,9 @@ fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Shown, Refused> {
         let [r, g, b] = heat_color(f64::from(largest));
         [r, g, b, 255]
     };
-    let pixels = a.pixels.iter().zip(&b.pixels).map(shown).collect();
+    let pixels = a.pixels().iter().zip(b.pixels()).map(shown).collect();
     let answer = json!({
-        "width": a.width, "height": a.height, "differing": found.different, "region_count": found.region_count,
+        "width": a.width(), "height": a.height(), "differing": found.different, "region_count": found.region_count,
         "regions": regions, "classes": classes(),
     });
     Ok((answer, pixels))

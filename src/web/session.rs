@@ -85,7 +85,7 @@ impl Session {
             "picture" => {
                 let read = decode(&file, Path::new(text("name")?), &ImageLimits::default());
                 let picture = read.map_err(|error| format!("{}: {error}; {}", error.code(), error.help()))?;
-                let size = json!({ "width": picture.width, "height": picture.height });
+                let size = json!({ "width": picture.width(), "height": picture.height() });
                 self.second = Some(picture);
                 Ok(size)
             }
@@ -188,7 +188,7 @@ impl Session {
     }
 
     fn target(&self, number: usize) -> Result<usize, Refused> {
-        let count = self.loaded()?.1.targets.len();
+        let count = self.loaded()?.1.targets().len();
         if number < count { Ok(number) } else { Err(format!("there is no target {number}; the scene has {count}")) }
     }
 
@@ -199,7 +199,7 @@ impl Session {
                 let Loaded { scene, plan, warnings, source, .. } = loaded;
                 let answer = json!({ "scene": described(&scene), "findings": findings(&warnings, &source) });
                 self.text = source.text;
-                self.loaded = Some((scene, Plan { policies: self.policies, ..plan }));
+                self.loaded = Some((scene, plan.under(self.policies)));
                 self.stepped = None;
                 answer
             }

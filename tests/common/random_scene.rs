@@ -34,7 +34,7 @@ pub fn scene() -> BoxedStrategy<Scene> {
     const SIDES: u8 = ClipPlane::Left.bit() | ClipPlane::Right.bit() | ClipPlane::Top.bit() | ClipPlane::Bottom.bit();
     let fits = |scene: &Scene| {
         let plan = Plan::compile(scene, &PlanOptions::default());
-        plan.is_ok_and(|plan| plan.draws.iter().all(|draw| draw.assembly.clipping.planes & SIDES == 0))
+        plan.is_ok_and(|plan| plan.draws().iter().all(|draw| draw.assembly.clipping.planes & SIDES == 0))
     };
     Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }

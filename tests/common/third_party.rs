@@ -105,7 +105,7 @@ pub fn load(text: &str) -> Result<Loaded, String> {
 pub fn pixel(text: &str, (x, y): (u32, u32)) -> Result<[u8; 4], String> {
     let loaded = load(text)?;
     let frames = engine::render(&loaded.plan, &RenderOptions::default());
-    let width = loaded.plan.targets[0].width;
+    let width = loaded.plan.targets()[0].width;
     Ok(frames.surfaces[0].rgba8()[(y * width + x) as usize])
 }
 

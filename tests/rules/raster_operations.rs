@@ -24,7 +24,7 @@ fn touched(target: Target, draw: Draw) -> Vec<(u32, u32)> {
         let (columns, rows) = (w.x..w.x + w.width, w.y..w.y + w.height);
         rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
     };
-    plan.draws[0].windows.iter().flat_map(pixels).collect()
+    plan.draws()[0].windows.iter().flat_map(pixels).collect()
 }
 
 #[test]

@@ -7,11 +7,11 @@ use ninebit_scene::image::Rgba;
 /// Returns the blocks of an image whose sides are multiples of four. `code` is `DXT1`, `DXT3` or `DXT5`.
 pub fn encode(image: &Rgba, code: &[u8; 4]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    for top in (0..image.height).step_by(4) {
-        for left in (0..image.width).step_by(4) {
+    for top in (0..image.height()).step_by(4) {
+        for left in (0..image.width()).step_by(4) {
             let texels: [[u8; 4]; 16] = std::array::from_fn(|n| {
                 let (x, y) = (left + n as u32 % 4, top + n as u32 / 4);
-                image.pixels[(y * image.width + x) as usize]
+                image.pixels()[(y * image.width() + x) as usize]
             });
             match code {
                 b"DXT3" => bytes.extend(explicit_alpha(&texels).to_le_bytes()),

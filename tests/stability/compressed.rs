@@ -48,7 +48,8 @@ fn row(label: &str, frame: &Picture, whole: &Picture) -> Vec<String> {
 fn smaller() -> Scene {
     let mut scene = scene("normals-uncompressed.ron");
     let Texture { image: TextureImage::Texels(texels), .. } = &mut scene.textures[0] else { panic!("texels expected") };
-    let words = ball(16).pixels.into_iter().map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b]));
+    let picture = ball(16);
+    let words = picture.pixels().iter().map(|[r, g, b, a]| u32::from_be_bytes([*a, *r, *g, *b]));
     (texels.width, texels.height, texels.words) = (16, 16, words.collect());
     scene
 }

@@ -44,7 +44,7 @@ pub fn ball(side: u32) -> Rgba {
         let [r, g, b] = normal_map::encode([x, y, (1.0 - x * x - y * y).sqrt()]);
         [r, g, b, 255]
     };
-    Rgba { width: side, height: side, pixels: (0..side * side).map(normal).collect() }
+    Rgba::new(side, (0..side * side).map(normal).collect())
 }
 
 /// Returns a normalisation cube map as words A8R8G8B8, face after face. Each texel is the direction through its centre.
@@ -82,13 +82,13 @@ pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Returns every file with its name and its bytes.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
-    let png = |image: Rgba| encode_png(image.width, image.height, &image.pixels, Compression::Small).unwrap();
+    let png = |image: Rgba| encode_png(image.width(), image.height(), image.pixels(), Compression::Small).unwrap();
     let pairs = (0..PAIRS).flat_map(|row| pair(row).map(|[r, g, b]| [r, g, b, 255])).collect();
     let faces = directions(FACE).into_iter().flat_map(u32::to_le_bytes).collect();
     let curved = ball(64);
     let coded = |code: &[u8; 4]| dds::File::coded(code, 64, 64, 1, blocks::encode(&curved, code)).bytes();
     vec![
-        ("angle-pairs.png", png(Rgba { width: 2, height: PAIRS as u32, pixels: pairs })),
+        ("angle-pairs.png", png(Rgba::new(2, pairs))),
         ("ball-normal.png", png(ball(BALL))),
         ("stone-normal.png", png(stone())),
         ("curved-normal.png", png(curved.clone())),

@@ -3,16 +3,16 @@
 use super::content::length;
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
-use ninebit::state::{Level, TextureImage};
+use ninebit::state::{Level, Positions, TextureImage};
 
 pub fn section() -> Section {
-    let scene = scene("shimmer.ron");
+    let mut scene = scene("shimmer.ron");
     let still = plan(&scene);
-    let mut moved = still.clone();
-    for draw in &mut moved.draws {
-        draw.assembly.vertices.update(|_, vertex| vertex.position[0] += 0.5);
-        draw.assembly.corners.iter_mut().for_each(|corner| corner.position[0] += 8);
+    for draw in &mut scene.draws {
+        let Positions::Clip(viewport) = &mut draw.positions else { panic!("clip space") };
+        viewport.x += 0.5;
     }
+    let moved = plan(&scene);
     let (a, b) = (draw(&still), draw(&moved));
     // Band of lod of each pixel, where 0 means magnified.
     let mut bands = vec![None; a.pixels.len()];

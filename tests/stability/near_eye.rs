@@ -80,7 +80,7 @@ fn floor_below_the_eye_is_cut_off(scene: &Scene) {
         }
     });
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    let planes: Vec<ClipPlane> = ClipPlane::in_set(plan.draws[1].assembly.clipping.planes).collect();
+    let planes: Vec<ClipPlane> = ClipPlane::in_set(plan.draws()[1].assembly.clipping.planes).collect();
     assert!(planes.first() == Some(&ClipPlane::W) && planes.contains(&ClipPlane::Bottom), "{planes:?}");
 }
 

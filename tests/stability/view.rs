@@ -159,8 +159,8 @@ impl Covered<'_> {
 
 /// Visits every pixel that the triangles of a plan cover, in order. Each draw uses unit 0.
 pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
-    for (draw, planned) in plan.draws.iter().enumerate() {
-        let whole = (0, i64::from(plan.targets[planned.target].height));
+    for (draw, planned) in plan.draws().iter().enumerate() {
+        let whole = (0, i64::from(plan.targets()[planned.target].height));
         // No clip rectangle splits these scenes, so there is at most one window.
         let Some((rows, columns)) = walk::windows(planned, whole).next() else { continue };
         for number in 0..planned.assembly.triangles.len() {

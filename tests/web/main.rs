@@ -459,7 +459,7 @@ fn page() -> Result<(), Failed> {
     assert_eq!(digests(&changed.plan)[0], edited);
     let mut policies = Policies::default();
     policies.set("CMB-3=literal").unwrap();
-    let literal = Plan { policies, ..loaded.plan.clone() };
+    let literal = loaded.plan.clone().under(policies);
     let frame = &render(&loaded.plan, &RenderOptions::default()).surfaces[0];
     let png =
         |pixels: &[[u8; 4]]| STANDARD.encode(encode_png(frame.width, frame.height, pixels, Compression::Fast).unwrap());
@@ -522,7 +522,7 @@ fn page() -> Result<(), Failed> {
     let pasted = native.ask(json!({ "do": "paste", "draw": 0, "language": "RegisterWords", "program": words }));
     let opened = native.open(pasted["text"].as_str().unwrap());
     assert!(opened["scene"].is_object(), "{opened}");
-    let texture = format!("scene/textures/{}", loaded.plan.textures[0].name);
+    let texture = format!("scene/textures/{}", loaded.plan.textures()[0].name);
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
         "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,

@@ -121,23 +121,23 @@ fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Resul
     let invalid = |message: String| {
         Failure::invalid("NB0524", message, "take the pictures of the source that `ninebit captures list` names")
     };
-    if (capture.width, capture.height) != SIZE {
-        return Err(invalid(format!("`{}` is {} x {}", shown::path(&path), capture.width, capture.height)));
+    if (capture.width(), capture.height()) != SIZE {
+        return Err(invalid(format!("`{}` is {} x {}", shown::path(&path), capture.width(), capture.height())));
     }
-    if !outcome.frame.is(&capture.pixels) {
+    if !outcome.frame.is(capture.pixels()) {
         return Err(invalid(format!("`{}` is not the picture that was measured", shown::path(&path))));
     }
     // The areas of text are copied, so that they are equal.
-    let mut masked = Rgba { width: SIZE.0, height: SIZE.1, pixels };
+    let mut masked = Rgba::new(SIZE.0, pixels);
     for at in outcome.frame.text.iter().flat_map(captures::pixels) {
-        masked.pixels[at] = capture.pixels[at];
+        masked.pixels_mut()[at] = capture.pixels()[at];
     }
     let difference = diff::compare(&masked, &capture, &Options { regions: 1, ..Options::default() });
     let difference = difference.map_err(|error| invalid(error.to_string()))?;
     outcome.exact = difference.different == 0;
     if let Some(region) = difference.regions.first() {
         let at = region.first.1 as usize * SIZE.0 as usize + region.first.0 as usize;
-        outcome.difference = Some((difference, [masked.pixels[at], capture.pixels[at]]));
+        outcome.difference = Some((difference, [masked.pixels()[at], capture.pixels()[at]]));
     }
     Ok(outcome)
 }

@@ -116,7 +116,7 @@ fn scene_findings<'a>(
             return Err(Failure::invalid("NB0522", format!("target `{name}` has no depth buffer"), help));
         }
     };
-    let frame = Rgba { width, height, pixels };
+    let frame = Rgba::new(width, pixels);
     let mut different = [0; 2];
     for (count, picture) in different.iter_mut().zip(pictures) {
         *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;
@@ -132,12 +132,13 @@ fn scene_findings<'a>(
 fn draw(destination: &Destination, arguments: &Arguments, a: &Rgba, b: &Rgba) -> Result<(String, u8), Failure> {
     let drawn = diff::highlight(a, b, arguments.ignore_alpha).map_err(|_| different_sizes(arguments, a, b))?;
     let picture = &drawn.picture;
-    destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Fast)?)?;
+    destination.write(&encode_png(picture.width(), picture.height(), picture.pixels(), Compression::Fast)?)?;
     Ok((destination.path().map_or(String::new(), shown::lossless), drawn.scale))
 }
 
 fn different_sizes(arguments: &Arguments, a: &Rgba, b: &Rgba) -> Failure {
-    let of = |path: &Path, picture: &Rgba| format!("`{}` is {} x {}", shown::path(path), picture.width, picture.height);
+    let of =
+        |path: &Path, picture: &Rgba| format!("`{}` is {} x {}", shown::path(path), picture.width(), picture.height());
     let message = format!("the pictures differ in size: {}, {}", of(&arguments.a, a), of(&arguments.b, b));
     Failure::invalid("NB0521", message, "compare pictures of one size: take the screenshot unscaled, or crop it")
 }

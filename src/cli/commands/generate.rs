@@ -325,13 +325,14 @@ fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
     let (height, options) = field.load(output)?;
     let mut picture = occlusion::picture(&height, &options);
     if let Some(path) = normal_map {
-        let Rgba { width, height, pixels } = image::load(path, &ImageLimits::default())?;
-        let (columns, rows) = (picture.width, picture.height);
+        let normals = image::load(path, &ImageLimits::default())?;
+        let (width, height) = (normals.width(), normals.height());
+        let (columns, rows) = (picture.width(), picture.height());
         if (width, height) != (columns, rows) {
             let message = format!("the normal map is {width} x {height}, the height field {columns} x {rows}");
             return Err(Failure::invalid("NB0521", message, "make the normal map from this height field"));
         }
-        for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&pixels) {
+        for (pixel, [r, g, b, _]) in picture.pixels_mut().iter_mut().zip(normals.pixels()) {
             *pixel = [*r, *g, *b, pixel[3]];
         }
     }
@@ -343,7 +344,7 @@ fn write_cube(arguments: &Cube, content: Content) -> Result<(), Failure> {
 }
 
 fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
-    Ok(destination.write(&encode_png(image.width, image.height, &image.pixels, Compression::Small)?)?)
+    Ok(destination.write(&encode_png(image.width(), image.height(), image.pixels(), Compression::Small)?)?)
 }
 
 /// Returns the three values of an argument; clap has checked that there are three.

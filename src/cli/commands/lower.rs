@@ -170,7 +170,7 @@ fn functions(
             return ("ninebit_program".to_string(), about, function);
         }
         let about = format!("draw {number} `{}`", shown::name(&draw.name));
-        let function = Function::of_draw(scene, draw, &plan.draws[*number], &options);
+        let function = Function::of_draw(scene, draw, &plan.draws()[*number], &options);
         (format!("ninebit_draw{number}"), about, function)
     };
     let made: Vec<(String, String, Function)> = draws.iter().map(made).collect();

@@ -42,7 +42,7 @@ impl SceneArguments {
 /// Reads, checks and plans the scene file at `path`; warnings go to stderr.
 pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Scene, Plan), Failure> {
     let (loaded, policies) = read(path, policies, context)?;
-    Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+    Ok((loaded.scene, loaded.plan.under(policies)))
 }
 
 /// Reads, checks and plans a scene with a ground truth. Returns an error if it has none.
@@ -57,7 +57,7 @@ pub(crate) fn load_with_truth(
         let help = "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it";
         return Err(Failure::invalid("NB0396", message, help));
     };
-    Ok(((loaded.scene, Plan { policies, ..loaded.plan }), truth))
+    Ok(((loaded.scene, loaded.plan.under(policies)), truth))
 }
 
 fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Loaded, Policies), Failure> {

@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         }
     };
     let picture = layout::picture(&opened, faces, levels);
-    Ok(destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Small)?)?)
+    Ok(destination.write(&encode_png(picture.width(), picture.height(), picture.pixels(), Compression::Small)?)?)
 }
 
 /// Describes the texture without its texels.

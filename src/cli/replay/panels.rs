@@ -12,18 +12,18 @@ const BETWEEN: [u8; 4] = [96, 96, 96, 255];
 /// Returns expected picture, drawn picture and difference from left to right, opaque, and the amplification of the difference.
 pub(super) fn panels(expected: &Rgba, drawn: &Rgba) -> Result<(Rgba, u8), SizeError> {
     let difference = highlight(expected, drawn, false)?;
-    let (width, height) = (expected.width as usize, expected.height as usize);
+    let (width, height) = (expected.width() as usize, expected.height() as usize);
     let mut pixels = Vec::with_capacity((3 * width + 2 * GAP) * height);
     for y in 0..height {
         for (panel, picture) in [expected, drawn, &difference.picture].into_iter().enumerate() {
             if panel > 0 {
                 pixels.extend([BETWEEN; GAP]);
             }
-            let row = picture.pixels.iter().skip(y * width).take(width);
+            let row = picture.pixels().iter().skip(y * width).take(width);
             pixels.extend(row.map(|[r, g, b, _]| [*r, *g, *b, 255]));
         }
     }
-    let picture = Rgba { width: (3 * width + 2 * GAP) as u32, height: expected.height, pixels };
+    let picture = Rgba::new((3 * width + 2 * GAP) as u32, pixels);
     Ok((picture, difference.scale))
 }
 
@@ -33,16 +33,16 @@ mod tests {
 
     #[test]
     fn three_pictures_stand_side_by_side() {
-        let a = Rgba { width: 2, height: 2, pixels: (0..4).map(|n| [n, n, n, 0]).collect() };
+        let a = Rgba::new(2, (0..4).map(|n| [n, n, n, 0]).collect());
         let mut b = a.clone();
-        b.pixels[3] = [3, 3, 4, 0];
+        b.pixels_mut()[3] = [3, 3, 4, 0];
         let (picture, scale) = panels(&a, &b).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!((picture.width, picture.height, scale), (22, 2, 128));
-        let row: Vec<u8> = picture.pixels[22..].iter().map(|pixel| pixel[2]).collect();
+        assert_eq!((picture.width(), picture.height(), scale), (22, 2, 128));
+        let row: Vec<u8> = picture.pixels()[22..].iter().map(|pixel| pixel[2]).collect();
         assert_eq!(
             (&row[..2], &row[2..10], &row[10..12], &row[20..]),
             (&[2, 3][..], &[96; 8][..], &[2, 4][..], &[0, 128][..])
         );
-        assert!(picture.pixels.iter().all(|pixel| pixel[3] == 255));
+        assert!(picture.pixels().iter().all(|pixel| pixel[3] == 255));
     }
 }

@@ -89,11 +89,12 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
         Some(expectation) => loaded.scene.targets.iter().position(|target| target.name == expectation.target),
         None => Some(0),
     };
-    let plan = Plan { policies: options.policies, ..loaded.plan };
-    let Some(name) = target.and_then(|target| plan.targets.get(target)).map(|target| target.name.clone()) else {
+    let plan = loaded.plan.under(options.policies);
+    let Some(name) = target.and_then(|target| plan.targets().get(target)).map(|target| target.name.clone()) else {
         let expected = expectation.map(|expectation| expectation.target).unwrap_or_default();
         let message = format!("`{}`: the scene has no target `{}`", shown::path(&path), shown::name(&expected));
-        let names: Vec<String> = plan.targets.iter().map(|target| format!("`{}`", shown::name(&target.name))).collect();
+        let names: Vec<String> =
+            plan.targets().iter().map(|target| format!("`{}`", shown::name(&target.name))).collect();
         let help = format!("its targets: {}", names.join(", "));
         return Err(Problem::new(ErrorKind::Invalid, "NB1206", message, &help));
     };
@@ -161,8 +162,8 @@ struct Subject<'a> {
 impl Subject<'_> {
     fn look_into(&self, mismatch: Mismatch, surface: &Surface) -> Result<Difference, Problem> {
         let (width, height) = (surface.width, surface.height);
-        let drawn = Rgba { width, height, pixels: surface.rgba8() };
-        let picture = png(width, height, &drawn.pixels).map_err(unwritten)?;
+        let drawn = Rgba::new(width, surface.rgba8());
+        let picture = png(width, height, drawn.pixels()).map_err(unwritten)?;
         let mut difference = Difference {
             target: self.expectation.target.clone(),
             expected: self.expectation.sha256.clone(),
@@ -181,7 +182,7 @@ impl Subject<'_> {
 
     /// Sets pixels that are not compared to 0, 0, 0, 0. Returns the digest.
     fn masked(&self, picture: &mut Rgba, compared: &[bool]) -> String {
-        masked_digest(picture.width, picture.height, &mut picture.pixels, compared)
+        masked_digest(picture.width(), picture.height(), picture.pixels_mut(), compared)
     }
 
     fn compare_pictures(&self, mut drawn: Rgba, difference: &mut Difference) -> Result<(), Problem> {
@@ -194,7 +195,7 @@ impl Subject<'_> {
             |surface: &Surface| self.expectation.compare(surface, self.folder).is_ok_and(|mismatch| mismatch.is_none());
         let found = cause::find(self.plan, &self.render, self.target, first, &matches);
         if let (None, Some(Found { surface, .. })) = (&expected, &found) {
-            let mut picture = Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() };
+            let mut picture = Rgba::new(surface.width, surface.rgba8());
             self.masked(&mut picture, &compared);
             expected = Some((picture, Origin::Cause));
         }
@@ -218,7 +219,7 @@ impl Subject<'_> {
         let candidates = [expectation.picture.as_ref().map(file), earlier];
         for (path, image) in candidates.into_iter().flatten() {
             match image {
-                Ok(mut picture) if [picture.width, picture.height] == [expectation.width, expectation.height] => {
+                Ok(mut picture) if [picture.width(), picture.height()] == [expectation.width, expectation.height] => {
                     if self.masked(&mut picture, compared) == expectation.sha256 {
                         return Some((picture, Origin::File(path)));
                     }
@@ -245,7 +246,7 @@ impl Subject<'_> {
         let Some(first) = first_pixel(expected, drawn) else { return Ok(None) };
         let compared = diff::compare(expected, drawn, &diff::Options::default());
         let (Ok(difference), Ok((panels, scale))) = (compared, panels(expected, drawn)) else { return Ok(None) };
-        let panels = png(panels.width, panels.height, &panels.pixels).map_err(unwritten)?;
+        let panels = png(panels.width(), panels.height(), panels.pixels()).map_err(unwritten)?;
         let traces = self.traces(first, found);
         Ok(Some(Known { origin, difference, first, panels, scale, traces }))
     }
@@ -272,7 +273,7 @@ impl Subject<'_> {
 
 /// Returns the first pixel in which two pictures of the same size differ.
 fn first_pixel(expected: &Rgba, drawn: &Rgba) -> Option<Pixel> {
-    let at = expected.pixels.iter().zip(&drawn.pixels).position(|(a, b)| a != b)?;
-    let (x, y) = (at as u32 % expected.width, at as u32 / expected.width);
-    Some(Pixel { x, y, expected: expected.pixels[at], drawn: drawn.pixels[at] })
+    let at = expected.pixels().iter().zip(drawn.pixels()).position(|(a, b)| a != b)?;
+    let (x, y) = (at as u32 % expected.width(), at as u32 / expected.width());
+    Some(Pixel { x, y, expected: expected.pixels()[at], drawn: drawn.pixels()[at] })
 }

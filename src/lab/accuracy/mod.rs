@@ -154,5 +154,5 @@ fn causes(inputs: Option<Statistics>, method: Statistics, technique: &Comparison
 fn shown(plan: &Plan) -> Vec<[u8; 4]> {
     let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
     let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);
-    words.iter().map(|word| surface::kept(plan.targets[TARGET].format, *word)).collect()
+    words.iter().map(|word| surface::kept(plan.targets()[TARGET].format, *word)).collect()
 }

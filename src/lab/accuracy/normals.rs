@@ -39,7 +39,7 @@ pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNor
 
 /// Reads the vectors of a texture shader's dot product from the trace of each pixel. They are those of the last draw that has a truth and reads them.
 fn of_dot_product(plan: &Plan, truth: &Truth, space: Space, unit: usize, measured: &[usize]) -> Normals {
-    let width = plan.targets[TARGET].width as usize;
+    let width = plan.targets()[TARGET].width as usize;
     let components = ["x", "y", "z"].map(|axis| format!("unit{unit}.vector.{axis}"));
     let one = |at: usize| {
         let pixel = ((at % width) as u32, (at / width) as u32);

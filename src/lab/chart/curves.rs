@@ -137,7 +137,7 @@ impl Scene {
         let count = match counted {
             "pixels" => pixels,
             "draws" => self.draws as u64,
-            "triangles" => plan.draws.iter().map(|draw| draw.assembly.triangles.len() as u64).sum(),
+            "triangles" => plan.draws().iter().map(|draw| draw.assembly.triangles.len() as u64).sum(),
             _ => (self.stages + self.unseen) as u64,
         };
         Ok(Point { count, pixels, microseconds: frames(&plan, &options, 1, effort).lower / 1000.0 })
@@ -206,7 +206,7 @@ mod tests {
     /// Checks that the plan drops stages that nothing reads, and only those.
     #[test]
     fn only_seen_stages_are_planned() {
-        let planned = |scene: Scene| scene.plan().unwrap().draws[0].stages.len();
+        let planned = |scene: Scene| scene.plan().unwrap().draws()[0].stages.len();
         assert_eq!(planned(Scene { stages: 8, ..PLAIN }), 8);
         assert_eq!(planned(Scene { unseen: 7, ..PLAIN }), 1);
     }

@@ -84,7 +84,7 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
     for (surface, state) in workloads() {
         let plan = state.plan(side)?;
         let definition = rendered(&plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
-        let pixels = plan.draws.iter().map(|draw| engine::fragments(&plan, draw)).sum::<u64>().max(1);
+        let pixels = plan.draws().iter().map(|draw| engine::fragments(&plan, draw)).sum::<u64>().max(1);
         let mut add = |name: String, yields: &str, time, errors: Statistics| {
             let (error, largest) = (errors.rms(), errors.max());
             all.push(Evaluator { name, surface: surface.to_owned(), yields: yields.to_owned(), time, error, largest });

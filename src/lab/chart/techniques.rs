@@ -149,7 +149,7 @@ fn enlarged(scene: &Scene, width: u32) -> Option<Scene> {
 
 /// Returns the number of fragments of the largest draw into the first target, at least 1.
 fn final_pixels(plan: &Plan) -> u64 {
-    let most = plan.draws.iter().filter(|draw| draw.target == 0).map(|draw| engine::fragments(plan, draw)).max();
+    let most = plan.draws().iter().filter(|draw| draw.target == 0).map(|draw| engine::fragments(plan, draw)).max();
     most.unwrap_or(1).max(1)
 }
 

@@ -66,7 +66,7 @@ pub(crate) fn frames(plan: &Plan, options: &RenderOptions, pixels: u64, effort: 
     let renderer = Renderer::new(plan, &RenderOptions { threads: 1, ..*options });
     let (mut frames, _) = renderer.render();
     // A second frame would fail the depth test against the first, so the clear has to be part of the frame.
-    let clears = plan.draws.iter().any(|draw| draw.depth_test.is_some());
+    let clears = plan.draws().iter().any(|draw| draw.depth_test.is_some());
     effort.measure(pixels, || {
         if clears {
             std::hint::black_box(renderer.render());

@@ -82,7 +82,7 @@ fn hold(seed: u64, count: u64) -> u64 {
         let made: Vec<[Function; 2]> = scene
             .draws
             .iter()
-            .zip(&plan.draws)
+            .zip(plan.draws())
             .map(|(draw, planned)| ways.map(|options| Function::of_draw(&scene, draw, planned, &options)))
             .collect();
         for target in 0..scene.targets.len() {

@@ -26,7 +26,7 @@ use ninebit_vectors::cases::Level;
 use ninebit_vectors::gpu::{self, Case, recipes};
 use ninebit_vectors::table::{Contents, Writer};
 use ninebit_vectors::units;
-use setting::{GIVEN, any_policies, bytes, compiler, drawing, python, run, setting, works};
+use setting::{GIVEN, any_policies, any_value, bytes, compiler, drawing, python, run, setting, works};
 
 /// Number of words for a pixel: state, inputs, expected word.
 const COLUMNS: usize = 128;
@@ -96,15 +96,7 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
             out.extend(&given);
             let mut registers = Registers::new();
             for register in GIVEN {
-                let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
-                let channel = |_: usize| match random.below(8) {
-                    0 => 255,
-                    1 => low,
-                    // Both sides of the threshold of muxes.
-                    2 => 127 + random.below(2) as i32,
-                    _ => low + random.below((256 - low) as u128) as i32,
-                };
-                let value = [0, 1, 2, 3].map(channel);
+                let value = any_value(register, random);
                 registers.load(register, value);
                 out.extend(value.map(|channel| channel as u32));
             }

@@ -57,7 +57,7 @@ fn functions(count: usize, seed: u64) -> Vec<Function> {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
         let plan = Plan::compile(&scene, &PlanOptions { prune: false, policies }).unwrap();
         let number = random.below(scene.draws.len() as u128) as usize;
-        functions.push(Function::of_draw(&scene, &scene.draws[number], &plan.draws[number], &options));
+        functions.push(Function::of_draw(&scene, &scene.draws[number], &plan.draws()[number], &options));
     }
     functions
 }
@@ -303,9 +303,8 @@ impl Batch<'_> {
                 let (place, word) = (language.input(input), input.kind() == Kind::Word);
                 let cast = match (glsl, word) {
                     (true, true) => "uint",
-                    (true, false) => "",
                     (false, true) => "u32",
-                    (false, false) => "",
+                    _ => "",
                 };
                 let _ = writeln!(body, "    {place} = {cast}(given(row, {column}));");
             }
@@ -427,7 +426,7 @@ fn frames() -> std::result::Result<(), Failed> {
         let draws = &loaded.scene.draws;
         let options = Options { textures: Textures::Words, ..Options::default() };
         let function = |(draw, planned)| Function::of_draw(&loaded.scene, draw, planned, &options);
-        let functions: Vec<Function> = draws.iter().zip(&plan.draws).map(function).collect();
+        let functions: Vec<Function> = draws.iter().zip(plan.draws()).map(function).collect();
         let surface = &render(&plan, &RenderOptions::default()).surfaces[0];
         let rows: Vec<u32> = (0..surface.height).step_by(step).collect();
         let parts: Vec<Vec<Given>> = std::thread::scope(|scope| {

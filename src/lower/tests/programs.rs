@@ -12,7 +12,7 @@ use ninebit_lower::code::{run, value_of};
 use ninebit_lower::{Function, Generic, Input, Options, Result};
 use ninebit_test_support::random_program;
 use proptest::strategy::{Strategy, ValueTree};
-use setting::{GIVEN, any_policies, runner};
+use setting::{GIVEN, any_policies, any_value, runner};
 
 /// Returns random programs, the same ones every time.
 fn programs() -> impl Iterator<Item = Combiners> {
@@ -20,18 +20,11 @@ fn programs() -> impl Iterator<Item = Combiners> {
     std::iter::repeat_with(move || random_program::combiners().new_tree(&mut runner).unwrap().current())
 }
 
-/// Returns values that registers can hold: colours are bytes, textures may be signed. The ends of ranges are more frequent.
+/// Returns values that registers can hold.
 fn registers(random: &mut Random) -> Registers<i32> {
     let mut registers = Registers::from_value(0);
     for register in GIVEN {
-        let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
-        let channel = |_: usize| match random.below(8) {
-            0 => 255,
-            1 => low,
-            2 => 128,
-            _ => low + random.below((256 - low) as u128) as i32,
-        };
-        registers.load(register, [0, 1, 2, 3].map(channel));
+        registers.load(register, any_value(register, random));
     }
     registers
 }

@@ -156,8 +156,19 @@ impl<'a> Renderer<'a> {
         (frames, statistics)
     }
 
-    /// Draws everything once more on frames of [`render`](Self::render), without clearing them.
+    /// Draws everything once more on frames of [`render`](Self::render), without clearing them. Frames of other sizes are replaced by
+    /// cleared ones.
     pub fn redraw(&self, frames: &mut Frames) -> Statistics {
+        let fits = |surface: &Surface, target: &Target| {
+            let pixels = target.width as usize * target.height as usize;
+            let depths = if target.depth.is_some() { pixels } else { 0 };
+            [surface.width, surface.height] == [target.width, target.height]
+                && (surface.words.len(), surface.depth.len()) == (pixels, depths)
+        };
+        let (surfaces, targets) = (&frames.surfaces, &self.plan.targets);
+        if surfaces.len() != targets.len() || !surfaces.iter().zip(targets).all(|(own, target)| fits(own, target)) {
+            *frames = cleared(self.plan);
+        }
         self.draw_all(frames, &|| {})
     }
 

@@ -104,11 +104,11 @@ pub struct Plan {
     /// The policies in force. They may be changed afterwards, because planning does not depend on them.
     pub policies: Policies,
     /// Render targets, in the order of the scene.
-    pub targets: Vec<Target>,
+    pub(crate) targets: Vec<Target>,
     /// Textures, in the order of the scene.
-    pub textures: Vec<Texture>,
-    /// Draws in order.
-    pub draws: Vec<PlannedDraw>,
+    pub(crate) textures: Vec<Texture>,
+    /// Draws in order, which name targets and textures that are there.
+    pub(crate) draws: Vec<PlannedDraw>,
 }
 
 /// A draw, reduced to what can reach its target.
@@ -224,6 +224,34 @@ named! {
 }
 
 impl Plan {
+    /// Returns the plan under other policies.
+    #[must_use]
+    pub fn under(self, policies: Policies) -> Plan {
+        Plan { policies, ..self }
+    }
+
+    /// Returns the plan with only those channels blended that are stored, as with [`PlanOptions::prune`].
+    #[must_use]
+    pub fn blending_stored_channels(mut self) -> Plan {
+        self.draws.iter_mut().for_each(|draw| draw.blended = draw.written);
+        self
+    }
+
+    /// Returns the render targets, in the order of the scene.
+    pub fn targets(&self) -> &[Target] {
+        &self.targets
+    }
+
+    /// Returns the textures, in the order of the scene.
+    pub fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// Returns the draws in order.
+    pub fn draws(&self) -> &[PlannedDraw] {
+        &self.draws
+    }
+
     /// Returns whether a draw reads a texture that is a render target.
     pub fn reads_target(&self, planned: &PlannedDraw) -> bool {
         planned.units.iter().any(|unit| self.textures[unit.state.texture].image.target().is_some())

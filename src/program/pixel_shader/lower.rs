@@ -55,16 +55,8 @@ pub struct UnitUse {
     pub span: Span,
 }
 
-/// Result of lowering a shader.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lowered {
-    /// The program as state of the chip.
-    pub combiners: Combiners,
-    /// What each general stage was made from.
-    pub origins: Vec<StageOrigin>,
-    /// The texture shader; `None` for units that no instruction loads.
-    pub units: [Option<UnitUse>; TEXTURE_UNITS],
-}
+/// Result of lowering a shader, with the texture shader; `None` for units that no instruction loads.
+pub type Lowered = crate::cascade::Lowered<[Option<UnitUse>; TEXTURE_UNITS]>;
 
 /// Lowers a shader for a draw.
 ///

@@ -54,15 +54,7 @@ impl Parser<'_> {
 
     pub(super) fn number(&mut self) -> Option<f32> {
         let from = self.cursor.span().start;
-        let negative = self.cursor.take('-');
-        if !negative {
-            self.cursor.take('+');
-        }
-        if self.cursor.kind() != Some(Kind::Number) {
-            return self.expected("a number");
-        }
-        let span = self.cursor.span();
-        self.cursor.advance();
+        let Some((negative, span)) = self.cursor.signed_number() else { return self.expected("a number") };
         let digits = self.cursor.text(&span).trim_end_matches(['f', 'F']);
         let value = format!("{}{digits}", if negative { "-" } else { "" }).parse::<f32>().ok();
         let value = value.filter(|value| value.is_finite());

@@ -5,7 +5,6 @@ use super::final_part::Final;
 use super::parser::{Parser, Read};
 use super::portion::PortionReader;
 use crate::finding::{finding, warning};
-use crate::lexer::Kind;
 use crate::{Place, Span};
 use ninebit::diagnostic::{Diagnostic, Severity, shorten};
 use ninebit::number::convert::constant;
@@ -83,25 +82,16 @@ impl Parser<'_> {
         self.places.set(Place::Stage(index), opening.clone());
         let mut own: [Written; 2] = [None, None];
         let mut portions: [Option<(Portion, Span)>; 2] = [None, None];
-        while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
-            if self.cursor.kind().is_none() {
-                return Err(self.unclosed(opening));
-            }
-            let outcome = match self.cursor.word() {
-                "const0" => self.constant(&mut own[0]),
-                "const1" => self.constant(&mut own[1]),
-                "rgb" => self.portion(index, false, &mut portions[0]),
-                "alpha" => self.portion(index, true, &mut portions[1]),
-                _ => Err(self.unknown_statement(
-                    "`rgb { ... }`, `alpha { ... }` or a constant",
-                    &["rgb", "alpha", "const0", "const1"],
-                )),
-            };
-            if outcome.is_err() {
-                self.recover();
-            }
-        }
-        self.cursor.advance();
+        self.body(opening, |parser| match parser.cursor.word() {
+            "const0" => parser.constant(&mut own[0]),
+            "const1" => parser.constant(&mut own[1]),
+            "rgb" => parser.portion(index, false, &mut portions[0]),
+            "alpha" => parser.portion(index, true, &mut portions[1]),
+            _ => Err(parser.unknown_statement(
+                "`rgb { ... }`, `alpha { ... }` or a constant",
+                &["rgb", "alpha", "const0", "const1"],
+            )),
+        })?;
         let first = own.iter().flatten().map(|(_, span)| span.start).min();
         let last = own.iter().flatten().map(|(_, span)| span.end).max();
         if let (Some(first), Some(last)) = (first, last) {
@@ -114,6 +104,20 @@ impl Parser<'_> {
         Ok(())
     }
 
+    /// Reads statements up to the bracket that closes `opening`.
+    fn body(&mut self, opening: Span, mut statement: impl FnMut(&mut Self) -> Read<()>) -> Read<()> {
+        while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
+            if self.cursor.kind().is_none() {
+                return Err(self.unclosed(opening));
+            }
+            if statement(self).is_err() {
+                self.recover();
+            }
+        }
+        self.cursor.advance();
+        Ok(())
+    }
+
     /// Reads `rgb { ... }` or `alpha { ... }`.
     fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Span)>) -> Read<()> {
         let name = self.cursor.span();
@@ -121,15 +125,7 @@ impl Parser<'_> {
         let opening = self.cursor.span();
         self.sign('{')?;
         let mut reader = PortionReader::new(stage, alpha);
-        while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
-            if self.cursor.kind().is_none() {
-                return Err(self.unclosed(opening));
-            }
-            if reader.statement(self).is_err() {
-                self.recover();
-            }
-        }
-        self.cursor.advance();
+        self.body(opening, |parser| reader.statement(parser))?;
         self.set(slot, reader.portion, name.clone(), name, "this portion");
         Ok(())
     }
@@ -148,16 +144,8 @@ impl Parser<'_> {
         let mut values = Vec::new();
         loop {
             let start = self.cursor.span().start;
-            let negative = self.cursor.take('-');
-            if !negative {
-                self.cursor.take('+');
-            }
-            if self.cursor.kind() != Some(Kind::Number) {
-                return Err(self.expected("a number"));
-            }
-            let span = start..self.cursor.span().end;
-            self.cursor.advance();
-            values.push(self.number(span, negative, bytes));
+            let Some((negative, digits)) = self.cursor.signed_number() else { return Err(self.expected("a number")) };
+            values.push(self.number(start..digits.end, negative, bytes));
             if !self.cursor.take(',') {
                 break;
             }

@@ -53,7 +53,7 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
             }
         }
     }
-    cascade.finish("environment", End { specular: program.color_sum, fog: context.fog }, findings)
+    cascade.finish("environment", End { specular: program.color_sum, fog: context.fog }, findings, ())
 }
 
 /// A unit's own texture, with its base format.

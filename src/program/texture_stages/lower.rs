@@ -4,7 +4,7 @@ use super::*;
 use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
-use ninebit::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
+use ninebit::state::{Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
 use ninebit::vertex::texgen::StageTransform;
 
 /// State of the draw that the lowering depends on.
@@ -33,16 +33,8 @@ pub struct UnitChange {
     pub operation: Option<Spanned<ShaderOperation>>,
 }
 
-/// Result of lowering texture stages.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lowered {
-    /// The program as state of the chip.
-    pub combiners: Combiners,
-    /// What each general stage was made from.
-    pub origins: Vec<StageOrigin>,
-    /// Changes of the texture units.
-    pub units: [UnitChange; TEXTURE_UNITS],
-}
+/// Result of lowering texture stages, with the changes of the texture units.
+pub type Lowered = crate::cascade::Lowered<[UnitChange; TEXTURE_UNITS]>;
 
 /// Lowers the stages for a draw.
 ///
@@ -73,8 +65,7 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
         cascade.stage(span, &rgb, alpha, destination, origin(index, stage));
     }
     let end = End { specular: program.specular_enable, fog: context.fog };
-    let crate::cascade::Lowered { combiners, origins } = cascade.finish("cascade", end, walk.findings)?;
-    Ok(Lowered { combiners, origins, units: walk.units })
+    cascade.finish("cascade", end, walk.findings, walk.units)
 }
 
 /// Returns the first of some places that is written; empty if none is.

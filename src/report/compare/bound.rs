@@ -40,7 +40,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Tsh8 => floor(255.0 / 4096.0),
         Rule::Tsh9 => floor(number_slack(plan) + 255.0 / 4096.0),
         // Each byte of a 16-bit half is off by up to the value of the other byte.
-        Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
+        Rule::Tex1 if plan.draws().iter().flat_map(|draw| &draw.units).any(PlannedUnit::is_wide) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
         // A unit test of the decoder finds the extremes.
         Rule::Tex2 => symmetric(1.016),
@@ -153,12 +153,8 @@ fn projects(plan: &Plan) -> bool {
     })
 }
 
-fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {
-    plan.draws.iter().flat_map(|draw| &draw.units).any(is)
-}
-
 fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, TriangleVertices<'_>)> {
-    plan.draws
+    plan.draws()
         .iter()
         .flat_map(|draw| (0..draw.assembly.triangles.len()).map(move |number| (draw, draw.assembly.triangle(number))))
 }

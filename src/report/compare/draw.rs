@@ -153,7 +153,7 @@ struct Surface<L> {
 
 impl<L: Lane> Surface<L> {
     fn new(plan: &Plan, target: usize, (first, end): (usize, usize)) -> Self {
-        let target = &plan.targets[target];
+        let target = &plan.targets()[target];
         let (width, pixels) = (target.width as usize, (end - first) * target.width as usize);
         let (clear, word) = target.depth.map_or((0, 0), |depth| (depth.clear, depth.cleared()));
         let memory = DepthStencil { depth: L::depth(i64::from(clear), || f64::from(clear)), ..DepthStencil::new(word) };
@@ -234,7 +234,7 @@ impl WorstPixel {
 
 /// Draws everything that affects the target, and sums up the errors.
 pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Comparison {
-    let reads_targets = plan.draws.iter().any(|planned| plan.reads_target(planned));
+    let reads_targets = plan.draws().iter().any(|planned| plan.reads_target(planned));
     let work = || if reads_targets { on_surfaces::<M>(plan, options) } else { in_bands::<M>(plan, options) };
     summed(plan, options, on_threads(options.threads, work))
 }
@@ -249,15 +249,15 @@ fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) ->
 
 /// Compares a target if no draw reads a surface: each band goes through all draws independently, and other targets do not matter.
 fn in_bands<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
-    let height = plan.targets[options.target].height as usize;
+    let height = plan.targets()[options.target].height as usize;
     let surfaces: Vec<Surface<M::Lane>> = Vec::new();
-    let words = texture_words(plan, &plan.draws, &surfaces);
+    let words = texture_words(plan, plan.draws(), &surfaces);
     let images = images(plan, &words, &surfaces);
     let bands = each((0..height.div_ceil(BAND)).collect(), |number| {
         let rows = (number * BAND, (number * BAND + BAND).min(height));
         let mut surface = Surface::new(plan, options.target, rows);
         let mut counts = Counts::default();
-        for planned in plan.draws.iter().filter(|planned| planned.target == options.target) {
+        for planned in plan.draws().iter().filter(|planned| planned.target == options.target) {
             for mut band in surface.bands() {
                 M::draw(&Draw { plan, planned, images: &images }, &mut band, &mut counts);
             }
@@ -289,11 +289,11 @@ pub(super) fn held<M: Method>(plan: &Plan, target: usize) -> Vec<Option<[M::Lane
 
 /// Returns all targets after all draws.
 fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
-    let rows = |target: usize| (0, plan.targets[target].height as usize);
+    let rows = |target: usize| (0, plan.targets()[target].height as usize);
     let mut surfaces: Vec<Surface<M::Lane>> =
-        (0..plan.targets.len()).map(|target| Surface::new(plan, target, rows(target))).collect();
+        (0..plan.targets().len()).map(|target| Surface::new(plan, target, rows(target))).collect();
     let mut counts = Counts::default();
-    for planned in &plan.draws {
+    for planned in plan.draws() {
         let empty = Surface { first_row: 0, width: 0, words: vec![], depth: vec![], held: vec![], states: vec![] };
         // The surface is taken out during the draw, so that the others can be read as textures.
         let mut surface = std::mem::replace(&mut surfaces[planned.target], empty);
@@ -319,7 +319,7 @@ fn texture_words<'a, L>(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Su
 fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
     let surface = |texture: &Texture| match &texture.image {
         TextureImage::Target { target } => {
-            let surface = plan.targets[*target].format;
+            let surface = plan.targets()[*target].format;
             // The lane has no colours for bits that are read as another format.
             let channels =
                 if surface.texture_format() == texture.format { surface::sampled_channels(surface) } else { 0 };
@@ -330,33 +330,25 @@ fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Sur
     };
     // Size of a pixel and of a texel in bytes.
     let sizes = |texture: &Texture| match &texture.image {
-        TextureImage::Target { target } => (plan.targets[*target].format.bytes(), texture.format.bytes()),
+        TextureImage::Target { target } => (plan.targets()[*target].format.bytes(), texture.format.bytes()),
         TextureImage::Texels(_) | TextureImage::Depth { .. } => (1, 1),
     };
     let seen = |texture: &Texture| {
         let ((surface, _), (pixel, texel)) = (surface(texture)?, sizes(texture));
         Some(SampledSurface { width: surface.width, states: &surface.states, pixel, texel })
     };
-    Images {
-        lane: plan
-            .textures
-            .iter()
-            .zip(words.images())
-            .map(|(texture, image)| {
-                // The lane has no colours for texels of another size.
-                let (pixel, texel) = sizes(texture);
-                let memory = surface(texture).filter(|_| pixel == texel);
-                Image { memory: memory.map(|(s, channels)| (&s.held[..], channels)), ..image }
-            })
-            .collect(),
-        words: words.images(),
-        states: plan.textures.iter().map(seen).collect(),
-    }
+    let lane = plan.textures().iter().zip(words.images()).map(|(texture, image)| {
+        // The lane has no colours for texels of another size.
+        let (pixel, texel) = sizes(texture);
+        let memory = surface(texture).filter(|_| pixel == texel);
+        Image { memory: memory.map(|(s, channels)| (&s.held[..], channels)), ..image }
+    });
+    Images { lane: lane.collect(), words: words.images(), states: plan.textures().iter().map(seen).collect() }
 }
 
 /// Compares the final colours of the definition and the ideal.
 fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M::Lane>) -> Outcome {
-    let format = plan.targets[options.target].format;
+    let format = plan.targets()[options.target].format;
     let kept = surface::kept_channels(format) & options.channels;
     let mut out = Outcome { errors: Vec::with_capacity(surface.words.len()), ..Outcome::default() };
     let mut least = 0.0;
@@ -399,7 +391,7 @@ fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M
 }
 
 fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison {
-    let target = &plan.targets[options.target];
+    let target = &plan.targets()[options.target];
     let mode = options.mode;
     let rules = outcome.counts.rules.iter().zip(Rule::ALL).filter(|(errors, _)| errors.count > 0);
     let decisions = outcome.counts.decisions.iter().zip(Decision::ALL).filter(|(counts, _)| counts[0] > 0);

@@ -51,11 +51,11 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
     let whole = Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false });
     let whole = whole.as_ref().unwrap_or(plan);
     let cost = |plan: &Plan, planned| Cost::from_draw(planned, &plan.policies, engine::fragments(plan, planned));
-    let draws = scene.draws.iter().zip(&plan.draws).zip(&whole.draws);
+    let draws = scene.draws.iter().zip(plan.draws()).zip(whole.draws());
     draws
         .map(|((draw, planned), asked)| DrawExplanation {
             name: planned.name.clone(),
-            target: plan.targets[planned.target].name.clone(),
+            target: plan.targets()[planned.target].name.clone(),
             vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
             program: print(&draw.combiners),
             program_origin: draw.program_origin.clone(),
@@ -125,7 +125,7 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     }
     lines.extend(equation::blend(planned));
     if planned.write_mask != 0 {
-        let target = &plan.targets[planned.target];
+        let target = &plan.targets()[planned.target];
         lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
     }
     lines

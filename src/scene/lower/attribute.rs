@@ -16,15 +16,10 @@ pub(super) enum Source {
     Tangent,
     Binormal,
     TextureCoordinates,
-    /// The vector toward a light.
-    Light {
+    /// The vector toward a light or, if there is a viewer, the half vector between both.
+    Toward {
         light: Light,
-        tangent_space: bool,
-    },
-    /// The half vector between a light and the viewer.
-    Half {
-        light: Light,
-        viewer: [f32; 3],
+        viewer: Option<[f32; 3]>,
         tangent_space: bool,
     },
 }
@@ -60,14 +55,14 @@ pub(super) fn source<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribut
             let fields = reader.read(&Raw::<source::LightVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
             let tangent_space = fields.space(reader).map(|space| space == 0);
-            Source::Light { light: light?, tangent_space: tangent_space? }
+            Source::Toward { light: light?, viewer: None, tangent_space: tangent_space? }
         }
         _ => {
             let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
             let viewer = fields.viewer(reader).map(|[x, y, z, _]| [x, y, z]);
             let tangent_space = fields.space(reader).map(|space| space == 0);
-            Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
+            Source::Toward { light: light?, viewer: Some(viewer?), tangent_space: tangent_space? }
         }
     })
 }
@@ -112,8 +107,7 @@ impl Outputs {
         [0, 1, 2, 3].map(|set| match &self.coordinates[set] {
             Source::Coordinates(_, written) => *written,
             Source::TextureCoordinates => 2,
-            Source::Position | Source::Normal | Source::Tangent | Source::Binormal => 3,
-            Source::Light { .. } | Source::Half { .. } => 3,
+            Source::Position | Source::Normal | Source::Tangent | Source::Binormal | Source::Toward { .. } => 3,
             Source::Color(_) => 4,
         })
     }
@@ -150,14 +144,6 @@ pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
         Light::Position(light) => normalize(subtract(*light, position)),
         Light::Direction(direction) => normalize(*direction),
     };
-    let into = |vector: [f32; 3], tangent_space: bool| {
-        // A light exactly at the vertex has no direction: the vector is zero, not NaN.
-        let vector = if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] };
-        if !tangent_space {
-            return extend(vector);
-        }
-        extend(mesh.basis(index).map(|axis| dot(vector, axis)))
-    };
     match source {
         Source::Color(_) => [0.0, 0.0, 0.0, 1.0],
         Source::Coordinates(values, _) => *values,
@@ -169,11 +155,15 @@ pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
             let [s, t] = mesh.texture_coordinates[index];
             [s, t, 0.0, 1.0]
         }
-        Source::Light { light, tangent_space } => into(toward(light), *tangent_space),
-        Source::Half { light, viewer, tangent_space } => {
-            let (light, viewer) = (toward(light), normalize(subtract(*viewer, position)));
-            let half = normalize([light[0] + viewer[0], light[1] + viewer[1], light[2] + viewer[2]]);
-            into(half, *tangent_space)
+        Source::Toward { light, viewer, tangent_space } => {
+            let light = toward(light);
+            let vector = viewer.map_or(light, |viewer| {
+                let viewer = normalize(subtract(viewer, position));
+                normalize([light[0] + viewer[0], light[1] + viewer[1], light[2] + viewer[2]])
+            });
+            // A light exactly at the vertex has no direction: the vector is zero, not NaN.
+            let vector = if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] };
+            extend(if *tangent_space { mesh.basis(index).map(|axis| dot(vector, axis)) } else { vector })
         }
     }
 }

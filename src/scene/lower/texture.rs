@@ -55,8 +55,9 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
     let levels = fields.levels.as_ref().map_or(Some(Wanted::Own), |raw| texture_levels::wanted(reader, raw))?;
     let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
-    let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
-        of_target(reader, (rest, Variant::ALL[variant] == Variant::Depth), kind, format, &fields, &entry.name)?
+    let (texture, palette) = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
+        let depth = Variant::ALL[variant] == Variant::Depth;
+        (of_target(reader, (rest, depth), kind, format, &fields, &entry.name)?, palette)
     } else {
         let request = Request {
             format: format.as_ref().map(|(format, _)| *format),
@@ -100,28 +101,17 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
         let format = given.format;
         let words: Vec<u32> = given.faces.into_iter().flatten().flatten().collect();
         let texels = Texels { width, height, levels, layers, border, words: words.into() };
-        let texture = Texture { name: entry.name.clone(), kind, format, image: TextureImage::Texels(texels) };
-        return with_palette(reader, texture, palette.or(made), &fields);
+        let image = TextureImage::Texels(texels);
+        (Texture { name: entry.name.clone(), kind, format, image }, palette.or(made))
     };
-    with_palette(reader, texture, palette, &fields)
-}
-
-/// Checks that a texture with a palette has the format P8. Findings about the palette itself have been recorded.
-fn with_palette<'a>(
-    reader: &mut Reader<'a>,
-    texture: Texture,
-    palette: Option<usize>,
-    fields: &source::Texture<'a>,
-) -> Option<(Texture, Option<usize>)> {
-    if let Some(raw) = &fields.palette
-        && texture.format != TextureFormat::P8
-    {
-        return reader.refuse(palette::not_read(reader.span(raw), texture.format));
+    match &fields.palette {
+        Some(raw) if texture.format != TextureFormat::P8 => {
+            reader.refuse(palette::not_read(reader.span(raw), texture.format))
+        }
+        // What is wrong with the palette itself has been recorded.
+        Some(_) if palette.is_none() => None,
+        _ => Some((texture, palette)),
     }
-    if fields.palette.is_some() && palette.is_none() {
-        return None;
-    }
-    Some((texture, palette))
 }
 
 fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {

@@ -66,16 +66,16 @@ impl<'a> Visible<'a> {
     /// Finds the triangle of each pixel, which belongs to the last draw with a truth that stored a fragment there.
     pub fn new(plan: &'a Plan, truth: &'a Truth, target: usize) -> Self {
         // The words of other targets matter only where alpha, and so a test, depends on them.
-        let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
+        let reads = plan.draws().iter().any(|planned| planned.target == target && plan.reads_target(planned));
         let others = reads.then(|| render(plan, &RenderOptions::default()));
         let texture_words =
-            TextureWords::new(plan, &plan.draws, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+            TextureWords::new(plan, plan.draws(), others.as_ref().map_or(&[], |frames| &frames.surfaces));
         let images = texture_words.images();
         let mut surface = cleared(plan).surfaces.swap_remove(target);
         let width = surface.width as usize;
         let mut shown = vec![None; surface.words.len()];
         let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
-        for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
+        for (number, planned) in plan.draws().iter().enumerate().filter(|(_, planned)| planned.target == target) {
             let described = truth.meshes.get(number).is_some_and(Option::is_some);
             let stores_all = planned.stores_all();
             walk::covered(plan, planned, band.rows(), |context, i, j| {
@@ -90,13 +90,13 @@ impl<'a> Visible<'a> {
 
     /// Computes the truth of the pixels. For a pixel's index, `given` may return a normal of any length with its space, in place of the truth's own.
     pub fn evaluate(&self, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
-        let target = &self.plan.targets[self.target];
+        let target = &self.plan.targets()[self.target];
         let (width, height) = (target.width, target.height);
         let pixels = self.shown.iter().enumerate().map(|(at, shown)| {
             let (draw, triangle) = (*shown)?;
             let mesh = self.truth.meshes.get(draw)?.as_ref()?;
             let pixel = (at as u32 % width, at as u32 / width);
-            let point = point(&self.plan.draws[draw], mesh, triangle, pixel)?;
+            let point = point(&self.plan.draws()[draw], mesh, triangle, pixel)?;
             Some(shade(self.truth, &point, given(at)))
         });
         TruthFrame { width, height, pixels: pixels.collect() }

@@ -293,7 +293,7 @@ impl Frame {
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
         if let Some(view) = view {
             let view = plan(&view)?;
-            let format = view.targets[0].format;
+            let format = view.targets()[0].format;
             let (renderer, mut frames) = (Renderer::new(&view, options), ninebit::engine::cleared(&view));
             frames.surfaces[0].words = seen_as(&words, format);
             renderer.redraw(&mut frames);

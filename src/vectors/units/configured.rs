@@ -158,11 +158,13 @@ impl Unit for ConfiguredProgram {
     computed!(run);
 }
 
-/// A fragment, blended and stored: a plan of one pixel, whose colours each row sets.
+/// A fragment, blended and stored: a scene of one pixel, whose colours each row sets.
 #[derive(Debug)]
 pub struct ConfiguredBlend {
-    plan: Plan,
+    scene: Scene,
     surface: SurfaceFormat,
+    /// Channels that the surface stores, as bits R, G, B, A.
+    written: u8,
 }
 
 impl ConfiguredBlend {
@@ -180,30 +182,34 @@ impl ConfiguredBlend {
             blend: Some(blend),
             ..Draw::default()
         };
-        let scene = Scene { profile, targets: vec![Target::new(1, 1, surface)], draws: vec![draw], ..Scene::default() };
-        // Each row has its own colours, so nothing may be pruned because of the draw's colours.
-        let mut plan = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() })?;
-        for draw in &mut plan.draws {
-            draw.blended = draw.written;
-        }
-        Ok(ConfiguredBlend { plan, surface })
+        let targets = vec![Target::new(1, 1, surface)];
+        let scene = Scene { profile, targets, draws: vec![draw], ..Scene::default() };
+        let written = plan(&scene)?.draws()[0].written;
+        Ok(ConfiguredBlend { scene, surface, written })
     }
 
     /// Returns the steps of a row, and the word that the surface holds after it.
     fn steps(&self, inputs: &[i64]) -> (Vec<Step>, u32) {
-        let mut plan = self.plan.clone();
-        for target in &mut plan.targets {
-            target.clear_color = bytes(&inputs[4..]);
-        }
-        for draw in &mut plan.draws {
-            draw.final_combiner.state.constants[0] = bytes(inputs);
-            draw.blend_constant = bytes(&inputs[8..]);
-        }
-        // The pixel exists, and the draw covers it.
-        let Ok(trace) = engine::trace(&plan, 0, (0, 0), None) else { return Default::default() };
+        let mut scene = self.scene.clone();
+        scene.targets[0].clear_color = bytes(&inputs[4..]);
+        let draw = &mut scene.draws[0];
+        draw.blend_constant = bytes(&inputs[8..]);
+        draw.combiners.final_combiner.constants[0] = bytes(inputs);
+        // Nv10 has the same constants everywhere (CMB-12).
+        draw.combiners.stages.iter_mut().for_each(|stage| stage.constants[0] = bytes(inputs));
+        // The scene has been planned with other colours. The pixel exists, and the draw covers it.
+        let Some(trace) = plan(&scene).ok().and_then(|plan| engine::trace(&plan, 0, (0, 0), None).ok()) else {
+            return Default::default();
+        };
         let steps = trace.draws.into_iter().flat_map(|draw| draw.steps);
-        (steps.filter(|step| step.block == "blend" || step.block == "store").collect(), trace.word)
+        let wanted = |step: &Step| step.block == "store" || step.block == "blend";
+        (steps.filter(wanted).collect(), trace.word)
     }
+}
+
+/// Plans a scene of which every value is computed, whatever its colours are.
+fn plan(scene: &Scene) -> Result<Plan, Vec<PlanError>> {
+    Ok(Plan::compile(scene, &PlanOptions { prune: false, ..PlanOptions::default() })?.blending_stored_channels())
 }
 
 impl Unit for ConfiguredBlend {
@@ -213,13 +219,12 @@ impl Unit for ConfiguredBlend {
     );
 
     fn results(&self) -> Vec<Column> {
-        let blended = self.plan.draws.first().map_or(0, |draw| draw.blended);
         let name = |prefix: &str, channels: u8| -> Vec<Column> {
             let present = (0..4).filter(|channel| channels >> channel & 1 != 0);
             present.map(|c| Column::result(&format!("{prefix}.{}", channel_name(c)), Kind::Unsigned(32))).collect()
         };
         let word = vec![Column::result("stored.word", Kind::Unsigned(32))];
-        [name("blend", blended), word, name("field", surface::kept_channels(self.surface))].concat()
+        [name("blend", self.written), word, name("field", surface::kept_channels(self.surface))].concat()
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {

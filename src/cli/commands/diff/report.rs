@@ -91,17 +91,14 @@ fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result 
 /// Returns the report as JSON.
 pub(super) fn json(findings: &Findings<'_>) -> Value {
     let (arguments, difference) = (findings.arguments, &findings.difference);
-    let regions: Vec<Value> = (0..)
-        .zip(&difference.regions)
-        .map(|(number, region)| {
-            let scene = findings.scene.as_ref();
-            let trace = scene.and_then(|scene| Some(trace_value(&scene.plan, scene.traces.get(number as usize)?)));
-            json!({
-                "x": region.x, "y": region.y, "width": region.width, "height": region.height,
-                "pixels": region.pixels, "first": region.first, "largest": region.largest, "trace": trace,
-            })
+    let regions = difference.regions.iter().enumerate().map(|(number, region)| {
+        let scene = findings.scene.as_ref();
+        let trace = scene.and_then(|scene| Some(trace_value(&scene.plan, scene.traces.get(number)?)));
+        json!({
+            "x": region.x, "y": region.y, "width": region.width, "height": region.height,
+            "pixels": region.pixels, "first": region.first, "largest": region.largest, "trace": trace,
         })
-        .collect();
+    });
     let scene = findings.scene.as_ref().map(|scene| {
         let [a, b] = scene.different;
         json!({ "path": shown::lossless(scene.path), "target": scene.target, "a_differs": a, "b_differs": b })
@@ -120,7 +117,7 @@ pub(super) fn json(findings: &Findings<'_>) -> Value {
         "largest": difference.largest(),
         "channels": histograms(channels(findings)),
         "region_count": difference.region_count,
-        "regions": regions,
+        "regions": regions.collect::<Value>(),
         "scene": scene,
         "picture": picture,
     })

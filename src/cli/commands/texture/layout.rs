@@ -18,14 +18,14 @@ const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
 pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) -> Rgba {
     let levels: Vec<Rgba> = levels.map(|level| of_level(opened, &faces, level)).collect();
     let Some((first, rest)) = levels.split_first() else { return empty(1, 1) };
-    let column = rest.iter().map(|level| level.width).max().unwrap_or(0);
-    let below: u32 = rest.iter().map(|level| level.height).sum();
-    let mut picture = empty(first.width + column, first.height.max(below));
+    let column = rest.iter().map(|level| level.width()).max().unwrap_or(0);
+    let below: u32 = rest.iter().map(|level| level.height()).sum();
+    let mut picture = empty(first.width() + column, first.height().max(below));
     place(&mut picture, (0, 0), first);
     let mut y = 0;
     for level in rest {
-        place(&mut picture, (first.width, y), level);
-        y += level.height;
+        place(&mut picture, (first.width(), y), level);
+        y += level.height();
     }
     picture
 }
@@ -35,7 +35,7 @@ fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
     let show = |face: u32| {
         let shown = show::level(&opened.texels, opened.format, &opened.palette, opened.dithered, face, level);
         // The caller has checked that face and level exist.
-        shown.map_or_else(|| empty(1, 1), |Shown { width, height, pixels }| Rgba { width, height, pixels })
+        shown.map_or_else(|| empty(1, 1), |Shown { width, pixels, .. }| Rgba::new(width, pixels))
     };
     if faces.len() == 1 {
         return show(faces.start);
@@ -48,21 +48,21 @@ fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
         let cross = CROSS.get(face as usize).filter(|_| opened.kind == TextureKind::Cube);
         let (column, row) = cross.copied().unwrap_or((face % across, face / across));
         let shown = show(face);
-        let picture = picture.get_or_insert_with(|| empty(across * shown.width, down * shown.height));
-        place(picture, (column * shown.width, row * shown.height), &shown);
+        let picture = picture.get_or_insert_with(|| empty(across * shown.width(), down * shown.height()));
+        place(picture, (column * shown.width(), row * shown.height()), &shown);
     }
     picture.unwrap_or_else(|| empty(1, 1))
 }
 
 fn empty(width: u32, height: u32) -> Rgba {
-    Rgba { width, height, pixels: vec![[0; 4]; width as usize * height as usize] }
+    Rgba::new(width, vec![[0; 4]; width as usize * height as usize])
 }
 
 /// Copies a picture into a larger one.
 fn place(picture: &mut Rgba, (x, y): (u32, u32), part: &Rgba) {
-    let width = part.width as usize;
-    for (row, pixels) in part.pixels.chunks(width).enumerate() {
-        let at = (y as usize + row) * picture.width as usize + x as usize;
-        picture.pixels[at..at + width].copy_from_slice(pixels);
+    let width = part.width() as usize;
+    for (row, pixels) in part.pixels().chunks(width).enumerate() {
+        let at = (y as usize + row) * picture.width() as usize + x as usize;
+        picture.pixels_mut()[at..at + width].copy_from_slice(pixels);
     }
 }

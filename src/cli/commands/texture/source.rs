@@ -68,8 +68,8 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
                 let message = format!("a picture cannot be packed into {}", format.name());
                 return Err(Failure::usage(message, "blocks and indices come from DDS files; choose another format"));
             }
-            let (width, height) = (picture.width, picture.height);
-            let words = texels::pack(&picture.pixels, format).into();
+            let (width, height) = (picture.width(), picture.height());
+            let words = texels::pack(picture.pixels(), format).into();
             let texels = Texels { width, height, levels: 1, layers: 1, border: false, words };
             (plain_kind(width, height), format, texels, None)
         }

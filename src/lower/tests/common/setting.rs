@@ -33,6 +33,18 @@ pub fn any_policies(random: &mut Random) -> Policies {
     policies
 }
 
+/// Returns a value that a register can hold: colours are bytes, textures may be signed. The ends of ranges are more frequent.
+pub fn any_value(register: Register, random: &mut Random) -> [i32; 4] {
+    let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
+    std::array::from_fn(|_| match random.below(8) {
+        0 => 255,
+        1 => low,
+        // Both sides of the threshold of muxes.
+        2 => 127 + random.below(2) as i32,
+        _ => low + random.below((256 - low) as u128) as i32,
+    })
+}
+
 /// Returns a runner that draws random programs and scenes, the same ones for the same seed.
 pub fn runner(seed: u64) -> TestRunner {
     TestRunner::new_with_rng(Config::default(), TestRng::from_seed(RngAlgorithm::ChaCha, &[seed as u8; 32]))
