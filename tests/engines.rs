@@ -10,7 +10,7 @@ use crate::scene_files;
 use crate::settings::number;
 use ninebit_test_support::random_scene;
 
-use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, render};
+use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, render, trace};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
@@ -170,6 +170,14 @@ fn foreign_frames_are_replaced() {
     for mut frames in [short, Frames { surfaces: Vec::new() }] {
         renderer.redraw(&mut frames);
         assert!(frames == own);
+    }
+}
+
+#[test]
+fn traces_of_what_is_not_there_are_refused() {
+    let plan = scene::load(&at("vectors/scenes/clipping/corridor.ron"), &Limits::default()).unwrap().plan;
+    for (target, pixel, draw) in [(7, (0, 0), None), (0, (100_000, 0), None), (0, (0, 0), Some(7))] {
+        assert!(trace(&plan, target, pixel, draw).is_err(), "{target} {pixel:?} {draw:?}");
     }
 }
 

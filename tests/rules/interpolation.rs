@@ -31,7 +31,7 @@ fn examples_of_interpolation() {
     let text = "The examples of this section use one triangle: (0, 0), (96, 0), (0, 96) in pixels, w = 1.";
     assert!(read("docs/numerics.md").contains(text), "the handbook uses another triangle");
     let triangle = of_the_section();
-    assert_eq!(triangle.doubled_area, 1536 * 1536);
+    assert_eq!(triangle.doubled_area(), 1536 * 1536);
 
     let int1 = beside_rows("INT-1");
     let deep = right_triangle(96.0, [1.0, 1.0, 2.0], Profile::Nv2a);
@@ -61,13 +61,13 @@ fn examples_of_interpolation() {
     int4t.gives("S < 0", sample.shortfall(&second) < 0, true);
     let [numerator, denominator, _] = triangle.direction([[0.0, 0.0, 2.0], [2.0; 3], [0.0; 3]]);
     int4t.gives("the loss of N_q", sample.shortfall(&denominator), 0);
-    let parts = sample.sum(&numerator) * i128::from(triangle.p[1]);
+    let parts = sample.sum(&numerator) * i128::from(triangle.p()[1]);
     int4t.gives("the loss of N_s in 2^-24 / P_1", sample.shortfall(&numerator), parts);
     int4t.gives("64 N_s", 64 * sample.sum(&numerator), sample.sum(&denominator));
     int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), Floored { value: 255, lowered: 1 });
 
     let int6 = beside_rows("INT-6");
-    let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;
+    let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p();
     let (small, large) = (1.0 + 2_f32.powi(-20), 1.0 + 2_f32.powi(-15));
     int6.gives("1 + 2^-20 counts as 1 on Nv10", p(small, Profile::Nv10), p(1.0, Profile::Nv10));
     int6.gives("1 + 2^-20 differs from 1 on Nv2a", p(small, Profile::Nv2a) != p(1.0, Profile::Nv2a), true);
@@ -89,7 +89,7 @@ fn examples_of_depth() {
     let real = z.iter().zip(e).map(|(z, e)| z * e).sum::<i64>() * 100 / 39_321_600;
     dep1.gives("100 times the real number, floored", real, 1_380_624_884);
     let row1 = at(&triangle, 10, 1);
-    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area);
+    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area());
 
     let dep2 = beside_rows("DEP-2");
     let text =

@@ -34,7 +34,8 @@ fn examples_of_the_rasteriser() {
 
     let corners = triangle([[0.5, 0.5], [16.5, 0.5], [0.5, 16.5]]);
     // Edge k lies opposite to corner k: 0 is slanted, 1 is the left edge, 2 is the top edge.
-    beside_rows("RAS-3").gives("edges that own their samples", corners.owns, [false, true, true]);
+    let on_edge = [[0, 1, 1], [1, 0, 1], [1, 1, 0]];
+    beside_rows("RAS-3").gives("edges that own their samples", on_edge.map(|e| corners.covers(e)), [false, true, true]);
 
     let strip = split(Topology::TriangleStrip, 5);
     beside_rows("RAS-4").gives("a strip of five", strip, vec![[0, 1, 2], [2, 1, 3], [2, 3, 4]]);

@@ -53,7 +53,7 @@ fn examples_of_texture_units() {
         let [s, q, one] = triangle.direction([[1.0; 3], [0.0, sign, -7.0 * sign], [1.0; 3]]);
         tex15.gives("q", sample.sum(&q), 0);
         // The weights fall short by 2^-27 of 1.
-        let loss = -sign as i128 * sample.sum(&one) * i128::from(triangle.p[1]);
+        let loss = -sign as i128 * sample.sum(&one) * i128::from(triangle.p()[1]);
         tex15.gives("8 times its loss", 8 * sample.shortfall(&q), loss);
         tex15.gives("u", sample.ratio(&s, &q, 64).value, value);
     }

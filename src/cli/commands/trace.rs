@@ -76,6 +76,7 @@ fn outside(scene: &Scene, error: &TraceError) -> Failure {
         TraceError::Pixel { width, height, .. } => {
             format!("columns run from 0 to {}, rows from 0 to {}", width - 1, height - 1)
         }
+        TraceError::Target { .. } => "name one of the scene's targets".to_owned(),
         TraceError::Draw { .. } => known_draws(scene),
     };
     Failure::usage(error.to_string(), help)

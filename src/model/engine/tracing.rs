@@ -67,6 +67,13 @@ impl DrawTrace {
 /// The pixel or the draw does not exist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TraceError {
+    /// The target does not exist.
+    Target {
+        /// Number of the requested target.
+        target: usize,
+        /// Number of targets of the scene.
+        count: usize,
+    },
     /// The pixel is outside the target.
     Pixel {
         /// The column that was asked for.
@@ -92,6 +99,9 @@ pub enum TraceError {
 impl fmt::Display for TraceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            TraceError::Target { target, count } => {
+                write!(f, "there is no target {target}; the scene has {count}, numbered from 0")
+            }
             TraceError::Pixel { x, y, target, width, height } => {
                 write!(f, "pixel {x},{y} lies outside target `{target}`, which is {width} x {height}")
             }
@@ -110,7 +120,7 @@ pub const FRAGMENTS: u64 = 256;
 /// Traces pixel (x, y) of target number `target`, with its last [`FRAGMENTS`] fragments. `only` restricts it to a single draw.
 ///
 /// # Errors
-/// The pixel lies outside the target, or the draw does not exist.
+/// The target or the draw does not exist, or the pixel lies outside the target.
 pub fn trace(plan: &Plan, target: usize, pixel: (u32, u32), only: Option<usize>) -> Result<PixelTrace, TraceError> {
     trace_last(plan, target, pixel, only, FRAGMENTS)
 }
@@ -162,7 +172,7 @@ impl<'a> Tracer<'a> {
     /// draw. Covered pixels are counted here, but nothing is shaded yet.
     ///
     /// # Errors
-    /// The pixel lies outside the target, or the draw does not exist.
+    /// The target or the draw does not exist, or the pixel lies outside the target.
     pub fn new(
         plan: &'a Plan,
         target: usize,
@@ -170,7 +180,8 @@ impl<'a> Tracer<'a> {
         only: Option<usize>,
         fragments: u64,
     ) -> Result<Self, TraceError> {
-        let (description, (x, y)) = (&plan.targets[target], pixel);
+        let (count, (x, y)) = (plan.targets.len(), pixel);
+        let description = plan.targets.get(target).ok_or(TraceError::Target { target, count })?;
         if x >= description.width || y >= description.height {
             return Err(TraceError::Pixel {
                 x,

@@ -14,29 +14,44 @@ const PERSPECTIVE_BITS: i32 = 28;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triangle {
     /// Slopes of the edge functions along x.
-    pub a: [i64; 3],
+    pub(crate) a: [i64; 3],
     /// Slopes of the edge functions along y.
-    pub b: [i64; 3],
+    pub(crate) b: [i64; 3],
     /// Values of the edge functions at the centre of pixel (0, 0).
-    pub c: [i64; 3],
+    pub(crate) c: [i64; 3],
     /// Whether a sample exactly on edge k belongs to the triangle: left edges and horizontal top edges (RAS-3).
-    pub owns: [bool; 3],
+    pub(crate) owns: [bool; 3],
     /// P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
     /// Without perspective all are 2^27.
-    pub p: [i64; 3],
+    pub(crate) p: [i64; 3],
     /// Twice the area in 1/256 square pixel, positive, below 2^34.
-    pub doubled_area: i64,
+    pub(crate) doubled_area: i64,
     /// Half-open range of the rows that can be covered.
-    pub rows: (i64, i64),
+    pub(crate) rows: (i64, i64),
     /// Half-open range of the columns that can be covered.
-    pub columns: (i64, i64),
+    pub(crate) columns: (i64, i64),
     /// Whether it turns counter-clockwise as seen on the screen.
-    pub counter_clockwise: bool,
+    pub(crate) counter_clockwise: bool,
     /// INT-3's exception: whether the reciprocal of the weights' sum is exact, so that no tie is lowered.
-    pub exact_reciprocal: bool,
+    pub(crate) exact_reciprocal: bool,
 }
 
 impl Triangle {
+    /// Returns P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
+    pub fn p(&self) -> [i64; 3] {
+        self.p
+    }
+
+    /// Returns twice the area in 1/256 square pixel, positive, below 2^34.
+    pub fn doubled_area(&self) -> i64 {
+        self.doubled_area
+    }
+
+    /// Returns the half-open range of the rows that can be covered.
+    pub fn rows(&self) -> (i64, i64) {
+        self.rows
+    }
+
     /// Sets up a triangle from window positions and w. Returns `None` if its area is zero after RAS-1, so that it
     /// covers nothing.
     ///

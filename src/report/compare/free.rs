@@ -23,7 +23,7 @@ impl Method for Free {
         for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
             let fixed = TriangleContext::new(draw.plan, draw.planned, number, rows);
             let outline = outline(draw.planned, number);
-            let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
+            let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows());
             let spans = outer(&fixed).into_iter().chain(outline.as_ref().map(|o| o.rows));
             let Some(reach) = spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
             for j in rows.0.max(reach.0)..rows.1.min(reach.1) {
@@ -105,7 +105,7 @@ fn real_side<L: Lane>(
     let fragment = Fragment {
         pixel: (i, j),
         // Any sample will do, because the ideal uses its own weights.
-        e: [context.triangle.doubled_area, 0, 0],
+        e: [context.triangle.doubled_area(), 0, 0],
         stored: band.words[at],
         weights: Some(outline.weights(i, j)),
     };

@@ -156,7 +156,7 @@ impl Unit for ColorWeights {
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
         let weights = sample.weights();
         results[..3].copy_from_slice(&sample.e);
-        results[3..6].copy_from_slice(&triangle.p);
+        results[3..6].copy_from_slice(&triangle.p());
         for (n, weight) in weights.into_iter().enumerate() {
             (results[6 + n], results[8 + n]) = (weight.lowered, weight.value);
         }
@@ -257,7 +257,7 @@ impl Unit for PerspectiveWeights {
         let Some(mut triangle) = Triangle::new(LARGE, false, conditions.profile) else { return };
         triangle.weigh(w, true, conditions.profile);
         put(results, significant(w, conditions.profile).map(f32::to_bits));
-        results[3..].copy_from_slice(&triangle.p);
+        results[3..].copy_from_slice(&triangle.p());
     }
 }
 
