@@ -3,11 +3,11 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use ninebit::legality::check;
+use ninebit::state::Profile;
 use ninebit_program::c_source::{Style, expand};
 use ninebit_program::combiner_calls::{self, Words};
-use ninebit::legality::check;
 use ninebit_program::texture_environment::{BaseFormat, Context, lower, parse};
-use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {
     for style in [Style::Assembler, Style::Combiners, Style::Calls] {

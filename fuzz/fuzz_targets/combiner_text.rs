@@ -3,9 +3,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use ninebit::state::Profile;
 use ninebit_program::registers::{decode, encode};
 use ninebit_program::text::{parse, print, read};
-use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {
     match read(text) {

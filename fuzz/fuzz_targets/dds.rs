@@ -3,10 +3,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit_scene::dds::{SIGNATURE, decode};
-use ninebit_scene::image::ImageLimits;
 use ninebit::state::{CUBE_FACES, Level, Texels};
 use ninebit::texture::show;
+use ninebit_scene::dds::{SIGNATURE, decode};
+use ninebit_scene::image::ImageLimits;
 use std::path::Path;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -5,10 +5,10 @@
 use libfuzzer_sys::fuzz_target;
 use ninebit::diagnostic::Severity;
 use ninebit::legality::check;
+use ninebit::state::Profile;
+use ninebit_program::Places;
 use ninebit_program::pixel_shader::{Bump, Context, lower, parse, print};
 use ninebit_program::text::words::Words;
-use ninebit_program::Places;
-use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {
     match parse(text) {

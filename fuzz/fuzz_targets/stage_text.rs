@@ -3,9 +3,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use ninebit::state::Profile;
 use ninebit_program::Pasted;
 use ninebit_program::texture_stages::{Context, lower, parse};
-use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {
     match parse(text) {

@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit_program::vertex_shader::{parse, print, read};
 use ninebit::vertex::shader::{CONSTANTS, INPUTS, evaluate};
+use ninebit_program::vertex_shader::{parse, print, read};
 
 fuzz_target!(|text: &str| {
     if let Err(findings) = read(text) {
@@ -19,6 +19,7 @@ fuzz_target!(|text: &str| {
     let number = |n: usize| (n as f32 - 40.0) / 8.0;
     let constants: [[f32; 4]; CONSTANTS] = std::array::from_fn(|n| [number(n), number(n + 1), -1.0, 0.0]);
     let inputs: [[f32; 4]; INPUTS] = std::array::from_fn(|n| [number(n * 7), 1.0, 0.5, number(n)]);
-    let (first, second) = (evaluate(&written.shader, &constants, &inputs), evaluate(&written.shader, &constants, &inputs));
+    let (first, second) =
+        (evaluate(&written.shader, &constants, &inputs), evaluate(&written.shader, &constants, &inputs));
     assert_eq!(first.position.map(f32::is_nan), second.position.map(f32::is_nan));
 });

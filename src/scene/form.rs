@@ -20,8 +20,8 @@ pub(super) enum Form {
     Table(fn() -> Form),
     /// A word, with a value of its own form in parentheses.
     Variant(&'static [Entry]),
-    /// A value of the given form, or a text that gives the field of that name: of a texture unit, its texture.
-    OrName(fn() -> Form, &'static str),
+    /// A value of the given form, or a text: the name of such a value, or the value of its field with that name, as a texture unit's texture.
+    OrName(fn() -> Form, Option<&'static str>),
     /// A value without parts.
     Value(Kind),
 }

@@ -100,7 +100,7 @@ impl<'a> Walker<'a> {
                 if !Raw::<()>::new(text).is_text() {
                     return self.content(text, of());
                 }
-                let Form::Fields(fields) = of() else { return Content::Value(Kind::Text) };
+                let (Form::Fields(fields), Some(field)) = (of(), field) else { return Content::Value(Kind::Text) };
                 let absent = values(fields().into_iter().filter(|(name, _)| *name != field));
                 Content::Group { parts: Vec::new(), absent, around: [format!("({field}: {text}, "), ")".to_owned()] }
             }
@@ -154,8 +154,8 @@ described! {
     ]);
     source::VertexList => Form::List(source::Vertex::form);
     source::Program => Form::Variant(&[("Combiners", source::Combiners::form)]);
-    source::BlendSource => Form::OrName(source::Blend::form, "equation");
-    source::Unit => Form::OrName(source::UnitState::form, "texture");
+    source::BlendSource => Form::OrName(source::Blend::form, None);
+    source::Unit => Form::OrName(source::UnitState::form, Some("texture"));
     source::Matrix, source::MeshSource, source::ImageSource, source::ShaderStage, source::ShaderOperation,
     source::Attribute, source::ShaderConstant, source::CoordinateSource, source::Generator, source::Input, source::FinalInput,
     source::Output, source::NormalSource, source::StageArgument, source::TransformFlags, source::Word, source::ViewerWord, source::AlphaReference => Form::Value(Kind::Other);
@@ -172,8 +172,9 @@ mod tests {
 (version: 1, profile: Nv10,
     targets: [(name: "frame", width: 8, height: 8, format: R5G6B5)],
     textures: { "t": (source: Solid(width: 8, height: 8, color: (1, 2, 3))) },
+    names: (blends: { "over": (source: SourceAlpha, destination: OneMinusSourceAlpha) }),
     draws: [(
-        name: "one", /* here */ textures: ["t"],
+        name: "one", /* here */ textures: ["t"], blend: "over",
         vertices: Window([(position: (0, 0), diffuse: (255, 0, 0)), (position: (8, 0)), (position: (0, 8))]),
         program: Combiners(constants: ((1, 2, 3, 4),), stages: [(rgb: (a: Texture0, ab: Spare0))], final_combiner: (a: Spare0)),
     )],
@@ -192,6 +193,8 @@ mod tests {
             panic!("a choice")
         };
         assert_eq!((format, words.contains(&"X8R8G8B8O")), ("R5G6B5", true));
+        // Fields cannot be added to the name of a blend.
+        assert_eq!(read(&["draws", "0", "blend"]), ("\"over\"", Content::Value(Kind::Text)));
         assert_eq!(read(&["textures", "t", "source"]).0, "Solid(width: 8, height: 8, color: (1, 2, 3))");
     }
 

@@ -110,7 +110,7 @@ pub enum Domain {
 /// A number of a row: its name, and the values that it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Name, which begins with `cfg.`, `in.`, `mid.` or `out.`.
+    /// Name. In tables it begins with `cfg.`, `in.`, `mid.` or `out.`; units that state configures have the names of traces.
     pub name: String,
     /// How its numbers are written.
     pub kind: Kind,

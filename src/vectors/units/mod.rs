@@ -41,9 +41,12 @@ $(
 )?    };
 }
 
-/// Evaluates a unit, and records its steps, by its method `run` of the inputs, the conditions and an observer. Where the results are numbers
-/// of a lane, `run` also takes a function from an input's index to its number; where it returns intermediates and, apart from them, outputs
-/// (bytes or registers), rows are computed in block lanes from an input on, unless a condition holds.
+/// Evaluates a unit and records its steps by one method.
+///
+/// - `plain run`: the method takes the inputs, the conditions and an observer, and returns the results.
+/// - `run`: the results are numbers of a lane. The method also takes a function that returns the number of an input.
+/// - `run; bytes from N` or `registers from N`: the method returns the intermediates, and the outputs as numbers of a lane. Rows in which an
+///   input from N on varies are computed in block lanes, unless the condition holds.
 macro_rules! computed {
     (plain $run:ident) => {
         fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
