@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::outcome::{Outcome, Problem, ProblemKind};
 use crate::expectation::{Expectation, ExpectationError, depth_digest, masked_digest};
-use ninebit::diagnostic::ErrorKind;
 use ninebit::frame::Surface;
 use ninebit::shown;
 use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_file};
@@ -54,6 +53,5 @@ pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
 
 /// Returns the problem of an output that was not written.
 pub(super) fn unwritten(error: OutputError) -> Problem {
-    let problem = Problem::new(ErrorKind::Invalid, error.code(), error.to_string(), error.help());
-    Problem { kind: ProblemKind::Output, ..problem }
+    Problem::new(ProblemKind::Output, error.code(), error.to_string(), error.help())
 }

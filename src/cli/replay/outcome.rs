@@ -71,18 +71,28 @@ pub struct Problem {
     pub place: Option<(usize, usize)>,
 }
 
+impl From<ErrorKind> for ProblemKind {
+    fn from(kind: ErrorKind) -> ProblemKind {
+        ProblemKind::Scene(kind)
+    }
+}
+
 impl Problem {
     /// Returns a problem with advice to the user.
-    pub(super) fn new(kind: ErrorKind, code: &'static str, message: impl Into<String>, help: &str) -> Self {
+    pub(super) fn new(
+        kind: impl Into<ProblemKind>,
+        code: &'static str,
+        message: impl Into<String>,
+        help: &str,
+    ) -> Self {
         let message = message.into();
         let text = format!("error[{code}]: {message}\n  help: {help}");
-        Problem { kind: ProblemKind::Scene(kind), code, message, text, place: None }
+        Problem { kind: kind.into(), code, message, text, place: None }
     }
 
     /// Returns the problem for a fault of this program.
     pub(super) fn internal(panic: &Panic) -> Self {
-        let problem = Problem::new(ErrorKind::Invalid, Panic::CODE, panic.to_string(), Panic::HELP);
-        Problem { kind: ProblemKind::Internal, ..problem }
+        Problem::new(ProblemKind::Internal, Panic::CODE, panic.to_string(), Panic::HELP)
     }
 
     /// Returns the exit status of the problem.

@@ -19,7 +19,7 @@ use ninebit::texture::unit;
 use ninebit::trace::{Observer, Recorder, Rule, Silent, Step, plain};
 
 /// Returns a column for each channel of each register, in the order of [`Register::ALL`].
-fn register_columns() -> Vec<Column> {
+pub fn register_columns() -> Vec<Column> {
     let columns = Register::ALL.iter().flat_map(|register| {
         channels(registers::name(*register), CHANNELS, |name| match register {
             Register::Zero => Column::unsigned(name, 1, 0),

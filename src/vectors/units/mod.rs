@@ -110,7 +110,7 @@ mod texture_stage;
 
 pub use configured::{
     ConfiguredAddress, ConfiguredBlend, ConfiguredCube, ConfiguredFilter, ConfiguredFinal, ConfiguredProgram,
-    ConfiguredStage,
+    ConfiguredStage, register_columns,
 };
 
 use super::column::{Column, Kind};

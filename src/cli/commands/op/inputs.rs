@@ -1,10 +1,9 @@
 //! Register contents on the command line and in tables.
 
 use clap::Args;
-use ninebit::state::{Combiners, Named, Profile, Register};
-use ninebit_vectors::Unit;
+use ninebit::state::{Named, Profile, Register};
 use ninebit_vectors::unit::Conditions;
-use ninebit_vectors::units::ConfiguredProgram;
+use ninebit_vectors::{Unit, units};
 
 use super::{Column, Common, Failure, Input, PolicyArguments, ProfileArgument, Setup, set, words};
 
@@ -70,8 +69,7 @@ impl Contents {
     /// Runs a unit on registers. `unit` returns it for a chip.
     pub(super) fn drive<U: Unit>(&self, unit: impl FnOnce(Profile) -> Result<U, Failure>) -> Result<(), Failure> {
         let conditions = Conditions { profile: self.profile.profile, policies: self.policies.policies()? };
-        let idle = ConfiguredProgram { combiners: Combiners::default() };
-        let mut columns = register_columns(&idle);
+        let mut columns = register_columns();
         assign(&mut columns, &self.registers)?;
         for (register, color) in [(Register::ConstantColor0, self.const0), (Register::ConstantColor1, self.const1)] {
             set(&mut columns[4 * register as usize..], color.into_iter().flatten())?;
@@ -107,13 +105,12 @@ fn four(numbers: &[i64]) -> [i64; 4] {
 }
 
 /// Returns the columns of a unit on registers, all 0.
-pub(super) fn register_columns(unit: &dyn Unit) -> Vec<Column> {
-    let mut columns = super::columns(unit, &[], |_| 255, "");
-    for column in &mut columns {
-        column.how_to_give = format!("write `--in {}=N`", column.input.name);
-        column.value = Some(0);
-    }
-    columns
+pub(super) fn register_columns() -> Vec<Column> {
+    let columns = units::register_columns().into_iter().map(|input| {
+        let (name, how) = (input.name.clone(), format!("write `--in {}=N`", input.name));
+        Column { per_one: 255, value: Some(0), ..Column::from_input(input, &name, how) }
+    });
+    columns.collect()
 }
 
 /// Returns the index of the column of `REGISTER.CHANNEL` among [`register_columns`].

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::state::{Combiners, Register};
+use ninebit::state::Register;
 use ninebit_scene::ProgramLanguage;
 use ninebit_vectors::unit::Conditions;
 use ninebit_vectors::units::ConfiguredProgram;
@@ -35,7 +35,7 @@ const OWN: [Register; 4] = [Register::ConstantColor0, Register::ConstantColor1, 
 /// Runs a whole pixel program.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let policies = arguments.policies.policies()?;
-    let mut columns = inputs::register_columns(&ConfiguredProgram { combiners: Combiners::default() });
+    let mut columns = inputs::register_columns();
     inputs::assign(&mut columns, &arguments.registers)?;
     let own = |n: usize| OWN.iter().any(|register| n / 4 == *register as usize);
     if let Some((_, column)) = columns.iter().enumerate().find(|(n, column)| own(*n) && column.value != Some(0)) {
@@ -53,8 +53,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Failure::usage("which language the program is in is not said", help)
     })?;
     let (scene, _) = arguments.program.read(file, language, context)?;
-    let unit =
-        ConfiguredProgram { combiners: scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default() };
+    let combiners = scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default();
+    let unit = ConfiguredProgram { combiners };
     let conditions = Conditions { profile: scene.profile, policies };
     let setup = Setup {
         find: |_, name| inputs::register_column(name).filter(|n| OWN.iter().all(|own| n / 4 != *own as usize)),
