@@ -3,15 +3,15 @@
 
 use super::kernels::LANES;
 use super::kernels::PerLane;
-use super::quads::{AtQuads, Known, Measure, Quads, floor, parted};
-use super::quotient::{IOTA_REAL, Line, Positions, any_negative, nearest, position, whole};
+use super::quads::{Known, Quads, floor, parted};
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
 use super::{Reason, Sampler};
 use crate::state::Filter;
 use crate::texture::coordinates::SampleCoordinates;
-use crate::texture::lod::{self, Quad};
+use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
 
 /// Fetches of a block from a texture with levels.
@@ -41,36 +41,27 @@ impl Default for MipFetches {
 /// Scratch space for placing lanes on levels.
 #[derive(Clone, Debug)]
 pub(super) struct Placing {
-    /// u and v on level 0 in 1/256 texel, with fractions.
+    /// u and v on level 0 in 1/256 texel, with fractions, if something is taken off them.
     at: [PerLane<f64>; 2],
+    /// Their floors.
+    floors: [PerLane<i32>; 2],
     lods: PerLane<i32>,
     levels: [PerLane<i32>; 2],
-    /// Entries and coordinates on one level.
-    read: [PerLane<i32>; 3],
-    /// Doubles as bits, negative if a coordinate is not proved on some level.
-    close: [PerLane<u64>; 2],
-    /// Whether the definition computes the lane.
-    open: PerLane<bool>,
+    /// Sign bits of lanes whose floors are not proved on some level.
+    close: PerLane<i32>,
 }
 
 impl Default for Placing {
     fn default() -> Self {
         Placing {
             at: [[0.0; LANES]; 2],
+            floors: [[0; LANES]; 2],
             lods: [0; LANES],
             levels: [[0; LANES]; 2],
-            read: [[0; LANES]; 3],
-            close: [[0; LANES]; 2],
-            open: [false; LANES],
+            close: [0; LANES],
         }
     }
 }
-
-/// If coordinates of a quad are further apart, in 1/65536 texel, the definition computes its level of detail.
-const FARTHEST: f64 = (1 << 26) as f64;
-
-/// Distance of a mantissa from a power of two below which nothing is proved. Seven squarings multiply rounding errors by 128.
-const LOG_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Setup<'_> {
     /// Computes all fetches of a batch for a unit with levels.
@@ -94,74 +85,58 @@ impl Setup<'_> {
         };
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &base), &local.e, quads, &mut reads.known);
-        spread.hand_out(quads, &reads.known.each, batch.count, &mut placing.lods[..lanes]);
-        let (at, denominator) = (batch.at, base.denominator);
-        let [at_u, at_v] = &mut placing.at;
-        let (lines, (u, v)) = ([base.along, base.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
-        match base.losses {
-            Some(losses) => short.dominance.divide::<FMA, ROW>(at, lines, losses, [u, v]),
-            None => quotients::<FMA, ROW>(at, lines, u, v),
-        }
-        placing.open[..lanes].fill(false);
-        let ranges = choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[batch.lanes()]);
-        let mut opens = false;
-        let read_levels = ranges[0][0]..=ranges[1][1];
+        let Placing { at, floors: [u, v], lods, levels, close } = placing;
+        spread.hand_out(quads, &reads.known.each, batch.count, &mut lods[..lanes]);
+        let ranges = choose(unit, lanes, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
-        let mut raised = [0.0; 2];
-        for axis in 0..2 {
+        let settled = [0, 1].map(|axis| {
             let (gap, shared) = base.gaps[axis];
             // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
-            let floors = read_levels.clone().map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
-            let off = base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift));
-            let (up, off) = parted(gap, off);
-            raised[axis] = up;
-            mark_unproved(&placing.at[axis][..lanes], up, off, &mut placing.close[axis][..lanes]);
-        }
-        let some = any_negative(&placing.close[0][..lanes]) | any_negative(&placing.close[1][..lanes]);
-        let close_lanes = if some { batch.count } else { 0 };
-        for level in read_levels {
-            let shifts = shifts(level);
-            let Placing { at, lods, levels, read, close, open } = &mut *placing;
-            for axis in 0..2 {
-                let scale = f64::from_bits(u64::from(1023 - shifts[axis]) << 52);
-                on_level(&at[axis][..lanes], scale, raised[axis], &mut read[axis]);
+            let floors = (ranges[0][0]..=ranges[1][1]).map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
+            parted(gap, base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift)))
+        });
+        let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
+        let lines = [base.along, base.down, base.denominator];
+        match base.losses {
+            Some(losses) => {
+                let [at_u, at_v] = at;
+                let (at_u, at_v) = (&mut at_u[..lanes], &mut at_v[..lanes]);
+                short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, [&mut *at_u, &mut *at_v]);
+                settle(at_u, at_v, settled, u, v, close);
             }
-            for n in (0..close_lanes).filter(|n| (close[0][*n] | close[1][*n]) >> 63 != 0) {
-                if levels[0][n] != level && levels[1][n] != level {
-                    continue;
+            None => quotients::<FMA, ROW>(batch.at, lines, settled, u, v, close),
+        }
+        let any_close = close.iter().fold(0, |all, close| all | close) < 0;
+        let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
+        for (which, [low, high]) in ranges.into_iter().enumerate() {
+            let ([to_u, to_v], entries) = (&mut reads.coordinates[which], &mut reads.entries[which]);
+            let (to_u, to_v) = (&mut to_u[batch.lanes()], &mut to_v[batch.lanes()]);
+            let entries = &mut entries[batch.lanes()];
+            for level in low..=high {
+                let (placed, shifts) = (table.placed(level as usize, base.face as u32), shifts(level));
+                if level == low {
+                    places::<true>(&placed, filters, shifts, (&lods[..lanes], &[]), level, u, v, to_u, to_v, entries);
+                } else {
+                    let of = (&lods[..lanes], &levels[which][..lanes]);
+                    places::<false>(&placed, filters, shifts, of, level, u, v, to_u, to_v, entries);
                 }
-                let Some(planes) = base.planes else {
-                    (open[n], opens) = (true, true);
-                    continue;
+            }
+        }
+        let count = if any_close { batch.count } else { 0 };
+        for n in (0..count).filter(|n| placing.close[*n] < 0) {
+            let Some(planes) = base.planes else {
+                self.defined_reads(batch, n, sampler, table, reads);
+                continue;
+            };
+            for which in 0..2 {
+                let level = placing.levels[which][n];
+                let on_axis = |axis: usize| {
+                    let shift = shifts(level)[axis];
+                    self.corrected(batch, n, &planes[axis].g.map(|g| g >> shift), placing.floors[axis][n] >> shift)
                 };
-                for axis in 0..2 {
-                    let g = planes[axis].g.map(|g| g >> shifts[axis]);
-                    read[axis][n] = self.corrected(batch, n, &g, read[axis][n]);
-                }
+                let placed = table.placed(level as usize, base.face as u32);
+                reads.place(which, batch.lane + n, &placed, filters, placing.lods[n], [on_axis(0), on_axis(1)]);
             }
-            let [u, v, entries] = read;
-            let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
-            let placed = table.placed(level as usize, base.face as u32);
-            let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
-            places(&placed, filters, &lods[..lanes], u, v, entries);
-            for (which, [low, high]) in ranges.into_iter().enumerate() {
-                if level < low || level > high {
-                    continue;
-                }
-                let [to_u, to_v] = &mut reads.coordinates[which];
-                let to = [&mut reads.entries[which], to_u, to_v];
-                for (to, from) in to.into_iter().zip([&*entries, &*u, &*v]) {
-                    let to = &mut to[batch.lanes()];
-                    match level == low {
-                        true => to.copy_from_slice(from),
-                        false => put(level, &levels[which][..lanes], from, to),
-                    }
-                }
-            }
-        }
-        let count = if opens { batch.count } else { 0 };
-        for n in (0..count).filter(|n| placing.open[*n]) {
-            self.defined_reads(batch, n, sampler, table, reads);
         }
     }
 
@@ -189,99 +164,65 @@ impl Setup<'_> {
         let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
         let (level, next, weight) = lod::levels(unit, lod.max(0));
-        let filter = if lod <= 0 { unit.state.mag_filter } else { unit.state.min_filter };
-        for (k, level) in [level as usize, next as usize].into_iter().enumerate() {
+        let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
+        for (which, level) in [level as usize, next as usize].into_iter().enumerate() {
             let at = place.on(&unit.levels[level]).map(|c| c.value as i32);
-            let ([u, v], mut entries) = (at, [0]);
-            let (mut u, mut v) = ([u], [v]);
-            let placed = table.placed(level, place.face() as u32);
-            places(&placed, [Taken::by(filter); 2], &[lod], &mut u, &mut v, &mut entries);
-            reads.entries[k][lane] = entries[0];
-            (reads.coordinates[k][0][lane], reads.coordinates[k][1][lane]) = (u[0], v[0]);
+            reads.place(which, lane, &table.placed(level, place.face() as u32), filters, lod, at);
         }
         reads.weights[lane] = weight;
     }
 }
 
-impl Measure for i32 {
-    fn behind(_: &PlannedUnit) -> i32 {
-        lod::LEAST
-    }
-
-    #[inline(always)]
-    fn measure<const WIDE: bool>(_: &PlannedUnit, at: &AtQuads, _: usize, out: &mut [i32], unknown: &mut [u64]) {
-        log_ratios(at, out.len(), out, unknown);
-    }
-
-    fn defined(_: &PlannedUnit, quad: Option<Quad>) -> i32 {
-        lod::log2_ratio(quad)
+impl MipFetches {
+    /// Places a lane on a level, the nearer or the next one, at the coordinates that it has there.
+    fn place(&mut self, which: usize, lane: usize, placed: &Placed, filters: [Taken; 2], lod: i32, [u, v]: [i32; 2]) {
+        let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
+        let (to_u, to_v, entries) = (&mut to_u[lane..=lane], &mut to_v[lane..=lane], &mut entries[lane..=lane]);
+        places::<true>(placed, filters, [0; 2], (&[lod], &[]), 0, &[u], &[v], to_u, to_v, entries);
     }
 }
 
-/// TEX-11, TEX-10: computes the levels of detail of quads. Sets the sign bits of those that are not known.
+/// Computes the floors of two quotients on level 0. Sets the sign bits of lanes where one is so close to an integer that its floor is not
+/// proved, on that level or on smaller ones.
 #[inline(always)]
-fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64]) {
-    let [[u, v], [right_u, right_v], [lower_u, lower_v]] = at;
-    let (lods, unknown) = (&mut lods[..lanes], &mut unknown[..lanes]);
-    for n in 0..lanes {
-        let (a, b, c, d) = (right_u[n] - u[n], right_v[n] - v[n], lower_u[n] - u[n], lower_v[n] - v[n]);
-        let far = |d: f64| (FARTHEST - d.abs()).to_bits();
-        let mut open = far(a) | far(b) | far(c) | far(d);
-        // Integers below 2^53, so they are exact.
-        let (right, lower) = (a * a + b * b, c * c + d * d);
-        let largest = if right > lower { right } else { lower };
-        let bits = largest.to_bits();
-        // The exponent of its 128th power is the logarithm. A mantissa hardly above 1 is moved away from it, which leaves the exponent 0.
-        let mut power = f64::from_bits(bits & ((1 << 52) - 1) | 1.0_f64.to_bits());
-        for _ in 0..7 {
-            power *= power;
-        }
-        let power = if power > 1.0 + 2.0 * LOG_MARGIN { power } else { 1.0 + 2.0 * LOG_MARGIN };
-        let log = 128 * ((bits >> 52) as i32 - 1023) + (power.to_bits() >> 52) as i32 - 1023;
-        let mantissa = f64::from_bits(power.to_bits() & ((1 << 52) - 1) | 1.0_f64.to_bits());
-        open |= (mantissa - (1.0 + LOG_MARGIN)).to_bits() | (2.0 - LOG_MARGIN - mantissa).to_bits();
-        lods[n] = if largest > 0.0 { log - 128 * 32 } else { lod::LEAST };
-        unknown[n] |= open;
-    }
-}
-
-/// Computes two quotients with their fractions.
-#[inline(always)]
-pub(super) fn quotients<const FMA: bool, const ROW: bool>(
+fn quotients<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     [along, down, denominator]: [Line; 3],
-    u: &mut [f64],
-    v: &mut [f64],
+    settled: [(f64, f64); 2],
+    u: &mut [i32],
+    v: &mut [i32],
+    close: &mut [i32],
 ) {
     let lanes = u.len();
     let last = f64::from(at.last);
-    let (v, xs, ys, iota) = (&mut v[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (v, close, xs, ys) = (&mut v[..lanes], &mut close[..lanes], &at.x[..lanes], &at.y[..lanes]);
+    let iota = &IOTA_REAL[..lanes];
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
-        (u[n], v[n]) = (along.at::<FMA, ROW>(x, y) * r, down.at::<FMA, ROW>(x, y) * r);
+        let (p, q) = (along.at::<FMA, ROW>(x, y) * r, down.at::<FMA, ROW>(x, y) * r);
+        let ((p, close_p), (q, close_q)) = (floor_and_proof(p, settled[0]), floor_and_proof(q, settled[1]));
+        (u[n], v[n], close[n]) = (p, q, close_p | close_q);
     }
 }
 
-/// Sets the sign bits of lanes whose coordinate on level 0 is so close to an integer that its floor is not proved, on that level or on
-/// smaller ones.
+/// Computes what [`quotients`] does from the quotients.
 #[inline(always)]
-fn mark_unproved(at: &[f64], up: f64, off: f64, close: &mut [u64]) {
-    let close = &mut close[..at.len()];
-    for n in 0..at.len() {
-        let t = at[n] + up;
-        close[n] = ((t - whole(t)).abs() - off).to_bits();
+fn settle(at_u: &[f64], at_v: &[f64], settled: [(f64, f64); 2], u: &mut [i32], v: &mut [i32], close: &mut [i32]) {
+    let lanes = u.len();
+    let (at_u, at_v, v, close) = (&at_u[..lanes], &at_v[..lanes], &mut v[..lanes], &mut close[..lanes]);
+    for n in 0..lanes {
+        let ((p, close_p), (q, close_q)) = (floor_and_proof(at_u[n], settled[0]), floor_and_proof(at_v[n], settled[1]));
+        (u[n], v[n], close[n]) = (p, q, close_p | close_q);
     }
 }
 
-/// Computes the floors of coordinates on a level.
+/// Returns the floor of a number to which `up` is added, and a number whose sign bit is set if it is closer to an integer than `off`.
 #[inline(always)]
-fn on_level(at: &[f64], scale: f64, up: f64, out: &mut PerLane<i32>) {
-    let out = &mut out[..at.len()];
-    let up = up * scale - 0.5;
-    for n in 0..at.len() {
-        out[n] = nearest(at[n] * scale + up);
-    }
+fn floor_and_proof(at: f64, (up, off): (f64, f64)) -> (i32, i32) {
+    let at = at + up;
+    let close = ((at - whole(at)).abs() - off).to_bits() >> 32;
+    (nearest(at - 0.5), close as i32)
 }
 
 /// TEX-9: computes the levels and the weight of each lane. `lods` become biased. Returns the least and the largest first level, and the
@@ -327,35 +268,47 @@ impl Taken {
 }
 
 /// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
-/// texel of the footprint. Coordinates become those for the weights.
+/// texel of the footprint; and the coordinates for the weights. Without `ALL`, lanes of other levels keep what they have.
 #[inline(always)]
-fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [i32]) {
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+fn places<const ALL: bool>(
+    placed: &Placed,
+    [mag, min]: [Taken; 2],
+    [shift_u, shift_v]: [u32; 2],
+    (lods, levels): (&[i32], &[i32]),
+    level: i32,
+    u: &[i32],
+    v: &[i32],
+    to_u: &mut [i32],
+    to_v: &mut [i32],
+    entries: &mut [i32],
+) {
     let Placed { axes: [columns, rows], first, pitch } = *placed;
     let lanes = lods.len();
-    let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
+    let (u, v, levels) = (&u[..lanes], &v[..lanes], &levels[..if ALL { 0 } else { lanes }]);
+    let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
     let periodic = columns.period.is_some() || rows.period.is_some();
+    // By bits, because compilers turn a choice into masked loads and stores, which are slow.
+    let put = |to: &mut i32, from: i32, n: usize| {
+        *to = if ALL { from } else { *to ^ ((*to ^ from) & -i32::from(levels[n] == level)) };
+    };
     for n in 0..lanes {
         let less = if lods[n] <= 0 { mag.less } else { min.less };
         let kept = if lods[n] <= 0 { mag.kept } else { min.kept };
-        u[n] = (u[n].wrapping_sub(less) & kept).max(columns.low).min(columns.high);
-        v[n] = (v[n].wrapping_sub(less) & kept).max(rows.low).min(rows.high);
-        entries[n] = rows.entry(v[n]).wrapping_mul(pitch).wrapping_add(columns.entry(u[n])).wrapping_add(first);
+        let u = ((u[n] >> shift_u).wrapping_sub(less) & kept).max(columns.low).min(columns.high);
+        let v = ((v[n] >> shift_v).wrapping_sub(less) & kept).max(rows.low).min(rows.high);
+        let entry = rows.entry(v).wrapping_mul(pitch).wrapping_add(columns.entry(u)).wrapping_add(first);
+        put(&mut to_u[n], u, n);
+        put(&mut to_v[n], v, n);
+        put(&mut entries[n], entry, n);
     }
     if periodic {
-        columns.reduce(u);
-        rows.reduce(v);
         for n in 0..lanes {
-            entries[n] = rows.entry(v[n]) * pitch + columns.entry(u[n]) + first;
+            if ALL || levels[n] == level {
+                columns.reduce(&mut to_u[n..=n]);
+                rows.reduce(&mut to_v[n..=n]);
+                entries[n] = rows.entry(to_v[n]) * pitch + columns.entry(to_u[n]) + first;
+            }
         }
-    }
-}
-
-/// Copies entries and coordinates of a level to the lanes that read it. By bits, because compilers turn a choice into masked loads and
-/// stores, which are slow.
-#[inline(always)]
-fn put(level: i32, levels: &[i32], from: &[i32], to: &mut [i32]) {
-    let (from, to) = (&from[..levels.len()], &mut to[..levels.len()]);
-    for n in 0..levels.len() {
-        to[n] ^= (to[n] ^ from[n]) & -i32::from(levels[n] == level);
     }
 }

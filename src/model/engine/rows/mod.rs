@@ -14,7 +14,7 @@
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
-//! | `quads.rs`, `levels.rs`, `taps.rs` | coordinates at quads; lods and levels; the taps of anisotropy |
+//! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `boxes.rs`, `band.rs` | triangles to batches to blocks |
@@ -41,6 +41,7 @@ mod graph;
 pub(crate) mod isa;
 mod kernels;
 mod levels;
+mod lods;
 mod node;
 mod planes;
 mod quads;

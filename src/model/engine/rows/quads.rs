@@ -24,6 +24,13 @@ pub(super) trait Measure: Copy {
     /// Returns the result for a quad that is behind the viewer in part.
     fn behind(unit: &PlannedUnit) -> Self;
 
+    /// Estimates the results of quads from how coordinates change around their [origins](Quads::origins). Sign bits of `close` mark those
+    /// that are not proved. Returns `false` if nothing was estimated.
+    #[inline(always)]
+    fn estimate<const FMA: bool>(_: &BaseLevel<'_>, _: [&[f32]; 2], _: &mut [Self], _: &mut [i32]) -> bool {
+        false
+    }
+
     /// Computes the results of the first `count` quads. Sign bits of `unknown` mark quads whose coordinates are not known; more of them can
     /// be set.
     fn measure<const WIDE: bool>(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], unknown: &mut [u64]);
@@ -36,10 +43,14 @@ pub(super) trait Measure: Copy {
 #[derive(Clone, Debug)]
 pub(super) struct Quads {
     /// Columns and rows of the upper left pixels of the quads, relative to the batch's first pixel.
-    origins: [PerLane<f64>; 2],
+    origins: [PerLane<f32>; 2],
     coordinates: AtQuads,
     /// Doubles as bits, negative for quads whose coordinates are not known.
     unknown: PerLane<u64>,
+    /// Sign bits of quads whose estimated result is not proved; the numbers of such quads, and their origins.
+    close: PerLane<i32>,
+    left: PerLane<u8>,
+    left_origins: [PerLane<f32>; 2],
     /// Number of quads of a box, and the quad of each of its lanes.
     count: usize,
     of_lanes: PerLane<u8>,
@@ -51,6 +62,9 @@ impl Default for Quads {
             origins: [[0.0; LANES]; 2],
             coordinates: [[[0.0; LANES]; 2]; 3],
             unknown: [0; LANES],
+            close: [0; LANES],
+            left: [0; LANES],
+            left_origins: [[0.0; LANES]; 2],
             count: 0,
             of_lanes: [0; LANES],
         }
@@ -79,7 +93,7 @@ impl Quads {
                 }
             }
             for column in low..=high {
-                (xs[quads], ys[quads]) = ((2 * column - i) as f64, ((row & !1) - j) as f64);
+                (xs[quads], ys[quads]) = ((2 * column - i) as f32, ((row & !1) - j) as f32);
                 quads += 1;
             }
         }
@@ -167,6 +181,9 @@ pub(super) struct BaseLevel<'p> {
     pub(super) along: Line,
     pub(super) down: Line,
     pub(super) denominator: Line,
+    /// The least denominator of a quad's pixel, and how many columns and rows lie between a quad and the first pixel at most.
+    pub(super) lowest: f64,
+    pub(super) reach: [f64; 2],
     /// Upper bound of the error of an estimate, 1/256 texel.
     pub(super) off: f64,
     /// Upper bound of the change of a smaller level's coordinates by the floors of its numerators (INT-4).
@@ -198,7 +215,7 @@ impl Setup<'_> {
         let left = if ROW { 1.0 } else { columns };
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
-        let lowest = least(local.denominator);
+        let (lowest, reach) = (least(local.denominator), [columns, rows]);
         let (base, range) = match planes {
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
@@ -212,6 +229,8 @@ impl Setup<'_> {
                     along: planes[0].line(&local.real),
                     down: planes[1].line(&local.real),
                     denominator: local.denominator,
+                    lowest,
+                    reach,
                     off: range * SLACK,
                     floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
                     face: Face::PositiveX,
@@ -239,7 +258,24 @@ impl Setup<'_> {
                 let face = Face::PositiveX;
                 let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
                 let (floors, planes, gaps) = (0.0, None, [(0.0, 0); 2]);
-                (BaseLevel { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
+                let (denominator, lowest) = (q, least(q));
+                (
+                    BaseLevel {
+                        along,
+                        down,
+                        denominator,
+                        lowest,
+                        reach,
+                        off,
+                        floors,
+                        face,
+                        behind,
+                        planes,
+                        losses,
+                        gaps,
+                    },
+                    range,
+                )
             }
             Planes::Direction(planes, face) => {
                 let direction = CubeDirection::around(planes, &local.real, columns, rows);
@@ -260,13 +296,30 @@ impl Setup<'_> {
                 let [along, down] = lines;
                 let behind = false;
                 let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
-                (BaseLevel { along, down, denominator: m, off, floors, face, behind, planes, losses, gaps }, range)
+                let (denominator, lowest) = (m, least(m));
+                (
+                    BaseLevel {
+                        along,
+                        down,
+                        denominator,
+                        lowest,
+                        reach,
+                        off,
+                        floors,
+                        face,
+                        behind,
+                        planes,
+                        losses,
+                        gaps,
+                    },
+                    range,
+                )
             }
             Planes::Other | Planes::Shared => return None,
         };
         // NaN proves nothing either.
         let proves = lowest > 0.0
-            && least(base.denominator) > 0.0
+            && base.lowest > 0.0
             && range < MAX_COORDINATE
             && base.off < COARSEST / 256.0
             && base.floors < COARSEST;
@@ -284,7 +337,7 @@ impl Setup<'_> {
         known: &mut Known<T>,
     ) -> Spread {
         let (i, j) = batch.first;
-        let above = (j & !1) - j;
+        let above = ((j & !1) - j) as f32;
         let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind(unit));
         if base.behind {
             room(known, 1);
@@ -292,7 +345,7 @@ impl Setup<'_> {
             return Spread::First;
         }
         if !ROW {
-            room(known, LANES);
+            room(known, 2 * LANES);
             known.of = None;
             self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, &mut known.each);
             return Spread::Box;
@@ -308,13 +361,13 @@ impl Setup<'_> {
             let count = ((wanted.end - next) as usize).min(BLOCK);
             let [xs, ys] = &mut quads.origins;
             let lanes = whole_steps(count);
-            let (first, above, last) = ((2 * next - i) as i32, above as f64, count as i32 - 1);
+            let (first, last) = ((2 * next - i) as i32, count as i32 - 1);
             for (k, x) in xs[..lanes].iter_mut().enumerate() {
-                *x = f64::from(first + 2 * (k as i32).min(last));
+                *x = (first + 2 * (k as i32).min(last)) as f32;
             }
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
-            room(known, first + LANES);
+            room(known, first + 2 * LANES);
             self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
             known.columns.end += count as i64;
         }
@@ -322,7 +375,7 @@ impl Setup<'_> {
         Spread::Row { first, odd, last: (batch.count - 1 + odd) >> 1 }
     }
 
-    /// Computes the results of quads at the given [origins](Quads::origins).
+    /// Computes the results of quads at the given [origins](Quads::origins). `out` has room for twice as many.
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
@@ -333,10 +386,54 @@ impl Setup<'_> {
         quads: &mut Quads,
         out: &mut [T],
     ) {
-        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
         let rounded = whole_steps(count);
-        let Quads { origins: [xs, ys], coordinates, unknown, .. } = &mut *quads;
-        let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
+        let Quads { origins: [xs, ys], coordinates, unknown, close, left, left_origins: [left_xs, left_ys], .. } =
+            quads;
+        let (xs, ys, close) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded]);
+        let (out, spare) = out.split_at_mut(rounded);
+        let scratch = (coordinates, unknown);
+        if !T::estimate::<FMA>(base, [xs, ys], out, close) {
+            self.measured_exactly::<FMA, T>(batch, (unit, base), e, [xs, ys], count, scratch, out);
+            return;
+        }
+        let open = |close: &i32| *close < 0;
+        // Without an early exit, which is slower.
+        if !close[..count].iter().fold(false, |any, close| any | open(close)) {
+            return;
+        }
+        let mut some = 0;
+        for n in 0..count {
+            (left[some], left_xs[some], left_ys[some]) = (n as u8, xs[n], ys[n]);
+            some += usize::from(open(&close[n]));
+        }
+        let rounded = whole_steps(some);
+        for origins in [&mut *left_xs, left_ys] {
+            let last = origins[some - 1];
+            origins[some..rounded].fill(last);
+        }
+        let (origins, spare) = ([&left_xs[..rounded], &left_ys[..rounded]], &mut spare[..rounded]);
+        self.measured_exactly::<FMA, T>(batch, (unit, base), e, origins, some, scratch, spare);
+        for (n, found) in left[..some].iter().zip(spare) {
+            out[usize::from(*n)] = *found;
+        }
+    }
+
+    /// Computes the results of quads from their coordinates.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and the scratch space apart")]
+    fn measured_exactly<const FMA: bool, T: Measure>(
+        &self,
+        batch: PixelBatch<'_>,
+        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
+        e: &[i64; 3],
+        [xs, ys]: [&[f32]; 2],
+        count: usize,
+        (coordinates, unknown): (&mut AtQuads, &mut PerLane<u64>),
+        out: &mut [T],
+    ) {
+        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
+        let rounded = xs.len();
+        let unknown = &mut unknown[..rounded];
         unknown.fill(0);
         for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
             corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
@@ -386,7 +483,7 @@ pub(super) fn parted(gap: f64, off: f64) -> (f64, f64) {
 #[inline(always)]
 fn corners<const FMA: bool>(
     base: &BaseLevel<'_>,
-    [xs, ys]: [&[f64]; 2],
+    [xs, ys]: [&[f32]; 2],
     [right, below]: [f64; 2],
     u: &mut [f64],
     v: &mut [f64],
@@ -398,7 +495,7 @@ fn corners<const FMA: bool>(
     let off = 256.0 * base.off;
     let [(up_p, off_p), (up_q, off_q)] = base.gaps.map(|(gap, _)| parted(256.0 * gap, off));
     for n in 0..lanes {
-        let (x, y) = (xs[n] + right, ys[n] + below);
+        let (x, y) = (f64::from(xs[n]) + right, f64::from(ys[n]) + below);
         let r = 1.0 / denominator.at::<FMA, false>(x, y);
         let (p, q) = (along.at::<FMA, false>(x, y) * r + up_p, down.at::<FMA, false>(x, y) * r + up_q);
         let (near_p, near_q) = (whole(p), whole(q));
