@@ -243,7 +243,9 @@ impl<'a> Renderer<'a> {
                             let compiled = &compiled[n];
                             let bins = self.bins.get(index).and_then(Option::as_ref);
                             let triangles = bins.map(|bins| bins.of(band.first_row / height));
-                            let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
+                            let compiled = compiled.as_ref();
+                            let job =
+                                rows::Job { plan, draw, compiled, textures, triangles, vectors: Default::default() };
                             if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
                         }
                         None => walk::draw(plan, draw, textures, band, &mut Silent).0,

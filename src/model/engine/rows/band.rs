@@ -463,14 +463,14 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         let wanted = compiled.textures[sampler.unit];
         if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
-            fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
+            fetch::sample_levels(job.vectors, table, reads, both, sampler.signed, wanted, work, rows);
             // The entries in `work` have been overwritten.
             found = None;
             continue;
         }
         if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
             let at = &varying.coordinates[n];
-            fetch::sample_taps(table, at, &footprints.pairs, sampler.signed, wanted, work, rows);
+            fetch::sample_taps(job.vectors, table, at, &footprints.pairs, sampler.signed, wanted, work, rows);
             found = None;
             continue;
         }
@@ -480,7 +480,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         }
         found = Some((at, table.pitch));
         let references = &varying.references[n];
-        fetch::sample(table, &varying.coordinates[at], references, sampler.signed, wanted, work, rows);
+        fetch::sample(job.vectors, table, &varying.coordinates[at], references, sampler.signed, wanted, work, rows);
         if let Some(key) = sampler.key {
             fetch::drop_keyed(key, work, alive);
         }

@@ -1,5 +1,6 @@
 //! A draw compiled to rows, and the statistics of its pixels.
 
+use super::filter::Vectors;
 use super::kernels::Lanes256;
 use super::node::Node;
 use super::shader::Shader;
@@ -158,4 +159,6 @@ pub(crate) struct Job<'a> {
     pub(crate) textures: &'a [Image<'a, i32>],
     /// Numbers of the triangles to draw, in order; `None` for all.
     pub(crate) triangles: Option<&'a [u32]>,
+    /// Vectors that the instruction set has.
+    pub(crate) vectors: Vectors,
 }

@@ -1,13 +1,14 @@
-//! TEX-5 to TEX-8 on rows: addresses of table entries, fetches of texels, and the filter.
+//! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
 use super::BLOCK;
+use super::filter::{Vectors, filter, filter_half, filter_one};
 use super::kernels::{LANES, Lanes256, PerLane};
 use super::levels::MipFetches;
 use super::store;
 use super::table::{Axis, Table, Texels};
 use super::taps::Pair;
-use crate::number::{Lane, Swar2};
-use crate::texture::filter::{bilinear, lerp};
+use crate::number::Lane;
+use crate::texture::filter::lerp;
 
 /// Scratch space of a fetch.
 #[derive(Clone, Debug)]
@@ -61,6 +62,7 @@ pub(super) fn locate(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
+    vectors: Vectors,
     table: &Table,
     at: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
@@ -69,7 +71,7 @@ pub(super) fn sample(
     work: &mut Workspace,
     rows: &mut [Lanes256],
 ) {
-    if texels(table, at, references, signed, wanted, work, rows) {
+    if texels(vectors, table, at, references, signed, wanted, work, rows) {
         load(signed, wanted, rows);
     }
 }
@@ -78,6 +80,7 @@ pub(super) fn sample(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn texels(
+    vectors: Vectors,
     table: &Table,
     [u, v]: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
@@ -139,9 +142,9 @@ fn texels(
         Texels::Footprints(texels) => {
             fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
             match last {
-                0 => filter::<1>(upper, lower, u, v, red, green, blue, alpha),
-                1 | 2 => filter::<3>(upper, lower, u, v, red, green, blue, alpha),
-                _ => filter::<4>(upper, lower, u, v, red, green, blue, alpha),
+                0 => filter::<1>(vectors, upper, lower, u, v, red, green, blue, alpha),
+                1 | 2 => filter::<3>(vectors, upper, lower, u, v, red, green, blue, alpha),
+                _ => filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha),
             }
         }
     }
@@ -152,6 +155,7 @@ fn texels(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample_taps(
+    vectors: Vectors,
     table: &Table,
     at: &[PerLane<i32>; 2],
     pairs: &[Pair],
@@ -171,7 +175,7 @@ pub(super) fn sample_taps(
                 }
             }
             locate(table, &mut at, None, work);
-            texels(table, &at, &NO_REFERENCES, signed, wanted, work, rows);
+            texels(vectors, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
             for (sums, wanted) in sums.iter_mut().zip(wanted) {
                 let Some(wanted) = wanted else { continue };
                 let channel = rows[usize::from(wanted)].block();
@@ -203,7 +207,9 @@ pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut 
 
 /// TEX-9: samples one level, or mixes two if `both` is set.
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample_levels(
+    vectors: Vectors,
     table: &Table,
     reads: &MipFetches,
     both: bool,
@@ -245,12 +251,12 @@ pub(super) fn sample_levels(
     }
     let Some((u, v)) = reads.of_level(0, entries) else { return };
     fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-    filter::<4>(upper, lower, u, v, red, green, blue, alpha);
+    filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha);
     if both {
         let Some((u, v)) = reads.of_level(1, entries) else { return };
         fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
         let [next_red, next_green, next_blue, next_alpha] = next;
-        filter::<4>(upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
+        filter::<4>(vectors, upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
         mix(red, next_red, weights);
         mix(green, next_green, weights);
         mix(blue, next_blue, weights);
@@ -289,12 +295,6 @@ fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
             }
         }
     }
-}
-
-/// Returns the weight of the next entry.
-#[inline(always)]
-fn weight(coordinate: i32) -> u32 {
-    (coordinate & 255) as u32
 }
 
 /// Computes entries. `LIMITS` says whether an axis has limits.
@@ -355,61 +355,6 @@ fn fetch_footprints(
     }
 }
 
-/// TEX-6 of the first `COUNT` channels, two channels at a time.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-fn filter<const COUNT: usize>(
-    upper: &[[u32; 2]; BLOCK],
-    lower: &[[u32; 2]; BLOCK],
-    u: &[i32; BLOCK],
-    v: &[i32; BLOCK],
-    red: &mut [i16; BLOCK],
-    green: &mut [i16; BLOCK],
-    blue: &mut [i16; BLOCK],
-    alpha: &mut [i16; BLOCK],
-) {
-    for n in 0..BLOCK {
-        let ([a, b], [c, d]) = (upper[n], lower[n]);
-        let (along, down) = (weight(u[n]), weight(v[n]));
-        let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
-        red[n] = (even.0 & 255) as i16;
-        if COUNT > 1 {
-            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along, down, |v| v);
-            green[n] = (odd.0 & 255) as i16;
-            blue[n] = (even.0 >> 16) as i16;
-            if COUNT > 3 {
-                alpha[n] = (odd.0 >> 16) as i16;
-            }
-        }
-    }
-}
-
-/// TEX-6 of a single channel: both rows together along u, then along v.
-#[inline(always)]
-fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
-    for n in 0..BLOCK {
-        let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
-        out[n] = lerp(Swar2(rows.0 & 255), Swar2(rows.0 >> 16), weight(v[n])).0 as i16;
-    }
-}
-
-/// TEX-6 of a 16-bit half that begins at bit `SHIFT`. `kept` masks the weights.
-#[inline(always)]
-fn filter_half<const SHIFT: u32>(
-    upper: &[[u32; 2]; BLOCK],
-    lower: &[[u32; 2]; BLOCK],
-    (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
-    kept: i32,
-    out: &mut [i32; BLOCK],
-) {
-    let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
-    for n in 0..BLOCK {
-        let ([a, b], [c, d]) = (upper[n], lower[n]);
-        let (along, down) = (weight(u[n]) as i32 & kept, weight(v[n]) as i32 & kept);
-        out[n] = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
-    }
-}
-
 /// TEX-1, TEX-18: splits halves into bytes.
 #[inline(always)]
 fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [i16; BLOCK]) {
@@ -418,12 +363,6 @@ fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [
         let byte = (half[n] >> 8) as i16;
         high[n] = if signed { 2 * (byte - 128) } else { byte };
     }
-}
-
-/// Returns R and B of a texel, or G and A if it is shifted by 8; also the left and right texels of a single-channel footprint.
-#[inline(always)]
-fn first(texel: u32) -> Swar2 {
-    Swar2(texel & 0x00ff_00ff)
 }
 
 /// Writes the first `COUNT` channels of texels.
@@ -471,7 +410,7 @@ mod tests {
         let axis = Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: 63, count: 64, period: None };
         for u in -40_000..40_000_i32 {
             let (texel, weight) = linear(i64::from(u));
-            let (at, w) = (axis.entry(u - 128), super::weight(u - 128));
+            let (at, w) = (axis.entry(u - 128), crate::engine::rows::filter::weight(u - 128));
             assert_eq!((i64::from(at), w as i32), (texel & 63, weight));
             assert_eq!(i64::from(axis.entry(u)), nearest(i64::from(u)) & 63);
         }

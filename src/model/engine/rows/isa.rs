@@ -3,6 +3,7 @@
 use super::band::{self, Block, Entered};
 use super::boxes::BoxCoverage;
 use super::compiled::{CompiledDraw, Job};
+use super::filter::Vectors;
 use super::setup::PixelBatch;
 use super::triangle::Interpolators;
 use crate::engine::pixel::TriangleContext;
@@ -136,6 +137,12 @@ fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
 
 /// Draws the part of a draw that lies in a band, with an instruction set of this machine. Returns the number of covered pixels.
 pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    let vectors = match isa {
+        Isa::Baseline | Isa::V2 => Vectors::Portable,
+        Isa::V3 => Vectors::Avx2,
+        Isa::V4 => Vectors::Avx512,
+    };
+    let job = Job { vectors, ..job };
     let shaded = match isa {
         Isa::Baseline => None,
         Isa::V2 => v2::run(job, band, block),

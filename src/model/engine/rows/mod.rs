@@ -13,7 +13,7 @@
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
-//! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
+//! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
@@ -36,6 +36,7 @@ mod dot;
 #[cfg(test)]
 mod equivalence_tests;
 mod fetch;
+mod filter;
 mod fog;
 mod graph;
 pub(crate) mod isa;

@@ -317,12 +317,12 @@ pub(super) fn run<const FMA: bool>(
                 let Some(table) = &sampler.table else { continue };
                 if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
                     let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
-                    fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
+                    fetch::sample_levels(job.vectors, table, reads, both, sampler.signed, wanted, work, rows);
                 } else {
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
                     fetch::locate(table, &mut varying.coordinates[at], faces, work);
                     let (at, references) = (&varying.coordinates[at], &varying.references[at]);
-                    fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
+                    fetch::sample(job.vectors, table, at, references, sampler.signed, wanted, work, rows);
                 }
             }
             operation => {
@@ -385,7 +385,7 @@ pub(super) fn run<const FMA: bool>(
                 let faces = sampler.has_images().then_some(&varying.faces[at]);
                 fetch::locate(table, &mut varying.coordinates[at], faces, work);
                 let (at, references) = (&varying.coordinates[at], &varying.references[at]);
-                fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
+                fetch::sample(job.vectors, table, at, references, sampler.signed, wanted, work, rows);
                 if let ShaderOperation::BumpEnvironment { luminance: Some(state), .. } = operation
                     && let Some(factors) = stage.luminance.first_chunk::<256>()
                     && let Some(red) = earlier[0]

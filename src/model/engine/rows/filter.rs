@@ -1,0 +1,332 @@
+//! TEX-6 on rows: the filter of footprints.
+
+use super::BLOCK;
+use crate::number::Swar2;
+use crate::texture::filter::{bilinear, lerp};
+
+/// The vectors that the filter of several channels uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Vectors {
+    /// Those that the compiler finds.
+    #[default]
+    Portable,
+    /// Those of AVX2, if the machine has them.
+    Avx2,
+    /// Those of AVX-512, if the machine has them.
+    Avx512,
+}
+
+/// TEX-6 of the first `COUNT` channels. More may be written.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+pub(super) fn filter<const COUNT: usize>(
+    vectors: Vectors,
+    upper: &[[u32; 2]; BLOCK],
+    lower: &[[u32; 2]; BLOCK],
+    u: &[i32; BLOCK],
+    v: &[i32; BLOCK],
+    red: &mut [i16; BLOCK],
+    green: &mut [i16; BLOCK],
+    blue: &mut [i16; BLOCK],
+    alpha: &mut [i16; BLOCK],
+) {
+    #[cfg(target_arch = "x86_64")]
+    if COUNT > 1 {
+        let channels = [&mut *red, &mut *green, &mut *blue, &mut *alpha];
+        let done = match vectors {
+            Vectors::Portable => false,
+            Vectors::Avx2 => x86::filter_256(upper, lower, u, v, channels),
+            Vectors::Avx512 => x86::filter_512(upper, lower, u, v, channels),
+        };
+        if done {
+            return;
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = vectors;
+    two_at_a_time::<COUNT>(upper, lower, u, v, red, green, blue, alpha);
+}
+
+/// TEX-6 of the first `COUNT` channels, two channels at a time.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+fn two_at_a_time<const COUNT: usize>(
+    upper: &[[u32; 2]; BLOCK],
+    lower: &[[u32; 2]; BLOCK],
+    u: &[i32; BLOCK],
+    v: &[i32; BLOCK],
+    red: &mut [i16; BLOCK],
+    green: &mut [i16; BLOCK],
+    blue: &mut [i16; BLOCK],
+    alpha: &mut [i16; BLOCK],
+) {
+    for n in 0..BLOCK {
+        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let (along, down) = (weight(u[n]), weight(v[n]));
+        let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
+        red[n] = (even.0 & 255) as i16;
+        if COUNT > 1 {
+            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along, down, |v| v);
+            green[n] = (odd.0 & 255) as i16;
+            blue[n] = (even.0 >> 16) as i16;
+            if COUNT > 3 {
+                alpha[n] = (odd.0 >> 16) as i16;
+            }
+        }
+    }
+}
+
+/// TEX-6 of a single channel: both rows together along u, then along v.
+#[inline(always)]
+pub(super) fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
+    for n in 0..BLOCK {
+        let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
+        out[n] = lerp(Swar2(rows.0 & 255), Swar2(rows.0 >> 16), weight(v[n])).0 as i16;
+    }
+}
+
+/// TEX-6 of a 16-bit half that begins at bit `SHIFT`. `kept` masks the weights.
+#[inline(always)]
+pub(super) fn filter_half<const SHIFT: u32>(
+    upper: &[[u32; 2]; BLOCK],
+    lower: &[[u32; 2]; BLOCK],
+    (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
+    kept: i32,
+    out: &mut [i32; BLOCK],
+) {
+    let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
+    for n in 0..BLOCK {
+        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let (along, down) = (weight(u[n]) as i32 & kept, weight(v[n]) as i32 & kept);
+        out[n] = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
+    }
+}
+
+/// Returns R and B of a texel, or G and A if it is shifted by 8; also the left and right texels of a single-channel footprint.
+#[inline(always)]
+fn first(texel: u32) -> Swar2 {
+    Swar2(texel & 0x00ff_00ff)
+}
+
+/// Returns the weight of the next entry.
+#[inline(always)]
+pub(super) fn weight(coordinate: i32) -> u32 {
+    (coordinate & 255) as u32
+}
+
+/// The filter of four channels in 16-bit lanes. A step is a + (b - a) w / 256, rounded, and there is an instruction that multiplies and
+/// rounds 16-bit numbers, which compilers do not find.
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::BLOCK;
+    use multiversion::multiversion;
+    use multiversion::target::match_target;
+    use std::arch::x86_64::*;
+
+    /// Number of footprints that are filtered at a time.
+    const STEP: usize = 16;
+
+    /// For each pair of weights: the low bytes of four numbers, twice each, as high bytes.
+    const TWICE: [i8; 16] = [-1, 0, -1, 0, -1, 4, -1, 4, -1, 8, -1, 8, -1, 12, -1, 12];
+
+    /// Defines a filter, which returns `false` and writes nothing if the machine lacks the instruction set.
+    macro_rules! filter {
+        ($name:ident, $target:literal, $steps:ident) => {
+            #[multiversion(targets($target))]
+            pub(super) fn $name(
+                upper: &[[u32; 2]; BLOCK],
+                lower: &[[u32; 2]; BLOCK],
+                u: &[i32; BLOCK],
+                v: &[i32; BLOCK],
+                channels: [&mut [i16; BLOCK]; 4],
+            ) -> bool {
+                match_target! {
+                    $target => {
+                        let [red, green, blue, alpha] = channels;
+                        let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
+                        let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
+                        let (upper, lower) = (upper.as_chunks::<STEP>().0, lower.as_chunks::<STEP>().0);
+                        let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
+                        for n in 0..BLOCK / STEP {
+                            let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
+                            $steps(&upper[n], &lower[n], &u[n], &v[n], outs);
+                        }
+                        true
+                    }
+                    _ => {
+                        let _ = (upper, lower, u, v, channels);
+                        false
+                    }
+                }
+            }
+        };
+    }
+    filter!(filter_256, "x86_64+avx+avx2+sse3+sse4.1+sse4.2+ssse3", step_256);
+    filter!(filter_512, "x86_64+avx+avx2+avx512bw+avx512f+avx512vl+f16c+fma+sse3+sse4.1+sse4.2+ssse3", step_512);
+
+    /// Filters in two halves, of which each texel of the corners fills a vector.
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn step_256(
+        upper: &[[u32; 2]; STEP],
+        lower: &[[u32; 2]; STEP],
+        u: &[i32; STEP],
+        v: &[i32; STEP],
+        [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
+    ) {
+        let (bytes, words) = (_mm256_set1_epi32(0x00ff_00ff), _mm256_set1_epi32(0xffff));
+        let twice = _mm256_broadcastsi128_si256(load_128(TWICE));
+        let step = |a, b, weight| _mm256_add_epi16(a, _mm256_mulhrs_epi16(_mm256_sub_epi16(b, a), weight));
+        // R and B, and G and A.
+        let (mut even, mut odd) = ([_mm256_setzero_si256(); 2], [_mm256_setzero_si256(); 2]);
+        for half in 0..2 {
+            // The left and the right texels of footprints in the order 0 1 4 5 2 3 6 7.
+            let columns = |texels: &[[u32; 2]; STEP]| {
+                let four = |n: usize| _mm256_castsi256_ps(load_256(texels.as_chunks::<4>().0[2 * half + n].map(pair)));
+                let (one, other) = (four(0), four(1));
+                let columns = [_mm256_shuffle_ps::<0x88>(one, other), _mm256_shuffle_ps::<0xdd>(one, other)];
+                columns.map(|column| _mm256_castps_si256(column))
+            };
+            // In 32,768ths.
+            let weights = |of: &[i32; STEP]| {
+                let four = |n: usize| of.as_chunks::<2>().0[4 * half + n].map(|n| n as u32);
+                let of = load_256([0, 2, 1, 3].map(|n| pair(four(n))));
+                _mm256_srli_epi16::<1>(_mm256_shuffle_epi8(of, twice))
+            };
+            let ([a, b], [c, d], along, down) = (columns(upper), columns(lower), weights(u), weights(v));
+            let filtered = |[a, b, c, d]: [__m256i; 4]| step(step(a, b, along), step(c, d, along), down);
+            even[half] = filtered([a, b, c, d].map(|texels| _mm256_and_si256(texels, bytes)));
+            odd[half] = filtered([a, b, c, d].map(|texels| _mm256_srli_epi16::<8>(texels)));
+        }
+        // Packing leaves pairs in the order 0 2 4 6 1 3 5 7.
+        let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+        let pack = |[one, other]: [__m256i; 2]| _mm256_permutevar8x32_epi32(_mm256_packus_epi32(one, other), order);
+        let low = |of: [__m256i; 2]| pack(of.map(|of| _mm256_and_si256(of, words)));
+        let high = |of: [__m256i; 2]| pack(of.map(|of| _mm256_srli_epi32::<16>(of)));
+        for (channel, out) in [low(even), low(odd), high(even), high(odd)].into_iter().zip([red, green, blue, alpha]) {
+            store(channel, out);
+        }
+    }
+
+    /// Filters in vectors that hold a texel of each corner.
+    #[target_feature(enable = "avx512f,avx512bw")]
+    #[inline]
+    fn step_512(
+        upper: &[[u32; 2]; STEP],
+        lower: &[[u32; 2]; STEP],
+        u: &[i32; STEP],
+        v: &[i32; STEP],
+        [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
+    ) {
+        // Where the low and the high words of footprints are in the order of the columns.
+        const WORDS: [i64; 8] = {
+            let (mut words, mut n) = ([0; 8], 0);
+            while n < 32 {
+                let pixel = n % 16;
+                let at = 2 * (4 * (pixel % 8 / 2) + pixel % 2 + 2 * (pixel / 8)) + n / 16;
+                words[n / 4] |= (at as i64) << (16 * (n % 4));
+                n += 1;
+            }
+            words
+        };
+        let (bytes, words) = (_mm512_set1_epi32(0x00ff_00ff), load_512(WORDS));
+        let twice = _mm512_broadcast_i32x4(load_128(TWICE));
+        let step = |a, b, weight| _mm512_add_epi16(a, _mm512_mulhrs_epi16(_mm512_sub_epi16(b, a), weight));
+        // The left and the right texels of footprints in the order 0 1 8 9 2 3 10 11 4 5 12 13 6 7 14 15.
+        let columns = |texels: &[[u32; 2]; STEP]| {
+            let eight = |n: usize| _mm512_castsi512_ps(load_512(texels.as_chunks::<8>().0[n].map(pair)));
+            let (one, other) = (eight(0), eight(1));
+            let columns = [_mm512_shuffle_ps::<0x88>(one, other), _mm512_shuffle_ps::<0xdd>(one, other)];
+            columns.map(|column| _mm512_castps_si512(column))
+        };
+        // In 32,768ths.
+        let weights = |of: &[i32; STEP]| {
+            let two = |n: usize| pair(of.as_chunks::<2>().0[n].map(|n| n as u32));
+            let of = load_512([0, 4, 1, 5, 2, 6, 3, 7].map(two));
+            _mm512_srli_epi16::<1>(_mm512_shuffle_epi8(of, twice))
+        };
+        let ([a, b], [c, d], along, down) = (columns(upper), columns(lower), weights(u), weights(v));
+        let filtered = |[a, b, c, d]: [__m512i; 4]| {
+            _mm512_permutexvar_epi16(words, step(step(a, b, along), step(c, d, along), down))
+        };
+        let even = filtered([a, b, c, d].map(|texels| _mm512_and_si512(texels, bytes)));
+        let odd = filtered([a, b, c, d].map(|texels| _mm512_srli_epi16::<8>(texels)));
+        for (channels, low, high) in [(even, red, blue), (odd, green, alpha)] {
+            store(_mm512_castsi512_si256(channels), low);
+            store(_mm512_extracti64x4_epi64::<1>(channels), high);
+        }
+    }
+
+    /// Joins two words, the first of which becomes the lower.
+    fn pair([low, high]: [u32; 2]) -> i64 {
+        i64::from(low) | i64::from(high) << 32
+    }
+
+    // Vectors are loaded and stored element by element, which compilers turn into one instruction: to do it by pointers would be unsafe.
+
+    #[target_feature(enable = "sse2")]
+    #[inline]
+    fn load_128([a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]: [i8; 16]) -> __m128i {
+        _mm_setr_epi8(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+    }
+
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn load_256([a, b, c, d]: [i64; 4]) -> __m256i {
+        _mm256_setr_epi64x(a, b, c, d)
+    }
+
+    #[target_feature(enable = "avx512f")]
+    #[inline]
+    fn load_512([a, b, c, d, e, f, g, h]: [i64; 8]) -> __m512i {
+        _mm512_setr_epi64(a, b, c, d, e, f, g, h)
+    }
+
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn store(numbers: __m256i, out: &mut [i16; STEP]) {
+        macro_rules! each {
+            ($($n:literal)*) => {
+                $(out[$n] = _mm256_extract_epi16::<$n>(numbers) as i16;)*
+            };
+        }
+        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Filters of all kinds against the rule: every weight, with corners of which many are 0 or 255.
+    #[test]
+    fn footprints_by_the_rule() {
+        let mut random = crate::random::Random::seeded(0x5851_f42d_4c95_7f2d);
+        for round in 0..2048_i32 {
+            let mut texel = || {
+                let bits = random.bits();
+                let extreme = (bits >> 32) as u32 & 0x0101_0101;
+                let chosen = (bits >> 40) as u32 & 0x0101_0101;
+                (bits as u32 & !(extreme * 255)) | ((extreme & chosen) * 255)
+            };
+            let mut rows = || std::array::from_fn::<_, BLOCK, _>(|_| [texel(), texel()]);
+            let (upper, lower) = (rows(), rows());
+            let u = std::array::from_fn(|n| n as i32 + 256 * (round - 1000));
+            let v = std::array::from_fn(|n| (n as i32 + round) ^ 0x55);
+            let out = [Vectors::Portable, Vectors::Avx2, Vectors::Avx512].map(|vectors| {
+                let mut out = [[0; BLOCK]; 4];
+                let [r, g, b, a] = &mut out;
+                filter::<4>(vectors, &upper, &lower, &u, &v, r, g, b, a);
+                out
+            });
+            for n in 0..BLOCK {
+                let ([a, b], [c, d]) = (upper[n], lower[n]);
+                for channel in 0..4 {
+                    let byte = |texel: u32| i32::from(texel.to_le_bytes()[channel]);
+                    let wanted = bilinear([a, b, c, d].map(byte), u[n] & 255, v[n] & 255, |v| v) as i16;
+                    assert_eq!(out.map(|channels| channels[channel][n]), [wanted; 3], "{n} {channel}");
+                }
+            }
+        }
+    }
+}
