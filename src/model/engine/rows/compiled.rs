@@ -65,9 +65,9 @@ pub(crate) struct Sampler {
 }
 
 impl Sampler {
-    /// Returns what is subtracted from coordinates, in 1/256 texel: half a texel if the sampler filters.
+    /// Returns what is subtracted from coordinates, in 1/256 texel: half a texel if the sampler filters a single level.
     pub(super) fn bias(&self) -> i32 {
-        if self.filters { 128 } else { 0 }
+        if self.filters && !self.mixes { 128 } else { 0 }
     }
 
     /// Returns whether it has faces or layers.

@@ -3,6 +3,7 @@
 
 use super::kernels::LANES;
 use super::kernels::PerLane;
+use super::planes::Plane;
 use super::quads::{Known, Quads, floor, parted};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
@@ -64,12 +65,23 @@ impl Default for Placing {
 }
 
 impl Setup<'_> {
-    /// Computes all fetches of a batch for a unit with levels.
+    /// Returns whether the coordinates on all levels that a sampler reads are those of level 0, shifted.
+    pub(super) fn shift_with(&self, sampler: &Sampler, planes: &[Plane; 2]) -> bool {
+        let unit = &self.context.draw.units[sampler.index];
+        let smallest = unit.levels.last().filter(|_| sampler.mixes);
+        smallest
+            .is_none_or(|level| unit.plane_shifts(level).iter().zip(planes).all(|(bits, plane)| plane.shifts_by(*bits)))
+    }
+
+    /// Computes all fetches of a batch for a unit with levels. `floors` are the coordinates on level 0, if they are known and
+    /// [shifted](Self::shift_with).
     #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn levels<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
+        floors: Option<[&[i32]; 2]>,
         local: &BatchSetup,
         short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
@@ -89,24 +101,28 @@ impl Setup<'_> {
         spread.hand_out(quads, &reads.known.each, batch.count, &mut lods[..lanes]);
         let ranges = choose(unit, lanes, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
-        let settled = [0, 1].map(|axis| {
-            let (gap, shared) = base.gaps[axis];
-            // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
-            let floors = (ranges[0][0]..=ranges[1][1]).map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
-            parted(gap, base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift)))
-        });
         let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
-        let lines = [base.along, base.down, base.denominator];
-        match base.losses {
-            Some(losses) => {
-                let [at_u, at_v] = at;
-                let (at_u, at_v) = (&mut at_u[..lanes], &mut at_v[..lanes]);
-                short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, [&mut *at_u, &mut *at_v]);
-                settle(at_u, at_v, settled, u, v, close);
+        if floors.is_none() {
+            let settled = [0, 1].map(|axis| {
+                let (gap, shared) = base.gaps[axis];
+                // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
+                let floors =
+                    (ranges[0][0]..=ranges[1][1]).map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
+                parted(gap, base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift)))
+            });
+            let lines = [base.along, base.down, base.denominator];
+            match base.losses {
+                Some(losses) => {
+                    let [at_u, at_v] = at;
+                    let (at_u, at_v) = (&mut at_u[..lanes], &mut at_v[..lanes]);
+                    short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, [&mut *at_u, &mut *at_v]);
+                    settle(at_u, at_v, settled, u, v, close);
+                }
+                None => quotients::<FMA, ROW>(batch.at, lines, settled, u, v, close),
             }
-            None => quotients::<FMA, ROW>(batch.at, lines, settled, u, v, close),
         }
-        let any_close = close.iter().fold(0, |all, close| all | close) < 0;
+        let any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
+        let [u, v] = floors.unwrap_or([u, v]);
         let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
         for (which, [low, high]) in ranges.into_iter().enumerate() {
             let ([to_u, to_v], entries) = (&mut reads.coordinates[which], &mut reads.entries[which]);

@@ -87,6 +87,11 @@ impl Plane {
         ((1_u64 << shared) as f64 / (p as f64 * triangle.doubled_area as f64), shared)
     }
 
+    /// Returns whether floors of the quotients, shifted by so many bits, are the coordinates on a smaller level (INT-4).
+    pub(super) fn shifts_by(&self, bits: u32) -> bool {
+        (self.g[0] | self.g[1] | self.g[2]).trailing_zeros() >= bits
+    }
+
     /// Returns the slope along x modulo 2^64.
     pub(super) fn x(&self) -> i64 {
         self.whole[0]

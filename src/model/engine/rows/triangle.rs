@@ -158,13 +158,14 @@ impl<'a> Interpolators<'a> {
         *undivided = compiled.fog.is_none() && !compiled.estimates;
         *complete = *undivided;
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
-            if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
+            if let Planes::Plane(planes) = planes {
                 let bias = sampler.bias();
-                *is = u.begin(&planes[0], triangle, &e, d, columns, bias)
+                *is = self.setup.shift_with(sampler, planes)
+                    && u.begin(&planes[0], triangle, &e, d, columns, bias)
                     && v.begin(&planes[1], triangle, &e, d, columns, bias);
             }
-            *complete &= *is || matches!(planes, Planes::Shared);
-            *undivided &= *is || !(sampler.mixes || matches!(planes, Planes::Plane(_)));
+            *complete &= !sampler.mixes && (*is || matches!(planes, Planes::Shared));
+            *undivided &= !sampler.mixes && (*is || !matches!(planes, Planes::Plane(_)));
         }
         if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
             *is =
@@ -253,10 +254,13 @@ impl<'a> Interpolators<'a> {
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
-                let Varying { reads, quads, placing, short, .. } = &mut *varying;
+                let Varying { reads, quads, placing, short, coordinates, dda, .. } = &mut *varying;
                 let work = (&mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
-                setup.levels::<FMA, ROW>(batch, (sampler, planes), local, short, work, reads);
+                let lanes = || batch.lanes();
+                let floors =
+                    (ROW && dda.samplers[n].1).then(|| [&coordinates[n][0][lanes()], &coordinates[n][1][lanes()]]);
+                setup.levels::<FMA, ROW>(batch, (sampler, planes), floors, local, short, work, reads);
             } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.dda.samplers[n].1) {
                 let Varying { coordinates, whole, .. } = &mut *varying;
                 let lanes = batch.lanes();
