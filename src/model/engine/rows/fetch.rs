@@ -257,10 +257,11 @@ pub(super) fn sample_levels(
         fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
         let [next_red, next_green, next_blue, next_alpha] = next;
         filter::<4>(vectors, upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
-        mix(red, next_red, weights);
-        mix(green, next_green, weights);
-        mix(blue, next_blue, weights);
-        mix(alpha, next_alpha, weights);
+        for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
+            if wanted.is_some() {
+                mix(channel, next, weights);
+            }
+        }
     }
     load(signed, wanted, rows);
 }
