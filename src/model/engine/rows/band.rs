@@ -461,7 +461,8 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.has_images().then_some(&varying.faces[n]);
         let wanted = compiled.textures[sampler.unit];
-        if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
+        let at = sampler.shares.unwrap_or(n);
+        if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
             fetch::sample_levels(job.vectors, table, reads, both, sampler.signed, wanted, work, rows);
             // The entries in `work` have been overwritten.
@@ -474,7 +475,6 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             found = None;
             continue;
         }
-        let at = sampler.shares.unwrap_or(n);
         if found != Some((at, table.pitch)) {
             fetch::locate(table, &mut varying.coordinates[at], faces, work);
         }

@@ -68,8 +68,8 @@ use crate::engine::TextureWords;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
-use crate::state::{Filter, TextureImage, TextureKind};
-use crate::texture::planned::Image;
+use crate::state::{Filter, MipFilter, TextureImage, TextureKind};
+use crate::texture::planned::{Image, PlannedUnit};
 use node::{Input, Node, Value};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -232,14 +232,21 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
 fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
-    !(one.mixes || other.mixes || one.has_images() || other.has_images() || one.depends || other.depends)
-        && one.filters == other.filters
+    !(one.has_images() || other.has_images() || one.depends || other.depends)
+        && (one.filters, one.mixes) == (other.filters, other.mixes)
+        && (!one.mixes || selection(a) == selection(b))
         && one.pairs + other.pairs == 0
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         && a.state.cylindrical_wrap == b.state.cylindrical_wrap
         // Coordinates are limited in place, so the axes have to be equal.
         && table::axes(a) == table::axes(b)
         && draw.assembly.vertices.same_coordinates(first, second)
+}
+
+/// Returns all that decides, beside coordinates, which levels a unit reads and where.
+fn selection(unit: &PlannedUnit) -> (Filter, MipFilter, [i32; 3]) {
+    let state = &unit.state;
+    (state.min_filter, state.mip_filter, [state.lod_bias, state.min_lod, state.max_lod])
 }
 
 /// Returns the samplers of a draw, or `None` if rows cannot sample all of its units or the tables do not pay.

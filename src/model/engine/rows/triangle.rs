@@ -253,6 +253,9 @@ impl<'a> Interpolators<'a> {
         // A loop of its own, so that values which compilers compute before it are not computed if nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
+            if sampler.shares.is_some() {
+                continue;
+            }
             if sampler.mixes {
                 let Varying { reads, quads, placing, short, coordinates, dda, .. } = &mut *varying;
                 let work = (&mut **quads, &mut **placing);
