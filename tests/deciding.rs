@@ -8,12 +8,15 @@ use std::path::{Path, PathBuf};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
-use ninebit::state::{POLICIES, Policies, Policy};
+use ninebit::state::{POLICIES, Policies, Policy, Profile};
 use ninebit_cli::replay::{Options, find, replay};
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene as scene;
 use ninebit_scene::diff::{self, compare};
 use ninebit_scene::image::Rgba;
+use ninebit_vectors::cases::{self, Level};
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::{Unit, units};
 
 /// Two pictures must differ by at least this many levels of 255, in at least `PIXELS` adjacent pixels.
 const LEVELS: u8 = 32;
@@ -184,6 +187,166 @@ fn open_questions_are_refused_by_name() {
                 assert!(!refused.is_empty(), "{name}: {error}");
             }
         }
+    }
+}
+
+/// Returns the results of a row of a unit, or `None` if the inputs do not go together.
+fn row(unit: &dyn Unit, inputs: &[i64]) -> Option<Vec<i64>> {
+    let mut results = vec![0; unit.results().len()];
+    let conditions = Conditions { profile: Profile::Nv2a, policies: Policies::DEFAULT };
+    unit.evaluate(inputs, &conditions, &mut results);
+    unit.accepts(inputs, Profile::Nv2a).then_some(results)
+}
+
+/// A deciding scene, its picture, and the unit with rows of its readings.
+struct Question {
+    plan: Plan,
+    picture: Rgba,
+    unit: &'static dyn Unit,
+}
+
+impl Question {
+    fn new(scene: &str, unit: &str) -> Question {
+        let plan = scene::load(&folder().join(format!("{scene}.ron")), &Limits::default()).unwrap().plan;
+        Question { picture: picture(&plan, "", 0), plan, unit: units::by_name(unit).unwrap() }
+    }
+
+    /// Returns the results of a row in a reading, or `None` if the unit does not accept it.
+    fn answer(&self, reading: usize, inputs: &[i64]) -> Option<Vec<i64>> {
+        row(self.unit, &[&[reading as i64], inputs].concat())
+    }
+
+    /// Returns a pixel of the band of a reading; the first band is the card's.
+    fn pixel(&self, reading: usize, column: u32, y: u32) -> [u8; 4] {
+        band(&self.picture, reading as u32 + 1).pixels()[(y * self.picture.width() + column) as usize]
+    }
+
+    /// Returns a step of the first draw that covers a pixel of the band of a reading.
+    fn step(&self, reading: usize, (column, y): (u32, u32), name: &str) -> i64 {
+        let pixel = (column, (reading as u32 + 1) * BAND + y);
+        let draws = trace(&self.plan, 0, pixel, None).unwrap().draws;
+        let step = draws.iter().flat_map(|draw| &draw.steps).find(|step| step.name == name);
+        step.unwrap_or_else(|| panic!("{}: no {name} at {pixel:?}", self.unit.name())).value
+    }
+
+    /// Returns the weights of the linear filter in a column, which all bands share.
+    fn weights(&self, column: u32) -> [i64; 2] {
+        ["unit0.weight_u", "unit0.weight_v"].map(|name| self.step(0, (column, 24), name))
+    }
+
+    /// Checks that no two readings have the same answer in all of these columns.
+    fn readings_differ<T: PartialEq>(&self, answers: &[Vec<T>]) {
+        for (n, answer) in answers.iter().enumerate() {
+            assert!(answers[n + 1..].iter().all(|other| other != answer), "{}", self.unit.name());
+        }
+    }
+}
+
+fn bits(n: f32) -> i64 {
+    n.to_bits().into()
+}
+
+#[test]
+fn rows_of_filtered_shadows_are_the_bands() {
+    let question = Question::new("SHD-1-filter", "filtered-shadow");
+    let mut answers = vec![Vec::new(); question.unit.readings().len()];
+    for column in 0..256 {
+        let [u, v] = question.weights(column);
+        let less = 1;
+        for (reading, answers) in answers.iter_mut().enumerate() {
+            let inputs = [less, bits(24_576.0), 0x4000, 0xc000, 0x4000, 0xc000, u, v];
+            let value = question.answer(reading, &inputs).unwrap()[2];
+            let shown = question.pixel(reading, column, 24);
+            assert_eq!(shown[..3], [value as u8; 3], "{} at column {column}", question.unit.readings()[reading]);
+            answers.push(value);
+        }
+    }
+    question.readings_differ(&answers);
+}
+
+#[test]
+fn rows_of_filtered_keys_are_the_bands() {
+    let question = Question::new("KEY-1-filter", "filtered-key");
+    let blend = units::by_name("blend").unwrap();
+    let mut answers = vec![Vec::new(); question.unit.readings().len()];
+    for column in 0..256 {
+        let [u, v] = question.weights(column);
+        let (alpha, key, white) = (0, 0xffff_00ff, 0xffff_ffff);
+        for (reading, answers) in answers.iter_mut().enumerate() {
+            // The scene's key has the alpha 255.
+            let texel = question.answer(reading, &[alpha, key, key, white, key, white, u, v]).unwrap();
+            // Add, SourceAlpha, OneMinusSourceAlpha; over green, without a constant.
+            let blended = row(blend, &[&[0, 4, 5], &texel[..], &[0, 128, 0, 255, 0, 0, 0, 0]].concat()).unwrap();
+            let shown = question.pixel(reading, column, 24).map(i64::from);
+            assert_eq!(shown[..3], blended[8..11], "{} at column {column}", question.unit.readings()[reading]);
+            answers.push(texel);
+        }
+    }
+    question.readings_differ(&answers);
+}
+
+#[test]
+fn rows_of_slopes_of_w_buffers_are_the_bands() {
+    let question = Question::new("DEP-6-slope", "w-buffer-slope");
+    let corners = [[0, 0], [256, 0], [256, 48], [0, 48]];
+    let split = units::by_name("primitive-split").unwrap();
+    let readings = question.unit.readings();
+    let mut answers = vec![Vec::new(); readings.len()];
+    for column in 0..256 {
+        for (reading, answers) in answers.iter_mut().enumerate() {
+            let top = (reading as i64 + 1) * i64::from(BAND);
+            let covered = (0..2).find_map(|triangle| {
+                // Quads, the first vertex provokes, four vertices.
+                let order = row(split, &[3, 0, 4, triangle]).unwrap();
+                let corners = [0, 1, 2].map(|n| corners[order[n] as usize]);
+                let along = |near: f32, far: f32| corners.map(|[x, _]| bits(if x == 0 { near } else { far }));
+                let positions = corners.map(|[x, y]| [16 * x, 16 * (top + y)]).concat();
+                let inputs = [
+                    &positions[..],
+                    &[i64::from(column), top + 24],
+                    &along(0.0, 8000.0),
+                    &along(1000.0, 16_000.0),
+                    &[bits(32.0)],
+                ];
+                question.answer(reading, &inputs.concat())
+            });
+            let word = covered.unwrap()[0];
+            // A plane at w = 3000 turns white what lies before it. The band of the last reading is drawn by hand.
+            let white = question.pixel(reading, column, 24) == [255; 4];
+            assert_eq!(white, word < 3000, "{} at column {column}: {word}", readings[reading]);
+            if reading + 1 < readings.len() {
+                assert_eq!(question.step(reading, (column, 24), "stored.z"), word, "{}: {column}", readings[reading]);
+            }
+            answers.push(word);
+        }
+    }
+    question.readings_differ(&answers);
+}
+
+/// Between any two readings, dozens of rows of the table decide.
+#[test]
+fn tables_tell_readings_apart() {
+    let asking: Vec<_> = units::all().into_iter().filter(|unit| !unit.readings().is_empty()).collect();
+    let refused: Vec<&str> = OPEN.iter().filter(|(_, _, codes)| codes == &["NB0402"]).map(|(name, ..)| *name).collect();
+    assert_eq!(asking.len(), refused.len());
+    for unit in asking {
+        let prefix = format!("{}-", unit.rules()[0]);
+        assert!(refused.iter().any(|name| name.starts_with(&prefix)), "{} has no scene", unit.name());
+        let readings = unit.readings().len();
+        let mut apart = vec![0; readings * readings];
+        cases::visit(unit, Profile::Nv2a, Level::L0, 1, |inputs, _| {
+            let mut inputs = inputs.to_vec();
+            let answers = (0..readings as i64).map(|reading| {
+                inputs[0] = reading;
+                row(unit, &inputs).unwrap()
+            });
+            let answers: Vec<_> = answers.collect();
+            for n in 0..readings * readings {
+                apart[n] += u32::from(answers[n / readings] != answers[n % readings]);
+            }
+        });
+        let least = (0..apart.len()).filter(|n| n / readings != n % readings).map(|n| apart[n]).min().unwrap();
+        assert!(least >= 50, "{}: {apart:?}", unit.name());
     }
 }
 

@@ -9,6 +9,7 @@ use std::process::{Command, Output};
 use ninebit::state::{Policies, Profile};
 use ninebit_vectors::BEHAVIOUR;
 use ninebit_vectors::cases::Level;
+use ninebit_vectors::column::Kind;
 use ninebit_vectors::pack::{self, Manifest, Options};
 use ninebit_vectors::read::Table;
 use ninebit_vectors::results::adopt::Adopted;
@@ -29,12 +30,16 @@ struct Asked {
 
 impl Asked {
     fn new() -> Asked {
+        Asked::of(&UNITS)
+    }
+
+    fn of(units: &[&str]) -> Asked {
         let folder = tempfile::tempdir().unwrap();
         let options = Options {
             profile: Profile::Nv2a,
             level: Level::L0,
             seed: 1,
-            units: UNITS.map(|name| units::by_name(name).unwrap()).to_vec(),
+            units: units.iter().map(|name| units::by_name(name).unwrap()).collect(),
             deciding: false,
             views: vec![],
         };
@@ -55,6 +60,11 @@ impl Asked {
 
     /// Writes the results of a card that follows these policies. Rows with real numbers are left out.
     fn answer(&self, vendor: &str, renderer: &str, policies: Policies) {
+        self.answer_in(vendor, renderer, policies, None);
+    }
+
+    /// Writes results that also follow this reading of an open question.
+    fn answer_in(&self, vendor: &str, renderer: &str, policies: Policies, reading: Option<i64>) {
         fs::create_dir_all(self.results()).unwrap();
         let device = serde_json::json!({
             "format": "ninebit-device-1", "pack": self.manifest.root, "vendor": vendor, "renderer": renderer, "version": "1.2",
@@ -73,8 +83,14 @@ impl Asked {
             );
             for row in &table.rows {
                 let mut answer = vec![0; row.results.len()];
-                unit.evaluate(&row.inputs, &Conditions { profile: Profile::Nv2a, policies }, &mut answer);
-                let texts: Vec<String> = out.iter().map(|n| columns[*n].kind.write(answer[*n])).collect();
+                let mut inputs = row.inputs.clone();
+                inputs[0] = reading.unwrap_or(inputs[0]);
+                unit.evaluate(&inputs, &Conditions { profile: Profile::Nv2a, policies }, &mut answer);
+                let text = |n: &usize| match columns[*n].kind {
+                    Kind::Hex(_) => answer[*n].to_string(),
+                    kind => kind.write(answer[*n]),
+                };
+                let texts: Vec<String> = out.iter().map(text).collect();
                 if texts.iter().all(|text| !text.contains('.')) {
                     body += &format!("{}\t{}\tok\n", row.id, texts.join("\t"));
                 }
@@ -148,6 +164,41 @@ fn the_policy_that_a_card_follows_is_named() {
         assert_eq!(compared.policies[0].explains, compared.off_by_one + compared.worse);
         let rule = format!("policy:{}", policy.split('=').next().unwrap());
         assert!(compared.tags[&rule].differ >= best.explains, "{:?}", compared.tags);
+    }
+}
+
+/// If a card follows one reading of an open question, the comparison names it, and rows of the other readings contradict nothing.
+#[test]
+fn the_reading_that_a_card_follows_is_named() {
+    for name in ["filtered-shadow", "filtered-key", "w-buffer-slope"] {
+        let unit = units::by_name(name).unwrap();
+        let asked = Asked::of(&[name]);
+        for (reading, value) in (0..).zip(unit.readings()) {
+            asked.answer_in("NVIDIA Corporation", "GeForce3", Policies::DEFAULT, Some(reading));
+            let comparison = asked.compare(&[]);
+            let compared = &comparison.units[0];
+            let best = comparison.explanation.as_ref().unwrap();
+            let said = format!("{}={value}", unit.rules()[0]);
+            assert_eq!((&best.policy, best.breaks), (&said, 0));
+            assert!(compared.waived > 100 && compared.waived == compared.off_by_one + compared.worse, "{compared:?}");
+            assert!(comparison.is_clean() && compared.reason.as_ref().unwrap().contains(&said));
+            let output = asked.run(&["compare", "pack", "results"]);
+            assert_eq!(output.status.code(), Some(0), "{output:?}");
+            assert!(String::from_utf8(output.stdout).unwrap().contains(&format!("{said} explains the most")));
+        }
+        let output = asked.run(&["adopt", "pack", "results", "-o", "adopted", "--device", "geforce3"]);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let record = fs::read(asked.folder.path().join("adopted/geforce3/ADOPTED.json")).unwrap();
+        let record: Adopted = serde_json::from_slice(&record).unwrap();
+        assert_eq!((record.behaviour_rev, record.units[0].contradicted), (BEHAVIOUR, 0));
+        // A row that no reading explains is a difference.
+        changed(&asked.path(name), |body| {
+            let row = body.lines().nth(8).unwrap();
+            let (before, last) = row.strip_suffix("\tok").unwrap().rsplit_once('\t').unwrap();
+            let wrong = if last == "7" { "5" } else { "7" };
+            body.replacen(row, &format!("{before}\t{wrong}\tok"), 1)
+        });
+        assert!(!asked.compare(&[]).is_clean(), "{name}");
     }
 }
 
@@ -306,17 +357,19 @@ fn results_of_something_else_are_refused() {
 /// Batches ask rows of their table, and refer to bytes that exist.
 #[test]
 fn batches_ask_rows_of_their_table() {
+    const DRAWN: [&str; 4] = ["compressed-block", "filtered-shadow", "mux", "product"];
     let folder = tempfile::tempdir().unwrap();
     let pack = folder.path().join("pack");
     let arguments =
-        ["vectors", "export", "--unit", "product", "--unit", "compressed-block", "--unit", "mux", "--unit", "depth"];
+        ["product", "compressed-block", "filtered-shadow", "mux", "depth"].map(|unit| ["--unit", unit]).concat();
     let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
-    let output = command.args(arguments).args(["--gpu-batches", "-o"]).arg(&pack).output().unwrap();
+    let output =
+        command.args(["vectors", "export"]).args(arguments).args(["--gpu-batches", "-o"]).arg(&pack).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let (manifest, tables) = pack::open(&pack).unwrap();
     let batches = manifest.files.iter().filter(|file| file.path.ends_with(".gpu.txt"));
-    assert_eq!(batches.map(|file| file.unit.as_str()).collect::<Vec<_>>(), ["compressed-block", "mux", "product"]);
-    for unit in ["compressed-block", "mux", "product"] {
+    assert_eq!(batches.map(|file| file.unit.as_str()).collect::<Vec<_>>(), DRAWN);
+    for unit in DRAWN {
         let text = fs::read_to_string(pack.join(format!("units/{unit}.gpu.txt"))).unwrap();
         let raw = fs::read(pack.join(format!("units/{unit}.gpu.raw"))).unwrap();
         let table = tables.iter().find(|table| table.writer.contents().unit.name() == unit).unwrap();

@@ -1,5 +1,7 @@
 //! Grades of rules, read from the handbook.
 
+use crate::Unit;
+
 /// The handbook of rules.
 const TEXT: &str = include_str!("../../docs/numerics.md");
 
@@ -19,9 +21,10 @@ pub fn grade(rule: &str) -> usize {
     GRADES.iter().rposition(|grade| line.contains(grade)).unwrap_or(weakest)
 }
 
-/// Returns the weakest grade of several rules.
-pub fn weakest(rules: &[&str]) -> &'static str {
-    GRADES[rules.iter().map(|rule| grade(rule)).max().unwrap_or(0)]
+/// Returns the weakest grade of a unit's rules. The readings of an open question are graded as what nothing decides.
+pub fn of(unit: &dyn Unit) -> &'static str {
+    let weakest = unit.rules().iter().map(|rule| grade(rule)).max().unwrap_or(0);
+    GRADES[if unit.readings().is_empty() { weakest } else { GRADES.len() - 1 }]
 }
 
 #[cfg(test)]

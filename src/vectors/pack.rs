@@ -52,7 +52,7 @@ pub struct Manifest {
     pub level: String,
     /// The seed of the random rows.
     pub seed: u64,
-    /// Whether the tables have only rows that a policy changes.
+    /// Whether the tables have only rows that a policy or a reading changes.
     pub deciding: bool,
     /// SPDX identifier of the licence.
     pub license: String,
@@ -96,7 +96,7 @@ pub struct Options {
     pub seed: u64,
     /// The units whose tables are written.
     pub units: Vec<&'static dyn Unit>,
-    /// Whether to write only rows that a policy changes.
+    /// Whether to write only rows that a policy or a reading changes.
     pub deciding: bool,
     /// The views that are written beside the tables.
     pub views: Vec<View>,

@@ -70,7 +70,7 @@ impl Writer {
     pub fn new(contents: Contents) -> Writer {
         let unit = contents.unit;
         let (inputs, results) = (unit.inputs(), unit.results());
-        Writer { contents, inputs, results, grade: handbook::weakest(unit.rules()) }
+        Writer { contents, inputs, results, grade: handbook::of(unit) }
     }
 
     /// Returns the unit, chip, level and seed of the table.
@@ -139,7 +139,7 @@ impl Writer {
     /// Returns the values of the columns `LAST`.
     pub(crate) fn last(&self, row: &Row) -> [String; 4] {
         let reach = self.contents.unit.reach(&row.inputs, &row.results).word();
-        [tags(row), self.grade.to_owned(), reach.to_owned(), self.alternatives(row)]
+        [tags(self.contents.unit, row), self.grade.to_owned(), reach.to_owned(), self.alternatives(row)]
     }
 
     /// Returns the changed results under other policies, as `RULE=value:out.x=1,out.y=2;...`, or `-` if nothing changes.
@@ -159,7 +159,7 @@ impl Writer {
         if texts.is_empty() { "-".to_owned() } else { texts.join(";") }
     }
 
-    /// Passes every row of the table to `take`, or with `deciding` only those that some policy changes, until `take` returns an error. Returns the
+    /// Passes every row of the table to `take`, or with `deciding` only those that some policy or reading changes, until `take` returns an error. Returns the
     /// number of rows.
     ///
     /// # Errors
@@ -181,10 +181,10 @@ impl Writer {
     }
 }
 
-/// Returns the tags of a row: the reason why it is there, and the rules whose policies change it.
-fn tags(row: &Row) -> String {
+/// Returns the tags of a row: the reason why it is there, and the rules whose policies change it. Readings are no policies.
+fn tags(unit: &dyn Unit, row: &Row) -> String {
     let mut tags = vec![row.origin.word().to_owned()];
-    for alternative in &row.alternatives {
+    for alternative in row.alternatives.iter().filter(|_| unit.readings().is_empty()) {
         let rule = alternative.policy.split('=').next().unwrap_or_default();
         let tag = format!("policy:{rule}");
         if !tags.contains(&tag) {

@@ -38,6 +38,13 @@ pub trait Unit: Sync {
     /// Returns the columns of intermediates and results, `mid.` and `out.`.
     fn results(&self) -> Vec<Column>;
 
+    /// Returns the names of the readings of an open question, if the unit asks one: no rule decides its results, and the model refuses such a
+    /// draw. The first column, `cfg.reading`, then has the number of the reading that a row follows, and the first of the unit's rules is the
+    /// one in question.
+    fn readings(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Computes the results of one row. Both slices are as long as their columns.
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
 
@@ -152,13 +159,13 @@ impl Reach {
 /// The results of a row under another reading of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alternative {
-    /// The rule and the value of its policy: `CMB-3=literal`.
+    /// The rule and the value of its policy, or the reading of an open question: `CMB-3=literal`, `SHD-1=Nearest`.
     pub policy: String,
     /// The results, one number for each result column.
     pub results: Vec<i64>,
 }
 
-/// Returns the policies that change an `out.` column of a row, one at a time.
+/// Returns the policies and readings that change an `out.` column of a row, one at a time.
 ///
 /// `columns` are the result columns, which the caller has looked up once.
 pub fn alternatives(
@@ -169,23 +176,49 @@ pub fn alternatives(
     results: &[i64],
 ) -> Vec<Alternative> {
     let mut found = Vec::new();
-    for (policy, value, policies) in other_policies() {
-        let mut other = vec![0; results.len()];
-        unit.evaluate(inputs, &Conditions { profile, policies }, &mut other);
+    for answer in answers(unit) {
+        let other = answer.evaluate(unit, inputs, profile, results.len());
         if columns.iter().zip(other.iter().zip(results)).any(|(c, (a, b))| a != b && c.name.starts_with("out.")) {
-            found.push(Alternative { policy: format!("{}={value}", policy.rule), results: other });
+            found.push(Alternative { policy: answer.name(), results: other });
         }
     }
     found
 }
 
-/// Returns every value of every policy that is not the default: the policy, the value, and all policies with it.
-pub(crate) fn other_policies() -> impl Iterator<Item = (&'static Policy, &'static str, Policies)> {
+/// An answer to a question that rules leave open: another value than the default of a policy, or a reading.
+pub(crate) struct Answer {
+    /// The rule in question.
+    pub(crate) rule: &'static str,
+    value: &'static str,
+    policies: Policies,
+    reading: Option<i64>,
+}
+
+impl Answer {
+    /// Returns the rule and the value: `CMB-3=literal`.
+    pub(crate) fn name(&self) -> String {
+        format!("{}={}", self.rule, self.value)
+    }
+
+    /// Returns the `count` results of a row if this is the answer.
+    pub(crate) fn evaluate(&self, unit: &dyn Unit, inputs: &[i64], profile: Profile, count: usize) -> Vec<i64> {
+        let (mut inputs, mut results) = (inputs.to_vec(), vec![0; count]);
+        inputs[0] = self.reading.unwrap_or(inputs[0]);
+        unit.evaluate(&inputs, &Conditions { profile, policies: self.policies }, &mut results);
+        results
+    }
+}
+
+/// Returns every value of every policy that is not the default, and every reading of the unit.
+pub(crate) fn answers(unit: &dyn Unit) -> impl Iterator<Item = Answer> {
     let values = POLICIES.iter().flat_map(|policy| policy.values.iter().enumerate().map(move |value| (policy, value)));
-    values.filter_map(|(policy, (index, (value, _)))| {
+    let others = values.filter_map(|(Policy { rule, .. }, (index, (value, _)))| {
         let mut policies = Policies::DEFAULT;
-        let differs = policies.chosen(policy.rule) != index;
-        policies.choose(policy.rule, index);
-        differs.then_some((policy, *value, policies))
-    })
+        let differs = policies.chosen(rule) != index;
+        policies.choose(rule, index);
+        differs.then_some(Answer { rule, value, policies, reading: None })
+    });
+    let rule = unit.rules()[0];
+    let readings = (0..).zip(unit.readings());
+    others.chain(readings.map(move |(n, value)| Answer { rule, value, policies: Policies::DEFAULT, reading: Some(n) }))
 }

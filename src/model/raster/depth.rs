@@ -24,13 +24,13 @@ impl Binary {
     }
 
     /// Returns the sum. It is exact unless it would need more than 61 bits; then it is floored.
-    fn plus(self, other: Binary) -> Binary {
+    pub fn plus(self, other: Binary) -> Binary {
         let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
         Binary { mantissa: a + b, exponent }
     }
 
     /// Whether it is less than another.
-    fn is_below(self, other: Binary) -> bool {
+    pub fn is_below(self, other: Binary) -> bool {
         let ([a, b], _) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
         a < b
     }
@@ -70,7 +70,7 @@ impl DepthPlane {
         let offset = match test.offset {
             PolygonOffset { bias: 0.0, factor: 0.0 } => Binary::default(),
             PolygonOffset { bias, .. } if test.w_buffer => Binary::new(bias),
-            _ => offset(test, triangle, z),
+            _ => offset(test.offset, slope(triangle, z)),
         };
         Some(DepthPlane { z, w: test.w_buffer.then_some(w), offset })
     }
@@ -130,11 +130,9 @@ pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
     }
 }
 
-/// DEP-5: returns the offset of a triangle from bias and slope.
+/// DEP-5: returns the offset of a triangle from bias, factor and slope.
 #[cold]
-fn offset(test: &DepthTest, triangle: &Triangle, z: [f32; 3]) -> Binary {
-    let PolygonOffset { bias, factor } = test.offset;
-    let slope = slope(triangle, z);
+pub fn offset(PolygonOffset { bias, factor }: PolygonOffset, slope: Binary) -> Binary {
     let (of_factor, exponent) = split(factor);
     let product = i128::from(slope.mantissa) * i128::from(of_factor);
     let dropped = (128 - product.unsigned_abs().leading_zeros()).saturating_sub(61);
@@ -143,6 +141,7 @@ fn offset(test: &DepthTest, triangle: &Triangle, z: [f32; 3]) -> Binary {
 }
 
 /// Returns the larger magnitude of dz/dx and dz/dy, truncated at the 29th bit from the top of the largest z.
+#[cold]
 pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
     const KEPT: i32 = 62;
     let (aligned, exponent) = align(z.map(split), KEPT);

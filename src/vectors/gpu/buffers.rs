@@ -60,12 +60,15 @@ pub(super) fn fog_table(case: &Case) -> Option<Placement> {
     (steps <= 0).then(|| drawn(Path::Common, needs, state, sources, vec![Read::byte("out.byte", 0)]))
 }
 
+/// OpenGL's words for texels of [`DepthFormat::Z16`].
+const Z16: &str = "DEPTH_COMPONENT16 DEPTH_COMPONENT UNSIGNED_SHORT";
+
 /// Compares a texel of a depth texture. r is passed as a fraction of the deepest depth; rows where r is near a step are only asked if the texel
 /// differs from it by more than one.
 pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
     let ([r, q], depth) = (projected(case)?, case.number("in.depth"));
     let (format, texel) = match case.choice("cfg.format") {
-        DepthFormat::Z16 => ("DEPTH_COMPONENT16 DEPTH_COMPONENT UNSIGNED_SHORT", (depth as u16).to_le_bytes().to_vec()),
+        DepthFormat::Z16 => (Z16, (depth as u16).to_le_bytes().to_vec()),
         DepthFormat::Z24S8 => {
             ("DEPTH_COMPONENT24 DEPTH_COMPONENT UNSIGNED_INT", ((depth << 8) as u32).to_le_bytes().to_vec())
         }
@@ -80,6 +83,11 @@ pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
     {
         return None;
     }
+    Some(compared(case, format, vec![("texture0", texel), ("projected0", bytes([r / deepest, q]))]))
+}
+
+/// Compares texels of a depth format by the function of the row.
+fn compared(case: &Case, format: &str, sources: Vec<(&'static str, Vec<u8>)>) -> Placement {
     let function = case.word("cfg.function", super::fixed::FUNCTIONS);
     let mut needs = vec!["GL_ARB_depth_texture", "GL_ARB_shadow"];
     if !matches!(function, "LEQUAL" | "GEQUAL") {
@@ -88,8 +96,19 @@ pub(super) fn shadow_comparison(case: &Case) -> Option<Placement> {
     let parameters = [("MODE", "COMPARE_R_TO_TEXTURE"), ("FUNC", function)];
     let parameters = parameters.map(|(name, value)| format!("parameter 0 TEXTURE_COMPARE_{name} {value}"));
     let state = [vec![format!("texels 0 {format}")], parameters.to_vec()].concat();
-    let sources = vec![("texture0", texel), ("projected0", bytes([r / deepest, q]))];
-    Some(drawn(Path::Common, needs, state, sources, vec![Read::byte("out.value", 0)]))
+    drawn(Path::Common, needs, state, sources, vec![Read::byte("out.value", 0)])
+}
+
+/// Compares four texels of a depth texture under the linear filter. Rows where r is near one of them, or near their mixture, are left out: their
+/// answer depends on roundings.
+pub(super) fn filtered_shadow(case: &Case) -> Option<Placement> {
+    let (r, word) = (number(case.number("in.r"))?, case.number("mid.reference"));
+    let depths = case.numbers(["in.d00", "in.d10", "in.d01", "in.d11"]);
+    let is_clear = depths.iter().chain(&[case.number("mid.mixed")]).all(|depth| (word - depth).abs() > 1);
+    let weights = case.numbers(["in.weight_u", "in.weight_v"]).map(|weight| weight as u8).to_vec();
+    let texels = depths.map(|depth| (depth as u16).to_le_bytes()).concat();
+    let sources = vec![("quads0", texels), ("weights0", weights), ("projected0", bytes([r / 65_535.0, 1.0]))];
+    is_clear.then(|| compared(case, Z16, sources))
 }
 
 /// Reads a volume texture whose texels hold the number of their layer, within the coordinates that the model takes.

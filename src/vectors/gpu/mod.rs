@@ -154,6 +154,7 @@ pub fn recipes(unit: &str) -> &'static [Recipe] {
         "stencil-test" => &[buffers::stencil_test],
         "fog-table" => &[buffers::fog_table],
         "shadow-comparison" => &[buffers::shadow_comparison],
+        "filtered-shadow" => &[buffers::filtered_shadow],
         "volume-layer" => &[buffers::volume_layer],
         "blend" => &[fixed::blend],
         _ => &[],

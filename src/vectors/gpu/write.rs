@@ -33,8 +33,8 @@ use ninebit::state::Named;
 /// Maximum number of rows in a batch: a draw of 256 by 256 pixels.
 const ROWS: usize = 65_536;
 
-/// Maximum number of batches of a unit. Of a unit with more configurations only a part of the rows is drawn; batches that a policy changes come
-/// first.
+/// Maximum number of batches of a unit. Of a unit with more configurations only a part of the rows is drawn; batches that a policy or a reading
+/// changes come first.
 pub const BATCHES: usize = 1_000;
 
 /// Rows that share their state.
@@ -45,7 +45,7 @@ struct Batch {
     /// Bytes of all rows, for each source.
     sources: Vec<Vec<u8>>,
     rows: usize,
-    /// Whether a policy changes one of its rows.
+    /// Whether a policy or a reading changes one of its rows.
     deciding: bool,
 }
 

@@ -109,7 +109,7 @@ pub fn adopt(
     let mut units = Vec::new();
     for (unit, compared) in results.units.iter().zip(&comparison.units).filter(|(_, compared)| compared.asked > 0) {
         let sha256 = copy(&unit.path, &part.path().join(format!("{}.tsv", unit.unit.name())))?;
-        let contradicted = compared.off_by_one + compared.worse;
+        let contradicted = compared.off_by_one + compared.worse - compared.waived;
         units.push(AdoptedUnit { unit: unit.unit.name().to_owned(), confirmed: compared.exact, contradicted, sha256 });
     }
     copy(&device_path, &part.path().join(DEVICE))?;

@@ -6,9 +6,8 @@ use std::collections::{BTreeMap, HashMap};
 use super::waiver::Waiver;
 use crate::read::TableRow;
 use crate::table::LAST;
-use crate::unit::other_policies;
-use crate::{Conditions, Kind, Table, VectorError};
-use ninebit::state::{Policies, Profile};
+use crate::unit::answers;
+use crate::{Contents, Kind, Table, Unit, VectorError};
 
 /// Comparison of results with a pack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -40,11 +39,11 @@ pub struct UnitComparison {
     pub largest: u64,
     /// Shares of rows by tag: the reason why the table has a row, and the policies that change it.
     pub tags: BTreeMap<String, Share>,
-    /// Other values of policies that would explain differing rows, the best first.
+    /// Other values of policies, and readings, that would explain differing rows, the best first.
     pub policies: Vec<Explanation>,
-    /// Number of differing rows that a waiver accepts.
+    /// Number of differing rows that a waiver accepts, or that follow from another reading of an open question.
     pub waived: usize,
-    /// The waiver's reason; `None` without a waiver.
+    /// The waiver's reason, or the reading; `None` without either.
     pub reason: Option<String>,
     /// The first differing rows.
     pub rows: Vec<RowDifference>,
@@ -91,6 +90,17 @@ pub struct RowDifference {
 }
 
 impl UnitComparison {
+    /// Waives the rows that differ if the unit asks an open question and one reading explains all of them: rows of the other readings
+    /// contradict nothing.
+    fn follow_reading(&mut self, unit: &dyn Unit) {
+        let follows = |best: &&Explanation| best.breaks == 0 && best.explains == self.off_by_one + self.worse;
+        if !unit.readings().is_empty()
+            && let Some(Explanation { policy, explains, .. }) = self.policies.first().filter(follows)
+        {
+            (self.waived, self.reason) = (*explains, Some(format!("{policy} is what every row shows")));
+        }
+    }
+
     /// Returns the number of rows that differ or failed and are not waived.
     fn failures(&self) -> usize {
         self.off_by_one + self.worse + self.errors - self.waived
@@ -230,19 +240,20 @@ fn unit(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)],
     }
     if compared.off_by_one + compared.worse > 0 {
         compared.policies = policies(table, results, pairs);
+        compared.follow_reading(results.unit);
     }
     compared
 }
 
 /// Returns the effect of every other value of the unit's policies, the best first. Values that explain nothing are left out.
 fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)]) -> Vec<Explanation> {
-    let unit = table.writer.contents().unit;
+    let Contents { unit, profile, .. } = table.writer.contents();
     let mut found = Vec::new();
-    for (policy, value, policies) in other_policies().filter(|(policy, ..)| unit.rules().contains(&policy.rule)) {
-        let mut explanation = Explanation { policy: format!("{}={value}", policy.rule), explains: 0, breaks: 0 };
+    for answer in answers(unit).filter(|answer| unit.rules().contains(&answer.rule)) {
+        let mut explanation = Explanation { policy: answer.name(), explains: 0, breaks: 0 };
         for (row, result) in pairs {
             let Some(observed) = &result.values else { continue };
-            let other = evaluated(table, row, policies, table.writer.contents().profile);
+            let other = answer.evaluate(unit, &row.inputs, profile, row.results.len());
             let agrees = |results_of: &[i64]| {
                 results.columns.iter().zip(observed).all(|(column, value)| expected(results_of, column) == *value)
             };
@@ -258,10 +269,4 @@ fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRo
     }
     found.sort_by_key(|explanation| -explanation.gain());
     found
-}
-
-fn evaluated(table: &Table, row: &TableRow, policies: Policies, profile: Profile) -> Vec<i64> {
-    let mut results = vec![0; row.results.len()];
-    table.writer.contents().unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut results);
-    results
 }

@@ -6,12 +6,12 @@ use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
 
-fn floats(inputs: &[i64]) -> [f32; 3] {
+pub(super) fn floats(inputs: &[i64]) -> [f32; 3] {
     std::array::from_fn(|n| float(inputs[n]))
 }
 
 /// Returns a depth test in steps of the buffer.
-fn test() -> DepthTest {
+pub(super) fn test() -> DepthTest {
     DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) }
 }
 
@@ -202,6 +202,9 @@ impl Unit for PixelDepth {
     }
 }
 
+/// The least w (RAS-0) as the bits of a float.
+pub(super) const LEAST_W: i64 = 107 << 23;
+
 /// A pixel of a w buffer.
 pub(super) struct WBuffer;
 
@@ -250,8 +253,7 @@ impl Unit for WBuffer {
     }
 
     fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
-        // RAS-0 has no smaller w.
-        has(inputs[0], profile) && inputs[1..4].iter().any(|e| *e > 0) && inputs[4..7].iter().all(|w| *w >= 107 << 23)
+        has(inputs[0], profile) && inputs[1..4].iter().any(|e| *e > 0) && inputs[4..7].iter().all(|w| *w >= LEAST_W)
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {

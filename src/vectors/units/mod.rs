@@ -99,6 +99,7 @@ mod number;
 mod pixel_shader;
 mod program;
 mod raster;
+mod reading;
 mod rop;
 mod sampling;
 mod shader;
@@ -137,6 +138,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &raster::DepthInterpolation,
         &depth::PixelDepth,
         &depth::WBuffer,
+        &reading::WBufferSlope,
         &depth::DepthRange,
         &depth::DepthWord,
         &fog::LightUnit,
@@ -157,6 +159,8 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &texel::CompressedBlock,
         &sampling::ColorKey,
         &sampling::ShadowComparison,
+        &reading::FilteredKey,
+        &reading::FilteredShadow,
         &shader::Remap,
         &shader::DotProduct,
         &shader::Reflection,

@@ -134,20 +134,26 @@ impl Unit for ShadowComparison {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let comparison = state::ShadowComparison { function: named(inputs[0]), reference: named(inputs[1]) };
-        let format: DepthFormat = named(inputs[2]);
-        let texture = TextureFormat::ALL.iter().copied().find(|texture| texture.depth() == Some(format));
-        let state = TextureUnit { shadow: Some(comparison), ..TextureUnit::new(0) };
-        let unit = planned(state, texture.unwrap_or(TextureFormat::Z16));
-        let texel = Texel { at: Some([0, 0]), word: depth_stencil(inputs[5] as u32, inputs[6] as u8) };
-        with_place(&unit, [float(inputs[3]), float(inputs[4])], |place| {
-            results[0] = match comparison.reference {
-                ShadowReference::R => word(format, place.reference()).into(),
-                ShadowReference::Zero => 0,
-            };
-            let value: [i32; 4] = shadow::compare(&unit, comparison, &texel, place, &mut Silent);
-            results[1] = value[0].into();
-        });
+        let stored = depth_stencil(inputs[5] as u32, inputs[6] as u8);
+        results.copy_from_slice(&compared(comparison, named(inputs[2]), stored, [float(inputs[3]), float(inputs[4])]));
     }
+}
+
+/// Compares r/q with the stored word of a depth. Returns the word of the reference, and what the texture yields.
+pub(super) fn compared(shadow: state::ShadowComparison, format: DepthFormat, stored: u32, at: [f32; 2]) -> [i64; 2] {
+    let texture = TextureFormat::ALL.iter().copied().find(|texture| texture.depth() == Some(format));
+    let state = TextureUnit { shadow: Some(shadow), ..TextureUnit::new(0) };
+    let unit = planned(state, texture.unwrap_or(TextureFormat::Z16));
+    let texel = Texel { at: Some([0, 0]), word: stored };
+    let found = with_place(&unit, at, |place| {
+        let reference = match shadow.reference {
+            ShadowReference::R => word(format, place.reference()),
+            ShadowReference::Zero => 0,
+        };
+        let value: [i32; 4] = shadow::compare(&unit, shadow, &texel, place, &mut Silent);
+        [reference.into(), value[0].into()]
+    });
+    found.unwrap_or_default()
 }
 
 /// The layer of a volume.

@@ -71,7 +71,7 @@ static void quad(const drawing *d, int x0, int y0, int x1, int y1, const GLfloat
         for (unit = 1; unit < UNITS; unit++) {
             if (d->enabled[unit]) gl.MultiTexCoord2f(GL_TEXTURE0 + (GLenum)unit, s, t);
         }
-        if (fixed && fixed[3] != 0) gl.TexCoord4f(s * fixed[3], t * fixed[3], fixed[2], fixed[3]);
+        if (fixed && fixed[3] != 0) gl.TexCoord4f(fixed[0] * fixed[3], fixed[1] * fixed[3], fixed[2], fixed[3]);
         else if (fixed) gl.TexCoord3f(fixed[0], fixed[1], fixed[2]);
         else gl.TexCoord3f(s, t, 0);
         gl.Vertex2f((GLfloat)x / (BATCH_WIDTH / 2) - 1, (GLfloat)y / (BATCH_WIDTH / 2) - 1);
@@ -131,6 +131,8 @@ static void draw_rows(const drawing *d)
             p = secondary->bytes + secondary->size * row;
             gl.SecondaryColor3ub(p[0], p[1], p[2]);
         }
+        at[0] = ((GLfloat)x + 0.5f) / BATCH_WIDTH;
+        at[1] = ((GLfloat)y + 0.5f) / (GLfloat)d->power;
         at[2] = at[3] = 0;
         if (coordinates) {
             for (n = 0; n < 3; n++) at[n] = float_of(coordinates->bytes + 12 * row + 4 * n);
@@ -142,7 +144,8 @@ static void draw_rows(const drawing *d)
             p = weights->bytes + 2 * row;
             at[0] = ((GLfloat)(2 * x) + 0.5f + (GLfloat)p[0] / 256) / (2 * BATCH_WIDTH);
             at[1] = ((GLfloat)(2 * y) + 0.5f + (GLfloat)p[1] / 256) / (GLfloat)(2 * d->power);
-        } else if (projected) {
+        }
+        if (projected) {
             for (n = 0; n < 2; n++) at[2 + n] = float_of(projected->bytes + 8 * row + 4 * n);
         }
         quad(d, x, y, x + 1, y + 1, fixed);
@@ -263,10 +266,11 @@ static int draw_all(drawing *d, unsigned char *pixels, long *results)
     for (n = 0; n < d->from->source_count; n++) {
         const batch_source *source = &d->from->sources[n];
         /* Texels of other formats wait for the line that names them. */
-        if (strncmp(source->name, "texture", 7) == 0 && strncmp(d->file->text + place, "texels", 6) != 0) {
+        if (strncmp(d->file->text + place, "texels", 6) == 0) continue;
+        if (strncmp(source->name, "texture", 7) == 0) {
             if (!upload(d, unit_of(source->name), source, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE)) return 0;
         }
-        if (strncmp(source->name, "quads", 5) == 0 && !upload_quads(d, source)) return 0;
+        if (strncmp(source->name, "quads", 5) == 0 && !upload_quads(d, source, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE)) return 0;
     }
     while (place < d->from->draws) {
         int count = batch_words(d->file, &place, line, words);

@@ -40,8 +40,8 @@ void drawing_color(const long *bytes, GLfloat *color);
 /* What the rows bring, a texel a row, in a format of OpenGL. */
 int upload(drawing *d, int unit, const batch_source *source, GLint internal, GLenum format, GLenum type);
 
-/* Four texels a row, which its coordinates lie between. */
-int upload_quads(drawing *d, const batch_source *source);
+/* Four texels a row in a format of OpenGL, which its coordinates lie between. */
+int upload_quads(drawing *d, const batch_source *source, GLint internal, GLenum format, GLenum type);
 
 /* A compressed block a row. */
 int upload_blocks(drawing *d, GLint internal);

@@ -80,7 +80,8 @@ int set_state(drawing *d, char **words, int count)
     } else if (strcmp(what, "cube") == 0 && count == 3 && v[2] > 0 && v[2] <= 256) {
         return upload_cube(d, v[2]);
     } else if (strcmp(what, "texels") == 0 && count == 5) {
-        const batch_source *source = batch_find(d->from, "texture0");
+        const batch_source *source = batch_find(d->from, "texture0"), *quads = batch_find(d->from, "quads0");
+        if (quads) return upload_quads(d, quads, v[2], (GLenum)v[3], (GLenum)v[4]);
         if (!source) return drawing_fail(d, "there are no texels", "");
         return upload(d, 0, source, v[2], (GLenum)v[3], (GLenum)v[4]);
     } else if (strcmp(what, "compressed") == 0 && count == 3) {

@@ -30,18 +30,19 @@ int upload(drawing *d, int unit, const batch_source *source, GLint internal, GLe
     return 1;
 }
 
-int upload_quads(drawing *d, const batch_source *source)
+int upload_quads(drawing *d, const batch_source *source, GLint internal, GLenum format, GLenum type)
 {
-    unsigned char *texels = (unsigned char *)calloc((size_t)BATCH_WIDTH * (size_t)d->power, 16);
+    size_t half = (size_t)source->size / 2;
+    unsigned char *texels = (unsigned char *)calloc((size_t)BATCH_WIDTH * (size_t)d->power, 2 * half);
     long row;
     if (!texels) return drawing_fail(d, "not enough memory", "");
     for (row = 0; row < d->from->rows; row++) {
-        unsigned char *place = texels + 4 * (row / BATCH_WIDTH * 2 * (2 * BATCH_WIDTH) + row % BATCH_WIDTH * 2);
-        memcpy(place, source->bytes + 16 * row, 8);
-        memcpy(place + 4 * 2 * BATCH_WIDTH, source->bytes + 16 * row + 8, 8);
+        unsigned char *place = texels + half * (size_t)(row / BATCH_WIDTH * 2 * BATCH_WIDTH + row % BATCH_WIDTH);
+        memcpy(place, source->bytes + source->size * row, half);
+        memcpy(place + half * BATCH_WIDTH, source->bytes + source->size * row + half, half);
     }
     bind(d, 0, GL_TEXTURE_2D, GL_LINEAR);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 2 * BATCH_WIDTH, 2 * d->power, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, internal, 2 * BATCH_WIDTH, 2 * d->power, 0, format, type, texels);
     free(texels);
     return 1;
 }

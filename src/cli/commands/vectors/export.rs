@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// Only this unit; may be given several times
     #[arg(long = "unit", value_name = "UNIT", value_parser = super::unit)]
     units: Vec<&'static dyn Unit>,
-    /// Only rows that a policy changes: those to ask a real card first
+    /// Only rows that a policy or a reading changes: those to ask a real card first
     #[arg(long)]
     deciding: bool,
     /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C), jsonl or c (an array of structures); may be given several times
