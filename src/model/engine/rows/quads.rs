@@ -3,8 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::{CubeDirection, reaches_limit};
-use super::kernels::LANES;
-use super::kernels::PerLane;
+use super::kernels::{LANES, PerLane, STEP};
 use super::planes::Plane;
 use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
@@ -86,16 +85,19 @@ impl Quads {
             for (_, first, count) in pair {
                 (low, high) = (low.min(first >> 1), high.max((first + *count as i64 - 1) >> 1));
             }
+            // Whole steps, of which the next run or row overwrites what is too much.
             for (_, first, count) in pair {
-                for n in 0..*count as i64 {
-                    self.of_lanes[lane] = (quads as i64 + ((first + n) >> 1) - low) as u8;
-                    lane += 1;
+                let (quad, odd) = (quads as i64 + (first >> 1) - low, (first & 1) as usize);
+                for (n, of) in self.of_lanes[lane..lane + STEP].iter_mut().enumerate() {
+                    *of = (quad as u8).wrapping_add(((n + odd) >> 1) as u8);
                 }
+                lane += count;
             }
-            for column in low..=high {
-                (xs[quads], ys[quads]) = ((2 * column - i) as f32, ((row & !1) - j) as f32);
-                quads += 1;
+            let (x, y) = ((2 * low - i) as i32, ((row & !1) - j) as f32);
+            for (n, (to_x, to_y)) in xs[quads..quads + STEP].iter_mut().zip(&mut ys[quads..quads + STEP]).enumerate() {
+                (*to_x, *to_y) = ((x + 2 * n as i32) as f32, y);
             }
+            quads += (high + 1 - low) as usize;
         }
         if let (Some(last), Some(last_lane)) = (quads.checked_sub(1), lane.checked_sub(1)) {
             let (x, y, of) = (xs[last], ys[last], self.of_lanes[last_lane]);
