@@ -183,21 +183,19 @@ pub(super) fn on_faces<const FMA: bool>(
         // X goes before Y, Y before Z, as in `Face::from_direction`. One choice at a time, because compilers turn nested ones into
         // branches.
         let on_x = (ax >= ay) & (ax >= az);
-        let on_y = ay >= az;
+        let on_y = !on_x & (ay >= az);
         let major = if on_y { y } else { z };
         let major = if on_x { x } else { major };
-        let negative = major < 0.0;
-        let other = if on_x { -z } else { x };
-        let turned = if negative { -other } else { other };
-        let upright = if negative { -z } else { z };
-        let s = if on_y { x } else { turned };
-        let s = if on_x { turned } else { s };
-        let t = if on_y { upright } else { -y };
-        let t = if on_x { -y } else { t };
+        // Signs are changed by bits, which takes less than a choice.
+        let sign = if major < 0.0 { 1 << 31 } else { 0 };
+        let turned = |v: f32| f32::from_bits(v.to_bits() ^ sign);
+        let other = turned(if on_x { -z } else { x });
+        let s = if on_y { x } else { other };
+        let t = if on_y { turned(z) } else { -y };
         // Number of the face, as a float.
         let axis = if on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
         let axis = if on_x { Face::PositiveX as u32 as f32 } else { axis };
-        let face = if negative { axis + 1.0 } else { axis };
+        let face = axis + if major < 0.0 { 1.0 } else { 0.0 };
         // By bits, because compilers turn a choice into masked stores, which are slow.
         let kept = if finite { u32::MAX } else { 0 };
         let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
