@@ -51,11 +51,24 @@ fn rnd255(n: i32) -> i32 {
     (n * 257 + (n >> 8) + 32646) >> 16
 }
 
-/// NUM-2 of a product of two bytes, computed in 16 bits.
+/// NUM-2 of at most 255 x 255, computed in 16 bits.
+#[inline(always)]
+fn rounded_bytes(n: u16) -> i16 {
+    // The upper half of a product of 16 bits, for which processors have an instruction.
+    ((u32::from(n + 128) * 257) >> 16) as i16
+}
+
+/// NUM-2 of a product of two bytes.
 #[inline(always)]
 pub(crate) fn byte_product(a: i16, b: i16) -> i16 {
-    let t = a as u16 * b as u16 + 128;
-    ((t + (t >> 8)) >> 8) as i16
+    rounded_bytes(a as u16 * b as u16)
+}
+
+/// NUM-2 of a sum of two products of bytes, at most 255.
+#[inline(always)]
+pub(crate) fn byte_sum([a, b, c, d]: [i16; 4]) -> i16 {
+    let sum = (a as u16 * b as u16).saturating_add(c as u16 * d as u16);
+    rounded_bytes(sum.min(255 * 255))
 }
 
 #[inline(always)]
@@ -218,6 +231,23 @@ mod tests {
         for a in 0..=255_i16 {
             for b in 0..=255 {
                 assert_eq!(byte_product(a, b), rnd255(i32::from(a) * i32::from(b)) as i16);
+            }
+        }
+    }
+
+    /// Every sum that is not limited, by one product and by two; and sums that are.
+    #[test]
+    fn sums_of_bytes_are_exact() {
+        for n in 0..=255 * 255 {
+            assert_eq!(rounded_bytes(n), rnd255(n.into()) as i16);
+        }
+        for a in 0..=255_i16 {
+            for b in 0..=255 {
+                let all = i32::from(a) * i32::from(b);
+                for [c, d] in [[255, 255], [255, b], [a, 255], [255 - a, 77], [1, 254]] {
+                    let wanted = rnd255(all + i32::from(c) * i32::from(d)).min(255);
+                    assert_eq!(i32::from(byte_sum([a, b, c, d])), wanted, "{a} {b} {c} {d}");
+                }
             }
         }
     }

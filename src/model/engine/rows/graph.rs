@@ -167,8 +167,7 @@ impl Graph {
                     return v;
                 }
                 let (a, b) = (one.0.min(one.1), one.0.max(one.1));
-                let bytes = [a, b].into_iter().all(|v| self.range(v).0 >= 0 && self.range(v).1 <= 255);
-                if bytes {
+                if self.are_bytes(&[a, b]) {
                     let ends = self.product_range(a, b);
                     return self.add(Node::Bytes(a, b), (kernels::rounded(ends.0), kernels::rounded(ends.1)));
                 }
@@ -176,6 +175,9 @@ impl Graph {
             [one, other] => {
                 if let (Some(a), Some(b)) = (self.times_one(one), self.times_one(other)) {
                     return self.added(a, b);
+                }
+                if self.is_lerp(one, other) {
+                    return self.byte_sum(Pairs::new(&left));
                 }
             }
             _ => {}
@@ -186,6 +188,31 @@ impl Graph {
             (low, high) = (low + ends.0, high + ends.1);
         }
         self.add(Node::Sum(Pairs::new(&left)), (kernels::rounded(low), kernels::rounded(high)))
+    }
+
+    fn are_bytes(&self, values: &[Value]) -> bool {
+        values.iter().all(|v| self.range(*v).0 >= 0 && self.range(*v).1 <= 255)
+    }
+
+    /// Returns whether a factor of one product of bytes is 255 less a factor of the other, so that their sum is a byte.
+    fn is_lerp(&self, (a, b): (Value, Value), (c, d): (Value, Value)) -> bool {
+        let inverse = |v: Value, of: Value| self.node(v) == Node::Map(Mapping::plain(InputMapping::UnsignedInvert), of);
+        self.are_bytes(&[a, b, c, d])
+            && [a, b].iter().any(|v| [c, d].iter().any(|w| inverse(*v, *w) || inverse(*w, *v)))
+    }
+
+    /// Adds a sum of two products of bytes that is at most 255.
+    fn byte_sum(&mut self, pairs: Pairs) -> Value {
+        let [a, b, c, d, ..] = pairs.values;
+        let (first, second) = (self.product_range(a, b), self.product_range(c, d));
+        let range = [first.0 + second.0, first.1 + second.1].map(|sum| kernels::rounded(sum).min(255));
+        self.add(Node::ByteSum([a, b, c, d]), (range[0], range[1]))
+    }
+
+    /// Returns a value limited to 255 if it is a sum of two products of bytes, and `None` otherwise.
+    fn limited(&mut self, x: Value) -> Option<Value> {
+        let Node::Sum(pairs) = self.node(x) else { return None };
+        (pairs.count == 2 && self.are_bytes(&pairs.values[..4])).then(|| self.byte_sum(pairs))
     }
 
     /// Returns whether the factors are in halves, the factors, and the range of their sum, which is in quarters if the factors are in
@@ -358,6 +385,9 @@ impl Algebra for Graph {
         let saturated = |v: i16| kernels::finished(v, Bias::None, Scale::One, floor);
         let (low, high) = self.range(x);
         let range = (saturated(low), saturated(high));
+        if let Some(limited) = self.limited(x) {
+            return limited;
+        }
         // Computed in one step with its saturation.
         match self.node(x) {
             Node::Scaled(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
@@ -413,6 +443,9 @@ impl Algebra for Graph {
         let (low, high) = self.range(v);
         if low >= 0 && high <= 255 {
             return v;
+        }
+        if let Some(limited) = self.limited(v) {
+            return limited;
         }
         self.add(Node::Clamp(v), (low.clamp(0, 255), high.clamp(0, 255)))
     }

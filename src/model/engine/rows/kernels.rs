@@ -4,6 +4,7 @@ use super::node::{MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
 use crate::combiner::output;
+use crate::number::block::{byte_product, byte_sum};
 use crate::number::{Factor, Lane, Narrow, Quarters, Sum};
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
@@ -216,7 +217,11 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
         }
         Node::Bytes(a, b) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| crate::number::block::byte_product(a[n], b[n]));
+            each(out, |n| byte_product(a[n], b[n]));
+        }
+        Node::ByteSum(v) => {
+            let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];
+            each(out, |n| byte_sum([a[n], b[n], c[n], d[n]]));
         }
         Node::Difference(v) => {
             let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];

@@ -104,6 +104,8 @@ pub(super) enum Node {
     After(Bias, Scale, bool, Pairs),
     /// NUM-2 of a product of two bytes.
     Bytes(Value, Value),
+    /// NUM-2 of a sum of two products of bytes, at most 255.
+    ByteSum([Value; 4]),
     /// NUM-2 of a difference of two products.
     Difference([Value; 4]),
     /// CMB-8 of two vectors that are expanded first (CMB-3), read as unsigned.
@@ -144,7 +146,7 @@ impl Node {
             Node::Sum(pairs) | Node::HalfSum(pairs) | Node::After(_, _, _, pairs) => {
                 pairs.values[..2 * pairs.count].to_vec()
             }
-            Node::Difference(v) => v.to_vec(),
+            Node::ByteSum(v) | Node::Difference(v) => v.to_vec(),
             Node::UnsignedDot(v) => v.to_vec(),
             Node::Select(_, v) => v.to_vec(),
             Node::Bytes(a, b) | Node::Add(a, b) | Node::Minus(a, b) | Node::Least(a, b) | Node::Greatest(a, b) => {
@@ -161,6 +163,7 @@ impl Node {
             Node::Sum(pairs) => Node::Sum(pairs.renamed(name)),
             Node::HalfSum(pairs) => Node::HalfSum(pairs.renamed(name)),
             Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
+            Node::ByteSum(v) => Node::ByteSum(v.map(name)),
             Node::Difference(v) => Node::Difference(v.map(name)),
             Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
             Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
