@@ -1,6 +1,7 @@
 //! Compares captured frames of a real NV2A with the frames that both engines draw.
 
 use ninebit::engine::{Engine, RenderOptions};
+use ninebit::state::Policies;
 use ninebit_vectors::captures::{self, SIZE};
 use rayon::prelude::*;
 
@@ -16,7 +17,9 @@ fn every_frame_is_exact() {
         .filter_map(|(n, frame)| {
             // The scalar engine, which is slower, draws a tenth of the frames.
             let engine = if n % 10 == 0 { Engine::Scalar } else { Engine::Fast };
-            let pixels = frame.render(&RenderOptions { engine, threads: 1, ..RenderOptions::default() }).unwrap();
+            let pixels = frame
+                .render(&RenderOptions { engine, threads: 1, ..RenderOptions::default() }, Policies::DEFAULT)
+                .unwrap();
             (frame.is(&pixels) == frame.open.is_some()).then(|| format!("{}/{} by {engine:?}", frame.suite, frame.name))
         })
         .collect();
@@ -50,7 +53,7 @@ fn samples_are_spread() {
 fn one_pixel_makes_a_difference() {
     let frames = captures::frames(&["Stencil"]).unwrap();
     let frame = &frames[0];
-    let mut pixels = frame.render(&RenderOptions::default()).unwrap();
+    let mut pixels = frame.render(&RenderOptions::default(), Policies::DEFAULT).unwrap();
     assert!(frame.is(&pixels));
     let text = frame.text.first().unwrap();
     let at = (text.y * SIZE.0 + text.x) as usize;

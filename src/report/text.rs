@@ -179,7 +179,9 @@ pub(super) fn expression(step: &Step) -> String {
             let products = [0, 1, 2].map(|n| format!("{} * {}", value(n), value(n + 3)));
             format!("({} + 128) >> 8", products.join(" + "))
         }
-        "floor_plane" => format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)"),
+        "floor_plane" | "floor_plane_short" => {
+            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D){}", short(step))
+        }
         "floor_ratio" => format!("floor(256 * {} * N_{axis} / N_q){}", value(9), short(step)),
         "cube_face" => {
             let [x, y, z] = direction(&step.inputs);

@@ -332,18 +332,8 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "dependent_255" => Number { value: 256 * v(1) * v(0) / 255, per_one: 256 },
         "dependent_256" => Number { value: v(1) * v(0), per_one: 256 },
         "bump_offset" => Number { value: shader::bump_offset(inputs), per_one: 1 << 32 },
-        "floor_plane_moved" => {
-            let (sum, [whole, part]) = (shader::numerator(inputs), shader::short(inputs, 0, 3, 8));
-            let (down, limit) = (v(6) << 24, 1 << 24);
-            let exact = ((sum << 24) + v(7) * v(6)).div_euclid(down).clamp(-limit, limit);
-            let moved = whole + v(7) * v(6);
-            let rest = (moved.rem_euclid(down) * v(9) + part).div_euclid(down * v(9));
-            let value = (moved.div_euclid(down) + rest).clamp(-limit, limit);
-            if exact - value != v(13) {
-                return None;
-            }
-            Number { value, per_one: 256 }
-        }
+        "floor_plane_moved" => shader::floor_moved(inputs, v(7), 8)?,
+        "floor_plane_short" => shader::floor_moved(inputs, 0, 7)?,
         "luminance" => Number { value: shader::luminance(inputs), per_one: 4096 },
         "luminance_byte" => byte(((v(0) - (v(0) >> 8)) >> 4).min(255)),
         // Combiners.

@@ -32,6 +32,19 @@ pub fn short(inputs: &Inputs, x: usize, e: usize, p: usize) -> [i128; 2] {
     [whole, v(x + 1) * (0..3).map(|k| short[k] * v(p + k) * v(e + k)).sum::<i128>()]
 }
 
+/// TSH-7, INT-4t: returns a plane's quotient by D with weights that fall short, moved by so many 2^-24, or `None` if it is not as much
+/// lower as the last input says. The inputs from `p` on are those of [`short`].
+pub fn floor_moved(inputs: &Inputs, by: i128, p: usize) -> Option<Number> {
+    let v = |n: usize| value(inputs, n);
+    let (sum, [whole, part]) = (numerator(inputs), short(inputs, 0, 3, p));
+    let (down, limit) = (v(6) << 24, 1 << 24);
+    let exact = ((sum << 24) + by * v(6)).div_euclid(down).clamp(-limit, limit);
+    let moved = whole + by * v(6);
+    let rest = (moved.rem_euclid(down) * v(p + 1) + part).div_euclid(down * v(p + 1));
+    let value = (moved.div_euclid(down) + rest).clamp(-limit, limit);
+    (exact - value == v(p + 5)).then_some(Number { value, per_one: 256 })
+}
+
 /// Returns P1 times the result of [`short`], for numbers of 28 bits.
 pub fn short_of_unit(inputs: &Inputs, x: usize, e: usize, p: usize) -> i128 {
     let [whole, part] = short(inputs, x, e, p);

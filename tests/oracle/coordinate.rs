@@ -197,8 +197,11 @@ impl Place {
     }
 }
 
-/// INT-4, INT-4t: returns u = floor(sum G E / D).
+/// INT-4, INT-4t: returns u = floor(sum G E / D); by the finite policy what TSH-7 moves by nothing.
 fn plane(setup: &Setup, sample: &Sample, set: usize, axis: usize, size: u32) -> i128 {
+    if setup.finite {
+        return moved(setup, sample, set, axis, (0, 0), size);
+    }
     let g = setup.plane(setup.component(set, axis), size);
     let (u, tie) = floor_div(Setup::total(sample, g), sample.d);
     if tie && setup.lean(sample, g) > 0 { u - 1 } else { u }

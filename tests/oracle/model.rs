@@ -25,7 +25,7 @@ pub mod texture;
 
 use combiner::Registers;
 use ninebit::frame::Surface;
-use ninebit::state::{Draw, Policies, Rectangle, Scene, Target, WindowClip};
+use ninebit::state::{Draw, PlaneLoss, Policies, Rectangle, Scene, Target, WindowClip};
 use raster::{Sample, Setup};
 use shader::Units;
 use texture::Image;
@@ -67,7 +67,8 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
         bottom = bottom.min(top + u64::from(s.height));
     }
     for vertices in raster::triangles(draw) {
-        let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
+        let Some(mut setup) = Setup::new(draw, scene.profile, vertices) else { continue };
+        setup.finite = policies.plane_loss == PlaneLoss::Finite;
         let units = Units::new(draw, &images, &setup, policies);
         for j in top..bottom {
             for i in left..right {

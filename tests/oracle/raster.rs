@@ -211,6 +211,8 @@ pub struct Setup {
     pub p: [i128; 3],
     /// INT-3: whether the exception for exact weights applies.
     pub exact: bool,
+    /// INT-4t: whether coordinates on planes lose 2^-24 S rather than its limit.
+    pub finite: bool,
 }
 
 /// The sample point of one pixel.
@@ -256,7 +258,7 @@ impl Setup {
         };
         let same = w[0] == w[1] && w[1] == w[2];
         let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same);
-        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
+        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact, finite: false })
     }
 
     /// RAS-2, RAS-3, INT-1: returns the sample point of a pixel.

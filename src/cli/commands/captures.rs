@@ -36,6 +36,8 @@ pub(crate) struct CheckArguments {
     #[arg(long, value_name = "DIR")]
     captures: Option<PathBuf>,
     #[command(flatten)]
+    policies: PolicyArguments,
+    #[command(flatten)]
     engine: EngineArguments,
     /// How to print the result
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
@@ -83,6 +85,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     }
     let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let options = RenderOptions { threads: 1, ..arguments.engine.options()? };
+    let policies = arguments.policies.policies()?;
     let team = rayon::ThreadPoolBuilder::new().num_threads(arguments.engine.threads).build();
     let team = team.map_err(|error| Failure::fault(&error.to_string()))?;
     let outcomes: Vec<Outcome> = team.install(|| {
@@ -90,7 +93,8 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         if let Some(count) = arguments.sample {
             frames = captures::sample(frames, count);
         }
-        let drawn = frames.into_par_iter().map(|frame| draw(frame, &options, arguments.captures.as_deref()));
+        let captures = arguments.captures.as_deref();
+        let drawn = frames.into_par_iter().map(|frame| draw(frame, &options, policies, captures));
         drawn.collect::<Result<_, Failure>>()
     })?;
     let has_captures = arguments.captures.is_some();
@@ -109,13 +113,13 @@ impl Outcome {
     }
 }
 
-fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Result<Outcome, Failure> {
-    let pixels = frame.render(options).map_err(|errors| {
+fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Option<&Path>) -> Result<Outcome, Failure> {
+    let pixels = frame.render(options, policies).map_err(|errors| {
         let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
         Failure::fault(&format!("{}/{}: {}", frame.suite, frame.name, errors.join("; ")))
     })?;
     let mut outcome = Outcome { exact: frame.is(&pixels), difference: None, frame };
-    let Some(folder) = captures else { return Ok(outcome) };
+    let Some(folder) = folder else { return Ok(outcome) };
     let path = folder.join(outcome.frame.suite).join(format!("{}.png", outcome.frame.name));
     let capture = image::load(&path, &ImageLimits::default())?;
     let invalid = |message: String| {

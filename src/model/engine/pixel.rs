@@ -143,6 +143,7 @@ impl<'a> TriangleContext<'a> {
         }
         // Half of the triangles of a closed mesh end before this.
         self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
+        self.triangle.lose(plan.policies.plane_loss);
         (self.number, self.complete) = (number, false);
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,

@@ -34,7 +34,7 @@ pub struct Floored {
     /// The resulting value.
     pub value: i64,
     /// The number of steps by which `value` is lower than the floor of the exact quotient. It is 0 or 1 on a tie
-    /// (INT-3, INT-4t). For coordinates divided by q (TEX-15) or displaced (TSH-7) it may be more, or negative.
+    /// (INT-3, INT-4t). For coordinates divided by q (TEX-15), displaced (TSH-7) or of a finite loss it may be more, or negative.
     pub lowered: i64,
 }
 
@@ -74,9 +74,32 @@ impl<'a> Sample<'a> {
     /// INT-4, INT-4t: returns floor(sum G E / D) in 1/256 texel.
     #[inline(always)]
     pub fn coordinate(&self, g: &[i64; 3]) -> Floored {
+        if self.triangle.loses_on_planes() {
+            return self.moved_coordinate(g, 0);
+        }
         let (value, rest) = quotient(self.sum(g), self.d);
         let lowered = i64::from(self.lowers_tie(rest == 0, || self.shortfall(g)));
         Floored { value: value - lowered, lowered }
+    }
+
+    /// INT-4t, TSH-7: returns floor(sum G E / D + `offset` / 2^24) in 1/256 texel with weights that fall short, limited to
+    /// [`COORDINATE_LIMIT`].
+    pub(crate) fn moved_coordinate(&self, g: &[i64; 3], offset: i64) -> Floored {
+        let (exact, rest) = self.moved_quotient(g, offset, SHORT_BITS);
+        // The remainder is in units of 2^24 D, as is the shortfall.
+        let unit = i128::from(self.triangle.p[1]);
+        let short = rest * unit - self.shortfall(g);
+        let floor = exact + short.div_euclid((i128::from(self.d) << SHORT_BITS) * unit);
+        let limited = |value: i128| value.clamp(-i128::from(COORDINATE_LIMIT), COORDINATE_LIMIT.into()) as i64;
+        Floored { value: limited(floor), lowered: limited(exact) - limited(floor) }
+    }
+
+    /// Returns floor((sum G E / D + `offset` / 2^24) 2^(24 - drop)), and the remainder of the division by D 2^drop.
+    pub(crate) fn moved_quotient(&self, g: &[i64; 3], offset: i64, drop: u32) -> (i128, i128) {
+        let d = i128::from(self.d);
+        let numerator = (self.sum(g) << SHORT_BITS) + i128::from(offset) * d;
+        let denominator = d << drop;
+        (numerator.div_euclid(denominator), numerator.rem_euclid(denominator))
     }
 
     /// Returns a factor in 4096ths, 0..=4096.
@@ -311,6 +334,45 @@ mod tests {
         assert_eq!(dominant([4, 3, 1], 8), 0);
         assert_eq!(dominant([1, 3, 4], 8), 1);
         assert_eq!(dominant([0, 0, 8], 8), 2);
+    }
+
+    proptest! {
+        /// Compares the finite loss with its statement: weights 0 and 2 count 2^24 - 1 times in place of 2^24 times where they fall short, and
+        /// weight 1 has the remainder. Half of the coordinates lie close to a whole number.
+        #[test]
+        fn finite_losses_by_their_statement(
+            corners in prop::array::uniform3((-300.0..900.0_f32, -300.0..900.0_f32, 0.05..20.0_f32)),
+            s in prop::array::uniform3(-300.0..300.0_f32), tiny in -(1 << 20)..1_i64 << 20, whole: bool,
+            at in (0.0..1.0_f32, 0.0..1.0_f32),
+        ) {
+            let p = corners.map(|(x, y, w)| if whole { [x.floor(), y.floor(), 0.0, 1.0] } else { [x, y, 0.0, w] });
+            let Some(mut t) = Triangle::new(p, true, Profile::Nv2a) else { return Ok(()) };
+            t.lose(crate::state::PlaneLoss::Finite);
+            #[allow(clippy::float_arithmetic, reason = "choosing a pixel between the vertices")]
+            let between = |n: usize| {
+                let middle = p[0][n] + (p[1][n] - p[0][n]) * at.0;
+                (middle + (p[2][n] - middle) * at.1) as i64
+            };
+            let (e, mut g) = (t.edges(between(0), between(1)), t.coordinate(if whole { s.map(f32::floor) } else { s }, 64));
+            prop_assume!(t.covers(e));
+            let sample = Sample::new(&t, e);
+            if whole {
+                let above = sample.sum(&g).rem_euclid(sample.d.into()) as i64 / t.doubled_area;
+                g = g.map(|g| g - above + tiny);
+            }
+            let u = sample.coordinate(&g);
+            let falls = [0, 2].map(|k| i128::from(!t.exact_reciprocal && sample.dominant() != k));
+            let of = |n: [i64; 3]| falls[0] * i128::from(n[0]) + falls[1] * i128::from(n[2]);
+            let products = [0, 2].map(|k: usize| i128::from(g[k]) * i128::from(e[k]));
+            let lost = falls[0] * products[0] + falls[1] * products[1];
+            // 2^24 P_1 (N' - u D), where N' is the numerator of weights that fall short.
+            let above = |u: i64| {
+                let rest = sample.sum(&g) - i128::from(u) * i128::from(sample.d);
+                ((rest << 24) - lost) * i128::from(t.p[1]) + i128::from(g[1]) * of(sample.n)
+            };
+            prop_assert!(above(u.value) >= 0 && above(u.value + 1) < 0, "{:?}", u);
+            prop_assert_eq!(u.value + u.lowered, sample.sum(&g).div_euclid(sample.d.into()) as i64);
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::GUARD;
 use crate::number::convert::{align, scaled, snap, split, w_16_bits};
-use crate::state::Profile;
+use crate::state::{PlaneLoss, Profile};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
 const PERSPECTIVE_BITS: i32 = 28;
@@ -34,6 +34,8 @@ pub struct Triangle {
     pub(crate) counter_clockwise: bool,
     /// INT-3's exception: whether the reciprocal of the weights' sum is exact, so that no tie is lowered.
     pub(crate) exact_reciprocal: bool,
+    /// INT-4t's policy: whether coordinates on planes lose the finite amount.
+    finite_loss: bool,
 }
 
 impl Triangle {
@@ -103,6 +105,18 @@ impl Triangle {
         self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
         let equal = w[0] == w[1] && w[1] == w[2];
         self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
+    }
+
+    /// INT-4t: sets what coordinates on planes lose.
+    #[inline(always)]
+    pub fn lose(&mut self, loss: PlaneLoss) {
+        self.finite_loss = loss == PlaneLoss::Finite;
+    }
+
+    /// INT-4t: returns whether coordinates on planes may lose a finite amount.
+    #[inline(always)]
+    pub(crate) fn loses_on_planes(&self) -> bool {
+        self.finite_loss && !self.exact_reciprocal
     }
 
     /// Returns the three edge functions at the centre of pixel (i, j).

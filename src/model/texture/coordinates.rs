@@ -96,6 +96,15 @@ pub struct Real {
     pub st: [f64; 2],
 }
 
+/// INT-4, INT-4t: returns the operation that yields a coordinate on a plane, and its operands after the edge functions.
+fn on_plane(at: &Sample<'_>) -> (&'static str, Vec<Operand>) {
+    let denominator = plain("D", at.d);
+    if at.triangle.loses_on_planes() {
+        return ("floor_plane_short", [vec![denominator], shortfall(at)].concat());
+    }
+    ("floor_plane", vec![denominator])
+}
+
 /// The coordinates at which a unit samples. Implementations differ in where the coordinates come from.
 pub trait SampleCoordinates {
     /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
@@ -325,7 +334,7 @@ impl SampleCoordinates for Interpolated<'_> {
             let (rule, operation, mut inputs) = match self.coordinates {
                 Coordinates::Plane(g) => {
                     let g = g[axis].map(|g| g >> shifts[axis]);
-                    ("INT-4", "floor_plane", report.planes("INT-4", &format!("G_{letter}"), &g, observer))
+                    ("INT-4", on_plane(self.at).0, report.planes("INT-4", &format!("G_{letter}"), &g, observer))
                 }
                 Coordinates::Ratio(planes) => {
                     let mut inputs = report.planes("INT-4", &format!("N_{letter}"), &planes[axis], observer);
@@ -336,7 +345,7 @@ impl SampleCoordinates for Interpolated<'_> {
             };
             inputs.extend(edges.clone());
             match self.coordinates {
-                Coordinates::Plane(_) => inputs.push(plain("D", self.at.d)),
+                Coordinates::Plane(_) => inputs.extend(on_plane(self.at).1),
                 Coordinates::Ratio(_) => {
                     inputs.push(size);
                     inputs.extend(shortfall(self.at));
@@ -367,7 +376,7 @@ impl SampleCoordinates for Interpolated<'_> {
     fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, floored: Floored, observer: &mut O) {
         let (r, q) = self.layer_planes(layers);
         let (rule, operation, mut inputs) = match q {
-            None => ("INT-4", "floor_plane", report.planes("INT-4", "G_w", &r, observer)),
+            None => ("INT-4", on_plane(self.at).0, report.planes("INT-4", "G_w", &r, observer)),
             Some(q) => {
                 let mut inputs = report.planes("INT-4", "N_w", &r, observer);
                 inputs.extend(report.planes("INT-4", "N_wq", &q, observer));
@@ -379,7 +388,7 @@ impl SampleCoordinates for Interpolated<'_> {
             inputs.push(plain("size", layers));
             inputs.extend(shortfall(self.at));
         } else {
-            inputs.push(plain("D", self.at.d));
+            inputs.extend(on_plane(self.at).1);
         }
         inputs.push(plain("lowered", floored.lowered));
         let ideal = real_coordinate(self.real_r(), layers);

@@ -8,7 +8,7 @@ use super::real::RealTarget;
 use super::report::Report;
 use super::shader::{self, OFFSET_BITS};
 use super::shader_report;
-use crate::raster::interpolate::{COORDINATE_LIMIT, Floored, SHORT_BITS, Sample};
+use crate::raster::interpolate::{Floored, SHORT_BITS, Sample};
 use crate::state::{DependentScale, Level};
 use crate::trace::{Observer, Rule};
 
@@ -63,23 +63,7 @@ impl Moved<'_> {
     /// INT-4 of the displaced coordinate, with weights that fall short (INT-4t).
     fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
         let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
-        std::array::from_fn(|n| {
-            let (exact, rest) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
-            // The remainder is in units of 2^24 D, as is the shortfall.
-            let unit = i128::from(self.at.triangle.p[1]);
-            let short = rest * unit - self.at.shortfall(&planes[n]);
-            let floor = exact + short.div_euclid((i128::from(self.at.d) << OFFSET_BITS) * unit);
-            let limited = |value: i128| value.clamp(-i128::from(COORDINATE_LIMIT), COORDINATE_LIMIT.into()) as i64;
-            Floored { value: limited(floor), lowered: limited(exact) - limited(floor) }
-        })
-    }
-
-    /// Returns floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and the remainder of the division by D 2^drop.
-    fn quotient(&self, planes: &[i64; 3], offset: i64, drop: u32) -> (i128, i128) {
-        let d = i128::from(self.at.d);
-        let numerator = (self.at.sum(planes) << OFFSET_BITS) + i128::from(offset) * d;
-        let denominator = d << drop;
-        (numerator.div_euclid(denominator), numerator.rem_euclid(denominator))
+        std::array::from_fn(|n| self.at.moved_coordinate(&planes[n], offsets[n]))
     }
 }
 
@@ -127,7 +111,7 @@ impl Target<'_> {
             Target::Moved(moved) => {
                 let offsets = moved.offsets(unit, level);
                 let limit = 1 << 62;
-                each(&|n| moved.quotient(&moved.planes[n], offsets[n], 16).0.clamp(-limit, limit) as i64)
+                each(&|n| moved.at.moved_quotient(&moved.planes[n], offsets[n], 16).0.clamp(-limit, limit) as i64)
             }
             Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n] << 8, *scale)),
             Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n], sides[n])),

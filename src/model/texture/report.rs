@@ -81,8 +81,10 @@ impl Report<'_> {
         (operation, inputs): (&'static str, Vec<Operand>),
         observer: &mut O,
     ) {
-        let note = (floored.lowered != 0).then(|| match rule {
-            "TEX-15" | "TSH-7" => "weights fall short: another 1/256 texel (INT-4t)".to_string(),
+        let note = (floored.lowered != 0).then(|| match operation {
+            "floor_ratio" | "floor_plane_moved" | "floor_plane_short" => {
+                "weights fall short: another 1/256 texel (INT-4t)".to_string()
+            }
             _ => "exactly on a 1/256 texel: one step lower (INT-4t)".to_string(),
         });
         observer.step(self.step(rule, letter, floored.value).per(256).by(operation, inputs).ideal(ideal).note(note));

@@ -30,7 +30,9 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and the error of the weights.
-        Rule::Int4 => floor(coordinate_slack(plan, 0.0)),
+        Rule::Int4 => {
+            floor(coordinate_slack(plan, if policies.plane_loss == PlaneLoss::Finite { SHORTFALL } else { 0.0 }))
+        }
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
         Rule::Tsh4 | Rule::Tsh6 => floor(1e-6),

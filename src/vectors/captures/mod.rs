@@ -282,8 +282,9 @@ impl Frame {
     ///
     /// # Errors
     /// Returns the plan's errors if a scene cannot be planned.
-    pub fn render(&self, options: &RenderOptions) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &Limits::default());
+    pub fn render(&self, options: &RenderOptions, policies: Policies) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
+        let planned = PlanOptions { policies, ..PlanOptions::default() };
+        let plan = |scene: &Scene| Plan::compile_within(scene, &planned, &Limits::default());
         let Drawn { mut scene, before, view, shown } = (self.make)();
         if let Some(before) = before {
             let frames = render(&plan(&before)?, options);

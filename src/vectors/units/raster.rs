@@ -304,10 +304,19 @@ impl Unit for TextureCoordinate {
         ];
         gives [
             Column::results(["mid.g0", "mid.g1", "mid.g2"], Kind::Signed(56)),
-            Column::result("mid.lowered", Kind::Unsigned(1)),
+            Column::result("mid.lowered", Kind::Signed(3)),
             Column::result("out.u", Kind::Signed(26)),
         ]
     );
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // The handbook's triangle: u at a tie, hardly above one where S > 0, and hardly below one where S < 0.
+        let one = 0x3f80_0000;
+        let above = [0, 0x3180_0000, 0x3200_0000, 0x3280_0000].map(|tiny| [0, tiny, one]);
+        let below = [0, 0xb180_0000, 0xb200_0000, 0xb280_0000].map(|tiny| [0, one, tiny]);
+        let row = |s: &[i64; 3]| [&[0, 0, 1536, 0, 0, 1536, 10, 1, one, one, one][..], s, &[64]].concat();
+        above.iter().chain(&below).map(row).collect()
+    }
 
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);
@@ -324,7 +333,9 @@ impl Unit for TextureCoordinate {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let Some(triangle) = triangle(inputs, Some(&inputs[8..11]), conditions.profile) else { return results.fill(0) };
+        let triangle = triangle(inputs, Some(&inputs[8..11]), conditions.profile);
+        let Some(mut triangle) = triangle else { return results.fill(0) };
+        triangle.lose(conditions.policies.plane_loss);
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
         let g = triangle.coordinate([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32)), inputs[14] as u32);
         let u = sample.coordinate(&g);

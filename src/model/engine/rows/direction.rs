@@ -6,11 +6,11 @@ use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
-use super::short::{Short, floors};
+use super::short::{Losses, Short, floors};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
-/// Largest error of an estimated coordinate that is divided by q, 1/256 texel.
+/// Largest error of an estimated coordinate with losses, 1/256 texel.
 const COARSEST: f64 = 0.125;
 
 /// Returns the face that the directions of all three vertices meet, if none of them lies on an edge of it. Then all directions between them
@@ -162,6 +162,13 @@ impl Setup<'_> {
         (short, whole): (&mut Short, &mut PerLane<i32>),
     ) {
         let done = match planes {
+            Planes::Plane(planes) if self.context.triangle.loses_on_planes() => {
+                // The sum bounds both, and is NaN if one of them is.
+                let margin = self.margin::<ROW>(&planes[0], local) + self.margin::<ROW>(&planes[1], local);
+                let lines = [planes[0].line(&local.real), planes[1].line(&local.real), local.denominator];
+                let functions = (lines, self.losses_on_planes(planes), margin);
+                self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
+            }
             Planes::Plane(planes) => {
                 let [u, v] = &mut *numbers;
                 let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
@@ -245,12 +252,28 @@ impl Setup<'_> {
         if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
             return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
         }
+        let functions = (lines, self.losses_by_q(planes, [width, height]), margin);
+        self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
+    }
+
+    /// INT-4t: computes two quotients of lines with losses by a third one. `margin` is the largest error. The definition computes lanes that
+    /// are not proved. Returns `false` if nothing would be proved.
+    #[inline(always)]
+    fn short_quotients<const FMA: bool, const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        sampler: &Sampler,
+        (lines, losses, margin): ([Line; 3], [Losses; 3], f64),
+        short: &mut Short,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
+    ) -> bool {
         // NaN proves nothing either.
         let proves = margin < COARSEST;
         if !proves {
             return false;
         }
-        short.keep::<FMA, ROW>(batch.at, lines, self.losses_by_q(planes, [width, height]));
+        short.keep::<FMA, ROW>(batch.at, lines, losses);
         let (lanes, [u, v], Short { at, close, .. }) = (batch.at.x.len(), &mut *numbers, short);
         close[..lanes].fill(0);
         floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[batch.lanes()]);

@@ -282,6 +282,13 @@ fn scene(
     }
 }
 
+/// Returns options for coordinates on planes that lose a finite amount, or the default ones (INT-4t).
+fn options(finite: bool) -> PlanOptions {
+    let mut options = PlanOptions::default();
+    options.policies.choose("INT-4t", usize::from(finite));
+    options
+}
+
 /// Compares the units on planes and the weights of a small triangle, set up four at a time, with the definition.
 fn compare_small<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -426,7 +433,7 @@ fn rows_interpolate(seed: u64) {
         }
         let anisotropy = random.of(&[1, 1, 2, 4, 8]);
         let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));
-        let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
+        let Ok(plan) = Plan::compile(&scene, &options(round % 3 == 0)) else { continue };
         let rows_of_plan = Rows::compile(&plan);
         let [compiled] = &rows_of_plan.draws(&plan, 0..1, &TextureWords::new(&plan, &[], &[]))[..] else {
             panic!("one")
@@ -555,7 +562,7 @@ fn texture_shaders_take_what_the_definition_takes() {
             [0, 1, 2, 3].map(|n| ShaderStage { operation: program[n], ..ShaderStage::conventional(n, true) });
         draw.texture_shader[3].previous = 0;
         draw.texture_shader[2].previous = 0;
-        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let plan = Plan::compile(&scene, &options(round % 5 < 2)).unwrap();
         let draw_by =
             |engine, isa| Renderer::new(&plan, &RenderOptions { engine, isa, ..RenderOptions::default() }).render();
         let (wanted, _) = draw_by(Engine::Scalar, None);

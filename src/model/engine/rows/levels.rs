@@ -159,6 +159,9 @@ impl Setup<'_> {
     /// Returns the floor by INT-4 and INT-4t of a coordinate whose estimate is less than one off.
     fn corrected(&self, batch: PixelBatch<'_>, n: usize, g: &[i64; 3], value: i32) -> i32 {
         let sample = self.sample(batch, n.min(batch.count - 1));
+        if sample.triangle.loses_on_planes() {
+            return sample.coordinate(g).value as i32;
+        }
         let top = (0..3).fold(0_i64, |top, k| top.wrapping_add(g[k].wrapping_mul(sample.e[k])));
         let (floor, exact) = floor(top, sample.d, i64::from(value));
         floor as i32 - i32::from(sample.lowers_tie(exact, || sample.shortfall(g)))

@@ -9,7 +9,7 @@
 //! | `direction.rs`, `depth.rs`, `fog.rs`, `color.rs` | interpolators of one kind of number each |
 //! | `triangle.rs` | everything that varies, for a batch |
 //! | `definition.rs` | what the definition computes in place of estimates |
-//! | `short.rs` | what weights that fall short take off coordinates that are divided by q or moved |
+//! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |

@@ -195,7 +195,7 @@ pub(super) struct BaseLevel<'p> {
     pub(super) behind: bool,
     /// Planes whose exact remainders decide what estimates do not prove.
     pub(super) planes: Option<&'p [Plane; 2]>,
-    /// Losses of the three functions where weights fall short (TEX-15).
+    /// Losses of the three functions where weights fall short (TEX-15, INT-4t).
     pub(super) losses: Option<[Losses; 3]>,
     /// For planes on which no tie is lowered: the numbers of which all values of u and of v are multiples, and the powers of two that
     /// divide the G_k.
@@ -238,7 +238,7 @@ impl Setup<'_> {
                     face: Face::PositiveX,
                     behind: false,
                     planes: Some(planes),
-                    losses: None,
+                    losses: self.context.triangle.loses_on_planes().then(|| self.losses_on_planes(planes)),
                     gaps: [planes[0].gap(&self.context.triangle), planes[1].gap(&self.context.triangle)],
                 };
                 (base, range)

@@ -1,4 +1,4 @@
-//! INT-4t on rows: quotients of functions that lose something because weights fall short (TEX-15, TSH-7). `docs/exactness.md` has the
+//! INT-4t on rows: quotients of functions that lose something because weights fall short (TEX-15, TSH-7, and planes by policy). `docs/exactness.md` has the
 //! argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
@@ -82,6 +82,13 @@ impl Setup<'_> {
         let of = |plane: &Plane| losses(triangle, &inverse, &plane.g.map(|g| g as f64));
         let [[s0, s2], [t0, t2], q] = [of(&planes[0]), of(&planes[1]), of(&planes[2])];
         [[s0 * width, s2 * width], [t0 * height, t2 * height], q]
+    }
+
+    /// Returns the [`losses`] of u and v, and those of D, which are none.
+    pub(super) fn losses_on_planes(&self, planes: &[Plane; 2]) -> [Losses; 3] {
+        let triangle = &self.context.triangle;
+        let of = |plane: &Plane| losses(triangle, &inverse(triangle), &plane.g.map(|g| g as f64));
+        [of(&planes[0]), of(&planes[1]), [0.0; 2]]
     }
 }
 

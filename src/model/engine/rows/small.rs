@@ -158,7 +158,7 @@ pub(super) fn interpolate<const FMA: bool>(
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         if sampler.shares.is_none() && !sampler.depends {
             let [a, b, c] = context.sampled_coordinates(sampler.index);
-            if [a[3], b[3], c[3]] != [1.0; 3] {
+            if [a[3], b[3], c[3]] != [1.0; 3] || context.triangle.loses_on_planes() {
                 return false;
             }
             pairs[count] = Pair::Sampler(n);

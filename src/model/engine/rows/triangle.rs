@@ -158,7 +158,7 @@ impl<'a> Interpolators<'a> {
         *undivided = compiled.fog.is_none() && !compiled.estimates;
         *complete = *undivided;
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
-            if let Planes::Plane(planes) = planes {
+            if let (Planes::Plane(planes), false) = (planes, triangle.loses_on_planes()) {
                 let bias = sampler.bias();
                 *is = self.setup.shift_with(sampler, planes)
                     && u.begin(&planes[0], triangle, &e, d, columns, bias)
@@ -241,9 +241,13 @@ impl<'a> Interpolators<'a> {
     ) {
         let setup = &self.setup;
         let local = &setup.local::<FMA, ROW>(batch, !(ROW && varying.dda.undivided));
-        let by_q = |planes: &Planes| matches!(planes, Planes::Ratio(..));
-        if self.samplers.iter().any(by_q)
-            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
+        let finite = setup.context.triangle.loses_on_planes();
+        let loses = |planes: &Planes| match planes {
+            Planes::Plane(_) => finite,
+            _ => matches!(planes, Planes::Ratio(..)),
+        };
+        if self.samplers.iter().any(loses)
+            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if loses(of)))
         {
             varying.short.dominance.set::<FMA, ROW>(&setup.context.triangle, batch, local);
         }
@@ -264,7 +268,7 @@ impl<'a> Interpolators<'a> {
                 let floors =
                     (ROW && dda.samplers[n].1).then(|| [&coordinates[n][0][lanes()], &coordinates[n][1][lanes()]]);
                 setup.levels::<FMA, ROW>(batch, (sampler, planes), floors, local, short, work, reads);
-            } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.dda.samplers[n].1) {
+            } else if let (Planes::Plane(planes), false) = (planes, finite || ROW && varying.dda.samplers[n].1) {
                 let Varying { coordinates, whole, .. } = &mut *varying;
                 let lanes = batch.lanes();
                 let [u, v] = &mut coordinates[n];
@@ -273,7 +277,8 @@ impl<'a> Interpolators<'a> {
             }
         }
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
-            if !(sampler.mixes || matches!(planes, Planes::Plane(_) | Planes::Shared)) {
+            let done = matches!(planes, Planes::Plane(_)) && !finite;
+            if !(sampler.mixes || done || matches!(planes, Planes::Shared)) {
                 let Varying { coordinates, faces, whole, short, .. } = &mut *varying;
                 let (out, work) = ((&mut coordinates[n], &mut faces[n]), (&mut **short, &mut whole[0]));
                 setup.coordinates::<FMA, ROW>(batch, (sampler, planes), local, out, work);
