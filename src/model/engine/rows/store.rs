@@ -47,8 +47,8 @@ pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[Lanes256
     let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
     let (r, g, b, a) = (row(0), row(1), row(2), row(3));
     match draw.surface {
-        SurfaceFormat::A8R8G8B8 => pack_as(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
-        SurfaceFormat::X8R8G8B8O => pack_as(SurfaceFormat::X8R8G8B8O, r, g, b, a, words),
+        SurfaceFormat::A8R8G8B8 => pack_halves(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
+        SurfaceFormat::X8R8G8B8O => pack_halves(SurfaceFormat::X8R8G8B8O, r, g, b, a, words),
         SurfaceFormat::R5G6B5 => pack_as(SurfaceFormat::R5G6B5, r, g, b, a, words),
         other => pack_as(other, r, g, b, a, words),
     }
@@ -58,6 +58,16 @@ pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[Lanes256
 fn pack_as(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], words: &mut [u32]) {
     for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
         *word = surface::pack(format, [*r as u8, *g as u8, *b as u8, *a as u8]);
+    }
+}
+
+/// Packs words of four bytes, of which G and B make the lower half: in 16 bits, halves take fewer instructions than words.
+#[inline(always)]
+fn pack_halves(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], words: &mut [u32]) {
+    for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
+        let low = surface::pack(format, [0, *g as u8, *b as u8, 0]) as u16;
+        let high = (surface::pack(format, [*r as u8, 0, 0, *a as u8]) >> 16) as u16;
+        *word = u32::from(low) | (u32::from(high) << 16);
     }
 }
 
