@@ -68,9 +68,8 @@ impl Setup<'_> {
     /// Returns whether the coordinates on all levels that a sampler reads are those of level 0, shifted.
     pub(super) fn shift_with(&self, sampler: &Sampler, planes: &[Plane; 2]) -> bool {
         let unit = &self.context.draw.units[sampler.index];
-        let smallest = unit.levels.last().filter(|_| sampler.mixes);
-        smallest
-            .is_none_or(|level| unit.plane_shifts(level).iter().zip(planes).all(|(bits, plane)| plane.shifts_by(*bits)))
+        let shifts = unit.levels.last().map_or([0; 2], |smallest| unit.plane_shifts(smallest));
+        planes[0].shifts_by(shifts[0]) && planes[1].shifts_by(shifts[1])
     }
 
     /// Computes all fetches of a batch for a unit with levels. `floors` are the coordinates on level 0, if they are known and

@@ -160,7 +160,7 @@ impl<'a> Interpolators<'a> {
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
             if let (Planes::Plane(planes), false) = (planes, triangle.loses_on_planes()) {
                 let bias = sampler.bias();
-                *is = self.setup.shift_with(sampler, planes)
+                *is = (!sampler.mixes || self.setup.shift_with(sampler, planes))
                     && u.begin(&planes[0], triangle, &e, d, columns, bias)
                     && v.begin(&planes[1], triangle, &e, d, columns, bias);
             }
