@@ -154,8 +154,9 @@ fn draw_window<T: Kernels>(
                         let lanes = whole_steps(count);
                         let last = count as i32 - 1;
                         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
+                        // By reference, because a copy of what has just been written in parts has to wait for all of them.
                         let batch =
-                            PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0), runs: &[] };
+                            &PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0), runs: &[] };
                         T::row(&interpolators, batch, job, block);
                         if compiled.shader.is_some() {
                             T::row_attributes(context, batch, job, block);
@@ -315,24 +316,24 @@ pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
 #[inline(always)]
 pub(super) fn row<const FMA: bool>(
     interpolators: &Interpolators<'_>,
-    batch: PixelBatch<'_>,
+    batch: &PixelBatch<'_>,
     job: Job<'_>,
     block: &mut Block,
 ) {
     let Block { varying, rows, .. } = block;
-    interpolators.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
+    interpolators.interpolate::<FMA, true>(*batch, job.compiled, job.textures, varying, rows);
 }
 
 /// Interpolates the inputs of the texture shader along a batch of a row.
 #[inline(always)]
 pub(super) fn row_attributes<const FMA: bool>(
     context: &TriangleContext<'_>,
-    batch: PixelBatch<'_>,
+    batch: &PixelBatch<'_>,
     job: Job<'_>,
     block: &mut Block,
 ) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, true>(context, batch, shader);
+        block.workshop.attributes::<FMA, true>(context, *batch, shader);
     }
 }
 
@@ -346,8 +347,8 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
 
 /// Computes the depths along a batch of a row.
 #[inline(always)]
-pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block) {
-    depths::<FMA, true>(context, batch, block.varying.depths());
+pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, block: &mut Block) {
+    depths::<FMA, true>(context, *batch, block.varying.depths());
 }
 
 /// Computes the depths in the block's box.

@@ -117,13 +117,13 @@ text! {
         /// Calls [`band::coverage`] with this instruction set.
         fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row`] with this instruction set.
-        fn row(interpolators: &Interpolators<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row(interpolators: &Interpolators<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row_attributes`] with this instruction set.
-        fn row_attributes(context: &TriangleContext<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row_attributes(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::box_attributes`] with this instruction set.
         fn box_attributes(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row_depths`] with this instruction set.
-        fn row_depths(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block);
+        fn row_depths(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, block: &mut Block);
         /// Calls [`band::box_depths`] with this instruction set.
         fn box_depths(context: &TriangleContext<'_>, block: &mut Block);
         /// Calls [`band::shade`] with this instruction set.
