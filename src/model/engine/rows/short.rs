@@ -186,27 +186,27 @@ impl Dominance {
             quotients::<FMA, false>(last, positions, functions, losses, (&self.first, &self.third), u, v);
             return;
         }
-        let mut known = (None, functions);
-        let steps = u.as_chunks_mut::<STEP>().0.iter_mut().zip(v.as_chunks_mut::<STEP>().0).zip(&self.steps);
-        for (step, ((u, v), short)) in steps.enumerate() {
-            let lanes = step * STEP..(step + 1) * STEP;
+        let (steps, mut first) = (&self.steps[..u.len() / STEP], 0);
+        while first < steps.len() {
+            let short = steps[first];
+            let count = steps[first..].iter().take_while(|other| **other == short).count();
+            let lanes = first * STEP..(first + count) * STEP;
+            first += count;
+            let (u, v, iota) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &IOTA_REAL[lanes.clone()]);
             let Some(short) = short else {
-                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes.clone()]);
+                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], iota);
                 let weights = (&self.first[lanes.clone()], &self.third[lanes]);
                 quotients::<FMA, true>(last, positions, functions, losses, weights, u, v);
                 continue;
             };
-            if known.0 != Some(short) {
-                // The losses are linear as well.
-                let mut lines = functions;
-                for (line, losses) in lines.iter_mut().zip(losses) {
-                    for i in 0..2 {
-                        *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
-                    }
+            // The losses are linear as well.
+            let mut lines = functions;
+            for (line, losses) in lines.iter_mut().zip(losses) {
+                for i in 0..2 {
+                    *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
                 }
-                known = (Some(short), lines);
             }
-            [*u, *v] = linear::<FMA>(known.1, lanes.start, last);
+            linear::<FMA>(lines, iota, last, u, v);
         }
     }
 }
@@ -289,21 +289,23 @@ fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Returns two quotients of lines by a third one, for a step of a row. Lanes past the last pixel repeat it.
+/// Computes two quotients of lines by a third one along a row. Lanes past the last pixel repeat it.
 #[inline(always)]
-fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, last: f64) -> [[f64; STEP]; 2] {
-    let (mut u, mut v, mut x) = ([0.0; STEP], [0.0; STEP], [0.0; STEP]);
-    let first = first as f64;
-    for n in 0..STEP {
-        let at = IOTA_REAL[n] + first;
-        x[n] = if at < last { at } else { last };
+fn linear<const FMA: bool>(
+    [along, down, denominator]: [Line; 3],
+    iota: &[f64],
+    last: f64,
+    u: &mut [f64],
+    v: &mut [f64],
+) {
+    let lanes = u.len();
+    let (v, iota) = (&mut v[..lanes], &iota[..lanes]);
+    for n in 0..lanes {
+        let x = if iota[n] < last { iota[n] } else { last };
+        let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);
+        u[n] = along.at::<FMA, true>(x, 0.0) * r;
+        v[n] = down.at::<FMA, true>(x, 0.0) * r;
     }
-    for n in 0..STEP {
-        let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
-        u[n] = along.at::<FMA, true>(x[n], 0.0) * r;
-        v[n] = down.at::<FMA, true>(x[n], 0.0) * r;
-    }
-    [u, v]
 }
 
 #[inline(always)]
