@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use ninebit::state::{Policies, Profile};
+use ninebit::state::{Named, Policies};
 use ninebit_vectors::BEHAVIOUR;
 use ninebit_vectors::cases::Level;
 use ninebit_vectors::column::Kind;
@@ -36,7 +36,7 @@ impl Asked {
     fn of(units: &[&str]) -> Asked {
         let folder = tempfile::tempdir().unwrap();
         let options = Options {
-            profile: Profile::Nv2a,
+            profile: *units::by_name(units[0]).unwrap().profiles().last().unwrap(),
             level: Level::L0,
             seed: 1,
             units: units.iter().map(|name| units::by_name(name).unwrap()).collect(),
@@ -72,20 +72,21 @@ impl Asked {
         });
         fs::write(self.results().join("device.json"), device.to_string()).unwrap();
         for table in &self.tables {
-            let unit = table.writer.contents().unit;
+            let (unit, profile) = (table.writer.contents().unit, table.writer.contents().profile);
             let columns = unit.results();
             let out: Vec<usize> = (0..columns.len()).filter(|n| columns[*n].name.starts_with("out.")).collect();
             let names: Vec<&str> = out.iter().map(|n| columns[*n].name.as_str()).collect();
             let mut body = format!(
-                "# ninebit-results 1\n# unit {}\n# profile Nv2a\n# level L0\n# seed 1\n# behaviour {BEHAVIOUR}\nid\t{}\tstatus\n",
+                "# ninebit-results 1\n# unit {}\n# profile {}\n# level L0\n# seed 1\n# behaviour {BEHAVIOUR}\nid\t{}\tstatus\n",
                 unit.name(),
+                profile.name(),
                 names.join("\t"),
             );
             for row in &table.rows {
                 let mut answer = vec![0; row.results.len()];
                 let mut inputs = row.inputs.clone();
                 inputs[0] = reading.unwrap_or(inputs[0]);
-                unit.evaluate(&inputs, &Conditions { profile: Profile::Nv2a, policies }, &mut answer);
+                unit.evaluate(&inputs, &Conditions { profile, policies }, &mut answer);
                 let text = |n: &usize| match columns[*n].kind {
                     Kind::Hex(_) => answer[*n].to_string(),
                     kind => kind.write(answer[*n]),
@@ -170,8 +171,8 @@ fn the_policy_that_a_card_follows_is_named() {
 /// If a card follows one reading of an open question, the comparison names it, and rows of the other readings contradict nothing.
 #[test]
 fn the_reading_that_a_card_follows_is_named() {
-    for name in ["filtered-shadow", "filtered-key", "w-buffer-slope"] {
-        let unit = units::by_name(name).unwrap();
+    for unit in units::all().into_iter().filter(|unit| !unit.readings().is_empty()) {
+        let name = unit.name();
         let asked = Asked::of(&[name]);
         for (reading, value) in (0..).zip(unit.readings()) {
             asked.answer_in("NVIDIA Corporation", "GeForce3", Policies::DEFAULT, Some(reading));

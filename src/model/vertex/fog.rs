@@ -83,7 +83,7 @@ pub fn exponential(mode: FogMode, density: f32, evaluation: FogEvaluation) -> Fo
 
 /// The numbers that the light unit computes from a fog coordinate at a vertex (FOG-3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct LightFog {
+pub struct LightFog {
     /// The words of p0, p1 and p2 (FOG-1).
     pub parameters: [u32; 3],
     /// The words of d and d^2 (FOG-1).
@@ -97,15 +97,20 @@ pub(crate) struct LightFog {
 impl LightFog {
     /// Computes p0 + p1 d + p2 d^2 in 14 significant bits.
     pub(crate) fn new(function: &FogFunction, d: f32) -> LightFog {
+        LightFog::of(function, [d, square(d)])
+    }
+
+    /// Computes p0 + p1 d + p2 x from d and x.
+    pub fn of(function: &FogFunction, coordinates: [f32; 2]) -> LightFog {
         let parameters = [function.p0, function.p1, function.p2].map(|p| light::word(p.to_bits()));
-        let coordinates = [d, square(d)].map(|d| light::word(d.to_bits()));
+        let coordinates = coordinates.map(|d| light::word(d.to_bits()));
         let products = [0, 1].map(|n| light::product(parameters[n + 1], coordinates[n]));
         LightFog { parameters, coordinates, products, sum: light::sum([parameters[0], products[0], products[1]]) }
     }
 }
 
 /// Returns d^2 as the light unit uses it, which is the single-precision product.
-pub(crate) fn square(d: f32) -> f32 {
+pub fn square(d: f32) -> f32 {
     d * d
 }
 

@@ -12,6 +12,12 @@ use ninebit::vertex::fog::passed;
 /// The modes with a table, in the order of the column.
 const CURVES: [FogMode; 4] = [FogMode::Exp, FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs];
 
+/// Returns the fog where all vertices pass this value.
+pub(super) fn factor(function: FogFunction, value: f32) -> Option<ninebit::raster::fog::FogFactor> {
+    let triangle = Triangle::new(LARGE, true, Profile::Nv2a)?;
+    Some(FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3])))
+}
+
 /// Returns a float of a magnitude from 2^-7 to 2^9, with the sign and the fraction of these bits.
 fn moderate(bits: i64) -> i64 {
     let exponent = 120 + (bits as u32 >> 23 & 15);
@@ -59,8 +65,7 @@ impl Unit for FogFactor {
         let (per_vertex, [p0, p1, p2, coordinate]) = (inputs[1] != 0, [2, 3, 4, 5].map(|n| float(inputs[n])));
         let function = FogFunction { mode: named(inputs[0]), p0, p1, p2, per_vertex };
         let value = passed(&function, conditions.profile, coordinate);
-        let Some(triangle) = Triangle::new(LARGE, true, Profile::Nv2a) else { return };
-        let found = FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3]));
+        let Some(found) = factor(function, value) else { return };
         results[0] = value.to_bits().into();
         results[1] = match found.from {
             FogStep::Factor(v) | FogStep::Linear(v, _) => v,

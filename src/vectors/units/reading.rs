@@ -1,17 +1,23 @@
-//! Questions that no rule decides. A row follows one reading; the model refuses such a draw (NB0402), and a card's answers name the reading
-//! that holds.
+//! Questions that no capture decides. A row follows one reading: the model follows the first, or refuses such a draw. A card's answers name the
+//! reading that holds.
 
 use super::depth::{LEAST_W, floats, test};
+use super::fog::factor;
 use super::raster::{fit, geometry, is_covered, triangle};
 use super::sampling::compared;
 use super::texture::planned;
 use super::{Column, Conditions, Kind, Reach, Unit, color_results, float, named, put, sized};
+use ninebit::number::Blend;
 use ninebit::raster::depth::{Binary, DepthPlane, offset, slope, word};
 use ninebit::raster::setup::Triangle;
-use ninebit::state::{self, ColorKeyMode, CompareFunction, DepthFormat, DepthTest, Named, Profile, ShadowReference};
+use ninebit::state::{
+    self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, DepthTest, FogFunction, FogMode, Named, Profile,
+    ShadowReference,
+};
 use ninebit::state::{PolygonOffset, TextureFormat, TextureUnit, depth_stencil};
-use ninebit::texture::{color_key, filter, format};
+use ninebit::texture::{address, anisotropy, color_key, filter, format};
 use ninebit::trace::Silent;
+use ninebit::vertex::fog::{LightFog, square};
 
 state::named! {
     /// Readings of what a shadow comparison shows under a linear filter.
@@ -48,6 +54,38 @@ state::named! {
         Z,
         /// That of w at the pixel: the larger difference from the pixels on the right and below.
         PixelW,
+    }
+}
+
+state::named! {
+    /// Readings of what the third parameter of fog multiplies.
+    enum ThirdReading {
+        /// The square of d.
+        Square,
+        /// Nothing: it adds nothing.
+        None,
+        /// d.
+        Linear,
+    }
+}
+
+state::named! {
+    /// Readings of the weights of four taps.
+    enum WeightReading {
+        /// What each covers of the footprint.
+        Shares,
+        /// A quarter each.
+        Equal,
+    }
+}
+
+state::named! {
+    /// Readings of what a linear filter reads outside the image where the address mode is `ClampToBorder`.
+    enum BorderReading {
+        /// The border colour.
+        Border,
+        /// The texel at the edge.
+        Edge,
     }
 }
 
@@ -225,5 +263,109 @@ impl Unit for WBufferSlope {
         };
         let offset = offset(PolygonOffset { bias: 0.0, factor: float(inputs[15]) }, steepest);
         results[0] = word(format, DepthPlane { offset, ..plane }.at(triangle.edges(pixel[0], pixel[1]))).into();
+    }
+}
+
+/// The third parameter of fog.
+pub(super) struct FogThird;
+
+impl Unit for FogThird {
+    known_as!(
+        "fog-third", &["FOG-3", "FOG-1", "FOG-4"],
+        "an open question: by a reading, FOG.a of a coordinate in the mode Exp with the parameters 3/2, p1 and p2 (floats)", Geometry;
+        on &[Profile::Nv2a];
+        takes [
+            Column::choice::<ThirdReading>("cfg.reading"),
+            ["in.p1", "in.p2", "in.coordinate"].map(|name| Column::float(name, true, 8)),
+        ];
+        gives [Column::result("out.byte", Kind::Unsigned(8))]
+    );
+
+    fn readings(&self) -> &'static [&'static str] {
+        ThirdReading::NAMES
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        // Usually both terms leave e below 3/2 and within the table.
+        if inputs[3] & 7 > 2 {
+            for parameter in &mut inputs[1..3] {
+                *parameter = sized(*parameter, (-6, 4)) | 1 << 31;
+            }
+            inputs[3] = sized(inputs[3], (-2, 4)) & 0x7fff_ffff;
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let [p1, p2, d] = [1, 2, 3].map(|n| float(inputs[n]));
+        let function = FogFunction { mode: FogMode::Exp, p0: 1.5, p1, p2, per_vertex: false };
+        let third = match named(inputs[0]) {
+            ThirdReading::Square => square(d),
+            ThirdReading::None => 0.0,
+            ThirdReading::Linear => d,
+        };
+        let passed = f32::from_bits(LightFog::of(&function, [d, third]).sum);
+        results[0] = factor(function, passed).map_or(0, |found| found.byte.into());
+    }
+}
+
+/// The weights of four taps.
+pub(super) struct TapWeights;
+
+impl Unit for TapWeights {
+    known_as!(
+        "tap-weights", &["TEX-17"],
+        "an open question: by a reading, four taps mixed, the two inner ones first; a footprint's length in 1/65536 texel, with no width", Geometry;
+        on &[Profile::Nv2a];
+        takes [
+            Column::choice::<WeightReading>("cfg.reading"),
+            // Others have fewer taps or more.
+            [Column::signed("in.length", 20, (2 << 16) + 1, 4 << 16)],
+            ["in.tap0", "in.tap1", "in.tap2", "in.tap3"].map(Column::byte),
+        ];
+        gives [Column::results(["mid.inner", "out.value"], Kind::Unsigned(8))]
+    );
+
+    fn readings(&self) -> &'static [&'static str] {
+        WeightReading::NAMES
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let weights = match named(inputs[0]) {
+            WeightReading::Shares => anisotropy::taps(Some([[0, 0], [inputs[1], 0], [0, 0]]), 4).weights,
+            WeightReading::Equal => [64; anisotropy::MAX_TAPS],
+        };
+        let sum: i32 = inputs[2..].iter().zip(weights).map(|(tap, weight)| (*tap as i32).times(weight)).sum();
+        put(results, [weights[0], sum.round8()]);
+    }
+}
+
+/// The border colour of nv10 under a linear filter.
+pub(super) struct BorderFilter;
+
+impl Unit for BorderFilter {
+    known_as!(
+        "border-filter", &["TEX-7", "TEX-6"],
+        "an open question, refused in scenes: by a reading, a channel of two texels and a border colour at a coordinate in 1/256 texel, filtered along one axis", Geometry;
+        on &[Profile::Nv10];
+        takes [
+            Column::choice::<BorderReading>("cfg.reading"),
+            [Column::signed("in.u", 12, -1024, 1535)],
+            ["in.t0", "in.t1", "in.border"].map(Column::byte),
+        ];
+        gives [Column::results(["mid.weight", "out.value"], Kind::Unsigned(8))]
+    );
+
+    fn readings(&self) -> &'static [&'static str] {
+        BorderReading::NAMES
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let mode = match named(inputs[0]) {
+            BorderReading::Border => AddressMode::ClampToBorder,
+            BorderReading::Edge => AddressMode::ClampToEdge,
+        };
+        let (index, weight) = filter::linear(inputs[1]);
+        let texel = |n| address::address(mode, n, 2, false).map_or(inputs[4], |n| inputs[2 + n as usize]) as i32;
+        put(results, [weight, filter::lerp(texel(index), texel(index + 1), weight)]);
     }
 }
