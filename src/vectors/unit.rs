@@ -38,9 +38,9 @@ pub trait Unit: Sync {
     /// Returns the columns of intermediates and results, `mid.` and `out.`.
     fn results(&self) -> Vec<Column>;
 
-    /// Returns the names of the readings of an open question, if the unit asks one: no capture decides its results. The model follows the first
-    /// reading, or refuses such a draw. The first column, `cfg.reading`, then has the number of the reading that a row follows, and the first of the unit's rules is the
-    /// one in question.
+    /// Returns the names of the readings of an open question, if the unit asks one: no capture decides its results. The model follows
+    /// the first reading, or refuses such a draw. The first column, `cfg.reading`, then has the number of the reading that a row
+    /// follows, and the first of the unit's rules is the one in question.
     fn readings(&self) -> &'static [&'static str] {
         &[]
     }

@@ -11,10 +11,9 @@ use ninebit::number::Blend;
 use ninebit::raster::depth::{Binary, DepthPlane, offset, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{
-    self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, DepthTest, FogFunction, FogMode, Named, Profile,
-    ShadowReference,
+    self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, DepthTest, FogFunction, FogMode, Named,
+    PolygonOffset, Profile, ShadowReference, TextureFormat, TextureUnit, depth_stencil,
 };
-use ninebit::state::{PolygonOffset, TextureFormat, TextureUnit, depth_stencil};
 use ninebit::texture::{address, anisotropy, color_key, filter, format};
 use ninebit::trace::Silent;
 use ninebit::vertex::fog::{LightFog, square};

@@ -218,6 +218,21 @@ impl Setup<'_> {
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
         let (lowest, reach) = (least(local.denominator), [columns, rows]);
+        // Quotients by another line than D.
+        let divided = |[along, down]: [Line; 2], denominator: Line, off: f64, face: Face| BaseLevel {
+            along,
+            down,
+            denominator,
+            lowest: least(denominator),
+            reach,
+            off,
+            floors: 0.0,
+            face,
+            behind: false,
+            planes: None,
+            losses: None,
+            gaps: [(0.0, 0); 2],
+        };
         let (base, range) = match planes {
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
@@ -251,33 +266,13 @@ impl Setup<'_> {
                 let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
                 let (off, range) = direction.off(1.0 / least(q), most);
                 let lines = [s.times(sides[0]), t.times(sides[1])];
-                let [along, down] = lines;
                 // The signs of all three were changed if q was negative.
                 let behind = match self.context.coordinates_of(sampler.unit) {
                     Some(Coordinates::Ratio(g)) => g[2][0] < 0,
                     _ => false,
                 };
-                let face = Face::PositiveX;
                 let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
-                let (floors, planes, gaps) = (0.0, None, [(0.0, 0); 2]);
-                let (denominator, lowest) = (q, least(q));
-                (
-                    BaseLevel {
-                        along,
-                        down,
-                        denominator,
-                        lowest,
-                        reach,
-                        off,
-                        floors,
-                        face,
-                        behind,
-                        planes,
-                        losses,
-                        gaps,
-                    },
-                    range,
-                )
+                (BaseLevel { behind, losses, ..divided(lines, q, off, Face::PositiveX) }, range)
             }
             Planes::Direction(planes, face) => {
                 let direction = CubeDirection::around(planes, &local.real, columns, rows);
@@ -295,27 +290,7 @@ impl Setup<'_> {
                 let size = 128.0 * f64::from(sampler.sides[0]);
                 let (off, range) = direction.off(1.0 / least(m), size);
                 let lines = [direction.component(s), direction.component(t)].map(|line| line.plus(m).times(size));
-                let [along, down] = lines;
-                let behind = false;
-                let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
-                let (denominator, lowest) = (m, least(m));
-                (
-                    BaseLevel {
-                        along,
-                        down,
-                        denominator,
-                        lowest,
-                        reach,
-                        off,
-                        floors,
-                        face,
-                        behind,
-                        planes,
-                        losses,
-                        gaps,
-                    },
-                    range,
-                )
+                (divided(lines, m, off, face), range)
             }
             Planes::Other | Planes::Shared => return None,
         };

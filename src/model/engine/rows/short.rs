@@ -1,5 +1,5 @@
-//! INT-4t on rows: quotients of functions that lose something because weights fall short (TEX-15, TSH-7, and planes by policy). `docs/exactness.md` has the
-//! argument.
+//! INT-4t on rows: quotients of functions that lose something because weights fall short (TEX-15, TSH-7, and planes by policy).
+//! `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::BLOCK;
