@@ -417,7 +417,7 @@ fn mark(taken: &mut [u64], at: usize, count: usize) {
 /// Number of pixels that are copied at once if a run is shorter and the slices have room.
 const SHORT_RUN: usize = 16;
 
-/// From this average length of runs on, words are packed directly into the surface instead of being copied.
+/// From this average length of runs on, words of the surface and its depth buffer are worked on in place instead of being copied.
 const LONG_RUN: usize = 48;
 
 /// Copies a run from one slice to another. Most runs are short and are copied without a call. With `MASKS`, lanes can be stored one by one,
@@ -499,16 +499,22 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);
     }
+    let is_long = runs.len() * LONG_RUN <= *used;
     if compiled.drops {
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
         }
-        if draw.stencil_test.is_some() || draw.depth_test.is_some() {
+        let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
+        if draw.stencil_test.is_none() && draw.depth_test.is_some() && is_long {
+            for Run { lane, at, count } in runs.iter().copied() {
+                let (memory, alive) = (&mut band.depth[at..][..count], &mut alive[lane..][..count]);
+                store::test_depths(draw, &incoming[lane..][..count], memory, alive);
+            }
+        } else if draw.stencil_test.is_some() || draw.depth_test.is_some() {
             if let Some(depth) = depth.first_chunk_mut() {
                 read::<MASKS>(band.depth, runs, depth);
             }
-            let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
             if store::test_depth_stencil(draw, incoming, depth, alive) {
                 for run in runs.iter() {
                     copy::<MASKS>(&depth[run.lane..], &mut band.depth[run.at..], run.count);
@@ -518,7 +524,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     }
     // Most blocks lose no fragment.
     let merges = compiled.merges && !(compiled.writes_whole && all(&alive[..*used]));
-    if !merges && runs.len() * LONG_RUN <= *used {
+    if !merges && is_long {
         for run in runs.iter() {
             store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
         }

@@ -4,13 +4,14 @@
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
 )]
 
-use super::kernels::PerLane;
-use super::quotient::{IOTA_REAL, Line, Positions, multiply_add, nearest, position, whole};
+use super::kernels::{PerLane, STEP};
+use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, multiply_add, nearest, position, whole};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::depth::{difference, largest_edge, reciprocal, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
+use std::ops::Range;
 
 /// Bits of a double below its first 24.
 const BELOW_24_BITS: u64 = (1 << 29) - 1;
@@ -19,7 +20,7 @@ const BELOW_24_BITS: u64 = (1 << 29) - 1;
 const EXPONENT: u64 = 0xfff << 52;
 
 /// 2^-28, the last of 29 bits relative to the first.
-const STEP: f64 = 1.0 / (1_u64 << 28) as f64;
+const LAST_BIT: f64 = 1.0 / (1_u64 << 28) as f64;
 
 /// Bits of the exponent of 1.
 const ONE: u64 = 1023 << 52;
@@ -50,7 +51,7 @@ pub(super) struct Steps {
     /// 1 if the definition has to decide.
     close: [u64; CHUNK],
     /// Reciprocals of the current triangle.
-    series: ReciprocalSeries,
+    reciprocals: ReciprocalLine,
 }
 
 impl Default for Steps {
@@ -62,59 +63,53 @@ impl Default for Steps {
             references: zeros,
             terms: [zeros; 2],
             close: [0; CHUNK],
-            series: ReciprocalSeries::default(),
+            reciprocals: ReciprocalLine::default(),
         }
     }
 }
 
-/// DEP-1's reciprocals of a triangle as a series. The three edge numbers add up to the doubled area, less the few last bits that each loses
-/// when it is cut to 24 bits. So the reciprocal is a function of that small loss, and three terms of the series suffice.
+/// DEP-1's reciprocals of a triangle as a linear function. The three edge numbers add up to the doubled area, less the few last bits that
+/// each loses when it is cut to 24 bits. So the reciprocal is a function of a sum that hardly varies.
 #[derive(Clone, Copy, Debug, Default)]
-struct ReciprocalSeries {
+struct ReciprocalLine {
     area: i64,
-    /// Whether the series yields every reciprocal of the triangle.
+    /// Whether the function yields every reciprocal of the triangle.
     tells: bool,
-    /// Coefficients. The first is less by 3/16 and one half, so that the nearest integer is the reciprocal; if nothing is lost, it is the
+    /// The value of a sum of 0, less by 3/16 and one half, so that the nearest integer is the reciprocal; if nothing is lost, it is the
     /// reciprocal itself.
-    terms: [f64; 3],
+    start: f64,
+    slope: f64,
     /// Factor that turns edge numbers times reciprocals into weights.
     unit: f64,
 }
 
-impl ReciprocalSeries {
-    fn new<const FMA: bool>(area: i64) -> ReciprocalSeries {
+impl ReciprocalLine {
+    fn new<const FMA: bool>(area: i64) -> ReciprocalLine {
         let bits = 64 - area.leading_zeros();
-        let mut series = ReciprocalSeries { area, ..ReciprocalSeries::default() };
+        let mut line = ReciprocalLine { area, ..ReciprocalLine::default() };
         // Edge numbers with more bits would be cut again when they are aligned.
         if bits > 29 {
-            return series;
+            return line;
         }
-        series.unit = power_of_two(-28 - bits as i32);
+        line.unit = power_of_two(-28 - bits as i32);
         let of = |sum: i64| {
             // With as many bits as reciprocals that are not exact.
             if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal(sum).0 as f64 }
         };
         let (largest_loss, real) = (3 * ((1_i64 << bits.saturating_sub(24)) - 1), area as f64);
         let first = (1_u64 << (28 + bits)) as f64 / real;
-        series.terms = if largest_loss == 0 {
-            [of(area), 0.0, 0.0]
-        } else {
-            [first - 0.6875, first / real, first / (real * real)]
-        };
+        (line.start, line.slope) =
+            if largest_loss == 0 { (of(area), 0.0) } else { (2.0 * first - 0.6875, -first / real) };
         // Compares each value with the definition's.
-        let tells = |lost: i64| {
-            let sum = area - lost;
-            64 - sum.leading_zeros() == bits && series.at::<FMA>(lost as f64) == of(sum)
-        };
-        series.tells = (0..=largest_loss).all(tells);
-        series
+        let tells = |sum: i64| 64 - sum.leading_zeros() == bits && line.at::<FMA>(sum as f64) == of(sum);
+        line.tells = (area - largest_loss..=area).all(tells);
+        line
     }
 
-    /// Returns the reciprocal for a loss.
+    /// Returns the reciprocal of a sum.
     #[inline(always)]
-    fn at<const FMA: bool>(&self, lost: f64) -> f64 {
-        let [first, second, third] = self.terms;
-        whole(multiply_add::<FMA>(lost, multiply_add::<FMA>(lost, third, second), first))
+    fn at<const FMA: bool>(&self, sum: f64) -> f64 {
+        whole(multiply_add::<FMA>(sum, self.slope, self.start))
     }
 }
 
@@ -155,12 +150,14 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let full = f64::from(format.largest());
     let range = test.range.as_ref();
     let z = plane.w.unwrap_or(plane.z);
-    let differences = [0, 1, 2].map(|reference| OTHERS[reference].map(|k| f64::from(difference(z[k], z[reference]))));
+    let between = |a: usize, b: usize| f64::from(difference(z[a], z[b]));
+    let (first, second, third) = (between(1, 0), between(2, 0), between(2, 1));
+    let differences = [[first, second], [-first, third], [-second, -third]];
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
     let edges = [edge(0), edge(1), edge(2)];
     // The lanes after those of a row are not in use yet, so they may be overwritten.
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
-    let along_row = (e, triangle.a, batch.count);
+    let along_row = ((e, triangle.a), batch.count);
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from the limits of binary32 and of the intermediate results.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
@@ -196,24 +193,36 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     }
 }
 
-/// Returns the reference of a pixel of a row, and up to which pixel all have that reference and an edge number of the same exponent.
-fn same_reference((e, slopes, count): ([i64; 3], [i64; 3], usize), first: usize) -> (usize, usize) {
-    let key = |x: usize| {
-        let e = [0, 1, 2].map(|k| e[k] + slopes[k] * x as i64);
-        let reference = largest_edge(e);
-        (reference, e[reference].leading_zeros())
-    };
-    let wanted = key(first);
-    // Edge numbers are linear. If both ends agree, so do all pixels between them.
-    if key(count - 1) == wanted {
-        return (wanted.0, count);
+/// Returns the reference of a pixel of a row, and up to which of `count` pixels all have it. The third argument has the row's edge functions
+/// at its first pixel and their slopes.
+fn same_reference(first: usize, count: usize, (e, slopes): ([i64; 3], [i64; 3])) -> (usize, usize) {
+    let edges = |x: usize| [0, 1, 2].map(|k| e[k] + slopes[k] * x as i64);
+    let reference = largest_edge(edges(first));
+    let mut until = first;
+    while until < count {
+        let e = edges(until);
+        if largest_edge(e) != reference {
+            break;
+        }
+        // Nothing changes before the reference's edge number becomes smaller than its power of two, or another one reaches that or the next.
+        let power = 1 << e[reference].ilog2();
+        let mut more = (count - until) as i64;
+        for k in 0..3 {
+            let comes_first = largest_edge([0, 1, 2].map(|n| i64::from(n == k || n == reference))) == k;
+            let (distance, slope) = if k == reference {
+                (e[k] - power + 1, -slopes[k])
+            } else if comes_first {
+                (power - e[k], slopes[k])
+            } else {
+                (2 * power - e[k], slopes[k])
+            };
+            if slope > 0 {
+                more = more.min((distance - 1) / slope + 1);
+            }
+        }
+        until += more as usize;
     }
-    let (mut inside, mut outside) = (first, count - 1);
-    while outside - inside > 1 {
-        let middle = (inside + outside) / 2;
-        if key(middle) == wanted { inside = middle } else { outside = middle }
-    }
-    (wanted.0, outside)
+    (reference, until)
 }
 
 /// Returns 2^exponent, or 0 or infinity if no double has that value.
@@ -233,110 +242,92 @@ impl Depths<'_> {
         &self,
         at: Positions<'_>,
         edges: [Line; 3],
-        row: ([i64; 3], [i64; 3], usize),
+        row: (([i64; 3], [i64; 3]), usize),
         steps: &mut Steps,
         out: &mut [u32],
     ) -> bool {
         let mut unknown = false;
         let is_plain_row = ROW && !GENERAL && !W;
+        let (row, count) = row;
         // The sum of all three edge functions is the doubled area.
         let area = row.0.iter().sum();
-        if is_plain_row && steps.series.area != area {
-            steps.series = ReciprocalSeries::new::<FMA>(area);
+        if is_plain_row && steps.reciprocals.area != area {
+            steps.reciprocals = ReciprocalLine::new::<FMA>(area);
         }
-        let (mut first, count) = (0, if ROW { row.2 } else { out.len() });
+        let (mut first, count) = (0, if ROW { count } else { out.len() });
         let (mut reference, mut until) = (0, 0);
         while first < count {
-            let mut pixels = (count - first).min(CHUNK);
-            if is_plain_row && steps.series.tells {
-                if first == until {
-                    (reference, until) = same_reference(row, first);
+            if is_plain_row && steps.reciprocals.tells {
+                if first >= until {
+                    (reference, until) = same_reference(first, count, row);
                 }
-                pixels = pixels.min(until - first);
-                let lanes = first..first + whole_steps(pixels);
-                self.segment::<FMA>(edges, (reference, f64::from(at.last)), &IOTA_REAL[lanes.clone()], steps);
-                let out = &mut out[lanes];
-                if !self.floored_words::<FMA>(steps, out) {
-                    self.words::<FMA, false>(steps, out);
+                if self.floored::<FMA>(edges, reference, &steps.reciprocals, first..until, out) {
+                    first = until;
+                    continue;
                 }
-            } else {
-                let lanes = if ROW { first..first + whole_steps(pixels) } else { first..first + pixels };
-                let out = &mut out[lanes.clone()];
-                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
-                self.sums::<FMA, ROW, W>(f64::from(at.last), positions, edges, steps);
-                let close = self.terms::<FMA, W>(out.len(), steps);
-                self.words::<FMA, GENERAL>(steps, out);
-                if close {
-                    for (out, close) in out.iter_mut().zip(&steps.close) {
-                        // `UNKNOWN` has all bits set.
-                        *out |= (*close as u32).wrapping_neg();
-                    }
-                }
-                unknown |= close;
             }
+            // Whole steps of the batch, although some lanes may be done.
+            first -= first % STEP;
+            let pixels = (count - first).min(CHUNK);
+            let lanes = if ROW { first..first + whole_steps(pixels) } else { first..first + pixels };
+            let out = &mut out[lanes.clone()];
+            let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
+            self.sums::<FMA, ROW, W>(f64::from(at.last), positions, edges, steps);
+            let close = self.terms::<FMA, W>(out.len(), steps);
+            self.words::<FMA, GENERAL>(steps, out);
+            if close {
+                for (out, close) in out.iter_mut().zip(&steps.close) {
+                    // `UNKNOWN` has all bits set.
+                    *out |= (*close as u32).wrapping_neg();
+                }
+            }
+            unknown |= close;
             first += pixels;
         }
         unknown
     }
 
-    /// Computes the terms of pixels of a row that share a reference.
+    /// Writes the words of pixels of a row that share a reference, whose depths are floored and nothing else. Lanes up to the next whole
+    /// step may be overwritten. Returns `false`, and writes nothing, unless the largest terms of all these pixels have the same exponent.
     #[inline(always)]
-    fn segment<const FMA: bool>(
+    fn floored<const FMA: bool>(
         &self,
         edges: [Line; 3],
-        (reference, last): (usize, f64),
-        iota: &[f64],
-        steps: &mut Steps,
-    ) {
-        let lanes = iota.len();
-        let [one, other] = OTHERS[reference];
-        let Steps { references, terms: [of_one, of_other], series, .. } = steps;
+        reference: usize,
+        reciprocals: &ReciprocalLine,
+        pixels: Range<usize>,
+        out: &mut [u32],
+    ) -> bool {
         // A copy, which cannot overlap what is stored.
-        let series = *series;
-        let by = self.differences[reference].map(|difference| difference * series.unit);
+        let reciprocals = *reciprocals;
+        let [one, other] = OTHERS[reference];
         let (one, other, largest) = (edges[one], edges[other], edges[reference]);
-        let area = series.area as f64;
-        let (of_one, of_other) = (&mut of_one[..lanes], &mut of_other[..lanes]);
-        references[..lanes].fill(self.z[reference]);
-        let term = |edge: f64, reciprocal: f64, by: f64| cut24(edge * reciprocal) * by;
-        for n in 0..lanes {
-            let x = if iota[n] < last { iota[n] } else { last };
-            let one = cut24(one.at::<FMA, true>(x, 0.0));
-            let other = cut24(other.at::<FMA, true>(x, 0.0));
-            let largest = cut24(largest.at::<FMA, true>(x, 0.0));
-            let reciprocal = series.at::<FMA>(area - one - other - largest);
-            (of_one[n], of_other[n]) = (term(one, reciprocal, by[0]), term(other, reciprocal, by[1]));
+        let terms = |x: f64, by: [f64; 2]| {
+            let [one, other, largest] = [one, other, largest].map(|edge| cut24(edge.at::<FMA, true>(x, 0.0)));
+            let reciprocal = reciprocals.at::<FMA>(one + other + largest);
+            [cut24(one * reciprocal) * by[0], cut24(other * reciprocal) * by[1]]
+        };
+        let by = self.differences[reference].map(|difference| difference * reciprocals.unit);
+        let z = self.z[reference];
+        let at = |pixel: usize| terms(pixel as f64, by);
+        let Some(top) = same_power(z, at(pixels.start), at(pixels.end - 1)) else { return false };
+        // The terms become multiples of 2^(Y-28).
+        let scale = (1 << 28) as f64 / top;
+        let by = by.map(|by| by * scale);
+        let start = cut::<FMA>(z * scale) + MAGIC;
+        // Smaller terms yield no depth.
+        let shift = (1023 + 28 - (top.to_bits() >> 52) as i32).min(31);
+        let full = self.full as i32;
+        let lanes = pixels.start..pixels.start + whole_steps(pixels.len());
+        let (out, xs) = (out[lanes.clone()].as_chunks_mut::<8>().0, IOTA_REAL[lanes].as_chunks::<8>().0);
+        for (out, xs) in out.iter_mut().zip(xs) {
+            for n in 0..8 {
+                let [a, b] = terms(xs[n], by);
+                let sum = (cut::<FMA>(a) + cut::<FMA>(b) + start).to_bits() as i32;
+                out[n] = (sum >> shift).max(0).min(full) as u32;
+            }
         }
-    }
-
-    /// Writes the words of a segment whose depths are floored and nothing else. Returns `false`, and writes nothing valid, unless the
-    /// largest terms of all its pixels have the same exponent.
-    #[inline(always)]
-    fn floored_words<const FMA: bool>(&self, steps: &Steps, out: &mut [u32]) -> bool {
-        let lanes = out.len();
-        let Steps { references, terms: [one, other], .. } = steps;
-        let (z, one, other) = (references[0], &one[..lanes], &other[..lanes]);
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        let top = power(larger(larger(one[0].abs(), other[0].abs()), z.abs()));
-        // Above this limit, sums have no fraction. Below it, terms are too small to yield a depth.
-        let has_fraction = top < (1 << 27) as f64 && top > 1e-200;
-        if !has_fraction {
-            return false;
-        }
-        let (scale, step) = ((1 << 28) as f64 / top, top * STEP);
-        let (z, full) = (z * scale, self.full as i32);
-        let (least, cut_z) = (z.abs(), cut::<FMA>(z));
-        // Half a unit less half a step, so that no sum lies half-way between two integers.
-        let start = 0.5 * step - 0.5;
-        let mut differing = 0;
-        for n in 0..lanes {
-            let (a, b) = (one[n] * scale, other[n] * scale);
-            let largest = larger(larger(a.abs(), b.abs()), least);
-            differing |= largest.to_bits() ^ (ONE + (28 << 52));
-            let sum = cut::<FMA>(a) + cut::<FMA>(b) + cut_z;
-            out[n] = nearest(multiply_add::<FMA>(sum, step, start)).max(0).min(full) as u32;
-        }
-        differing & EXPONENT == 0
+        true
     }
 
     /// Computes edge numbers, their sum, and the values that depend on the reference.
@@ -435,7 +426,7 @@ impl Depths<'_> {
             let top = power(if largest > 1e-200 { largest } else { 1e-200 });
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
-            let depth = sum * (top * STEP);
+            let depth = sum * (top * LAST_BIT);
             if GENERAL {
                 (sums[n], lost[n]) = (depth, 0.0);
                 continue;
@@ -477,6 +468,25 @@ impl Depths<'_> {
         word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
 }
+
+/// Returns the power of two of the largest of three terms on a row, if all pixels between two ends have the same. The first term is
+/// constant, and the others, whose values at both ends are given, are linear but for less than 2^-20 of themselves.
+fn same_power(z: f64, first: [f64; 2], last: [f64; 2]) -> Option<f64> {
+    let ends = [0, 1].map(|n| (first[n].abs(), last[n].abs()));
+    let varying = ends.iter().fold(0.0, |largest: f64, (first, last)| largest.max(*first).max(*last));
+    // Smaller terms yield no depth.
+    let top = power(varying.max(z.abs()).max(LEAST_TERM));
+    let keeps = z.abs() >= top || ends.iter().any(|(first, last)| first.min(*last) >= top * (1.0 + NEARLY));
+    let stays = keeps && varying < 2.0 * top * (1.0 - NEARLY) || top == LEAST_TERM;
+    // Sums of larger terms have no fraction.
+    (stays && top < (1 << 27) as f64).then_some(top)
+}
+
+/// Far below the depth 1.
+const LEAST_TERM: f64 = 1.0 / (1_u64 << 60) as f64;
+
+/// An upper bound of the relative error of terms.
+const NEARLY: f64 = 1.0 / (1 << 20) as f64;
 
 /// Returns a sum and its exact rounding error.
 #[inline(always)]

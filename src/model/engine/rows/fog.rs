@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use super::Reason;
-use super::kernels::{LANES, STEP};
+use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
@@ -144,8 +144,8 @@ impl Setup<'_> {
                     return self.defined_factors(batch, |_| true, out);
                 }
                 let is_same = ROW && line.x == 0.0 && local.denominator.x == 0.0;
-                // If the coordinate does not vary along the row, one step suffices.
-                let lanes = if is_same { STEP } else { out.len() };
+                // If the coordinate does not vary along the row, one lane suffices.
+                let lanes = if is_same { 1 } else { out.len() };
                 let (first, values, spare) = (&mut out[..lanes], &mut values[..lanes], &mut spare[..lanes]);
                 let (at, lines) = (batch.at, (line, local.denominator));
                 let close = curve.look_up::<FMA, ROW>(at, lines, off, first, values, spare);

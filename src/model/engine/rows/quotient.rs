@@ -6,7 +6,7 @@ use super::kernels::LANES;
 use crate::raster::interpolate::most_dominant;
 
 /// 1.5 2^52: adding it to a small number leaves the nearest integer in the low bits.
-const MAGIC: f64 = 6_755_399_441_055_744.0;
+pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;
 
 /// 32 rounding errors of double precision: the largest error of an estimate, relative to the largest term of its sum.
 pub(super) const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;

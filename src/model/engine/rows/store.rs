@@ -86,14 +86,14 @@ pub(super) fn test<T: Copy + PartialOrd>(
     function: CompareFunction,
     incoming: impl Fn(usize) -> T,
     stored: impl Fn(usize) -> T,
-    alive: &mut [bool; BLOCK],
+    alive: &mut [bool],
 ) {
     use CompareFunction::*;
     // Separate loops, because compilers leave a choice of eight inside a loop.
     macro_rules! each {
         ($($name:ident)*) => {
             match function {
-                $($name => for n in 0..BLOCK {
+                $($name => for n in 0..alive.len() {
                     alive[n] &= $name.passes(incoming(n), stored(n));
                 },)*
             }
@@ -110,31 +110,47 @@ pub(super) fn test_depth_stencil(
     memory: &mut [u32; BLOCK],
     alive: &mut [bool; BLOCK],
 ) -> bool {
+    let Some(state) = &draw.stencil_test else { return test_depths(draw, incoming, memory, alive) };
+    drop_outside(draw, incoming, alive);
+    let writes_stencil = test_stencil(state, draw, incoming, memory, alive);
+    write_depths(draw, incoming, memory, alive) || writes_stencil
+}
+
+/// DEP-2 without a stencil test: drops fragments and updates the words of depth. Returns whether any word may have changed.
+#[inline(always)]
+pub(super) fn test_depths(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &mut [bool]) -> bool {
+    drop_outside(draw, incoming, alive);
+    test_depth(draw, incoming, memory, alive);
+    write_depths(draw, incoming, memory, alive)
+}
+
+/// DEP-4: drops fragments outside the depth range.
+#[inline(always)]
+fn drop_outside(draw: &PlannedDraw, incoming: &[u32], alive: &mut [bool]) {
     if draw.depth_test.is_some_and(|test| test.drops_by_range()) {
         for (alive, incoming) in alive.iter_mut().zip(incoming) {
             *alive &= *incoming != OUTSIDE;
         }
     }
-    let writes_stencil = match &draw.stencil_test {
-        None => {
-            test_depth(draw, incoming, memory, alive);
-            false
-        }
-        Some(state) => test_stencil(state, draw, incoming, memory, alive),
-    };
-    let writes_depth = draw.depth_test.is_some_and(|test| test.write);
-    if writes_depth {
-        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(&*alive) {
+}
+
+/// DEP-2: stores the depths of the fragments that are left. Returns whether the draw writes depth.
+#[inline(always)]
+fn write_depths(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &[bool]) -> bool {
+    let writes = draw.depth_test.is_some_and(|test| test.write);
+    if writes {
+        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(alive) {
             *word = if *alive { depth_stencil(*incoming, stencil_of(*word)) } else { *word };
         }
     }
-    writes_depth || writes_stencil
+    writes
 }
 
 /// DEP-2: drops fragments.
 #[inline(always)]
-fn test_depth(draw: &PlannedDraw, incoming: &[u32; BLOCK], memory: &[u32; BLOCK], alive: &mut [bool; BLOCK]) {
+fn test_depth(draw: &PlannedDraw, incoming: &[u32], memory: &[u32], alive: &mut [bool]) {
     if let Some(state) = &draw.depth_test {
+        let (incoming, memory) = (&incoming[..alive.len()], &memory[..alive.len()]);
         test(state.function, |n| incoming[n], |n| depth_of(memory[n]), alive);
     }
 }
