@@ -122,7 +122,9 @@ impl Triangle {
     /// Returns the three edge functions at the centre of pixel (i, j).
     #[inline]
     pub fn edges(&self, i: i64, j: i64) -> [i64; 3] {
-        std::array::from_fn(|k| self.a[k] * i + self.b[k] * j + self.c[k])
+        // Not by a function on arrays, which is not always inlined.
+        let edge = |k: usize| self.a[k] * i + self.b[k] * j + self.c[k];
+        [edge(0), edge(1), edge(2)]
     }
 
     /// RAS-3: returns whether the triangle covers a sample with these edge functions.

@@ -242,7 +242,7 @@ pub(super) fn sample_levels(
             let [half, next] = &mut *halves;
             if both {
                 for n in 0..BLOCK {
-                    half[n] = lerp(half[n], next[n], weights[n]);
+                    half[n] = lerp(half[n], next[n], i32::from(weights[n]));
                 }
             }
             if lane == 0 { bytes(half, signed, alpha, red) } else { bytes(half, signed, green, blue) }
@@ -280,9 +280,9 @@ impl MipFetches {
 
 /// TEX-9: mixes two levels of a channel.
 #[inline(always)]
-fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[i32; BLOCK]) {
+fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[u16; BLOCK]) {
     for ((channel, next), weight) in channel.iter_mut().zip(next).zip(weights) {
-        *channel = lerp(*channel as u16, *next as u16, *weight as u16) as i16;
+        *channel = lerp(*channel as u16, *next as u16, *weight) as i16;
     }
 }
 

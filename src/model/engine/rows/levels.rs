@@ -23,7 +23,7 @@ pub(super) struct MipFetches {
     /// u and v on those levels, of which only the fraction of a texel is used.
     pub(super) coordinates: [[PerLane<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
-    pub(super) weights: PerLane<i32>,
+    pub(super) weights: PerLane<u16>,
     /// Levels of detail of the quads.
     pub(super) known: Known<i32>,
 }
@@ -187,7 +187,7 @@ impl Setup<'_> {
             let at = place.on(&unit.levels[level]).map(|c| c.value as i32);
             reads.place(which, lane, &table.placed(level, place.face() as u32), filters, lod, at);
         }
-        reads.weights[lane] = weight;
+        reads.weights[lane] = weight as u16;
     }
 }
 
@@ -251,7 +251,7 @@ fn choose(
     lanes: usize,
     lods: &mut PerLane<i32>,
     [levels, nexts]: &mut [PerLane<i32>; 2],
-    weights: &mut [i32],
+    weights: &mut [u16],
 ) -> [[i32; 2]; 2] {
     let selection = lod::Selection::from_unit(unit);
     let (lods, weights) = (&mut lods[..lanes], &mut weights[..lanes]);
@@ -259,8 +259,8 @@ fn choose(
     let mut ends = [i32::MAX, i32::MIN];
     for n in 0..lanes {
         let lod = selection.biased(lods[n]);
-        (levels[n], nexts[n], weights[n]) = selection.levels(lod.max(0));
-        lods[n] = lod;
+        let (level, next, weight) = selection.levels(lod.max(0));
+        (lods[n], levels[n], nexts[n], weights[n]) = (lod, level, next, weight as u16);
         ends = [ends[0].min(lod), ends[1].max(lod)];
     }
     // The levels never decrease with the level of detail.
