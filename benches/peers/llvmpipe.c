@@ -70,6 +70,17 @@ static void cell_place(int cell, int *layer, int *column, int *row)
     *row = cell % per_layer / COLUMNS;
 }
 
+/* A number in the fewest digits that read back as the same float, so that the file stays small. */
+static void print_number(const char *before, float number)
+{
+    char text[32];
+    for (int digits = 1; digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, number);
+        if (strtof(text, NULL) == number) break;
+    }
+    printf("%s%s", before, text);
+}
+
 static void print_mesh(void)
 {
     int per_layer = COLUMNS * ROWS, layers = (CELLS + per_layer - 1) / per_layer;
@@ -82,16 +93,19 @@ static void print_mesh(void)
             for (int column = 0; column <= COLUMNS; column++) {
                 MeshVertex v;
                 mesh_vertex(layer, column, row, &v);
-                printf("            (position: (%d, %d, 0, %.9g), diffuse: (%d, %d, %d), t0: (%.9g, %.9g)),\n",
-                       column * CELL + 3 * layer, HEIGHT - row * CELL - 5 * layer, v.clip[3], v.color[0], v.color[1],
-                       v.color[2], v.st[0], v.st[1]);
+                printf("(position:(%d,%d,0", column * CELL + 3 * layer, HEIGHT - row * CELL - 5 * layer);
+                print_number(",", v.clip[3]);
+                printf("),diffuse:(%d,%d,%d)", v.color[0], v.color[1], v.color[2]);
+                print_number(",t0:(", v.st[0]);
+                print_number(",", v.st[1]);
+                printf(")),\n");
             }
     printf("        ]),\n        indices: [");
     for (int cell = 0; cell < CELLS; cell++) {
         int layer, column, row;
         cell_place(cell, &layer, &column, &row);
         int a = layer * (COLUMNS + 1) * (ROWS + 1) + row * (COLUMNS + 1) + column, b = a + COLUMNS + 1;
-        printf("%s%d, %d, %d, %d, %d, %d,", cell % 8 ? " " : "\n            ", a, a + 1, b, b, a + 1, b + 1);
+        printf("%s%d,%d,%d,%d,%d,%d,", cell % 8 ? "" : "\n", a, a + 1, b, b, a + 1, b + 1);
     }
     printf("\n        ],\n        textures: [\"normals\"],\n        program: Combiners(\n"
            "            stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, "

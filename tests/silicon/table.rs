@@ -11,22 +11,28 @@ pub struct Row {
     fields: Vec<String>,
 }
 
-/// Reads a file. Lines with `#` have the version, the number of rows and the names of the columns; all others are rows.
+/// Reads a file. Lines with `#` have the version, the number of rows, the suite and the name of each case, and the names of the columns; all
+/// others are rows.
 pub fn read(file: &str) -> Vec<Row> {
     let path = format!("vectors/silicon/{file}.tsv");
     let text = std::fs::read_to_string(crate::repository::at(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
-    assert!(text.starts_with("# ninebit silicon probes, format 1\n"), "{path}: not a file of probes");
+    assert!(text.starts_with("# ninebit silicon probes, format 2\n"), "{path}: not a file of probes");
     let header = |key: &str| {
         let line = text.lines().find_map(|line| line.strip_prefix("# ")?.strip_prefix(key)?.strip_prefix(": "));
         line.unwrap_or_else(|| panic!("{path}: no `# {key}:`"))
     };
-    let columns: Arc<Vec<String>> = Arc::new(header("columns").split(' ').map(str::to_string).collect());
+    let columns: Vec<String> = header("columns").split(' ').map(str::to_string).collect();
+    assert_eq!(columns[0], "case", "{path}");
+    let columns = Arc::new([vec!["suite".to_string()], columns].concat());
+    let case = |number: &str| header(&format!("case {number}")).split_once(' ').expect("a suite and a case");
     let rows: Vec<Row> = text
         .lines()
         .enumerate()
         .filter(|(_, line)| !line.starts_with('#'))
         .map(|(n, line)| {
-            let fields: Vec<String> = line.split('\t').map(str::to_string).collect();
+            let (number, others) = line.split_once('\t').expect("two fields");
+            let (suite, name) = case(number);
+            let fields: Vec<String> = [suite, name].into_iter().chain(others.split('\t')).map(str::to_string).collect();
             assert_eq!(fields.len(), columns.len(), "{path}:{}", n + 1);
             Row { columns: columns.clone(), line: n + 1, fields }
         })

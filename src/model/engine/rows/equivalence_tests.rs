@@ -328,7 +328,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     rows: &mut [Lanes256],
 ) {
     // Results of an earlier batch must not pass for those of this one.
-    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
+    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
     interpolators.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
     super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
     let (context, mut wanted, mut taps) = (&interpolators.setup.context, MipFetches::default(), Footprints::default());
