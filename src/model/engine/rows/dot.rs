@@ -4,6 +4,7 @@
 
 use super::BLOCK;
 use super::quotient::{nearest, nearest_32, whole, whole_32};
+use crate::number::convert::factor;
 use crate::state::DotMapping;
 use crate::texture::cube::Face;
 use crate::texture::dot;
@@ -138,6 +139,25 @@ pub(super) fn moved(
     for n in 0..BLOCK {
         let (b, g) = (f32::from((blue[n] >> down_blue) as i8), f32::from((green[n] >> down_green) as i8));
         (along[n], down[n]) = (dot::moved([m0, m3], [b, g]), dot::moved([m1, m2], [b, g]));
+    }
+}
+
+/// 1.5 2^14: added to a product below 4096, it leaves the floor in the bits from the ninth up, if the product is not close to an integer.
+const TWELVE_BITS: f32 = 24_576.0;
+
+/// TSH-8: multiplies a channel by the factors of the pixels' luminance, which keep products far from integers.
+#[inline(always)]
+pub(super) fn luminance<const FMA: bool>(factors: &Floats, channel: &mut [i16; BLOCK]) {
+    for n in 0..BLOCK {
+        let c = f32::from(channel[n].max(0));
+        let sum = if FMA { c.mul_add(factors[n], TWELVE_BITS) } else { c * factors[n] + TWELVE_BITS };
+        // A product of 4096 or more is 255 like 4095.
+        let bits = (sum.to_bits() as i32).min(TWELVE_BITS.to_bits() as i32 + (4096 << 9) - 1);
+        channel[n] = (bits >> 9) as i16;
+    }
+    // A loop of its own, so that vectors hold twice as many lanes.
+    for value in channel {
+        *value = factor(i32::from(*value & 4095)) as i16;
     }
 }
 

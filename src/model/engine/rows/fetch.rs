@@ -10,8 +10,9 @@ use super::taps::Pair;
 use crate::number::Lane;
 use crate::texture::filter::lerp;
 
-/// Scratch space of a fetch.
+/// Scratch space of a fetch. Aligned, because vectors are stored and soon loaded again.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(super) struct Workspace {
     entries: [u32; BLOCK],
     texels: [u32; BLOCK],

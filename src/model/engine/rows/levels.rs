@@ -113,9 +113,8 @@ impl Setup<'_> {
             match base.losses {
                 Some(losses) => {
                     let [at_u, at_v] = at;
-                    let (at_u, at_v) = (&mut at_u[..lanes], &mut at_v[..lanes]);
-                    short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, [&mut *at_u, &mut *at_v]);
-                    settle(at_u, at_v, settled, u, v, close);
+                    short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, 0.0, [&mut *at_u, &mut *at_v]);
+                    settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
                 }
                 None => quotients::<FMA, ROW>(batch.at, lines, settled, u, v, close),
             }

@@ -47,7 +47,7 @@ pub(super) struct Stage {
     pub(super) doubled: [bool; 4],
     /// Index among the moved coordinates, for bump stages.
     pub(super) moved: usize,
-    /// TSH-8: factor of a channel for each red of the earlier unit, in units of 2^-20.
+    /// TSH-8: [`luminance_factor`] for the low nine bits of the earlier unit's red register.
     pub(super) luminance: Vec<f32>,
     /// TSH-6: u and v of each byte, less the sampler's bias.
     pub(super) dependent: [Vec<i32>; 2],
@@ -81,9 +81,6 @@ pub(super) struct Shader {
 /// Largest distance by which rows move coordinates, 1/256 texel. It is beyond the limit of coordinates.
 const FARTHEST_MOVE: f64 = (1_u32 << 30) as f64;
 
-/// Largest scale and offset for which the factors in `luminance` are exact enough.
-const LARGEST_LUMINANCE: f32 = (1 << 20) as f32;
-
 /// Returns whether a stage samples at coordinates that an earlier stage determines.
 pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
     use ShaderOperation as O;
@@ -102,7 +99,7 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
 
 impl Shader {
     /// Compiles the shader of a draw whose units rows can sample. Returns `None` if a dependent read has levels, or if coordinates are
-    /// moved or luminance is scaled too far.
+    /// moved too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -186,17 +183,11 @@ impl Shader {
                 }
                 stage.moved = self.moved.len();
                 self.moved.push(Bump { stage: index, sides, most });
-                if let Some([scale, offset]) = luminance {
-                    // Sums of larger numbers lose too many bits.
-                    if scale.abs().max(offset.abs()) > LARGEST_LUMINANCE {
-                        return None;
-                    }
-                    // Rounded to nearest: 2^20 (R / 255 scale + offset) / 255.
-                    let of = |red: u8| {
-                        let factor = f64::from(red) * f64::from(scale) + 255.0 * f64::from(offset);
-                        (factor * (f64::from(1 << 20) / 65025.0)).clamp(-1e30, 1e30) as f32
-                    };
-                    stage.luminance = (0..=255).map(of).collect();
+                if let Some(state) = luminance {
+                    let factors: Vec<f32> = (0..=255).map(|red| luminance_factor(red, state)).collect();
+                    let doubled = self.stages[planned.state.previous].doubled[0];
+                    let red = |register: usize| if doubled { register / 2 } else { register % 256 };
+                    stage.luminance = (0..512).map(|register| factors[red(register)]).collect();
                 }
             }
             ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -262,4 +253,62 @@ pub(super) fn initial(stage: &PlannedShaderStage) -> [Option<i16>; 4] {
 pub(super) fn byte_of(value: f64) -> f32 {
     let v = (value * 4096.0).floor().clamp(0.0, 4096.0) as i64;
     f32::from(factor_byte(v))
+}
+
+/// TSH-8: returns a factor F > 0 such that floor(c F) is the 4096ths of every byte c with this red, up to 4096. No product below 4096 is
+/// closer than 1/509 to an integer, so it needs no more than single precision.
+///
+/// The definition is floor(c X) with some X. Neighbours among the fractions with denominators up to 255 enclose X, and F is their mediant:
+/// its denominator, which is at most 509, is above 255, so that c F is not whole.
+fn luminance_factor(red: u8, state: [f32; 2]) -> f32 {
+    let floor = |c: i64| shader::luminance(c as i32, red, state);
+    let first = floor(1);
+    let (mut below, mut above) = ((first, 1), (first + 1, 1));
+    loop {
+        let (top, bottom) = (below.0 + above.0, below.1 + above.1);
+        if bottom > 255 {
+            return top as f32 / bottom as f32;
+        }
+        // X is not below the fraction.
+        let between = if floor(bottom) >= top { &mut below } else { &mut above };
+        *between = (top, bottom);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::rows::BLOCK;
+    use crate::engine::rows::dot;
+
+    /// All reds and channels, with scales of any size and both signs, some of which make products whole.
+    #[test]
+    fn luminances_are_those_of_the_definition() {
+        let mut random = crate::random::Random::seeded(8);
+        let round = [0.0, 1.0, 0.5, 2.0, 4.0, -1.0, 255.0, 1.1, 0.05, 1.0 / 4096.0, 15.9375, 1e-30, f32::MAX, f32::MIN];
+        for n in 0..round.len() * round.len() + 200 {
+            let any = |bits: u64| match bits % 3 {
+                0 => (bits >> 32) as f32 / (1_u64 << 30) as f32 - 2.0,
+                1 => (bits >> 40) as f32 / 65536.0 * if bits & 4 == 0 { 1.0 } else { -1.0 },
+                _ => Some(f32::from_bits((bits >> 32) as u32)).filter(|f| f.is_finite()).unwrap_or(1.0),
+            };
+            let state = match round.get(n / round.len()) {
+                Some(scale) => [*scale, round[n % round.len()]],
+                None => [any(random.bits()), any(random.bits())],
+            };
+            for red in 0..=255 {
+                let factors = [luminance_factor(red, state); BLOCK];
+                let mut channel = std::array::from_fn(|c| c as i16);
+                let wanted =
+                    channel.map(|c| i16::from(shader::luminance_byte(shader::luminance(c.into(), red, state))));
+                let mut fused = channel;
+                dot::luminance::<true>(&factors, &mut fused);
+                dot::luminance::<false>(&factors, &mut channel);
+                assert_eq!((fused, channel), (wanted, wanted), "{state:?} {red}");
+            }
+        }
+        let mut negative = [-254; BLOCK];
+        dot::luminance::<true>(&[4096.0; BLOCK], &mut negative);
+        assert_eq!(negative, [0; BLOCK]);
+    }
 }

@@ -3,14 +3,12 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::BLOCK;
-use super::kernels::PerLane;
-use super::kernels::{LANES, STEP};
+use super::kernels::{LANES, PerLane};
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, nearest, position, whole};
-use super::setup::{BatchSetup, PixelBatch, Setup};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, multiply_add, nearest, position, whole};
+use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
 use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
-use std::ops::Range;
 
 /// The missing part of a weight.
 const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
@@ -40,10 +38,11 @@ impl Default for Short {
 pub(super) struct Dominance {
     /// N_0 and N_2 as functions.
     functions: [Line; 2],
-    /// For each step of a row: whether weights 0 and 2 fall short in all of its lanes. `None` if lanes differ, or if one is too close to a
-    /// border.
-    steps: [Option<[bool; 2]>; BLOCK / STEP],
-    /// N_0 and N_2 of all other lanes, or 0 where the weights do not fall short.
+    /// First lane of each part of a row in which the same weights fall short, and 1 for those of the weights 0 and 2 that do.
+    parts: [(usize, [f64; 2]); PARTS],
+    /// Number of parts. It is 0 if lanes are classified one by one.
+    count: usize,
+    /// N_0 and N_2 of lanes that are classified one by one, or 0 where the weights do not fall short.
     first: PerLane<f64>,
     third: PerLane<f64>,
     /// Sign bits of lanes that are too close to a border for an estimate.
@@ -54,7 +53,8 @@ impl Default for Dominance {
     fn default() -> Self {
         Dominance {
             functions: [Line::default(); 2],
-            steps: [None; BLOCK / STEP],
+            parts: [(0, [0.0; 2]); PARTS],
+            count: 0,
             first: [0.0; LANES],
             third: [0.0; LANES],
             close: [0; LANES],
@@ -103,9 +103,11 @@ impl Dominance {
     ) {
         let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
-            self.steps = [Some([false; 2]); BLOCK / STEP];
-            self.first[..lanes].fill(0.0);
-            self.third[..lanes].fill(0.0);
+            (self.parts[0], self.count) = ((0, [0.0; 2]), usize::from(ROW));
+            if !ROW {
+                self.first[..lanes].fill(0.0);
+                self.third[..lanes].fill(0.0);
+            }
             return;
         }
         let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
@@ -116,54 +118,92 @@ impl Dominance {
         }
         self.functions = [lines[0], lines[2]];
         let (functions, error) = ([lines[0], lines[2], local.denominator], 4.0 * SLACK * terms);
-        if !ROW {
-            self.lanes::<FMA, false>(triangle, batch, functions, error, 0..lanes);
-            return;
-        }
-        // Everything is linear along a row, so all pixels between two of the same class have that class.
-        let ends = classes_at_ends::<FMA>(functions, f64::from(batch.at.last), error);
-        for step in 0..lanes / STEP {
-            let (before, after) = (ends[step], ends[step + 1]);
-            self.steps[step] = (before == after && before >= 0)
-                .then_some([before & FIRST_DOMINATES == 0, before & THIRD_DOMINATES == 0]);
-            if self.steps[step].is_none() {
-                self.lanes::<FMA, true>(triangle, batch, functions, error, step * STEP..(step + 1) * STEP);
-            }
+        self.count = if ROW { self.divide_row::<FMA>(triangle, batch, functions, error) } else { 0 };
+        if self.count == 0 {
+            self.lanes::<FMA, ROW>(triangle, batch, functions, error);
         }
     }
 
-    /// Sets the dominance of some lanes, one by one. `error` bounds the error of four times a weight's numerator less D.
+    /// Divides a row where four times or twice a weight's numerator passes D: everything is linear, so all pixels between two such places
+    /// have the same classes. A pixel that is too close is a part of its own. Returns the number of parts, or 0 if a numerator passes D so
+    /// slowly that several pixels are too close.
+    #[inline(always)]
+    fn divide_row<const FMA: bool>(
+        &mut self,
+        triangle: &Triangle,
+        batch: PixelBatch<'_>,
+        functions: [Line; 3],
+        error: f64,
+    ) -> usize {
+        let [first, third, denominator] = functions;
+        let middle = denominator.less(1.0, first).less(1.0, third);
+        // One line comes twice, because vectors are filled.
+        let (mut cs, mut slopes) = ([0.0; PLACES], [0.0; PLACES]);
+        for (n, line) in [first, middle, third, third].into_iter().enumerate() {
+            for (n, times) in [(n, 0.25), (n + PLACES / 2, 0.5)] {
+                (cs[n], slopes[n]) = (line.c - times * denominator.c, line.x - times * denominator.x);
+            }
+        }
+        // For each place: the first pixel that may be too close, and the first beyond. One too many does no harm.
+        let (end, mut starts, mut longest) = (f64::from(batch.at.last + 1), [[0; PLACES]; 2], 0);
+        for n in 0..PLACES {
+            // The slopes of N_k and D are whole numbers, so that this one is 0 or at least a quarter.
+            let slope = if slopes[n].abs() > 0.125 { slopes[n].abs() } else { 0.125 };
+            let (c, r) = (if slopes[n] < 0.0 { cs[n] } else { -cs[n] }, 1.0 / slope);
+            let pixel = |at: f64| {
+                let at = if at > 0.0 { at } else { 0.0 };
+                nearest(if at < end { at } else { end })
+            };
+            starts[0][n] = pixel((c - error) * r + (0.5 - GUARD));
+            starts[1][n] = pixel((c + error) * r + (0.5 + GUARD));
+            longest = (starts[1][n] - starts[0][n]).max(longest);
+        }
+        if longest > 1 {
+            return 0;
+        }
+        let (mut start, mut count) = (0, 0);
+        while start <= batch.at.last && count < PARTS {
+            let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
+            let short =
+                if close >> 63 != 0 { batch.sample(start as usize, triangle).short() } else { [!is_first, !is_third] };
+            self.parts[count] = (start as usize, short.map(|short| if short { 1.0 } else { 0.0 }));
+            count += 1;
+            start =
+                starts.as_flattened().iter().fold(BLOCK as i32, |next, n| if *n > start { next.min(*n) } else { next });
+        }
+        count
+    }
+
+    /// Sets the dominance of lanes, one by one. `error` bounds the error of four times a weight's numerator less D.
     #[inline(always)]
     fn lanes<const FMA: bool, const ROW: bool>(
         &mut self,
         triangle: &Triangle,
         batch: PixelBatch<'_>,
-        [first, third, denominator]: [Line; 3],
+        functions: [Line; 3],
         error: f64,
-        lanes: Range<usize>,
     ) {
+        let lanes = batch.at.x.len();
         let last = f64::from(batch.at.last);
-        let (xs, ys, iota) = (&batch.at.x[lanes.clone()], &batch.at.y[lanes.clone()], &IOTA_REAL[lanes.clone()]);
-        let (to_first, to_third) = (&mut self.first[lanes.clone()], &mut self.third[lanes.clone()]);
-        let close = &mut self.close[lanes.clone()];
-        for n in 0..close.len() {
-            let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-            let (a, c, d) = (first.at::<FMA, ROW>(x, y), third.at::<FMA, ROW>(x, y), denominator.at::<FMA, ROW>(x, y));
-            let b = d - a - c;
-            let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
+        let (xs, ys, iota) = (&batch.at.x[..lanes], &batch.at.y[..lanes], &IOTA_REAL[..lanes]);
+        let (to_first, to_third) = (&mut self.first[..lanes], &mut self.third[..lanes]);
+        let close = &mut self.close[..lanes];
+        for n in 0..lanes {
+            let at = position::<ROW>(n, last, xs, ys, iota);
+            let ([is_first, is_third], is_close, [a, c]) = classify::<FMA, ROW>(functions, at, error);
             to_first[n] = if is_first { 0.0 } else { a };
             to_third[n] = if is_third { 0.0 } else { c };
-            close[n] = near(a, d, error) | near(b, d, error) | near(c, d, error);
+            close[n] = is_close;
         }
         if any_negative(close) {
-            self.correct(triangle, batch, lanes);
+            self.correct(triangle, batch);
         }
     }
 
     /// Decides the lanes that are too close to a border, by integers.
     #[inline(never)]
-    fn correct(&mut self, triangle: &Triangle, batch: PixelBatch<'_>, lanes: Range<usize>) {
-        for n in lanes.filter(|n| self.close[*n] >> 63 != 0) {
+    fn correct(&mut self, triangle: &Triangle, batch: PixelBatch<'_>) {
+        for n in (0..batch.at.x.len()).filter(|n| self.close[*n] >> 63 != 0) {
             let sample = batch.sample(n.min(batch.count - 1), triangle);
             let [first, third] = sample.short();
             self.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
@@ -171,48 +211,43 @@ impl Dominance {
         }
     }
 
-    /// Computes two quotients with their fractions. Both numerators and the denominator have losses.
+    /// Computes two quotients with their fractions, and adds a number. Both numerators and the denominator have losses. Lanes past the end
+    /// of the batch may be written.
     #[inline(always)]
     pub(super) fn divide<const FMA: bool, const ROW: bool>(
         &self,
         at: Positions<'_>,
         functions: [Line; 3],
         losses: [Losses; 3],
+        plus: f64,
         [u, v]: [&mut [f64]; 2],
     ) {
-        let last = f64::from(at.last);
-        if !ROW {
-            let positions = (at.x, at.y, &IOTA_REAL[..at.x.len()]);
-            quotients::<FMA, false>(last, positions, functions, losses, (&self.first, &self.third), u, v);
+        let (lanes, last) = (at.x.len(), f64::from(at.last));
+        let parts = &self.parts[..self.count];
+        if !ROW || parts.is_empty() {
+            let positions = (at.x, at.y, &IOTA_REAL[..lanes]);
+            let (u, v) = (&mut u[..lanes], &mut v[..lanes]);
+            quotients::<FMA, ROW>((last, plus), positions, functions, losses, (&self.first, &self.third), u, v);
             return;
         }
-        let (steps, mut first) = (&self.steps[..u.len() / STEP], 0);
-        while first < steps.len() {
-            let short = steps[first];
-            let count = steps[first..].iter().take_while(|other| **other == short).count();
-            let lanes = first * STEP..(first + count) * STEP;
-            first += count;
-            let (u, v, iota) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &IOTA_REAL[lanes.clone()]);
-            let Some(short) = short else {
-                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], iota);
-                let weights = (&self.first[lanes.clone()], &self.third[lanes]);
-                quotients::<FMA, true>(last, positions, functions, losses, weights, u, v);
-                continue;
+        for (n, (first, short)) in parts.iter().enumerate() {
+            // In whole steps from its first lane: the next part writes over lanes past its end.
+            let end = parts.get(n + 1).map_or(lanes, |next| next.0);
+            let lanes = *first..first + whole_steps(end - first);
+            // The losses are linear as well. No choices, because those of lines go through memory.
+            let less = |n: usize| {
+                let [a, b] = losses[n];
+                functions[n].less(a * short[0], self.functions[0]).less(b * short[1], self.functions[1])
             };
-            // The losses are linear as well.
-            let mut lines = functions;
-            for (line, losses) in lines.iter_mut().zip(losses) {
-                for i in 0..2 {
-                    *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
-                }
-            }
-            linear::<FMA>(lines, iota, last, u, v);
+            let lines = [less(0), less(1), less(2)];
+            let iota = &IOTA_REAL[lanes.clone()];
+            linear::<FMA>(lines, iota, last, plus, &mut u[lanes.clone()], &mut v[lanes]);
         }
     }
 }
 
 impl Short {
-    /// Computes [`Dominance::divide`] and keeps the results in [`at`](Self::at).
+    /// Computes [`Dominance::divide`] less a half and keeps the results in [`at`](Self::at).
     #[inline(always)]
     pub(super) fn keep<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -220,37 +255,32 @@ impl Short {
         functions: [Line; 3],
         losses: [Losses; 3],
     ) {
-        let (lanes, [u, v]) = (at.x.len(), &mut self.at);
-        self.dominance.divide::<FMA, ROW>(at, functions, losses, [&mut u[..lanes], &mut v[..lanes]]);
+        let [u, v] = &mut self.at;
+        self.dominance.divide::<FMA, ROW>(at, functions, losses, -0.5, [u, v]);
     }
 }
 
-/// Number of ends of a batch's steps, rounded up to whole vectors.
-const ENDS: usize = BLOCK / STEP + 8;
+/// Number of places where a numerator may pass D, rounded up to a whole vector.
+const PLACES: usize = 8;
 
-/// Bits in the results of [`classes_at_ends`].
-const FIRST_DOMINATES: i64 = 1 << 6;
-const THIRD_DOMINATES: i64 = 1 << 7;
+/// Largest number of parts of a row: before and after each of six pixels, and those themselves.
+const PARTS: usize = 13;
 
-/// Computes the classes of the three weights at the first pixel of each step of a row, packed into a number with the bits that tell which
-/// weight dominates. The number is negative if a weight is too close to a border.
+/// What is added to both sides of a place where a numerator passes D, far above rounding errors.
+const GUARD: f64 = 1.0 / 1024.0;
+
+/// Returns whether the weights 0 and 2 dominate at a position, a number whose sign bit tells that it is too close to a border for an
+/// estimate, and N_0 and N_2.
 #[inline(always)]
-fn classes_at_ends<const FMA: bool>([first, third, denominator]: [Line; 3], last: f64, error: f64) -> [i64; ENDS] {
-    let mut out = [0; ENDS];
-    for n in 0..ENDS {
-        let x = IOTA_REAL[n] * STEP as f64;
-        let x = if x < last { x } else { last };
-        let at = |line: Line| line.at::<FMA, true>(x, 0.0);
-        let (a, c, d) = (at(first), at(third), at(denominator));
-        let b = d - a - c;
-        let close = (near(a, d, error) | near(b, d, error) | near(c, d, error)) & 1 << 63;
-        let class = |n: f64| i64::from(4.0 * n > d) + i64::from(2.0 * n > d);
-        let (a, b, c) = (class(a), class(b), class(c));
-        let [is_first, is_third] = most_dominant([a, b, c]);
-        let dominance = (i64::from(is_first) << 6) | (i64::from(is_third) << 7);
-        out[n] = a << 4 | b << 2 | c | dominance | close as i64;
-    }
-    out
+fn classify<const FMA: bool, const ROW: bool>(
+    [first, third, denominator]: [Line; 3],
+    (x, y): (f64, f64),
+    error: f64,
+) -> ([bool; 2], u64, [f64; 2]) {
+    let (a, c, d) = (first.at::<FMA, ROW>(x, y), third.at::<FMA, ROW>(x, y), denominator.at::<FMA, ROW>(x, y));
+    let b = d - a - c;
+    let close = near(a, d, error) | near(b, d, error) | near(c, d, error);
+    (most_dominant([class(a, d), class(b, d), class(c, d)]), close, [a, c])
 }
 
 /// Returns 2 above a half of d, 1 above a quarter, and otherwise 0.
@@ -269,7 +299,7 @@ fn near(n: f64, d: f64, error: f64) -> u64 {
 /// Computes two quotients with their fractions, of functions with losses.
 #[inline(always)]
 fn quotients<const FMA: bool, const ROW: bool>(
-    last: f64,
+    (last, plus): (f64, f64),
     (xs, ys, iota): (&[i32], &[i32], &[f64]),
     [along, down, denominator]: [Line; 3],
     [loss_along, loss_down, loss_denominator]: [Losses; 3],
@@ -284,27 +314,35 @@ fn quotients<const FMA: bool, const ROW: bool>(
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let weights = [first[n], third[n]];
         let r = 1.0 / (denominator.at::<FMA, ROW>(x, y) - lost(loss_denominator, weights));
-        u[n] = (along.at::<FMA, ROW>(x, y) - lost(loss_along, weights)) * r;
-        v[n] = (down.at::<FMA, ROW>(x, y) - lost(loss_down, weights)) * r;
+        u[n] = multiply_add::<FMA>(along.at::<FMA, ROW>(x, y) - lost(loss_along, weights), r, plus);
+        v[n] = multiply_add::<FMA>(down.at::<FMA, ROW>(x, y) - lost(loss_down, weights), r, plus);
     }
 }
 
-/// Computes two quotients of lines by a third one along a row. Lanes past the last pixel repeat it.
+/// Computes two quotients of lines by a third one along a row, and adds a number. Lanes past the last pixel repeat it.
 #[inline(always)]
 fn linear<const FMA: bool>(
     [along, down, denominator]: [Line; 3],
     iota: &[f64],
     last: f64,
+    plus: f64,
     u: &mut [f64],
     v: &mut [f64],
 ) {
     let lanes = u.len();
     let (v, iota) = (&mut v[..lanes], &iota[..lanes]);
+    let r = 1.0 / denominator.c;
+    let line = |numerator: Line| Line { c: multiply_add::<FMA>(numerator.c, r, plus), ..numerator.times(r) };
+    let quotients = [line(along), line(down)];
     for n in 0..lanes {
         let x = if iota[n] < last { iota[n] } else { last };
-        let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);
-        u[n] = along.at::<FMA, true>(x, 0.0) * r;
-        v[n] = down.at::<FMA, true>(x, 0.0) * r;
+        if denominator.x == 0.0 {
+            (u[n], v[n]) = (quotients[0].at::<FMA, true>(x, 0.0), quotients[1].at::<FMA, true>(x, 0.0));
+        } else {
+            let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);
+            u[n] = multiply_add::<FMA>(along.at::<FMA, true>(x, 0.0), r, plus);
+            v[n] = multiply_add::<FMA>(down.at::<FMA, true>(x, 0.0), r, plus);
+        }
     }
 }
 
@@ -313,17 +351,17 @@ fn lost(losses: Losses, weights: [f64; 2]) -> f64 {
     losses[0] * weights[0] + losses[1] * weights[1]
 }
 
-/// Writes the floors, less a bias, of numbers whose error is less than `off`, limited as TEX-15 says. Sets the sign bits of lanes that are
-/// not proved.
+/// Writes the floors, less a bias, of numbers that are given less a half. Their error is less than `off`. Floors are limited as TEX-15 says.
+/// Sets the sign bits of lanes that are not proved.
 #[inline(always)]
 pub(super) fn floors(at: &[f64], off: f64, bias: i32, close: &mut [u64], out: &mut [i32]) {
     let lanes = at.len();
     let (close, out) = (&mut close[..lanes], &mut out[..lanes]);
     for n in 0..lanes {
         // In the middle of a step, far from where the floor changes.
-        let (low, high) = (0.5 - COORDINATE_LIMIT as f64, COORDINATE_LIMIT as f64 + 0.5);
+        let (low, high) = (-COORDINATE_LIMIT as f64, COORDINATE_LIMIT as f64);
         let limited = if at[n] > low { at[n] } else { low };
-        let t = if limited < high { limited } else { high } - 0.5;
+        let t = if limited < high { limited } else { high };
         out[n] = nearest(t).wrapping_sub(bias);
         close[n] |= (0.5 - off - (t - whole(t)).abs()).to_bits();
     }

@@ -8,7 +8,7 @@ use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
 use super::kernels::{LANES, Lanes256, PerLane, STEP};
 use super::planes::{RealPlane, inverse};
-use super::quotient::{Line, Reciprocals, floor_of_factor, nearest, nearest_32, whole};
+use super::quotient::{Line, Reciprocals, floor_of_factor, multiply_add, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Bump, Number, Purpose, Shader, byte_of};
 use super::short::{Dominance, Losses, losses};
@@ -20,7 +20,6 @@ use crate::engine::walk::Band;
 use crate::number::convert::factor;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
 use crate::state::{MipFilter, ShaderOperation, TEXTURE_UNITS};
-use crate::texture::shader;
 use crate::trace::Silent;
 
 /// A number across a triangle.
@@ -95,18 +94,21 @@ impl Attributes {
     }
 }
 
-/// Coordinates that a stage moves.
+/// Coordinates that a stage moves. Aligned, because vectors are stored and soon loaded again.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 struct Moved {
-    /// Estimates, 1/256 texel.
+    /// Estimates less a half, 1/256 texel.
     u: [f64; LANES],
     v: [f64; LANES],
-    /// Half a step less the largest error. A moved coordinate that is no further from the middle of a step has a proved floor.
-    room: [f64; LANES],
+    /// Half a step less the largest error in each step of lanes. A moved coordinate that is no further from the middle of a step has a proved
+    /// floor.
+    room: [f64; LANES / STEP],
 }
 
 /// Registers of the dot unit.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 struct DotUnit {
     /// Dot product of each stage.
     dots: [Floats; TEXTURE_UNITS],
@@ -150,7 +152,7 @@ impl Workshop {
         self.numbers.resize(shader.varying.len(), [0.0; LANES]);
         self.same.clear();
         self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
-        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES] });
+        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES / STEP] });
         self.attributes.triangle = None;
         self.open.clear();
         self.open.resize(LANES, 0);
@@ -232,9 +234,15 @@ impl Workshop {
             if !(proves & *within_limits) {
                 open.fill(1);
             }
-            moved.room[batch.lanes()].fill(0.5 - if proves { off } else { 0.0 });
-            let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
-            dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], at);
+            if batch.lane == 0 {
+                moved.room.fill(0.5);
+            }
+            let room = 0.5 - if proves { off } else { 0.0 };
+            for least in &mut moved.room[batch.lane / STEP..batch.lanes().end.div_ceil(STEP)] {
+                *least = if room < *least { room } else { *least };
+            }
+            let at = [&mut moved.u[batch.lane..], &mut moved.v[batch.lane..]];
+            dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], -0.5, at);
         }
     }
 }
@@ -340,7 +348,7 @@ pub(super) fn run<const FMA: bool>(
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
                             let [along, down, _] = &mut workshop.dot.scratch;
                             dot::moved(matrix, blue, green, along, down);
-                            place(sampler, moved, [along, down], numbers, &mut workshop.open);
+                            place::<FMA>(sampler, moved, [along, down], numbers, &mut workshop.open);
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -386,19 +394,13 @@ pub(super) fn run<const FMA: bool>(
                 fetch::locate(table, &mut varying.coordinates[at], faces, work);
                 let (at, references) = (&varying.coordinates[at], &varying.references[at]);
                 fetch::sample(job.vectors, table, at, references, sampler.signed, wanted, work, rows);
-                if let ShaderOperation::BumpEnvironment { luminance: Some(state), .. } = operation
-                    && let Some(factors) = stage.luminance.first_chunk::<256>()
-                    && let Some(red) = earlier[0]
-                {
+                if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), earlier[0]) {
                     let [products, ..] = &mut workshop.dot.scratch;
-                    let doubled = shader.stages[stage.state.previous].doubled[0];
-                    let red = *rows[usize::from(red)].block();
-                    let red = |n: usize| (red[n] >> u32::from(doubled)) as u8;
-                    for n in 0..BLOCK {
-                        products[n] = factors[usize::from(red(n))];
+                    for (product, red) in products.iter_mut().zip(rows[usize::from(red)].block()) {
+                        *product = factors[usize::from(*red as u16 % 512)];
                     }
                     for slot in wanted[..3].iter().flatten() {
-                        luminance(state, products, red, rows[usize::from(*slot)].block_mut());
+                        dot::luminance::<FMA>(products, rows[usize::from(*slot)].block_mut());
                     }
                 }
             }
@@ -467,7 +469,7 @@ fn dot_product<const FMA: bool>(
 /// TSH-7: writes the floors of coordinates, less the sampler's bias, that are moved by so many 128ths of the image. Lanes whose floors are
 /// not proved are left open.
 #[inline(always)]
-fn place(
+fn place<const FMA: bool>(
     sampler: &Sampler,
     moved: &Moved,
     [along, down]: [&Floats; 2],
@@ -477,38 +479,23 @@ fn place(
     let open = &mut open[..BLOCK];
     // A side of the image has 256 steps for each of its texels.
     let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
-    for n in 0..BLOCK {
-        let at_u = moved.u[n] + f64::from(along[n]) * width - 0.5;
-        let at_v = moved.v[n] + f64::from(down[n]) * height - 0.5;
-        let near = |t: f64| (t - whole(t)).abs();
-        let room = (moved.room[n] - near(at_u)).to_bits() | (moved.room[n] - near(at_v)).to_bits();
-        open[n] |= (room >> 63) as i32;
-        u[n] = nearest(at_u).wrapping_sub(bias);
-        v[n] = nearest(at_v).wrapping_sub(bias);
-    }
-}
-
-/// TSH-8: multiplies a channel by luminance.
-#[inline(always)]
-fn luminance(state: [f32; 2], factors: &Floats, red: impl Fn(usize) -> u8, channel: &mut [i16; BLOCK]) {
-    const ONE: f32 = (1 << 20) as f32;
-    let steps = channel.as_chunks_mut::<STEP>().0.iter_mut().zip(factors.as_chunks::<STEP>().0);
-    for (step, (channel, factors)) in steps.enumerate() {
-        let (before, mut differ) = (*channel, [0; STEP]);
-        for n in 0..STEP {
-            let product = f32::from(before[n].max(0)) * factors[n];
-            let product = if product > 0.0 { product } else { 0.0 };
-            // Rounded to a multiple of 2^-20, the product is less than one such step off.
-            let product = nearest_32(if product < ONE { product } else { ONE });
-            let byte = |product: i32| factor(product >> 8);
-            let (low, high) = (byte(product - 1), byte(product + 1));
-            channel[n] = low as i16;
-            differ[n] = low ^ high;
+    let place = |n: usize| {
+        let at_u = multiply_add::<FMA>(f64::from(along[n]), width, moved.u[n]);
+        let at_v = multiply_add::<FMA>(f64::from(down[n]), height, moved.v[n]);
+        let (near_u, near_v) = ((at_u - whole(at_u)).abs(), (at_v - whole(at_v)).abs());
+        (at_u, at_v, if near_u > near_v { near_u } else { near_v })
+    };
+    for (step, room) in moved.room[..BLOCK / STEP].iter().enumerate() {
+        let (lanes, mut close) = (step * STEP..(step + 1) * STEP, 0);
+        for n in lanes.clone() {
+            let (at_u, at_v, near) = place(n);
+            close |= (room - near).to_bits();
+            u[n] = nearest(at_u).wrapping_sub(bias);
+            v[n] = nearest(at_v).wrapping_sub(bias);
         }
-        if differ.iter().fold(0, |all, differ| all | differ) != 0 {
-            for n in (0..STEP).filter(|n| differ[*n] != 0) {
-                let v = shader::luminance(i32::from(before[n]), red(step * STEP + n), state);
-                channel[n] = i16::from(shader::luminance_byte(v));
+        if close >> 63 != 0 {
+            for n in lanes {
+                open[n] |= ((room - place(n).2).to_bits() >> 63) as i32;
             }
         }
     }
