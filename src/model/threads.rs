@@ -1,5 +1,8 @@
 //! Work on several threads. Without the feature `threads` everything runs on the caller's thread.
 
+#[cfg(feature = "threads")]
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 /// Runs `work`, whose parallel iterators use `threads` threads. 0 means one for each core.
 #[cfg(feature = "threads")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
@@ -57,18 +60,38 @@ impl Team {
         1 + helpers
     }
 
-    /// Runs `work` once on every thread.
-    pub(crate) fn run(&self, work: impl Fn() + Sync) {
+    /// Runs `work` once for every thread, with the number of the thread: 0 is the caller's. A thread that comes early may
+    /// run it for another one, too.
+    pub(crate) fn run(&self, work: impl Fn(usize) + Sync) {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.helpers {
+            let left = AtomicUsize::new(pool.current_num_threads());
             return pool.in_place_scope(|scope| {
                 for _ in 0..pool.current_num_threads() {
-                    scope.spawn(|_| work());
+                    scope.spawn(|_| {
+                        let _ends = Ends(&left);
+                        work(1 + rayon::current_thread_index().unwrap_or(0));
+                    });
                 }
-                work();
+                work(0);
+                // Awake, because the scope would sleep until the others have ended, and waking takes as long as a small picture.
+                while left.load(Ordering::Relaxed) > 0 {
+                    std::thread::yield_now();
+                }
             });
         }
-        work();
+        work(0);
+    }
+}
+
+/// Counts a helper's end, be it a panic.
+#[cfg(feature = "threads")]
+struct Ends<'a>(&'a AtomicUsize);
+
+#[cfg(feature = "threads")]
+impl Drop for Ends<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -84,11 +107,19 @@ mod tests {
 
     #[test]
     fn every_thread_works_once() {
-        let runs = std::sync::atomic::AtomicUsize::new(0);
+        let runs = AtomicUsize::new(0);
         let team = Team::new(3);
-        team.run(|| {
-            runs.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        team.run(|thread| {
+            assert!(thread < 3);
+            runs.fetch_add(1, Ordering::Relaxed);
         });
         assert_eq!((team.count(), runs.into_inner()), (3, 3));
+    }
+
+    #[test]
+    fn a_panic_of_a_helper_ends_the_work() {
+        let team = Team::new(2);
+        let work = |thread| assert_eq!(thread, 0, "the helper");
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| team.run(work))).is_err());
     }
 }

@@ -204,7 +204,7 @@ impl<'a> Renderer<'a> {
             (Some(_), 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
             (Some(_), 1) => CACHED / width,
             // More bands would share the work more evenly, but triangles on a border are set up on both sides of it.
-            (Some(_), threads) => height.div_ceil(3 * threads),
+            (Some(_), threads) => height.div_ceil(4 * threads),
         };
         // Even, so that quads stay whole.
         self.band.unwrap_or(rows.min(height).max(BAND)).max(1).next_multiple_of(2)
@@ -291,8 +291,8 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Runs draws on their target in bands of so many rows, which threads take one after the other. `prepare` returns what draws a band, from
-/// the words of textures.
+/// Runs draws on their target in bands of so many rows. Each thread begins with bands of its own, the same every time, because they may be
+/// in its cache, and then takes what others have left. `prepare` returns what draws a band, from the words of textures.
 fn draw_bands<R>(
     plan: &Plan,
     draws: Range<usize>,
@@ -311,20 +311,20 @@ fn draw_bands<R>(
     let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
     let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
     let mut depths = depth.chunks_mut(height * width);
-    let bands = words.chunks_mut(height * width).enumerate().map(|(number, words)| walk::Band {
-        first_row: number * height,
-        width,
-        words,
-        depth: depths.next().unwrap_or_default(),
-    });
-    let bands = Mutex::new(bands);
-    let work = || {
+    let band = |(number, words)| {
+        let depth = depths.next().unwrap_or_default();
+        Mutex::new(Some(walk::Band { first_row: number * height, width, words, depth }))
+    };
+    let bands: Vec<_> = words.chunks_mut(height * width).enumerate().map(band).collect();
+    let work = |thread: usize| {
         let mut block = rows::Block::default();
-        loop {
+        let (before, own) = bands.split_at(thread * bands.len() / team.count());
+        for band in own.iter().chain(before) {
             // A panic in another thread ends the render anyway.
-            let band = bands.lock().unwrap_or_else(PoisonError::into_inner).next();
-            let Some(mut band) = band else { return };
-            run_band(&textures, &mut band, &mut block);
+            let band = band.lock().unwrap_or_else(PoisonError::into_inner).take();
+            if let Some(mut band) = band {
+                run_band(&textures, &mut band, &mut block);
+            }
         }
     };
     team.run(work);
