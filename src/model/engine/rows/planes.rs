@@ -179,6 +179,23 @@ impl RealPlane {
         at + self.sizes[0] * columns + self.sizes[1] * rows
     }
 
+    /// Returns the number of fraction bits of the quotients by D if doubles hold all of them and all intermediate results exactly. D is then
+    /// a power of two, as it is on squares that face the viewer.
+    pub(super) fn fraction_bits(&self, triangle: &Triangle) -> Option<i32> {
+        let ([p, ..], area) = (triangle.p, triangle.doubled_area);
+        // All P are equal if the reciprocal is exact.
+        if !triangle.exact_reciprocal || p.count_ones() != 1 {
+            return None;
+        }
+        let exponent = |n: f64| (n.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+        let lowest = |n: &f64| exponent(*n) - 52 + (n.to_bits() | 1 << 52).trailing_zeros() as i32;
+        let largest = self.g[0].abs().max(self.g[1].abs()).max(self.g[2].abs());
+        let last = self.g.iter().filter(|n| **n != 0.0).map(lowest).min().unwrap_or(0);
+        // Sums of three terms, along two axes.
+        let bits = exponent(largest) + area.ilog2() as i32 + 4 - last;
+        (bits <= 53).then(|| (p.ilog2() + area.ilog2()) as i32 - last)
+    }
+
     /// Returns the values g_k at the vertices.
     #[inline(always)]
     pub(super) fn g(&self) -> &[f64; 3] {

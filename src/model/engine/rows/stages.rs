@@ -4,6 +4,7 @@
 //! keep their fraction. Lanes that are not proved are left open, and the definition runs their stages in the end.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::depth::floor;
 use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
 use super::kernels::{LANES, Lanes256, PerLane, STEP};
@@ -27,9 +28,26 @@ use crate::trace::Silent;
 enum Function {
     /// It is the same at the three vertices.
     Same(f32),
-    /// A quotient by D, and an upper bound of its change where the definition [floors](crate::raster::attribute) small numbers.
-    Plane(RealPlane, f64),
+    /// A quotient by D, and an upper bound of its change where the definition [floors](crate::raster::attribute) small numbers. There is no
+    /// bound if doubles hold the quotients exactly.
+    Plane(RealPlane, Option<f64>),
 }
+
+/// The coordinates of a stage that moves them.
+#[derive(Clone, Copy, Debug)]
+struct MovedPlanes {
+    /// u and v, 1/256 texel.
+    planes: [RealPlane; 2],
+    /// Their losses where weights fall short.
+    losses: [Losses; 2],
+    /// Whether they stay within their limits, however the stage moves them.
+    within_limits: bool,
+    /// Whether doubles hold all of them exactly, with at most [`EXACT_BITS`] bits of a fraction.
+    exact: bool,
+}
+
+/// Largest number of fraction bits of coordinates that are moved without an error.
+const EXACT_BITS: i32 = 26;
 
 /// The set-up of a triangle for a texture shader.
 #[derive(Clone, Debug, Default)]
@@ -40,12 +58,7 @@ struct Attributes {
     /// Reciprocal of a lower bound of D.
     widest: f64,
     numbers: Vec<Function>,
-    /// u and v that are moved, 1/256 texel.
-    moved: Vec<[RealPlane; 2]>,
-    /// Losses of u and v where weights fall short.
-    losses: Vec<[Losses; 2]>,
-    /// Whether u and v stay within their limits, however the stage moves them.
-    within_limits: Vec<bool>,
+    moved: Vec<MovedPlanes>,
     /// Upper bound of the change of u and v where the definition floors the numerators of the vertices.
     floors: f64,
 }
@@ -72,12 +85,11 @@ impl Attributes {
             } else {
                 let g = times_p([f64::from(a), f64::from(b), f64::from(c)]);
                 let largest = g[0].abs().max(g[1].abs()).max(g[2].abs());
-                Function::Plane(RealPlane::new(triangle, &inverse, g, 0.0), largest * KEPT / least)
+                let plane = RealPlane::new(triangle, &inverse, g, 0.0);
+                Function::Plane(plane, plane.fraction_bits(triangle).is_none().then_some(largest * KEPT / least))
             });
         }
         self.moved.clear();
-        self.losses.clear();
-        self.within_limits.clear();
         for Bump { stage, sides, most } in &shader.moved {
             let set = context.coordinate_set(shader.stages[*stage].state.coordinate_set);
             let plane = |axis: usize| {
@@ -87,9 +99,13 @@ impl Attributes {
             };
             let planes = [plane(0), plane(1)];
             let losses = |plane: &RealPlane| losses(triangle, &inverse, plane.g());
-            self.losses.push([losses(&planes[0]), losses(&planes[1])]);
-            self.within_limits.push((0..2).all(|axis| planes[axis].reach + most[axis] < FARTHEST));
-            self.moved.push(planes);
+            let few = |plane: &RealPlane| plane.fraction_bits(triangle).is_some_and(|bits| bits <= EXACT_BITS);
+            self.moved.push(MovedPlanes {
+                planes,
+                losses: [losses(&planes[0]), losses(&planes[1])],
+                within_limits: (0..2).all(|axis| planes[axis].reach + most[axis] < FARTHEST),
+                exact: few(&planes[0]) && few(&planes[1]),
+            });
         }
     }
 }
@@ -104,6 +120,14 @@ struct Moved {
     /// Half a step less the largest error in each step of lanes. A moved coordinate that is no further from the middle of a step has a proved
     /// floor.
     room: [f64; LANES / STEP],
+    /// Whether offsets are floored, as exact coordinates need.
+    floors: bool,
+}
+
+impl Default for Moved {
+    fn default() -> Self {
+        Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES / STEP], floors: false }
+    }
 }
 
 /// Registers of the dot unit.
@@ -152,7 +176,7 @@ impl Workshop {
         self.numbers.resize(shader.varying.len(), [0.0; LANES]);
         self.same.clear();
         self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
-        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES / STEP] });
+        self.moved.resize(shader.moved.len(), Moved::default());
         self.attributes.triangle = None;
         self.open.clear();
         self.open.resize(LANES, 0);
@@ -175,6 +199,9 @@ const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// Further error of a moved coordinate: its offset is floored at 2^-24 of 1/256 texel.
 const OFFSET: f64 = 1.0 / (1 << 23) as f64;
+
+/// Half the last bit of an exact coordinate. It is added so that no coordinate that is whole lies on the border of two floors.
+const HALF_BIT: f64 = 1.0 / (1_u64 << (EXACT_BITS + 1)) as f64;
 
 /// Coordinates below this have no limit, 1/256 texel.
 const FARTHEST: f64 = (COORDINATE_LIMIT - 16) as f64;
@@ -211,7 +238,7 @@ impl Workshop {
             match number {
                 Function::Same(value) => out.fill(*value),
                 Function::Plane(plane, floors) => {
-                    let (line, off) = (plane.line(&real), margin(plane) + floors);
+                    let (line, off) = (plane.line(&real), floors.map_or(0.0, |floors| margin(plane) + floors));
                     match purpose {
                         Purpose::Float | Purpose::Sign => {
                             rounded::<FMA, ROW, false>(reciprocals, line, off, out, open);
@@ -224,25 +251,28 @@ impl Workshop {
         if !attributes.moved.is_empty() {
             dominance.set::<FMA, ROW>(triangle, batch, &local);
         }
-        let Attributes { moved: all, losses, within_limits, floors, .. } = attributes;
-        for (((planes, losses), within_limits), moved) in all.iter().zip(losses).zip(within_limits).zip(moved) {
+        for (of, moved) in attributes.moved.iter().zip(moved) {
+            let MovedPlanes { planes, losses, within_limits, exact } = of;
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
             let offs = [margin(&planes[0]), margin(&planes[1])];
-            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + *floors + OFFSET;
+            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + attributes.floors + OFFSET;
             // NaN proves nothing either.
-            let proves = (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
+            let proves = *exact | (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
             if !(proves & *within_limits) {
                 open.fill(1);
             }
             if batch.lane == 0 {
                 moved.room.fill(0.5);
+                moved.floors = false;
             }
+            moved.floors |= *exact;
+            let (off, plus) = if *exact { (HALF_BIT / 2.0, HALF_BIT - 0.5) } else { (off, -0.5) };
             let room = 0.5 - if proves { off } else { 0.0 };
             for least in &mut moved.room[batch.lane / STEP..batch.lanes().end.div_ceil(STEP)] {
                 *least = if room < *least { room } else { *least };
             }
             let at = [&mut moved.u[batch.lane..], &mut moved.v[batch.lane..]];
-            dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], -0.5, at);
+            dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], plus, at);
         }
     }
 }
@@ -348,7 +378,12 @@ pub(super) fn run<const FMA: bool>(
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
                             let [along, down, _] = &mut workshop.dot.scratch;
                             dot::moved(matrix, blue, green, along, down);
-                            place::<FMA>(sampler, moved, [along, down], numbers, &mut workshop.open);
+                            let open = &mut workshop.open;
+                            if moved.floors {
+                                place::<FMA, true>(sampler, moved, [along, down], numbers, open);
+                            } else {
+                                place::<FMA, false>(sampler, moved, [along, down], numbers, open);
+                            }
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -467,9 +502,9 @@ fn dot_product<const FMA: bool>(
 }
 
 /// TSH-7: writes the floors of coordinates, less the sampler's bias, that are moved by so many 128ths of the image. Lanes whose floors are
-/// not proved are left open.
+/// not proved are left open. With `FLOORS`, offsets are floored as the rule says; without, proofs have room for that.
 #[inline(always)]
-fn place<const FMA: bool>(
+fn place<const FMA: bool, const FLOORS: bool>(
     sampler: &Sampler,
     moved: &Moved,
     [along, down]: [&Floats; 2],
@@ -479,9 +514,15 @@ fn place<const FMA: bool>(
     let open = &mut open[..BLOCK];
     // A side of the image has 256 steps for each of its texels.
     let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
+    const PARTS: f64 = (1 << 24) as f64;
+    let by = |offset: f32, side: f64, at: f64| {
+        if FLOORS {
+            return at + floor::<FMA>(f64::from(offset) * side * PARTS) * (1.0 / PARTS);
+        }
+        multiply_add::<FMA>(f64::from(offset), side, at)
+    };
     let place = |n: usize| {
-        let at_u = multiply_add::<FMA>(f64::from(along[n]), width, moved.u[n]);
-        let at_v = multiply_add::<FMA>(f64::from(down[n]), height, moved.v[n]);
+        let (at_u, at_v) = (by(along[n], width, moved.u[n]), by(down[n], height, moved.v[n]));
         let (near_u, near_v) = ((at_u - whole(at_u)).abs(), (at_v - whole(at_v)).abs());
         (at_u, at_v, if near_u > near_v { near_u } else { near_v })
     };
