@@ -1,6 +1,7 @@
 //! Reads `vectors/silicon/*.tsv`, whose rows are measurements of a real chip.
 
 use ninebit::state::{Blend, BlendEquation, BlendFactor, Named};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// One probe: the fields of a row.
@@ -24,14 +25,18 @@ pub fn read(file: &str) -> Vec<Row> {
     let columns: Vec<String> = header("columns").split(' ').map(str::to_string).collect();
     assert_eq!(columns[0], "case", "{path}");
     let columns = Arc::new([vec!["suite".to_string()], columns].concat());
-    let case = |number: &str| header(&format!("case {number}")).split_once(' ').expect("a suite and a case");
+    let cases: HashMap<&str, (&str, &str)> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("# case ")?.split_once(": "))
+        .map(|(number, names)| (number, names.split_once(' ').expect("a suite and a case")))
+        .collect();
     let rows: Vec<Row> = text
         .lines()
         .enumerate()
         .filter(|(_, line)| !line.starts_with('#'))
         .map(|(n, line)| {
             let (number, others) = line.split_once('\t').expect("two fields");
-            let (suite, name) = case(number);
+            let (suite, name) = cases[number];
             let fields: Vec<String> = [suite, name].into_iter().chain(others.split('\t')).map(str::to_string).collect();
             assert_eq!(fields.len(), columns.len(), "{path}:{}", n + 1);
             Row { columns: columns.clone(), line: n + 1, fields }

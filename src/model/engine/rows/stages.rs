@@ -120,13 +120,11 @@ struct Moved {
     /// Half a step less the largest error in each step of lanes. A moved coordinate that is no further from the middle of a step has a proved
     /// floor.
     room: [f64; LANES / STEP],
-    /// Whether offsets are floored, as exact coordinates need.
-    floors: bool,
 }
 
 impl Default for Moved {
     fn default() -> Self {
-        Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES / STEP], floors: false }
+        Moved { u: [0.0; LANES], v: [0.0; LANES], room: [0.0; LANES / STEP] }
     }
 }
 
@@ -197,8 +195,8 @@ const COARSEST: f64 = 0.125;
 /// An upper bound of the last bit that the definition keeps, relative to the largest of a triangle's three numbers.
 const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// Further error of a moved coordinate: its offset is floored at 2^-24 of 1/256 texel.
-const OFFSET: f64 = 1.0 / (1 << 23) as f64;
+/// Bound of the rounding error of a coordinate within its limits, when it is moved.
+const SUM: f64 = 1.0 / (1 << 28) as f64;
 
 /// Half the last bit of an exact coordinate. It is added so that no coordinate that is whole lies on the border of two floors.
 const HALF_BIT: f64 = 1.0 / (1_u64 << (EXACT_BITS + 1)) as f64;
@@ -255,7 +253,7 @@ impl Workshop {
             let MovedPlanes { planes, losses, within_limits, exact } = of;
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
             let offs = [margin(&planes[0]), margin(&planes[1])];
-            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + attributes.floors + OFFSET;
+            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + attributes.floors + SUM;
             // NaN proves nothing either.
             let proves = *exact | (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
             if !(proves & *within_limits) {
@@ -263,9 +261,7 @@ impl Workshop {
             }
             if batch.lane == 0 {
                 moved.room.fill(0.5);
-                moved.floors = false;
             }
-            moved.floors |= *exact;
             let (off, plus) = if *exact { (HALF_BIT / 2.0, HALF_BIT - 0.5) } else { (off, -0.5) };
             let room = 0.5 - if proves { off } else { 0.0 };
             for least in &mut moved.room[batch.lane / STEP..batch.lanes().end.div_ceil(STEP)] {
@@ -378,12 +374,7 @@ pub(super) fn run<const FMA: bool>(
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
                             let [along, down, _] = &mut workshop.dot.scratch;
                             dot::moved(matrix, blue, green, along, down);
-                            let open = &mut workshop.open;
-                            if moved.floors {
-                                place::<FMA, true>(sampler, moved, [along, down], numbers, open);
-                            } else {
-                                place::<FMA, false>(sampler, moved, [along, down], numbers, open);
-                            }
+                            place::<FMA>(sampler, moved, [along, down], numbers, &mut workshop.open);
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -502,9 +493,9 @@ fn dot_product<const FMA: bool>(
 }
 
 /// TSH-7: writes the floors of coordinates, less the sampler's bias, that are moved by so many 128ths of the image. Lanes whose floors are
-/// not proved are left open. With `FLOORS`, offsets are floored as the rule says; without, proofs have room for that.
+/// not proved are left open.
 #[inline(always)]
-fn place<const FMA: bool, const FLOORS: bool>(
+fn place<const FMA: bool>(
     sampler: &Sampler,
     moved: &Moved,
     [along, down]: [&Floats; 2],
@@ -516,10 +507,7 @@ fn place<const FMA: bool, const FLOORS: bool>(
     let ([width, height], bias) = (sampler.sides.map(|side| 2.0 * f64::from(side)), sampler.bias());
     const PARTS: f64 = (1 << 24) as f64;
     let by = |offset: f32, side: f64, at: f64| {
-        if FLOORS {
-            return at + floor::<FMA>(f64::from(offset) * side * PARTS) * (1.0 / PARTS);
-        }
-        multiply_add::<FMA>(f64::from(offset), side, at)
+        multiply_add::<FMA>(floor::<FMA>(f64::from(offset) * (side * PARTS)), 1.0 / PARTS, at)
     };
     let place = |n: usize| {
         let (at_u, at_v) = (by(along[n], width, moved.u[n]), by(down[n], height, moved.v[n]));
