@@ -112,6 +112,6 @@ fn examples_of_depth_words_ranges_and_offsets() {
     dep5.gives("32nds", 15_567.0 / 32.0, 486.46875).gives("the rows", 0x00fe_7091 - 0x00fe_522a, 7783);
     let steps = DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Less, true) };
     let test = DepthTest { offset: PolygonOffset { bias: 0.0, factor: 16.0 }, ..steps };
-    let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (z, [1.0; 3])).unwrap();
+    let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (z, None)).unwrap();
     dep5.gives("the offset", depth::word(DepthFormat::Z24S8, plane.offset), 7783);
 }

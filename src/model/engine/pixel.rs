@@ -6,11 +6,12 @@ use crate::combiner::registers::{Registers, channel_name};
 use crate::combiner::{final_combiner, general};
 use crate::number::Lane;
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::assemble::Corner;
 use crate::raster::depth::{self, DepthPlane};
 use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Floored, Sample};
-use crate::raster::setup::{Triangle, centres};
+use crate::raster::setup::{Triangle, centres, clockwise_area};
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
@@ -42,6 +43,20 @@ pub struct TriangleContext<'a> {
     pub depth: DepthPlane,
     /// Whether coordinates and fog are set up for this triangle.
     complete: bool,
+}
+
+/// Returns the corners of a triangle of a draw.
+#[inline(always)]
+fn corners(draw: &PlannedDraw, number: usize) -> [&Corner; 3] {
+    let ([first, second, third], all) = (draw.assembly.triangles.vertices(number), &draw.assembly.corners);
+    [&all[first as usize], &all[second as usize], &all[third as usize]]
+}
+
+/// Returns x and y of corners.
+#[inline(always)]
+fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
+    let [[ax, ay], [bx, by], [cx, cy]] = [a.position, b.position, c.position];
+    ([ax.into(), bx.into(), cx.into()], [ay.into(), by.into(), cy.into()])
 }
 
 /// A covered pixel before shading.
@@ -121,38 +136,43 @@ impl<'a> TriangleContext<'a> {
     /// [`complete`](Self::complete) sets up texture coordinates and fog.
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
+        Self::may_cover(self.draw, number, rows) && self.prepare(number)
+    }
+
+    /// Returns whether triangle `number` of a draw may cover pixels in `rows`: it is not culled, it has an area, and its bounding box holds centres
+    /// of pixels.
+    #[inline(always)]
+    pub(super) fn may_cover(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
+        let (x, y) = positions(&corners(draw, number));
+        let ((left, right), (top, bottom), area) = (centres(x), centres(y), clockwise_area(x, y));
+        let front = (area < 0) == (draw.front_face == FrontFace::CounterClockwise);
+        let culled = match draw.cull {
+            Cull::None => false,
+            Cull::Front => front,
+            Cull::Back => !front,
+        };
+        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !culled
+    }
+
+    /// Sets up triangle `number`, which [may cover](Self::may_cover) pixels. Returns `false` if its depths drop it; then the context is not
+    /// valid.
+    #[inline(always)]
+    pub(super) fn prepare(&mut self, number: usize) -> bool {
         let (plan, draw) = (self.plan, self.draw);
-        let [first, second, third] = draw.assembly.triangles.vertices(number);
-        let all = &draw.assembly.corners;
-        let corners = [&all[first as usize], &all[second as usize], &all[third as usize]];
-        let along = |axis: usize| corners.map(|c| i64::from(c.position[axis]));
-        let (x, y) = (along(0), along(1));
-        let (top, bottom) = centres(y);
-        if bottom <= rows.0.max(top) || top >= rows.1 {
-            return false;
-        }
-        let (left, right) = centres(x);
-        if left >= right || !self.triangle.place(x, y) {
-            return false;
-        }
-        let front = self.triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
-        match draw.cull {
-            Cull::Front if front => return false,
-            Cull::Back if !front => return false,
-            Cull::None | Cull::Front | Cull::Back => {}
-        }
-        // Half of the triangles of a closed mesh end before this.
+        let corners = corners(draw, number);
+        let (x, y) = positions(&corners);
+        self.triangle.place(x, y);
         self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
         self.triangle.lose(plan.policies.plane_loss);
         (self.number, self.complete) = (number, false);
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,
-            ShadeModel::Flat => [&all[draw.assembly.triangles.provoking(number) as usize]; 3],
+            ShadeModel::Flat => [&draw.assembly.corners[draw.assembly.triangles.provoking(number) as usize]; 3],
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
         if let Some(test) = &draw.depth_test {
-            let (z, w) = (self.vertices().position(2), self.vertices().position(3));
+            let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
                 Some(plane) => self.depth = plane,
                 None => return false,

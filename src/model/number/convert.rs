@@ -97,6 +97,7 @@ pub fn constant(c: f32) -> u8 {
 }
 
 /// DEP-1: converts a depth in 0..1 to steps of the buffer's last bit: floor(z (2^bits - 1)), clamped. NaN counts as 0.
+#[inline(always)]
 pub fn depth(z: f32, bits: u32) -> i64 {
     let full = (1_i64 << bits) - 1;
     if z.is_nan() || z <= 0.0 {

@@ -48,18 +48,25 @@ pub struct DepthPlane {
 }
 
 impl DepthPlane {
-    /// Returns the plane of a triangle whose vertices have these z and w, as `test` reads them for a buffer of
+    /// Returns the plane of a triangle whose vertices have these z, and in a w buffer these w, as `test` reads them for a buffer of
     /// `format`. Returns `None` if the triangle is dropped (DEP-4).
     #[inline(always)]
     pub fn new(
         test: &DepthTest,
         format: DepthFormat,
         triangle: &Triangle,
-        (z, w): ([f32; 3], [f32; 3]),
+        (z, w): ([f32; 3], Option<[f32; 3]>),
     ) -> Option<DepthPlane> {
         let z = match test.vertex_depths {
             // Integers of 24 bits are exact in binary32.
-            VertexDepths::Fractions if !format.is_float() => z.map(|z| fraction(z, format.bits()) as f32),
+            VertexDepths::Fractions if !format.is_float() => {
+                // Not by a function on arrays, which is not always inlined.
+                let mut steps = [0.0; 3];
+                for k in 0..3 {
+                    steps[k] = fraction(z[k], format.bits()) as f32;
+                }
+                steps
+            }
             _ => z,
         };
         if let Some(DepthRange { lowest, highest, drops_triangles: true, .. }) = test.range
@@ -72,7 +79,7 @@ impl DepthPlane {
             PolygonOffset { bias, .. } if test.w_buffer => Binary::new(bias),
             _ => offset(test.offset, slope(triangle, z)),
         };
-        Some(DepthPlane { z, w: test.w_buffer.then_some(w), offset })
+        Some(DepthPlane { z, w: w.filter(|_| test.w_buffer), offset })
     }
 
     /// DEP-1, DEP-5, DEP-6: returns the depth where the edge functions are `e`.
@@ -368,10 +375,7 @@ mod tests {
             offset: PolygonOffset { bias, factor },
             ..DepthTest::new(CompareFunction::Less, true)
         };
-        (
-            DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (p.map(|p| p[2]), [1.0; 3])).expect("no range"),
-            triangle,
-        )
+        (DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (p.map(|p| p[2]), None)).expect("no range"), triangle)
     }
 
     #[test]
@@ -430,7 +434,7 @@ mod tests {
             let range = Some(DepthRange { lowest, highest, clamps: true, drops_triangles });
             let test =
                 DepthTest { vertex_depths: VertexDepths::Steps, range, ..DepthTest::new(CompareFunction::Less, true) };
-            DepthPlane::new(&test, DepthFormat::Z16, &triangle, ([5.0, 6.0, 7.0], [1.0; 3])).is_some()
+            DepthPlane::new(&test, DepthFormat::Z16, &triangle, ([5.0, 6.0, 7.0], None)).is_some()
         };
         assert!(at(7.0, 9.0, true) && at(0.0, 5.0, true) && at(8.0, 9.0, false));
         assert!(!at(8.0, 9.0, true) && !at(0.0, 4.0, true));

@@ -217,15 +217,18 @@ pub(crate) fn most_dominant<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [bool; 2
     [(a >= b) & (a > c), ((c > b) & (c >= a)) | all]
 }
 
-/// Returns floor(n / d) and the remainder, for 0 < d < 2^62. Quotients are limited to 2^26, which only samples outside
+/// Limit of [`quotient`]s, 1/256 texel.
+pub(crate) const QUOTIENT_LIMIT: i64 = 1 << 26;
+
+/// Returns floor(n / d) and the remainder, for 0 < d < 2^62. Quotients are limited to [`QUOTIENT_LIMIT`], which only samples outside
 /// the triangle reach; the remainder is then some number that is not 0.
 ///
 /// This avoids a 128-bit division: the top 35 bits of d estimate the quotient to within one step, and the exact
 /// remainder corrects it.
 #[inline(always)]
 fn quotient(n: i128, d: i64) -> (i64, i64) {
-    if n.unsigned_abs() >> 26 >= u128::from(d.unsigned_abs()) {
-        return (n.signum() as i64 * (1 << 26), d);
+    if n.unsigned_abs() / QUOTIENT_LIMIT as u128 >= u128::from(d.unsigned_abs()) {
+        return (n.signum() as i64 * QUOTIENT_LIMIT, d);
     }
     let excess = (64 - d.leading_zeros()).saturating_sub(35);
     let mut value = ((n >> excess) as i64).div_euclid(d >> excess);

@@ -74,12 +74,11 @@ impl Triangle {
     pub(crate) fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
-        let mut area = 0;
+        let area = clockwise_area(x, y);
         for k in 0..3 {
             let (s, t) = ((k + 1) % 3, (k + 2) % 3);
             (a[k], b[k]) = (y[s] - y[t], x[t] - x[s]);
             c[k] = -(a[k] * x[s] + b[k] * y[s]);
-            area = a[k] * x[k] + b[k] * y[k] + c[k];
         }
         if area == 0 {
             return false;
@@ -93,7 +92,6 @@ impl Triangle {
         }
         self.doubled_area = area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
-        // y points down, so a positive area is clockwise for the viewer.
         self.counter_clockwise = area < 0;
         true
     }
@@ -171,16 +169,26 @@ impl Triangle {
 
     /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one
     /// common exponent and 28 bits. They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
+    #[inline(always)]
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let magnitudes: [(i64, i32); 9] = std::array::from_fn(|n| {
-            let (axis, k) = (n / 3, n % 3);
-            let (m, e) = split(x[axis][k]);
-            (m.abs() * self.p[k], e)
-        });
-        let (g, _) = align(magnitudes, PERSPECTIVE_BITS);
-        let signed = |axis: usize, k: usize| if x[axis][k] < 0.0 { -g[3 * axis + k] } else { g[3 * axis + k] };
-        std::array::from_fn(|axis| std::array::from_fn(|k| signed(axis, k)))
+        let mut magnitudes = [(0, 0); 9];
+        for (n, magnitude) in magnitudes.iter_mut().enumerate() {
+            let (m, e) = split(x[n / 3][n % 3]);
+            *magnitude = (m.abs() * self.p[n % 3], e);
+        }
+        let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
+        for (n, g) in g.iter_mut().enumerate() {
+            *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
+        }
+        [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
     }
+}
+
+/// Returns twice the area of a triangle in 1/256 square pixel. It is positive if the triangle turns clockwise for the viewer, because y points
+/// down.
+#[inline(always)]
+pub(crate) fn clockwise_area(x: [i64; 3], y: [i64; 3]) -> i64 {
+    (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
 }
 
 /// INT-6: returns the three w as a chip takes them.

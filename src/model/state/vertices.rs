@@ -298,6 +298,12 @@ impl TriangleVertices<'_> {
         transposed([s.three(indices), t.three(indices), r.three(indices), q.three(indices)])
     }
 
+    /// Returns a component of a coordinate set of each vertex: 0 to 3 for s, t, r, q.
+    #[inline(always)]
+    pub fn coordinate(&self, set: usize, component: usize) -> [f32; 3] {
+        self.vertices.coordinates[self.vertices.representative[set]][component].three(self.indices)
+    }
+
     /// Returns the fog of each vertex: factors, d' or e.
     #[inline(always)]
     pub fn fog(&self) -> [f32; 3] {

@@ -118,10 +118,21 @@ impl Slice<'_> {
             let words = self.unit.format.bytes() as usize / 4;
             return Texel { at: Some([x, y]), word: (first + block * words) as u32 };
         }
+        Texel { at: Some([x, y]), word: words[first + self.offset(x, y)] }
+    }
+
+    /// Returns the index of a texel in an image that is not compressed.
+    #[inline(always)]
+    fn offset(&self, x: i64, y: i64) -> usize {
         let beyond = if self.unit.border { i64::from(BORDER_TEXELS) } else { 0 };
         let pitch = i64::from(self.level.width) + 2 * beyond;
-        let index = first + ((y + beyond) * pitch + x + beyond) as usize;
-        Texel { at: Some([x, y]), word: words[index] }
+        ((y + beyond) * pitch + x + beyond) as usize
+    }
+
+    /// Returns the words of the first `count` texels of a row of an image that is not compressed.
+    pub(crate) fn words<'w>(&self, words: &'w [u32], y: i64, count: usize) -> &'w [u32] {
+        let Some(image) = self.image else { return &[] };
+        &words[image * self.unit.face_words + self.level.offset + self.offset(0, y)..][..count]
     }
 }
 

@@ -31,7 +31,11 @@ fn sum_of_products(terms: [(i64, f32); 2]) -> (i128, i32) {
 /// with f = m_b B + m_g G in single precision, in 2^-24 of 1/256 texel. `side` is 1 if coordinates are texels. NaN
 /// counts as 0.
 pub fn offset(entries: [f32; 2], blue_green: [u8; 2], side: u32) -> i64 {
-    let f = moved(entries, blue_green.map(|byte| f32::from(byte as i8)));
+    offset_of(moved(entries, blue_green.map(|byte| f32::from(byte as i8))), side)
+}
+
+/// TSH-7: returns the displacement of one coordinate by f 128ths of the image, in 2^-24 of 1/256 texel.
+pub(crate) fn offset_of(f: f32, side: u32) -> i64 {
     scaled(f, side, OFFSET_BITS as i32 + 8 - 7, OFFSET_LIMIT)
 }
 

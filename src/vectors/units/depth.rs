@@ -146,7 +146,7 @@ impl Unit for DepthRange {
         let [clamps, drops_triangles] = [inputs[1] != 0, inputs[2] != 0];
         let range = state::DepthRange { lowest: float(inputs[3]), highest: float(inputs[4]), clamps, drops_triangles };
         let test = DepthTest { range: Some(range), ..test() };
-        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, (floats(&inputs[5..8]), [1.0; 3])));
+        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, (floats(&inputs[5..8]), None)));
         let kept = plane.and_then(|_| ranged(Some(&range), Binary::new(float(inputs[8]))));
         let word = kept.map_or(0, |depth| word(format, depth));
         results.copy_from_slice(&[plane.is_some().into(), kept.is_some().into(), word.into()]);
@@ -195,7 +195,7 @@ impl Unit for PixelDepth {
         let Some(triangle) = triangle(inputs, None, conditions.profile) else { return results.fill(0) };
         let (format, z) = (named(inputs[8]), floats(&inputs[9..12]));
         let offset = state::PolygonOffset { bias: float(inputs[12]), factor: float(inputs[13]) };
-        let plane = DepthPlane::new(&DepthTest { offset, ..test() }, format, &triangle, (z, [1.0; 3]));
+        let plane = DepthPlane::new(&DepthTest { offset, ..test() }, format, &triangle, (z, None));
         let slope = slope(&triangle, z);
         let depth = plane.unwrap_or_default().at(triangle.edges(inputs[6], inputs[7]));
         results.copy_from_slice(&[slope.mantissa, slope.exponent.into(), word(format, depth).into()]);
@@ -260,7 +260,7 @@ impl Unit for WBuffer {
         let (format, w) = (named(inputs[0]), floats(&inputs[4..7]));
         let offset = state::PolygonOffset { bias: float(inputs[7]), factor: 0.0 };
         let test = DepthTest { w_buffer: true, offset, ..test() };
-        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, ([0.0; 3], w)));
+        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, ([0.0; 3], Some(w))));
         results[0] = word(format, plane.unwrap_or_default().at([1, 2, 3].map(|n| inputs[n]))).into();
     }
 }

@@ -252,7 +252,7 @@ impl Unit for WBufferSlope {
         let (format, [z, w]) = (DepthFormat::Z24S8, [floats(&inputs[9..12]), floats(&inputs[12..15])]);
         let triangle = triangle(&inputs[1..], None, conditions.profile).unwrap_or_default();
         let test = DepthTest { w_buffer: true, ..test() };
-        let plane = DepthPlane::new(&test, format, &triangle, (z, w)).unwrap_or_default();
+        let plane = DepthPlane::new(&test, format, &triangle, (z, Some(w))).unwrap_or_default();
         let pixel = [inputs[7], inputs[8]];
         let steepest = match named(inputs[0]) {
             SlopeReading::None => Binary::default(),

@@ -1,21 +1,20 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, SIDE, boxes, is_box, is_small};
+use super::boxes::{BoxCoverage, batch_of, boxes, few, is_box, is_small};
+use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
 use super::isa::Kernels;
 use super::kernels::{self, LANES, Lanes256};
 use super::levels::MipFetches;
-use super::quotient::{IOTA, Positions, SMALL_BATCH};
-use super::setup::{PixelBatch, Planes, Run, whole_steps};
+use super::setup::{Covered, PixelBatch, Run, whole_steps};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
-use super::triangle::{Interpolators, Varying};
+use super::triangle::{Functions, Interpolators, Varying};
 use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 use crate::raster::setup::Triangle;
-use crate::state::MipFilter;
 
 /// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug)]
@@ -25,7 +24,7 @@ pub(crate) struct Block {
     pub(super) work: Workspace,
     pub(super) workshop: Workshop,
     coverage: BoxCoverage,
-    planes: Vec<Planes>,
+    planes: Functions,
     pub(super) runs: Vec<Run>,
     /// Number of lanes in use.
     used: usize,
@@ -47,7 +46,7 @@ impl Default for Block {
             work: Workspace::default(),
             workshop: Workshop::default(),
             coverage: BoxCoverage::default(),
-            planes: Vec::new(),
+            planes: Functions::default(),
             runs: Vec::with_capacity(BLOCK),
             used: 0,
             taken: Vec::new(),
@@ -116,63 +115,170 @@ fn draw_window<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let Job { draw, compiled, .. } = job;
-    let mut shaded = 0;
+    let (draw, mut shaded) = (job.draw, 0);
     let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
-    for n in 0..count {
-        let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
-        match T::enter(context, number, (rows, columns), &mut block.coverage) {
-            Entered::Nothing => {}
-            Entered::Box => shaded += draw_box::<T>(job, context, band, block),
-            Entered::Boxes => {
-                for window in boxes(common(&context.triangle, (rows, columns))) {
-                    T::cover(&context.triangle, window, &mut block.coverage);
-                    if block.coverage.count > 0 {
-                        shaded += draw_box::<T>(job, context, band, block);
-                    }
-                }
-            }
-            Entered::Large => {
-                context.complete();
-                let triangle = &context.triangle;
-                let (rows, columns) = common(triangle, (rows, columns));
-                let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
-                for j in rows.0..rows.1 {
-                    let (mut i, end) = triangle.span(j, columns);
-                    if i == end {
-                        continue;
-                    }
-                    // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
-                    block.used = whole_steps(block.used);
-                    interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
-                    while i < end {
-                        let wanted = ((end - i) as usize).min(BLOCK);
-                        if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                            finish::<T>(job, block, band);
-                        }
-                        let count = wanted.min(BLOCK - block.used);
-                        let lanes = whole_steps(count);
-                        let last = count as i32 - 1;
-                        let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
-                        // By reference, because a copy of what has just been written in parts has to wait for all of them.
-                        let batch =
-                            &PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0), runs: &[] };
-                        T::row(&interpolators, batch, job, block);
-                        if compiled.shader.is_some() {
-                            T::row_attributes(context, batch, job, block);
-                        }
-                        if job.draw.depth_test.is_some() {
-                            T::row_depths(context, batch, block);
-                        }
-                        block.append(band, (i, j), count, compiled.reads_surface);
-                        shaded += count as u64;
-                        i += count as i64;
-                    }
-                }
-                block.planes = interpolators.given_back(&mut block.defined);
-            }
+    let mut seen = [0; CHUNK];
+    for first in (0..count).step_by(CHUNK) {
+        let chunk = T::select(job, (first, count.min(first + CHUNK)), rows, &mut seen);
+        for number in seen.iter().take(chunk) {
+            shaded += draw_triangle::<T>(job, *number as usize, (rows, columns), context, band, block);
         }
     }
+    shaded
+}
+
+/// Number of triangles that are selected at once.
+pub(super) const CHUNK: usize = 64;
+
+/// Draws the part of a triangle that lies in some rows and columns of a band. Returns the number of covered pixels.
+#[inline(always)]
+fn draw_triangle<T: Kernels>(
+    job: Job<'_>,
+    number: usize,
+    (rows, columns): Window,
+    context: &mut TriangleContext<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let (compiled, mut shaded) = (job.compiled, 0);
+    match T::enter(context, number, (rows, columns), &mut block.coverage) {
+        Entered::Nothing => {}
+        _ if compiled.completes_quads => shaded += draw_quads::<T>(job, (rows, columns), context, band, block),
+        Entered::Box => shaded += draw_box::<T>(job, context, band, block),
+        Entered::Boxes if compiled.plain => {
+            for window in boxes(common(&context.triangle, (rows, columns))) {
+                T::cover(&context.triangle, window, &mut block.coverage);
+                if block.coverage.count > 0 {
+                    shaded += draw_box::<T>(job, context, band, block);
+                }
+            }
+        }
+        Entered::Boxes => {
+            context.complete();
+            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+            for window in boxes(common(&context.triangle, (rows, columns))) {
+                T::cover(&context.triangle, window, &mut block.coverage);
+                if block.coverage.count > 0 {
+                    make_room::<T>(job, band, block);
+                    T::in_box(&interpolators, job, block);
+                    shaded += append_box::<T>(job, context, band, block);
+                }
+            }
+            block.planes = interpolators.given_back(&mut block.defined);
+        }
+        Entered::Large => {
+            context.complete();
+            let triangle = &context.triangle;
+            let (rows, columns) = common(triangle, (rows, columns));
+            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+            for j in rows.0..rows.1 {
+                let (mut i, end) = triangle.span(j, columns);
+                if i == end {
+                    continue;
+                }
+                // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
+                block.used = whole_steps(block.used);
+                interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
+                while i < end {
+                    let wanted = ((end - i) as usize).min(BLOCK);
+                    if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
+                        finish::<T>(job, block, band);
+                    }
+                    let count = wanted.min(BLOCK - block.used);
+                    // By reference, because a copy of what has just been written in parts has to wait for all of them.
+                    let batch = &PixelBatch::row((i, j), count, block.used);
+                    T::row(&interpolators, batch, job, block);
+                    if compiled.shader.is_some() {
+                        T::row_attributes(context, batch, job, block);
+                    }
+                    if job.draw.depth_test.is_some() {
+                        T::row_depths(context, batch, block);
+                    }
+                    block.append(band, (i, j), count, compiled.reads_surface);
+                    shaded += count as u64;
+                    i += count as i64;
+                }
+            }
+            block.planes = interpolators.given_back(&mut block.defined);
+        }
+    }
+    shaded
+}
+
+/// Draws a triangle by two rows at a time, with all pixels of the quads that it meets. Returns the number of covered pixels.
+#[inline(always)]
+fn draw_quads<T: Kernels>(
+    job: Job<'_>,
+    window: Window,
+    context: &mut TriangleContext<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let compiled = job.compiled;
+    context.complete();
+    let triangle = &context.triangle;
+    let (rows, columns) = common(triangle, window);
+    let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+    interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
+    let mut shaded = 0;
+    for top in (rows.0 & !1..rows.1).step_by(2) {
+        let row = |j: i64| if (rows.0..rows.1).contains(&j) { triangle.span(j, columns) } else { (0, 0) };
+        let spans = [row(top), row(top + 1)];
+        let (mut low, mut high) = (i64::MAX, i64::MIN);
+        for (first, end) in spans.into_iter().filter(|(first, end)| first < end) {
+            (low, high) = (low.min(first & !1), high.max((end + 1) & !1));
+        }
+        while low < high {
+            // Two rows fill a block at most.
+            let columns = (high - low).min(BLOCK as i64 / 2);
+            let covered = spans.map(|(first, end)| {
+                let (first, end) = (first.max(low), end.min(low + columns));
+                if first < end { Covered((first - low) as usize, (end - first) as usize) } else { Covered(0, 0) }
+            });
+            let at = |n: usize| (low + covered[n].0 as i64, top + n as i64);
+            let lanes = whole_steps(columns as usize);
+            let is_taken = |n: usize| covered[n].1 > 0 && block.is_taken(band, at(n), covered[n].1);
+            if 2 * lanes > BLOCK - block.used || (compiled.reads_surface && (is_taken(0) || is_taken(1))) {
+                finish::<T>(job, block, band);
+            }
+            let quads = PixelQuads {
+                upper: block.used,
+                lower: block.used + lanes,
+                count: columns as usize / 2,
+                pixel: (low, top),
+                triangle: context.number,
+            };
+            for n in 0..2 {
+                let whole = PixelBatch {
+                    covered: covered[n],
+                    ..PixelBatch::row((low, top + n as i64), columns as usize, block.used)
+                };
+                // Where D is not positive, the definition knows no level of detail, and quotients mean nothing.
+                let is_known = interpolators.setup.is_positive(&whole);
+                let batch = &if is_known { whole } else { whole.inside() };
+                if batch.count > 0 {
+                    T::row(&interpolators, batch, job, block);
+                    T::row_attributes(context, batch, job, block);
+                }
+                if !is_known {
+                    block.workshop.leave_open(whole.lanes());
+                }
+                let Covered(first, count) = covered[n];
+                if count > 0 {
+                    if job.draw.depth_test.is_some() {
+                        T::row_depths(context, &whole.inside(), block);
+                    }
+                    block.used += first;
+                    block.append(band, at(n), count, compiled.reads_surface);
+                }
+                block.used = whole.lanes().end;
+                shaded += count as u64;
+            }
+            block.workshop.quads.add(quads);
+            low += columns;
+        }
+    }
+    block.planes = interpolators.given_back(&mut block.defined);
     shaded
 }
 
@@ -193,15 +299,26 @@ fn draw_box<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let compiled = job.compiled;
-    let count = block.coverage.count;
-    if count > BLOCK - block.used || (compiled.reads_surface && block.is_box_taken(band)) {
-        finish::<T>(job, block, band);
-    }
-    if !(compiled.plain && T::plain(context, compiled, block)) {
+    make_room::<T>(job, band, block);
+    if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
         context.complete();
         T::coverage(context, job, block);
     }
+    append_box::<T>(job, context, band, block)
+}
+
+/// Computes the block if it has no room for the pixels of its coverage.
+#[inline(always)]
+fn make_room<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) {
+    if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
+        finish::<T>(job, block, band);
+    }
+}
+
+/// Appends the pixels of the block's coverage to the block. Returns their number.
+#[inline(always)]
+fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &Band<'_>, block: &mut Block) -> u64 {
+    let compiled = job.compiled;
     if compiled.shader.is_some() {
         T::box_attributes(context, job, block);
     }
@@ -212,7 +329,7 @@ fn draw_box<T: Kernels>(
         let (j, i, count) = block.coverage.runs[n];
         block.append(band, (i, j), count, compiled.reads_surface);
     }
-    count as u64
+    block.coverage.count as u64
 }
 
 /// How a triangle is drawn.
@@ -237,7 +354,25 @@ pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     )
 }
 
-/// Sets up a triangle for the given rows and columns, and finds its coverage if it is a single box.
+/// Selects those of some triangles of a job that may cover pixels in the given rows. Returns their number. Most others are culled. Without
+/// branches, which would depend on that.
+#[inline(always)]
+pub(super) fn select<const WIDE: bool>(
+    job: Job<'_>,
+    (first, end): (usize, usize),
+    rows: (i64, i64),
+    seen: &mut [u32; CHUNK],
+) -> usize {
+    let mut count = 0;
+    for n in first..end {
+        let number = job.triangles.map_or(n as u32, |numbers| numbers[n]);
+        seen[count % CHUNK] = number;
+        count += usize::from(TriangleContext::may_cover(job.draw, number as usize, rows));
+    }
+    count
+}
+
+/// Sets up a triangle that may cover pixels for the given rows and columns, and finds its coverage if it is a single box.
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
@@ -245,7 +380,7 @@ pub(super) fn enter<const WIDE: bool>(
     window: Window,
     coverage: &mut BoxCoverage,
 ) -> Entered {
-    if !context.set_up(number, window.0) {
+    if !context.prepare(number) {
         return Entered::Nothing;
     }
     let triangle = &context.triangle;
@@ -285,31 +420,17 @@ pub(super) fn plain<const FMA: bool>(
 /// Interpolates all attributes in the block's box, for any draw.
 #[inline(always)]
 pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-    let Block { varying, rows, coverage, used, planes, defined, .. } = block;
-    let interpolators = Interpolators::new(context, job.compiled, std::mem::take(planes));
-    interpolators.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
-    *planes = interpolators.given_back(defined);
+    let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
+    in_box::<FMA>(&interpolators, job, block);
+    block.planes = interpolators.given_back(&mut block.defined);
 }
 
-/// Returns the pixels of a box as a batch.
+/// Interpolates all attributes in one of the boxes of a triangle.
 #[inline(always)]
-pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
-    let lanes = whole_steps(coverage.count);
-    let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
-    let (first, count, runs) = (coverage.first, coverage.count, &coverage.runs[..coverage.filled]);
-    PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs }
-}
-
-/// Returns the pixels of a box as a batch, with fewer lanes than a step if those suffice.
-#[inline(always)]
-pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
-    let all = batch(coverage, lane);
-    let Positions { x, y, last } = all.at;
-    if all.count <= SMALL_BATCH {
-        PixelBatch { at: Positions { x: &x[..SMALL_BATCH], y: &y[..SMALL_BATCH], last }, ..all }
-    } else {
-        all
-    }
+pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: Job<'_>, block: &mut Block) {
+    let Block { varying, rows, coverage, used, .. } = block;
+    let batch = batch_of(job.compiled, coverage, *used);
+    interpolators.interpolate::<FMA, false>(batch, job.compiled, job.textures, varying, rows);
 }
 
 /// Interpolates all attributes along a batch of a row.
@@ -373,7 +494,7 @@ impl Block {
         self.runs.push(Run { lane: self.used, at, count });
         self.used += count;
         if marks {
-            mark(&mut self.taken, at, count);
+            store::mark(&mut self.taken, at, count);
         }
     }
 
@@ -381,7 +502,7 @@ impl Block {
     #[inline(always)]
     fn is_taken(&self, band: &Band<'_>, pixel: (i64, i64), count: usize) -> bool {
         let at = index(band, pixel);
-        (at / 64..=(at + count - 1) / 64).any(|word| self.taken[word] & bits(word, at, count) != 0)
+        store::is_marked(&self.taken, at, count)
     }
 
     #[inline(always)]
@@ -397,53 +518,12 @@ fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
     (j as usize - band.first_row) * band.width + i as usize
 }
 
-/// Returns the bits of a 64-bit word that belong to the given pixels, at least one of which lies in the word.
-#[inline(always)]
-fn bits(word: usize, at: usize, count: usize) -> u64 {
-    let (first, last) = (word * 64, word * 64 + 63);
-    let low = if at > first { u64::MAX << (at - first) } else { u64::MAX };
-    let end = at + count - 1;
-    if end < last { low & (u64::MAX >> (last - end)) } else { low }
-}
-
-/// Flips the bits of the given pixels.
-#[inline(always)]
-fn mark(taken: &mut [u64], at: usize, count: usize) {
-    for word in at / 64..=(at + count - 1) / 64 {
-        taken[word] ^= bits(word, at, count);
-    }
-}
-
-/// Number of pixels that are copied at once if a run is shorter and the slices have room.
-const SHORT_RUN: usize = 16;
-
 /// From this average length of runs on, words of the surface and its depth buffer are worked on in place instead of being copied.
 const LONG_RUN: usize = 48;
 
-/// Copies a run from one slice to another. Most runs are short and are copied without a call. With `MASKS`, lanes can be stored one by one,
-/// so that pixels around the run need not be read; reading them would have to wait for earlier stores.
-#[inline(always)]
-fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
-    if count <= SHORT_RUN
-        && let (Some(from), Some(to)) = (from.first_chunk::<SHORT_RUN>(), to.first_chunk_mut::<SHORT_RUN>())
-    {
-        for n in 0..SHORT_RUN {
-            if MASKS {
-                if n < count {
-                    to[n] = from[n];
-                }
-            } else {
-                to[n] = if n < count { from[n] } else { to[n] };
-            }
-        }
-    } else {
-        to[..count].copy_from_slice(&from[..count]);
-    }
-}
-
 /// Computes and stores a block whose texture shader stages have run.
 #[inline(always)]
-pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
     let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
     if *used == 0 {
@@ -455,45 +535,20 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     if compiled.drops {
         *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
     }
-    // The sampler whose entries are in `work`, and the pitch of its table. Samplers that share coordinates also have the same axes.
     let mut found = None;
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
     for (n, sampler) in samplers.iter().enumerate() {
-        let Some(table) = &sampler.table else { continue };
-        let faces = sampler.has_images().then_some(&varying.faces[n]);
-        let wanted = compiled.textures[sampler.unit];
-        let at = sampler.shares.unwrap_or(n);
-        if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
-            let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
-            fetch::sample_levels(job.vectors, table, reads, both, sampler.signed, wanted, work, rows);
-            // The entries in `work` have been overwritten.
-            found = None;
-            continue;
-        }
-        if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
-            let at = &varying.coordinates[n];
-            fetch::sample_taps(job.vectors, table, at, &footprints.pairs, sampler.signed, wanted, work, rows);
-            found = None;
-            continue;
-        }
-        if found != Some((at, table.pitch)) {
-            fetch::locate(table, &mut varying.coordinates[at], faces, work);
-        }
-        found = Some((at, table.pitch));
-        let references = &varying.references[n];
-        fetch::sample(job.vectors, table, &varying.coordinates[at], references, sampler.signed, wanted, work, rows);
-        if let Some(key) = sampler.key {
-            fetch::drop_keyed(key, work, alive);
-        }
+        found = fetch::sample_unit(job, n, found, varying, work, rows);
+        fetch::drop_keyed(sampler, work, alive);
     }
     let blends = compiled.destination.iter().any(Option::is_some);
     if blends {
-        read::<MASKS>(band.words, runs, stored);
+        store::read_runs(band.words, runs, stored);
         store::read(draw, compiled, stored, rows);
     }
     if compiled.reads_surface {
         for run in runs.iter() {
-            mark(taken, run.at, run.count);
+            store::mark(taken, run.at, run.count);
         }
     }
     for (node, at) in &compiled.operations {
@@ -513,17 +568,17 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             }
         } else if draw.stencil_test.is_some() || draw.depth_test.is_some() {
             if let Some(depth) = depth.first_chunk_mut() {
-                read::<MASKS>(band.depth, runs, depth);
+                store::read_runs(band.depth, runs, depth);
             }
             if store::test_depth_stencil(draw, incoming, depth, alive) {
-                for run in runs.iter() {
-                    copy::<MASKS>(&depth[run.lane..], &mut band.depth[run.at..], run.count);
+                for Run { lane, at, count } in runs.iter().copied() {
+                    store::write_run(&depth[lane..][..count], &mut band.depth[at..][..count]);
                 }
             }
         }
     }
     // Most blocks lose no fragment.
-    let merges = compiled.merges && !(compiled.writes_whole && all(&alive[..*used]));
+    let merges = compiled.merges && !(compiled.writes_whole && store::all(&alive[..*used]));
     if !merges && is_long {
         for run in runs.iter() {
             store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
@@ -532,30 +587,14 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         store::pack(draw, compiled, rows, 0, words);
         if merges {
             if !blends {
-                read::<MASKS>(band.words, runs, stored);
+                store::read_runs(band.words, runs, stored);
             }
             store::merge(draw.write_mask, alive, stored, words);
         }
-        for run in runs.iter() {
-            copy::<MASKS>(&words[run.lane..], &mut band.words[run.at..], run.count);
+        for Run { lane, at, count } in runs.iter().copied() {
+            store::write_run(&words[lane..][..count], &mut band.words[at..][..count]);
         }
     }
     runs.clear();
     *used = 0;
 }
-
-/// Reads the words of some runs from the surface or its depth buffer.
-#[inline(always)]
-fn read<const MASKS: bool>(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
-    for run in runs {
-        copy::<MASKS>(&words[run.at..], &mut out[run.lane..], run.count);
-    }
-}
-
-/// Returns whether all lanes are true. It has no branches, because they usually are.
-#[inline(always)]
-fn all(alive: &[bool]) -> bool {
-    alive.iter().fold(true, |all, alive| all & alive)
-}
-
-static ZEROS: [i32; kernels::LANES] = [0; kernels::LANES];

@@ -1,7 +1,10 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
+use super::CompiledDraw;
 use super::kernels::STEP;
+use super::quotient::{Positions, SMALL_BATCH};
+use super::setup::{Covered, PixelBatch, whole_steps};
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
 
@@ -114,6 +117,34 @@ impl BoxCoverage {
             self.x[self.count..][..STEP].fill(x);
             self.y[self.count..][..STEP].fill(y);
         }
+    }
+}
+
+/// Returns the pixels of a box as a batch for a draw. Samplers with quads need whole steps.
+#[inline(always)]
+pub(super) fn batch_of<'c>(compiled: &CompiledDraw, coverage: &'c BoxCoverage, lane: usize) -> PixelBatch<'c> {
+    let quads = compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0);
+    if quads { batch(coverage, lane) } else { few(coverage, lane) }
+}
+
+/// Returns the pixels of a box as a batch.
+#[inline(always)]
+fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let lanes = whole_steps(coverage.count);
+    let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
+    let (first, count, runs) = (coverage.first, coverage.count, &coverage.runs[..coverage.filled]);
+    PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs, covered: Covered(0, count) }
+}
+
+/// Returns the pixels of a box as a batch, with fewer lanes than a step if those suffice.
+#[inline(always)]
+pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let all = batch(coverage, lane);
+    let Positions { x, y, last } = all.at;
+    if all.count <= SMALL_BATCH {
+        PixelBatch { at: Positions { x: &x[..SMALL_BATCH], y: &y[..SMALL_BATCH], last }, ..all }
+    } else {
+        all
     }
 }
 

@@ -5,10 +5,11 @@
 )]
 
 use super::kernels::{PerLane, STEP};
-use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, multiply_add, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whole};
+use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::depth::{difference, largest_edge, reciprocal, w_ratio};
+use crate::raster::depth::{difference, largest_edge, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 use std::ops::Range;
@@ -65,51 +66,6 @@ impl Default for Steps {
             close: [0; CHUNK],
             reciprocals: ReciprocalLine::default(),
         }
-    }
-}
-
-/// DEP-1's reciprocals of a triangle as a linear function. The three edge numbers add up to the doubled area, less the few last bits that
-/// each loses when it is cut to 24 bits. So the reciprocal is a function of a sum that hardly varies.
-#[derive(Clone, Copy, Debug, Default)]
-struct ReciprocalLine {
-    area: i64,
-    /// Whether the function yields every reciprocal of the triangle.
-    tells: bool,
-    /// The value of a sum of 0, less by 3/16 and one half, so that the nearest integer is the reciprocal; if nothing is lost, it is the
-    /// reciprocal itself.
-    start: f64,
-    slope: f64,
-    /// Factor that turns edge numbers times reciprocals into weights.
-    unit: f64,
-}
-
-impl ReciprocalLine {
-    fn new<const FMA: bool>(area: i64) -> ReciprocalLine {
-        let bits = 64 - area.leading_zeros();
-        let mut line = ReciprocalLine { area, ..ReciprocalLine::default() };
-        // Edge numbers with more bits would be cut again when they are aligned.
-        if bits > 29 {
-            return line;
-        }
-        line.unit = power_of_two(-28 - bits as i32);
-        let of = |sum: i64| {
-            // With as many bits as reciprocals that are not exact.
-            if sum & (sum - 1) == 0 { (1_u64 << 29) as f64 } else { reciprocal(sum).0 as f64 }
-        };
-        let (largest_loss, real) = (3 * ((1_i64 << bits.saturating_sub(24)) - 1), area as f64);
-        let first = (1_u64 << (28 + bits)) as f64 / real;
-        (line.start, line.slope) =
-            if largest_loss == 0 { (of(area), 0.0) } else { (2.0 * first - 0.6875, -first / real) };
-        // Compares each value with the definition's.
-        let tells = |sum: i64| 64 - sum.leading_zeros() == bits && line.at::<FMA>(sum as f64) == of(sum);
-        line.tells = (area - largest_loss..=area).all(tells);
-        line
-    }
-
-    /// Returns the reciprocal of a sum.
-    #[inline(always)]
-    fn at<const FMA: bool>(&self, sum: f64) -> f64 {
-        whole(multiply_add::<FMA>(sum, self.slope, self.start))
     }
 }
 
@@ -225,15 +181,6 @@ fn same_reference(first: usize, count: usize, (e, slopes): ([i64; 3], [i64; 3]))
     (reference, until)
 }
 
-/// Returns 2^exponent, or 0 or infinity if no double has that value.
-fn power_of_two(exponent: i32) -> f64 {
-    match exponent {
-        -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
-        1024.. => f64::INFINITY,
-        _ => 0.0,
-    }
-}
-
 impl Depths<'_> {
     /// Returns whether some depths are unknown. `GENERAL` means that depths are not just floored, `W` that the buffer is a w buffer. `row`
     /// has the edge functions at the first pixel of a row, their slopes and the number of pixels.
@@ -272,8 +219,14 @@ impl Depths<'_> {
             let lanes = if ROW { first..first + whole_steps(pixels) } else { first..first + pixels };
             let out = &mut out[lanes.clone()];
             let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
-            self.sums::<FMA, ROW, W>(f64::from(at.last), positions, edges, steps);
-            let close = self.terms::<FMA, W>(out.len(), steps);
+            let last = f64::from(at.last);
+            let close = if W || ROW && area > 1 << 24 {
+                self.sums::<FMA, ROW, W>(last, positions, edges, steps);
+                self.terms::<FMA, W>(out.len(), steps)
+            } else {
+                self.uncut_terms::<FMA, ROW>(last, positions, edges, area, steps);
+                false
+            };
             self.words::<FMA, GENERAL>(steps, out);
             if close {
                 for (out, close) in out.iter_mut().zip(&steps.close) {
@@ -340,8 +293,8 @@ impl Depths<'_> {
         steps: &mut Steps,
     ) {
         let lanes = xs.len();
-        let ([z0, z1, z2], [r0, r1, r2]) = (self.z, self.ratios);
-        let [[a0, b0], [a1, b1], [a2, b2]] = self.differences;
+        let ([_, z1, _], [r0, r1, r2]) = (self.z, self.ratios);
+        let [_, [a1, b1], _] = self.differences;
         let (xs, ys, iota) = (&xs[..lanes], &ys[..lanes], &iota[..lanes]);
         let Steps { edges: [one, other, middle], sums, references, terms: [of_one, of_other], .. } = steps;
         let (one, other, middle) = (&mut one[..lanes], &mut other[..lanes], &mut middle[..lanes]);
@@ -367,17 +320,39 @@ impl Depths<'_> {
                 (references[n], of_one[n], of_other[n]) = (z1, a1, b1);
                 continue;
             }
-            // One choice at a time, because compilers turn nested ones into branches.
-            let second = (x1 >= x0) & (x1 >= x2);
-            let first = x0 >= x2;
-            let (e_one, e_other) = (if first { e1 } else { e0 }, if first { e2 } else { e1 });
-            let (d_one, d_other) = (if first { a0 } else { a2 }, if first { b0 } else { b2 });
-            let reference = if first { z0 } else { z2 };
-            one[n] = if second { e0 } else { e_one };
-            other[n] = if second { e2 } else { e_other };
-            of_one[n] = if second { a1 } else { d_one };
-            of_other[n] = if second { b1 } else { d_other };
-            references[n] = if second { z1 } else { reference };
+            let of = choose([x0, x1, x2], [e0, e1, e2], self.z, self.differences);
+            (one[n], other[n], of_one[n], of_other[n], references[n]) = of;
+        }
+    }
+
+    /// Does the same as [`sums`](Self::sums) and [`terms`](Self::terms) in a triangle whose doubled area is at most 2^24, as that of a small one.
+    /// Nothing is cut off its edge functions, so all its pixels have the same reciprocal.
+    #[inline(always)]
+    fn uncut_terms<const FMA: bool, const ROW: bool>(
+        &self,
+        last: f64,
+        (xs, ys, iota): (&[i32], &[i32], &[f64]),
+        edges: [Line; 3],
+        area: i64,
+        steps: &mut Steps,
+    ) {
+        let reciprocal = bits_of_reciprocal(area);
+        let unit = power_of_two(area.leading_zeros() as i32 - 64 - 28);
+        let differences = self.differences.map(|[a, b]| [a * unit, b * unit]);
+        let lanes = xs.len();
+        let Steps { references, terms: [one, other], .. } = steps;
+        let (ys, iota, references) = (&ys[..lanes], &iota[..lanes], &mut references[..lanes]);
+        let (one, other) = (&mut one[..lanes], &mut other[..lanes]);
+        for n in 0..lanes {
+            let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+            let e0 = edges[0].at::<FMA, ROW>(x, y);
+            let e1 = edges[1].at::<FMA, ROW>(x, y);
+            let e2 = edges[2].at::<FMA, ROW>(x, y);
+            let powers = [power(e0), power(e1), power(e2)];
+            let (e_one, e_other, by_one, by_other, reference) = choose(powers, [e0, e1, e2], self.z, differences);
+            one[n] = cut24(e_one * reciprocal) * by_one;
+            other[n] = cut24(e_other * reciprocal) * by_other;
+            references[n] = reference;
         }
     }
 
@@ -467,6 +442,30 @@ impl Depths<'_> {
         let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
         word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
+}
+
+/// DEP-1: returns the edge numbers of the two vertices that are not the reference, the differences of their depths from its depth, and its
+/// depth.
+#[inline(always)]
+fn choose(
+    [x0, x1, x2]: [f64; 3],
+    [e0, e1, e2]: [f64; 3],
+    [z0, z1, z2]: [f64; 3],
+    [[a0, b0], [a1, b1], [a2, b2]]: [[f64; 2]; 3],
+) -> (f64, f64, f64, f64, f64) {
+    // One choice at a time, because compilers turn nested ones into branches.
+    let second = (x1 >= x0) & (x1 >= x2);
+    let first = x0 >= x2;
+    let (e_one, e_other) = (if first { e1 } else { e0 }, if first { e2 } else { e1 });
+    let (d_one, d_other) = (if first { a0 } else { a2 }, if first { b0 } else { b2 });
+    let reference = if first { z0 } else { z2 };
+    (
+        if second { e0 } else { e_one },
+        if second { e2 } else { e_other },
+        if second { a1 } else { d_one },
+        if second { b1 } else { d_other },
+        if second { z1 } else { reference },
+    )
 }
 
 /// Returns the power of two of the largest of three terms on a row, if all pixels between two ends have the same. The first term is

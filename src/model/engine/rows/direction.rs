@@ -94,16 +94,33 @@ impl CubeDirection {
         (8.0 * self.error * widest * range, range)
     }
 
+    /// Returns four functions that are all positive where directions meet a face.
+    #[inline(always)]
+    fn inside(&self, face: Face) -> [Line; 4] {
+        let [s, t, m] = face.components();
+        let (s, t, m) = (self.component(s), self.component(t), self.component(m));
+        [m.plus(s), m.less(1.0, s), m.plus(t), m.less(1.0, t)]
+    }
+
     /// Returns whether all directions meet a face. `least` gives a lower bound of a linear function in the batch.
     #[inline(always)]
     pub(super) fn stays(&self, face: Face, least: impl Fn(Line) -> f64) -> bool {
-        let [s, t, m] = face.components();
-        let (s, t, m) = (self.component(s), self.component(t), self.component(m));
+        let [a, b, c, d] = self.inside(face);
         let more = 4.0 * self.error;
-        (least(m.plus(s)) > more)
-            & (least(m.less(1.0, s)) > more)
-            & (least(m.plus(t)) > more)
-            & (least(m.less(1.0, t)) > more)
+        (least(a) > more) & (least(b) > more) & (least(c) > more) & (least(d) > more)
+    }
+
+    /// Estimates how many pixels of a row meet the first one's face, and so many rows above, too.
+    #[inline(always)]
+    pub(super) fn stretch<const FMA: bool>(&self, columns: f64, above: f64) -> usize {
+        let Some(face) = self.look::<FMA>(0.0) else { return 1 };
+        let mut last = columns;
+        for line in self.inside(face).into_iter().filter(|line| line.x < 0.0) {
+            let least = line.c - 4.0 * self.error - if line.y > 0.0 { line.y * above } else { 0.0 };
+            let end = least / -line.x;
+            last = if end < last { end } else { last };
+        }
+        last as usize + 1
     }
 
     #[inline(always)]
@@ -120,8 +137,9 @@ impl CubeDirection {
         (first == last).then_some(first)
     }
 
+    /// Returns the face that a pixel of the row meets, or `None` if it is too close to an edge.
     #[inline(always)]
-    fn look<const FMA: bool>(&self, x: f64) -> Option<Face> {
+    pub(super) fn look<const FMA: bool>(&self, x: f64) -> Option<Face> {
         let [a, b, c] = &self.lines;
         let direction = [a.at::<FMA, true>(x, 0.0), b.at::<FMA, true>(x, 0.0), c.at::<FMA, true>(x, 0.0)];
         let magnitudes = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
@@ -177,7 +195,9 @@ impl Setup<'_> {
             }
             Planes::Direction(planes, face) => {
                 let direction = CubeDirection::new(planes, local);
-                let face = if ROW && face.is_none() { direction.face::<FMA>(local.columns) } else { *face };
+                // Pixels beyond the triangle may meet another face than its vertices.
+                let open = face.is_none() || batch.reaches_beyond();
+                let face = if ROW && open { direction.face::<FMA>(local.columns) } else { *face };
                 match face {
                     Some(face) => {
                         self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, numbers, faces)
@@ -244,6 +264,13 @@ impl Setup<'_> {
         let direction = CubeDirection::new(planes, local);
         let [s, t, q] = direction.lines;
         let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
+        let mut reach = reach;
+        if ROW && batch.reaches_beyond() {
+            if widest <= 0.0 {
+                return false;
+            }
+            reach *= planes[2].terms(&local.real, local.columns, 0.0) * widest;
+        }
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
         let most = if width > height { width } else { height };
         // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.

@@ -4,18 +4,17 @@
 //! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::band::{batch, common, few};
-use super::boxes::{BoxCoverage, boxes, is_small};
+use super::band::common;
+use super::boxes::{BoxCoverage, batch_of, boxes, few, is_small};
 use super::kernels::Lanes256;
 use super::levels::MipFetches;
 use super::quads::Measure;
-use super::quotient::{self, IOTA};
-use super::setup::{PixelBatch, whole_steps};
+use super::setup::PixelBatch;
 use super::taps::{Footprints, Pair, PairsOfQuad};
 use super::triangle::{Interpolators, Varying};
-use super::{BLOCK, Isa, Reasons, Rows};
+use super::{BLOCK, Reasons, Rows};
+use crate::engine::TextureWords;
 use crate::engine::pixel::TriangleContext;
-use crate::engine::{Engine, RenderOptions, Renderer, TextureWords};
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -26,18 +25,22 @@ const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
 
 /// The random numbers of the tests.
-struct Random(crate::random::Random);
+pub(super) struct Random(crate::random::Random);
 
 impl Random {
-    fn below(&mut self, n: u64) -> u64 {
+    pub(super) fn seeded(seed: u64) -> Random {
+        Random(crate::random::Random::seeded(seed))
+    }
+
+    pub(super) fn below(&mut self, n: u64) -> u64 {
         self.0.below(n.into()) as u64
     }
 
-    fn unit(&mut self) -> f32 {
+    pub(super) fn unit(&mut self) -> f32 {
         (self.0.bits() >> 40) as f32 / (1_u64 << 24) as f32
     }
 
-    fn of<T: Copy>(&mut self, values: &[T]) -> T {
+    pub(super) fn of<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len() as u64) as usize]
     }
 }
@@ -45,7 +48,7 @@ impl Random {
 /// Returns a random triangle: tiny ones, slivers, ones far beyond the frame, with one w, with few values of w and coordinates, with steep
 /// w, with one texel for each pixel, and right triangles whose weights and coordinates have many ties. If `small` is set, all of these are
 /// tiny.
-fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
+pub(super) fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
     // Half of the triangles are tiny, because these have only few pixels each.
     let kind = r.below(18);
     let kind = if kind < 9 { kind } else { 0 };
@@ -145,7 +148,7 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
 
 /// The purpose of the third coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Third {
+pub(super) enum Third {
     Nothing,
     /// Layers of a volume, with an address mode.
     Layers(AddressMode),
@@ -156,7 +159,7 @@ enum Third {
 /// Returns a scene of triangles that read the diffuse colour, a plane texture, a cube map and a projected texture, and fog, and that test
 /// depth or w. All textures are filtered or none is. `cube` and `projected` give the latter two textures levels that are mixed. The first
 /// texture may be anisotropic. With a third coordinate, the last two textures are volumes or depths.
-fn scene(
+pub(super) fn scene(
     vertices: Vec<Vertex>,
     filter: Filter,
     depth: DepthFormat,
@@ -283,7 +286,7 @@ fn scene(
 }
 
 /// Returns options for coordinates on planes that lose a finite amount, or the default ones (INT-4t).
-fn options(finite: bool) -> PlanOptions {
+pub(super) fn options(finite: bool) -> PlanOptions {
     let mut options = PlanOptions::default();
     options.policies.choose("INT-4t", usize::from(finite));
     options
@@ -297,7 +300,7 @@ fn compare_small<const FMA: bool>(
     varying: &mut Varying,
     rows: &mut [Lanes256],
 ) -> bool {
-    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Vec::new());
+    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Default::default());
     super::depth::depths::<FMA, false>(context, batch, varying.depths());
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
@@ -347,7 +350,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             let place = context.sample_coordinates(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
-                interpolators.setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
+                interpolators.setup.defined_reads(batch, n, sampler, &mut wanted);
                 let of = |reads: &MipFetches| {
                     let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
                     (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
@@ -406,7 +409,7 @@ fn rows_interpolate_what_the_definition_does_elsewhere() {
 fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
-    let mut random = Random(crate::random::Random::seeded(seed));
+    let mut random = Random::seeded(seed);
     let (mut pixels, mut drawn, mut fours, mut round) = (0, 0, 0, 0_u64);
     let (mut coverage, mut reasons) = (BoxCoverage::default(), Reasons::default());
     while pixels < wanted || drawn < least_drawn {
@@ -447,7 +450,7 @@ fn rows_interpolate(seed: u64) {
         varying.reads.resize(compiled.samplers.len(), MipFetches::default());
         varying.footprints.resize(compiled.samplers.len(), Footprints::default());
         varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));
-        let mut planes = Vec::new();
+        let mut planes = Default::default();
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {
             let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
@@ -461,7 +464,7 @@ fn rows_interpolate(seed: u64) {
                     if coverage.count == 0 {
                         continue;
                     }
-                    let batch = batch(&coverage, 0);
+                    let batch = batch_of(compiled, &coverage, 0);
                     let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
                     let few = few(&coverage, 0);
                     let four = if round.is_multiple_of(4) {
@@ -489,10 +492,7 @@ fn rows_interpolate(seed: u64) {
                     interpolators.begin_row((i, j), end - i, compiled, &mut varying);
                     while i < end {
                         let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
-                        let lanes = whole_steps(count);
-                        let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
-                        let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
-                        let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0), runs: &[] };
+                        let batch = PixelBatch::row((i, j), count, 0);
                         if round.is_multiple_of(4) {
                             compare::<true, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
                         } else {
@@ -510,89 +510,4 @@ fn rows_interpolate(seed: u64) {
     println!(
         "{pixels} pixels, {drawn} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
     );
-}
-
-/// Returns a number of any magnitude, or one of a few common numbers.
-fn wild(r: &mut Random) -> f32 {
-    let sign = if r.below(2) == 0 { 1.0 } else { -1.0 };
-    match r.below(8) {
-        0 => r.of(&[0.0, -0.0, 1.0, -1.0, 0.5, 1e-45, 3e38, -3e38]),
-        1 => sign * (r.unit() * 1e30 + 1.0),
-        2 => sign * r.unit() * 1e-30,
-        3 => sign * 2_f32.powi(r.below(200) as i32 - 100) * (1.0 + r.unit()),
-        _ => sign * r.unit() * 2.0,
-    }
-}
-
-/// Returns the halves of a square that faces the viewer, whose coordinates are whole at pixels.
-fn square(r: &mut Random) -> [Vertex; 6] {
-    let (x, y, side) = (r.below(128) as f32, r.below(64) as f32, r.of(&[16.0, 64.0, 128.0]));
-    [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(right, down)| {
-        let (x, y) = (x + right * side, y + down * side);
-        let [mut vertex, ..] = triangle(r, true);
-        vertex.position = [x, y, 0.5, 1.0];
-        vertex.texture_coordinates = [[x / 64.0, y / 64.0, 0.0, 1.0]; 4];
-        vertex
-    })
-}
-
-/// Compares the numbers that vertices give to texture shaders, of any magnitude, and coordinates that stages move, on triangles of all
-/// kinds and on squares, of which the definition computes next to nothing.
-#[test]
-fn texture_shaders_take_what_the_definition_takes() {
-    use ShaderOperation as O;
-    let mut random = Random(crate::random::Random::seeded(0xd1b5_4a32_d192_ed03));
-    let bump = |matrix| O::BumpEnvironment { matrix, luminance: Some([1.0, 0.25]) };
-    let (far, hardly) = (bump([3.0, -2.0, 0.5, 8.0]), bump([-1e-13, -2e-13, 1e-13, 2e-13]));
-    let cull = O::CullFragment { drops_not_negative: [true, false, true, true] };
-    let programs = [
-        [O::Sample, far, O::DotProduct, O::DotProduct2D],
-        [O::Sample, O::PassThrough, O::PassThrough, O::PassThrough],
-        [O::Sample, cull, far, O::PassThrough],
-        [O::Sample, hardly, O::PassThrough, O::PassThrough],
-    ];
-    let (mut pixels, mut defined) = (0, 0);
-    for round in 0..32 {
-        let small = round % 2 == 0;
-        let mut vertices: Vec<Vertex> =
-            (0..if small { 1024 } else { 6 }).flat_map(|_| triangle(&mut random, small)).collect();
-        let squares = round % 3 == 1;
-        if squares {
-            vertices = (0..6).flat_map(|_| square(&mut random)).collect();
-        }
-        let program = programs[round / 2 % programs.len()];
-        let tame = random.below(2) == 0;
-        for (n, _) in program.iter().enumerate().filter(|(_, operation)| !squares && !operation.samples()) {
-            for vertex in &mut vertices {
-                vertex.texture_coordinates[n] =
-                    [0; 4].map(|_| if tame { random.unit() * 2.0 - 0.5 } else { wild(&mut random) });
-            }
-        }
-        let filter = random.of(&[Filter::Linear, Filter::Nearest]);
-        let mut scene =
-            scene(vertices, filter, DepthFormat::Z24S8, None, [false; 2], (Third::Nothing, round % 3 == 0, 1));
-        let draw = &mut scene.draws[0];
-        // A dropped fragment shows what was drawn before.
-        draw.depth_test = if round % 4 < 2 { None } else { draw.depth_test.take() };
-        let unit = |bound| if bound { draw.textures[0] } else { None };
-        draw.textures = program.map(|operation| unit(operation.samples()));
-        draw.texture_shader =
-            [0, 1, 2, 3].map(|n| ShaderStage { operation: program[n], ..ShaderStage::conventional(n, true) });
-        draw.texture_shader[3].previous = 0;
-        draw.texture_shader[2].previous = 0;
-        let plan = Plan::compile(&scene, &options(round % 5 < 2)).unwrap();
-        let draw_by =
-            |engine, isa| Renderer::new(&plan, &RenderOptions { engine, isa, ..RenderOptions::default() }).render();
-        let (wanted, _) = draw_by(Engine::Scalar, None);
-        for isa in Isa::ALL {
-            let (got, statistics) = draw_by(Engine::Fast, Some(*isa));
-            assert!(got == wanted, "{isa:?}, {program:?}, round {round}: {:?}", scene.draws[0].vertices);
-            let drawn = statistics.shaded_pixels.iter().sum::<u64>();
-            let by_definition = statistics.defined_pixels.iter().map(|(_, count)| *count).sum::<u64>();
-            assert!(!squares || by_definition * 20 < drawn, "{by_definition} of {drawn}, {program:?}, round {round}");
-            (pixels, defined) = (pixels + drawn, defined + by_definition);
-        }
-    }
-    println!("{pixels} pixels, {defined} of them by the definition");
-    assert!(defined < pixels / 2);
 }

@@ -1,13 +1,15 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
-use super::BLOCK;
 use super::filter::{Vectors, filter, filter_half, filter_one};
 use super::kernels::{LANES, Lanes256, PerLane};
 use super::levels::MipFetches;
 use super::store;
 use super::table::{Axis, Table, Texels};
 use super::taps::Pair;
+use super::triangle::Varying;
+use super::{BLOCK, Job, Sampler};
 use crate::number::Lane;
+use crate::state::MipFilter;
 use crate::texture::filter::lerp;
 
 /// Scratch space of a fetch. Aligned, because vectors are stored and soon loaded again.
@@ -20,7 +22,7 @@ pub(super) struct Workspace {
     lower: [[u32; 2]; BLOCK],
     /// Channels of the second level.
     next: [[i16; BLOCK]; 4],
-    /// 16-bit halves of the first and of the second level.
+    /// 16-bit halves: that of A and R, and that of G and B.
     halves: [[i32; BLOCK]; 2],
 }
 
@@ -35,6 +37,43 @@ impl Default for Workspace {
             halves: [[0; BLOCK]; 2],
         }
     }
+}
+
+/// The sampler whose entries are in a workspace, and the pitch of its table.
+pub(super) type Found = Option<(usize, i32)>;
+
+/// Samples the unit of a sampler: its levels, its taps, or one texel or footprint of each pixel. Returns what is `found` in the workspace
+/// then.
+#[inline(always)]
+pub(super) fn sample_unit(
+    job: Job<'_>,
+    n: usize,
+    found: Found,
+    varying: &mut Varying,
+    work: &mut Workspace,
+    rows: &mut [Lanes256],
+) -> Found {
+    let sampler = &job.compiled.samplers[n];
+    let Some(table) = &sampler.table else { return found };
+    let (signed, wanted) = (sampler.signed, job.compiled.textures[sampler.unit]);
+    // Samplers that share coordinates also have the same axes.
+    let at = sampler.shares.unwrap_or(n);
+    if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
+        let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
+        sample_levels(job.vectors, table, reads, both, signed, wanted, work, rows);
+        return None;
+    }
+    if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
+        sample_taps(job.vectors, table, &varying.coordinates[n], &footprints.pairs, signed, wanted, work, rows);
+        return None;
+    }
+    let here = Some((at, table.pitch));
+    if found != here {
+        let faces = sampler.has_images().then_some(&varying.faces[n]);
+        locate(table, &mut varying.coordinates[at], faces, work);
+    }
+    sample(job.vectors, table, &varying.coordinates[at], &varying.references[n], signed, wanted, work, rows);
+    here
 }
 
 /// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
@@ -90,8 +129,13 @@ fn texels(
     work: &mut Workspace,
     rows: &mut [Lanes256],
 ) -> bool {
-    let Workspace { entries, texels: found, upper, lower, halves: [half, _], .. } = work;
     let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
+    if let Texels::Wide(texels, linear) = &table.texels {
+        work.filter_halves(texels, *linear, table.pitch, (u, v));
+        bytes_of_halves(&work.halves, signed, wanted, rows);
+        return false;
+    }
+    let Workspace { entries, texels: found, upper, lower, .. } = work;
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // Channels that are not wanted go to the spare rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
@@ -108,17 +152,8 @@ fn texels(
                 _ => unpack::<4>(found, red, green, blue, alpha),
             }
         }
-        // Done by `sample_levels`.
-        Texels::Levels(_) | Texels::WideLevels(_) => {}
-        Texels::Wide(texels, linear) => {
-            fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-            let kept = if *linear { -1 } else { 0 };
-            filter_half::<16>(upper, lower, (u, v), kept, half);
-            bytes(half, signed[3], alpha, red);
-            filter_half::<0>(upper, lower, (u, v), kept, half);
-            bytes(half, signed[1], green, blue);
-            return false;
-        }
+        // Done above, and by `sample_levels`.
+        Texels::Wide(..) | Texels::Levels(_) | Texels::WideLevels(_) => {}
         Texels::Depths(texels, function) => {
             fetch(texels, entries, found);
             let mut passed = [true; BLOCK];
@@ -155,7 +190,7 @@ fn texels(
 /// TEX-17: samples all taps of the pixels, and adds them with their weights.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-pub(super) fn sample_taps(
+fn sample_taps(
     vectors: Vectors,
     table: &Table,
     at: &[PerLane<i32>; 2],
@@ -165,7 +200,50 @@ pub(super) fn sample_taps(
     work: &mut Workspace,
     rows: &mut [Lanes256],
 ) {
+    if let Texels::Wide(texels, linear) = &table.texels {
+        let mut sums = [[0_i32; BLOCK]; 2];
+        each_tap(table, at, pairs, work, |[u, v], weights, work| {
+            let (Some(u), Some(v)) = (u.first_chunk(), v.first_chunk()) else { return };
+            work.filter_halves(texels, *linear, table.pitch, (u, v));
+            for (sums, half) in sums.iter_mut().zip(&work.halves) {
+                for n in 0..BLOCK {
+                    sums[n] += half[n] * i32::from(weights[n]);
+                }
+            }
+        });
+        let halves = sums.map(|sums| sums.map(|sum| (sum + 128) >> 8));
+        bytes_of_halves(&halves, signed, wanted, rows);
+        return;
+    }
     let mut sums = [[0_u16; BLOCK]; 4];
+    each_tap(table, at, pairs, work, |at, weights, work| {
+        texels(vectors, table, at, &NO_REFERENCES, signed, wanted, work, rows);
+        for (sums, wanted) in sums.iter_mut().zip(wanted) {
+            let Some(wanted) = wanted else { continue };
+            let channel = rows[usize::from(wanted)].block();
+            for n in 0..BLOCK {
+                sums[n] += channel[n] as u16 * weights[n];
+            }
+        }
+    });
+    for (sums, wanted) in sums.iter().zip(wanted) {
+        let Some(wanted) = wanted else { continue };
+        for (out, sum) in rows[usize::from(wanted)].block_mut().iter_mut().zip(sums) {
+            *out = ((sum + 128) >> 8) as i16;
+        }
+    }
+    load(signed, wanted, rows);
+}
+
+/// Locates one tap of all pixels after the other. Hands its coordinates and weights over.
+#[inline(always)]
+fn each_tap(
+    table: &Table,
+    at: &[PerLane<i32>; 2],
+    pairs: &[Pair],
+    work: &mut Workspace,
+    mut take: impl FnMut(&[PerLane<i32>; 2], &[u16; BLOCK], &mut Workspace),
+) {
     for Pair { offsets, weights } in pairs {
         let Some(weights) = weights.first_chunk::<BLOCK>() else { return };
         for side in [1, -1] {
@@ -176,40 +254,35 @@ pub(super) fn sample_taps(
                 }
             }
             locate(table, &mut at, None, work);
-            texels(vectors, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
-            for (sums, wanted) in sums.iter_mut().zip(wanted) {
-                let Some(wanted) = wanted else { continue };
-                let channel = rows[usize::from(wanted)].block();
-                for n in 0..BLOCK {
-                    sums[n] += channel[n] as u16 * weights[n];
-                }
-            }
+            take(&at, weights, work);
         }
     }
-    for (sums, wanted) in sums.iter().zip(wanted) {
-        let Some(wanted) = wanted else { continue };
-        for (out, sum) in rows[usize::from(wanted)].block_mut().iter_mut().zip(sums) {
-            *out = ((sum + 128) >> 8) as i16;
-        }
-    }
-    load(signed, wanted, rows);
 }
 
 /// References for units that do not compare.
 static NO_REFERENCES: PerLane<u32> = [0; LANES];
 
-/// KEY-1: drops lanes whose single texel equals the key in the compared bits.
+/// KEY-1: drops lanes whose single texel, on the only level that is read, equals the sampler's key in the compared bits.
 #[inline(always)]
-pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut [bool; BLOCK]) {
-    for (alive, texel) in alive.iter_mut().zip(&work.texels) {
-        *alive &= texel & mask != key;
+pub(super) fn drop_keyed(sampler: &Sampler, work: &Workspace, alive: &mut [bool]) {
+    let Some((key, mask)) = sampler.key else { return };
+    let differs = |texel: u32| texel & mask != key;
+    // Separate loops, because compilers do not take the choice out of one.
+    if sampler.mixes {
+        for (alive, [texel, _]) in alive.iter_mut().zip(&work.upper) {
+            *alive &= differs(*texel);
+        }
+    } else {
+        for (alive, texel) in alive.iter_mut().zip(&work.texels) {
+            *alive &= differs(*texel);
+        }
     }
 }
 
 /// TEX-9: samples one level, or mixes two if `both` is set.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-pub(super) fn sample_levels(
+fn sample_levels(
     vectors: Vectors,
     table: &Table,
     reads: &MipFetches,
@@ -224,32 +297,27 @@ pub(super) fn sample_levels(
         Texels::WideLevels(texels) => (texels, true),
         _ => return,
     };
-    let Workspace { entries, upper, lower, next, halves, .. } = work;
+    let Some(weights) = reads.weights.first_chunk::<BLOCK>() else { return };
+    if is_wide {
+        let Some(at) = reads.of_level(0, &mut work.entries) else { return };
+        work.filter_halves(texels, true, table.pitch, at);
+        if both {
+            let nearer = work.halves;
+            let Some(at) = reads.of_level(1, &mut work.entries) else { return };
+            work.filter_halves(texels, true, table.pitch, at);
+            for (half, nearer) in work.halves.iter_mut().zip(&nearer) {
+                for n in 0..BLOCK {
+                    half[n] = lerp(nearer[n], half[n], i32::from(weights[n]));
+                }
+            }
+        }
+        bytes_of_halves(&work.halves, signed, wanted, rows);
+        return;
+    }
+    let Workspace { entries, upper, lower, next, .. } = work;
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let Some(weights) = reads.weights.first_chunk::<BLOCK>() else { return };
-    if is_wide {
-        for (lane, signed) in [(0, signed[3]), (1, signed[1])] {
-            for which in 0..1 + usize::from(both) {
-                let Some((u, v)) = reads.of_level(which, entries) else { return };
-                fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-                if lane == 0 {
-                    filter_half::<16>(upper, lower, (u, v), -1, &mut halves[which]);
-                } else {
-                    filter_half::<0>(upper, lower, (u, v), -1, &mut halves[which]);
-                }
-            }
-            let [half, next] = &mut *halves;
-            if both {
-                for n in 0..BLOCK {
-                    half[n] = lerp(half[n], next[n], i32::from(weights[n]));
-                }
-            }
-            if lane == 0 { bytes(half, signed, alpha, red) } else { bytes(half, signed, green, blue) }
-        }
-        return;
-    }
     let Some((u, v)) = reads.of_level(0, entries) else { return };
     fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
     filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha);
@@ -357,13 +425,33 @@ fn fetch_footprints(
     }
 }
 
-/// TEX-1, TEX-18: splits halves into bytes.
+impl Workspace {
+    /// Filters both 16-bit halves of the footprints at the entries, the one of A and R first.
+    #[inline(always)]
+    fn filter_halves(&mut self, texels: &[u32], linear: bool, pitch: i32, at: (&[i32; BLOCK], &[i32; BLOCK])) {
+        let Workspace { entries, upper, lower, halves: [first, second], .. } = self;
+        fetch_footprints(texels, pitch as usize, entries, upper, lower);
+        let kept = if linear { -1 } else { 0 };
+        filter_half::<16>(upper, lower, at, kept, first);
+        filter_half::<0>(upper, lower, at, kept, second);
+    }
+}
+
+/// TEX-1, TEX-18: splits halves into bytes: A and R, G and B.
 #[inline(always)]
-fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [i16; BLOCK]) {
-    for n in 0..BLOCK {
-        low[n] = (half[n] & 255) as i16;
-        let byte = (half[n] >> 8) as i16;
-        high[n] = if signed { 2 * (byte - 128) } else { byte };
+fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
+    for (half, [high, low]) in halves.iter().zip([[3, 0], [1, 2]]) {
+        if let Some(slot) = wanted[low] {
+            for (out, half) in rows[usize::from(slot)].block_mut().iter_mut().zip(half) {
+                *out = (half & 255) as i16;
+            }
+        }
+        if let Some(slot) = wanted[high] {
+            for (out, half) in rows[usize::from(slot)].block_mut().iter_mut().zip(half) {
+                let byte = (half >> 8) as i16;
+                *out = if signed[high] { 2 * (byte - 128) } else { byte };
+            }
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
-use super::band::{self, Block, Entered};
+use super::band::{self, Block, CHUNK, Entered};
 use super::boxes::BoxCoverage;
 use super::compiled::{CompiledDraw, Job};
 use super::filter::Vectors;
@@ -48,7 +48,7 @@ impl Isa {
 /// number of loops in the same function.
 ///
 /// If the machine lacks the set, parts do nothing and `run` returns `None`. The constant tells each part whether the set has fused
-/// multiply-add. All such sets can also store single lanes.
+/// multiply-add.
 macro_rules! text {
     ({ $($version:ident: $target:literal, $wide:literal;)* } $parts:tt) => {
         text!(@parts $parts);
@@ -108,6 +108,8 @@ text! {
     {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        /// Calls [`band::select`] with this instruction set.
+        fn select(job: Job<'_>, range: (usize, usize), rows: (i64, i64), seen: &mut [u32; CHUNK]) -> usize;
         /// Calls [`band::enter`] with this instruction set.
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
         /// Calls [`band::cover`] with this instruction set.
@@ -116,6 +118,8 @@ text! {
         fn plain(context: &mut TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::coverage`] with this instruction set.
         fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        /// Calls [`band::in_box`] with this instruction set.
+        fn in_box(interpolators: &Interpolators<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row`] with this instruction set.
         fn row(interpolators: &Interpolators<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row_attributes`] with this instruction set.

@@ -1,10 +1,10 @@
 //! TEX-9 to TEX-11 on rows: the level of detail of each pixel, and the entries on its levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::kernels::LANES;
-use super::kernels::PerLane;
+use super::direction::CubeDirection;
+use super::kernels::{LANES, PerLane};
 use super::planes::Plane;
-use super::quads::{Known, Quads, floor, parted};
+use super::quads::{BaseLevel, Known, Quads, floor, parted};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
@@ -14,6 +14,7 @@ use crate::state::Filter;
 use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
+use std::ops::Range;
 
 /// Fetches of a block from a texture with levels.
 #[derive(Clone, Debug)]
@@ -73,7 +74,7 @@ impl Setup<'_> {
     }
 
     /// Computes all fetches of a batch for a unit with levels. `floors` are the coordinates on level 0, if they are known and
-    /// [shifted](Self::shift_with).
+    /// [shifted](Self::shift_with). A batch that meets several faces of a cube map is divided into parts that meet one, row by row.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn levels<const FMA: bool, const ROW: bool>(
@@ -86,29 +87,86 @@ impl Setup<'_> {
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
     ) {
-        let Some(table) = &sampler.table else { return };
-        let unit = &self.context.draw.units[sampler.index];
-        let Some(base) = self.base_level::<FMA, ROW>(sampler, planes, local) else {
+        if !ROW && let Some(base) = self.base_level::<FMA, false>(batch, (sampler, planes), local) {
+            self.levels_by::<FMA, false>(batch, sampler, &base, floors, local, short, (quads, placing), reads);
+            return;
+        }
+        if !ROW && !matches!(planes, Planes::Direction(..)) {
             for n in 0..batch.count {
-                self.defined_reads(batch, n, sampler, table, reads);
+                self.defined_reads(batch, n, sampler, reads);
             }
             return;
-        };
+        }
+        let row = [(batch.first.1, batch.first.0, batch.count)];
+        let (runs, mut lane) = (if ROW { &row } else { batch.runs }, batch.lane);
+        for (j, i, count) in runs.iter().copied() {
+            let row = if ROW { batch } else { PixelBatch::row((i, j), count, lane) };
+            let mut done = 0;
+            while done < count {
+                let mut part = row.part(done, count - done);
+                let proved = loop {
+                    let own = (part.count < batch.count).then(|| self.local::<FMA, true>(part, true));
+                    let local = own.as_ref().unwrap_or(local);
+                    if let Some(base) = self.base_level::<FMA, true>(part, (sampler, planes), local) {
+                        let work = (&mut *quads, &mut *placing);
+                        self.levels_by::<FMA, true>(part, sampler, &base, floors, local, short, work, reads);
+                        break true;
+                    }
+                    let Planes::Direction(planes, _) = planes else { break false };
+                    let (last, odd_row) = (part.at.last.into(), (j & 1) as f64);
+                    let stretch = CubeDirection::new(planes, local).stretch::<FMA>(last, odd_row);
+                    if stretch == part.count {
+                        // The pixels of the first quad, of which another one can meet another face.
+                        let odd = part.first.0 & 1;
+                        part = row.part(done, part.count.min(2 - odd as usize));
+                        break false;
+                    }
+                    part = row.part(done, stretch);
+                };
+                for n in 0..if proved { 0 } else { part.count } {
+                    self.defined_reads(part, n, sampler, reads);
+                }
+                done += part.count;
+            }
+            lane += count;
+        }
+        if !ROW {
+            quads.begin_box(batch);
+        }
+    }
+
+    /// Computes all fetches of a batch from the coordinates of level 0.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+    fn levels_by<const FMA: bool, const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        sampler: &Sampler,
+        base: &BaseLevel<'_>,
+        floors: Option<[&[i32]; 2]>,
+        local: &BatchSetup,
+        short: &Short,
+        (quads, placing): (&mut Quads, &mut Placing),
+        reads: &mut MipFetches,
+    ) {
+        let Some(table) = &sampler.table else { return };
+        let unit = &self.context.draw.units[sampler.index];
         let lanes = batch.at.x.len();
-        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &base), &local.e, quads, &mut reads.known);
+        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
         let Placing { at, floors: [u, v], lods, levels, close } = placing;
         spread.hand_out(quads, &reads.known.each, batch.count, &mut lods[..lanes]);
-        let ranges = choose(unit, lanes, lods, levels, &mut reads.weights[batch.lanes()]);
+        let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
         let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
         if floors.is_none() {
-            let settled = [0, 1].map(|axis| {
+            // The smallest level has the largest shifts.
+            let (last, mut settled) = (shifts(ranges[1][1]), [(0.0, 0.0); 2]);
+            for axis in 0..2 {
                 let (gap, shared) = base.gaps[axis];
                 // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
-                let floors =
-                    (ranges[0][0]..=ranges[1][1]).map(|level| shifts(level)[axis]).filter(|shift| *shift > shared);
-                parted(gap, base.off + floors.max().map_or(0.0, |shift| base.floors * f64::from(1 << shift)))
-            });
+                let floors = if last[axis] > shared { base.floors * f64::from(1 << last[axis]) } else { 0.0 };
+                settled[axis] = parted(gap, base.off + floors);
+            }
             let lines = [base.along, base.down, base.denominator];
             match base.losses {
                 Some(losses) => {
@@ -121,25 +179,12 @@ impl Setup<'_> {
         }
         let any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
         let [u, v] = floors.unwrap_or([u, v]);
-        let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
-        for (which, [low, high]) in ranges.into_iter().enumerate() {
-            let ([to_u, to_v], entries) = (&mut reads.coordinates[which], &mut reads.entries[which]);
-            let (to_u, to_v) = (&mut to_u[batch.lanes()], &mut to_v[batch.lanes()]);
-            let entries = &mut entries[batch.lanes()];
-            for level in low..=high {
-                let (placed, shifts) = (table.placed(level as usize, base.face as u32), shifts(level));
-                if level == low {
-                    places::<true>(&placed, filters, shifts, (&lods[..lanes], &[]), level, u, v, to_u, to_v, entries);
-                } else {
-                    let of = (&lods[..lanes], &levels[which][..lanes]);
-                    places::<false>(&placed, filters, shifts, of, level, u, v, to_u, to_v, entries);
-                }
-            }
-        }
+        reads.place_all((unit, table, base.face as u32), batch.lanes(), ranges, lods, levels, u, v);
+        let filters = Taken::of_unit(unit);
         let count = if any_close { batch.count } else { 0 };
         for n in (0..count).filter(|n| placing.close[*n] < 0) {
             let Some(planes) = base.planes else {
-                self.defined_reads(batch, n, sampler, table, reads);
+                self.defined_reads(batch, n, sampler, reads);
                 continue;
             };
             for which in 0..2 {
@@ -167,21 +212,15 @@ impl Setup<'_> {
 
     /// Computes the fetches of a lane by the definition.
     #[inline(never)]
-    pub(super) fn defined_reads(
-        &self,
-        batch: PixelBatch<'_>,
-        n: usize,
-        sampler: &Sampler,
-        table: &Table,
-        reads: &mut MipFetches,
-    ) {
+    pub(super) fn defined_reads(&self, batch: PixelBatch<'_>, n: usize, sampler: &Sampler, reads: &mut MipFetches) {
+        let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
         self.count_defined(Reason::Levels, 1);
         let (sample, lane) = (self.sample(batch, n), batch.lane + n);
         let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
         let (level, next, weight) = lod::levels(unit, lod.max(0));
-        let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
+        let filters = Taken::of_unit(unit);
         for (which, level) in [level as usize, next as usize].into_iter().enumerate() {
             let at = place.on(&unit.levels[level]).map(|c| c.value as i32);
             reads.place(which, lane, &table.placed(level, place.face() as u32), filters, lod, at);
@@ -191,6 +230,42 @@ impl Setup<'_> {
 }
 
 impl MipFetches {
+    /// Places lanes on the levels that [`choose`] found. `u` and `v` are the coordinates on level 0.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, each apart")]
+    pub(super) fn place_all(
+        &mut self,
+        (unit, table, face): (&PlannedUnit, &Table, u32),
+        lanes: Range<usize>,
+        ranges: [[i32; 2]; 2],
+        lods: &PerLane<i32>,
+        levels: &[PerLane<i32>; 2],
+        u: &[i32],
+        v: &[i32],
+    ) {
+        let (filters, lods) = (Taken::of_unit(unit), &lods[..lanes.len()]);
+        for (which, [low, high]) in ranges.into_iter().enumerate() {
+            let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
+            let (to_u, to_v) = (&mut to_u[lanes.clone()], &mut to_v[lanes.clone()]);
+            let entries = &mut entries[lanes.clone()];
+            if high - low >= SCATTERED {
+                let levels = &levels[which][..lanes.len()];
+                scattered((unit, table, face), filters, (lods, levels), u, v, to_u, to_v, entries);
+                continue;
+            }
+            for level in low..=high {
+                let placed = table.placed(level as usize, face);
+                let shifts = unit.plane_shifts(&unit.levels[level as usize]);
+                if level == low {
+                    places::<true>(&placed, filters, shifts, (lods, &[]), level, u, v, to_u, to_v, entries);
+                } else {
+                    let of = (lods, &levels[which][..lanes.len()]);
+                    places::<false>(&placed, filters, shifts, of, level, u, v, to_u, to_v, entries);
+                }
+            }
+        }
+    }
+
     /// Places a lane on a level, the nearer or the next one, at the coordinates that it has there.
     fn place(&mut self, which: usize, lane: usize, placed: &Placed, filters: [Taken; 2], lod: i32, [u, v]: [i32; 2]) {
         let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
@@ -245,15 +320,15 @@ fn floor_and_proof(at: f64, (up, off): (f64, f64)) -> (i32, i32) {
 /// TEX-9: computes the levels and the weight of each lane. `lods` become biased. Returns the least and the largest first level, and the
 /// least and the largest second level.
 #[inline(always)]
-fn choose(
+pub(super) fn choose(
     unit: &PlannedUnit,
-    lanes: usize,
     lods: &mut PerLane<i32>,
     [levels, nexts]: &mut [PerLane<i32>; 2],
     weights: &mut [u16],
 ) -> [[i32; 2]; 2] {
     let selection = lod::Selection::from_unit(unit);
-    let (lods, weights) = (&mut lods[..lanes], &mut weights[..lanes]);
+    let lanes = weights.len();
+    let lods = &mut lods[..lanes];
     let (levels, nexts) = (&mut levels[..lanes], &mut nexts[..lanes]);
     let mut ends = [i32::MAX, i32::MIN];
     for n in 0..lanes {
@@ -275,6 +350,11 @@ struct Taken {
 }
 
 impl Taken {
+    /// Returns what the magnification and the minification filter of a unit change.
+    fn of_unit(unit: &PlannedUnit) -> [Taken; 2] {
+        [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)]
+    }
+
     fn by(filter: Filter) -> Taken {
         match filter {
             Filter::Linear => Taken { less: 128, kept: -1 },
@@ -284,14 +364,64 @@ impl Taken {
     }
 }
 
+/// If lanes lie on more levels, each one looks its level up. Otherwise all lanes are placed on each level.
+const SCATTERED: i32 = 3;
+
+/// Number of levels of the largest side, rounded up to a power of two.
+const MAX_LEVELS: usize = 16;
+
+/// Computes the entry of each lane on its own level.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+fn scattered(
+    (unit, table, face): (&PlannedUnit, &Table, u32),
+    filters: [Taken; 2],
+    (lods, levels): (&[i32], &[i32]),
+    u: &[i32],
+    v: &[i32],
+    to_u: &mut [i32],
+    to_v: &mut [i32],
+    entries: &mut [i32],
+) {
+    let mut all = [(table.placed(0, face), [0; 2]); MAX_LEVELS];
+    for (n, (of_level, level)) in all.iter_mut().zip(&unit.levels).enumerate() {
+        *of_level = (table.placed(n, face), unit.plane_shifts(level));
+    }
+    let lanes = lods.len();
+    let (u, v, levels) = (&u[..lanes], &v[..lanes], &levels[..lanes]);
+    let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
+    for n in 0..lanes {
+        let (placed, shifts) = &all[levels[n] as usize % MAX_LEVELS];
+        (to_u[n], to_v[n], entries[n]) = entry(placed, filters, *shifts, lods[n], [u[n], v[n]]);
+    }
+}
+
+/// Returns the coordinates for the weights of a lane on a level, and the entry: that of the texel, or of the upper left texel of the
+/// footprint. Coordinates are not reduced to the period yet.
+#[inline(always)]
+fn entry(
+    placed: &Placed,
+    [mag, min]: [Taken; 2],
+    [shift_u, shift_v]: [u32; 2],
+    lod: i32,
+    [u, v]: [i32; 2],
+) -> (i32, i32, i32) {
+    let [columns, rows] = &placed.axes;
+    let less = if lod <= 0 { mag.less } else { min.less };
+    let kept = if lod <= 0 { mag.kept } else { min.kept };
+    let u = ((u >> shift_u).wrapping_sub(less) & kept).max(columns.low).min(columns.high);
+    let v = ((v >> shift_v).wrapping_sub(less) & kept).max(rows.low).min(rows.high);
+    (u, v, rows.entry(v).wrapping_mul(placed.pitch).wrapping_add(columns.entry(u)).wrapping_add(placed.first))
+}
+
 /// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
 /// texel of the footprint; and the coordinates for the weights. Without `ALL`, lanes of other levels keep what they have.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn places<const ALL: bool>(
     placed: &Placed,
-    [mag, min]: [Taken; 2],
-    [shift_u, shift_v]: [u32; 2],
+    filters: [Taken; 2],
+    shifts: [u32; 2],
     (lods, levels): (&[i32], &[i32]),
     level: i32,
     u: &[i32],
@@ -310,11 +440,7 @@ fn places<const ALL: bool>(
         *to = if ALL { from } else { *to ^ ((*to ^ from) & -i32::from(levels[n] == level)) };
     };
     for n in 0..lanes {
-        let less = if lods[n] <= 0 { mag.less } else { min.less };
-        let kept = if lods[n] <= 0 { mag.kept } else { min.kept };
-        let u = ((u[n] >> shift_u).wrapping_sub(less) & kept).max(columns.low).min(columns.high);
-        let v = ((v[n] >> shift_v).wrapping_sub(less) & kept).max(rows.low).min(rows.high);
-        let entry = rows.entry(v).wrapping_mul(pitch).wrapping_add(columns.entry(u)).wrapping_add(first);
+        let (u, v, entry) = entry(placed, filters, shifts, lods[n], [u[n], v[n]]);
         put(&mut to_u[n], u, n);
         put(&mut to_v[n], v, n);
         put(&mut entries[n], entry, n);

@@ -6,7 +6,7 @@
 //! | `compiled.rs` | a draw compiled to rows, and its samplers |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `setup.rs` | linear functions across a triangle and a batch of its pixels, and their quotients: estimated, proved, corrected |
-//! | `direction.rs`, `depth.rs`, `fog.rs`, `color.rs` | interpolators of one kind of number each |
+//! | `direction.rs`, `depth.rs`, `reciprocal.rs`, `fog.rs`, `color.rs` | interpolators of one kind of number each |
 //! | `triangle.rs` | everything that varies, for a batch |
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
@@ -16,6 +16,8 @@
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
+//! | `moved.rs` | coordinates that bump stages move |
+//! | `dependent.rs` | levels of detail of dependent reads, from the lanes of quads |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `boxes.rs`, `band.rs` | triangles to batches to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
@@ -30,6 +32,7 @@ mod color;
 mod compiled;
 mod dda;
 mod definition;
+mod dependent;
 mod depth;
 mod direction;
 mod dot;
@@ -43,12 +46,18 @@ pub(crate) mod isa;
 mod kernels;
 mod levels;
 mod lods;
+mod moved;
 mod node;
 mod planes;
 mod quads;
 mod quotient;
+mod reciprocal;
 mod setup;
 mod shader;
+#[cfg(test)]
+mod shader_tests;
+#[cfg(test)]
+mod share_tests;
 mod short;
 mod small;
 mod stages;
@@ -203,6 +212,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         if samples_pixels {
             compiled.samplers.clear();
         }
+        compiled.completes_quads = shader.as_ref().is_some_and(|shader| shader.completes_quads);
         compiled.shader = shader.map(Arc::new);
     }
     // Each stage of a texture shader has its own coordinates.
@@ -255,9 +265,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
     for (index, unit) in draw.units.iter().enumerate() {
         let axes = table::axes(unit)?;
         let key = unit.state.color_key.filter(|_| unit.state.kills()).map(|key| table::entry_of_key(unit, &key));
-        if key.is_some() && (draw.shader.is_some() || unit.needs_lod()) {
-            return None;
-        }
+        let depends = draw.shader.is_some() && shader::is_dependent(&unit.stage.operation);
         let folds = draw.shader.is_none();
         let table_key = Key::from_unit(unit, folds);
         let texture = &plan.textures[unit.state.texture];
@@ -284,7 +292,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             signed: [0, 1, 2, 3].map(|n| crate::texture::chain::holds_double(unit, n)),
             mixes: unit.needs_lod(),
             key,
-            depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
+            depends,
             pairs: unit.state.anisotropy as usize / 2,
             third: None,
             shares: None,
@@ -292,7 +300,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
         };
         sampler.third = third::purpose(unit, &sampler);
         // Dependent reads have no r.
-        if sampler.depends && sampler.third.is_some() || draw.shader.is_some() && sampler.pairs > 0 {
+        if depends && sampler.third.is_some() {
             return None;
         }
         samplers.push(sampler);

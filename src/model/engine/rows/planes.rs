@@ -49,13 +49,6 @@ impl Plane {
         [Plane::new(triangle, inverse, g[0]), Plane::new(triangle, inverse, g[1]), Plane::new(triangle, inverse, g[2])]
     }
 
-    /// Sets up a plane of floating-point numbers at the vertices. Returns the plane, and the factor of its quotient by D.
-    pub(super) fn number(triangle: &Triangle, inverse: &[f64; 3], values: [f32; 3]) -> (Plane, f64) {
-        let (g, exponent) = triangle.attribute(values).numbers();
-        // Far from the limits of double precision.
-        (Plane::new(triangle, inverse, g), f64::from_bits(((exponent + 1023).max(0) as u64) << 52))
-    }
-
     /// Sets up the plane of 256 b_k.
     #[inline(always)]
     pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {
@@ -107,7 +100,7 @@ impl Plane {
     /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
     #[inline(always)]
     pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.real[0].abs() * e[0] + self.real[1].abs() * e[1] + self.real[2].abs() * e[2];
+        let at = self.real[0].abs() * e[0].abs() + self.real[1].abs() * e[1].abs() + self.real[2].abs() * e[2].abs();
         at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
     }
 
@@ -135,6 +128,9 @@ impl Plane {
         Some((g0 * e[0] + g1 * e[1] + g2 * e[2], g0 * a0 + g1 * a1 + g2 * a2))
     }
 }
+
+/// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.
+const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// The function sum g_k E_k in double precision, where the g_k are not floored.
 #[derive(Clone, Copy, Debug, Default)]
@@ -175,25 +171,8 @@ impl RealPlane {
     /// Returns the sum of the magnitudes of all terms of [`line`](Self::line), so many columns and rows around the pixel.
     #[inline(always)]
     pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.g[0].abs() * e[0] + self.g[1].abs() * e[1] + self.g[2].abs() * e[2];
+        let at = self.g[0].abs() * e[0].abs() + self.g[1].abs() * e[1].abs() + self.g[2].abs() * e[2].abs();
         at + self.sizes[0] * columns + self.sizes[1] * rows
-    }
-
-    /// Returns the number of fraction bits of the quotients by D if doubles hold all of them and all intermediate results exactly. D is then
-    /// a power of two, as it is on squares that face the viewer.
-    pub(super) fn fraction_bits(&self, triangle: &Triangle) -> Option<i32> {
-        let ([p, ..], area) = (triangle.p, triangle.doubled_area);
-        // All P are equal if the reciprocal is exact.
-        if !triangle.exact_reciprocal || p.count_ones() != 1 {
-            return None;
-        }
-        let exponent = |n: f64| (n.to_bits() >> 52 & 0x7ff) as i32 - 1023;
-        let lowest = |n: &f64| exponent(*n) - 52 + (n.to_bits() | 1 << 52).trailing_zeros() as i32;
-        let largest = self.g[0].abs().max(self.g[1].abs()).max(self.g[2].abs());
-        let last = self.g.iter().filter(|n| **n != 0.0).map(lowest).min().unwrap_or(0);
-        // Sums of three terms, along two axes.
-        let bits = exponent(largest) + area.ilog2() as i32 + 4 - last;
-        (bits <= 53).then(|| (p.ilog2() + area.ilog2()) as i32 - last)
     }
 
     /// Returns the values g_k at the vertices.
@@ -201,6 +180,84 @@ impl RealPlane {
     pub(super) fn g(&self) -> &[f64; 3] {
         &self.g
     }
+}
+
+/// Four functions like [`RealPlane`] side by side, because compilers then set up all at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FourPlanes {
+    g: [[f64; FOUR]; 3],
+    /// Slopes along x and y.
+    slopes: [[f64; FOUR]; 2],
+    /// Sums of the magnitudes of the terms of the slopes.
+    sizes: [[f64; FOUR]; 2],
+    /// Upper bounds of the magnitudes of their quotients by D.
+    pub(super) reach: [f64; FOUR],
+    /// What each g_k may lose where the definition [keeps](crate::raster::attribute) no more bits of the products.
+    pub(super) lost: [f64; FOUR],
+}
+
+/// Number of functions that are set up at once.
+pub(super) const FOUR: usize = 4;
+
+impl FourPlanes {
+    /// Sets up planes of numbers at the vertices.
+    #[inline(always)]
+    pub(super) fn set(&mut self, triangle: &Triangle, inverse: &[f64; 3], values: &[[f32; FOUR]; 3]) {
+        // In place, because a copy of what has just been written in parts has to wait for all of them.
+        let FourPlanes { g, slopes: [x, y], sizes: [size_x, size_y], reach, lost } = self;
+        (*x, *y, *size_x, *size_y, *reach, *lost) = ([0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4]);
+        for k in 0..3 {
+            let (p, a, b) = (triangle.p[k] as f64, triangle.a[k] as f64, triangle.b[k] as f64);
+            for n in 0..FOUR {
+                // Exact, because 28 bits are multiplied by 24.
+                let product = f64::from(values[k][n]) * p;
+                g[k][n] = product;
+                (x[n], y[n]) = (x[n] + product * a, y[n] + product * b);
+                (size_x[n], size_y[n]) = (size_x[n] + (product * a).abs(), size_y[n] + (product * b).abs());
+                let quotient = product.abs() * inverse[k];
+                reach[n] = if quotient > reach[n] { quotient } else { reach[n] };
+                lost[n] = if product.abs() * KEPT > lost[n] { product.abs() * KEPT } else { lost[n] };
+            }
+        }
+    }
+
+    /// Returns the functions relative to a pixel with edge functions `e`, and bounds of their terms so many columns and rows around it.
+    #[inline(always)]
+    pub(super) fn around(&self, e: &[f64; 3], columns: f64, rows: f64) -> ([Line; FOUR], [f64; FOUR]) {
+        let (FourPlanes { g, slopes: [x, y], sizes, .. }, mut lines, mut terms) =
+            (self, [Line::default(); 4], [0.0; 4]);
+        for n in 0..FOUR {
+            let c = g[0][n] * e[0] + g[1][n] * e[1] + g[2][n] * e[2];
+            lines[n] = Line { c, x: x[n], y: y[n] };
+            let at = g[0][n].abs() * e[0] + g[1][n].abs() * e[1] + g[2][n].abs() * e[2];
+            terms[n] = at + sizes[0][n] * columns + sizes[1][n] * rows;
+        }
+        (lines, terms)
+    }
+
+    /// Returns the values g_k of a function at the vertices.
+    #[inline(always)]
+    pub(super) fn g(&self, n: usize) -> [f64; 3] {
+        [self.g[0][n], self.g[1][n], self.g[2][n]]
+    }
+}
+
+/// Returns the number of fraction bits of the quotients by D of sum g_k E_k if doubles hold all of them and all intermediate results exactly. D
+/// is then a power of two, as it is on squares that face the viewer.
+#[inline(always)]
+pub(super) fn fraction_bits(triangle: &Triangle, g: &[f64; 3]) -> Option<i32> {
+    let ([p, ..], area) = (triangle.p, triangle.doubled_area);
+    // All P are equal if the reciprocal is exact.
+    if !triangle.exact_reciprocal || p.count_ones() != 1 {
+        return None;
+    }
+    let exponent = |n: f64| (n.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+    let lowest = |n: &f64| exponent(*n) - 52 + (n.to_bits() | 1 << 52).trailing_zeros() as i32;
+    let largest = g[0].abs().max(g[1].abs()).max(g[2].abs());
+    let last = g.iter().filter(|n| **n != 0.0).map(lowest).min().unwrap_or(0);
+    // Sums of three terms, along two axes.
+    let bits = exponent(largest) + area.ilog2() as i32 + 4 - last;
+    (bits <= 53).then(|| (p.ilog2() + area.ilog2()) as i32 - last)
 }
 
 /// Returns 1 / P_k, rounded.

@@ -207,8 +207,8 @@ impl Setup<'_> {
     #[inline(always)]
     pub(super) fn base_level<'p, const FMA: bool, const ROW: bool>(
         &self,
-        sampler: &Sampler,
-        planes: &'p Planes,
+        batch: PixelBatch<'_>,
+        (sampler, planes): (&Sampler, &'p Planes),
         local: &BatchSetup,
     ) -> Option<BaseLevel<'p>> {
         // Pixels of a quad lie at most one pixel outside of the batch.
@@ -234,6 +234,7 @@ impl Setup<'_> {
             gaps: [(0.0, 0); 2],
         };
         let (base, range) = match planes {
+            Planes::Plane(planes) if !self.stays_near(&batch, planes, local) => return None,
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
                 let ratio = self.denominator.terms(&local.real, columns, rows) * widest;
@@ -249,7 +250,8 @@ impl Setup<'_> {
                     lowest,
                     reach,
                     off: range * SLACK,
-                    floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
+                    // The magnitudes of weights add up to `ratio` at most.
+                    floors: 1.25 * ratio / p[0].min(p[1]).min(p[2]) as f64,
                     face: Face::PositiveX,
                     behind: false,
                     planes: Some(planes),
@@ -278,13 +280,15 @@ impl Setup<'_> {
                 let direction = CubeDirection::around(planes, &local.real, columns, rows);
                 let face = match face {
                     Some(face) => *face,
-                    None if ROW => direction.face::<FMA>(local.columns)?,
-                    None => return None,
+                    None => direction.look::<FMA>(0.0)?,
                 };
                 let [s, t, m] = face.components();
                 let m = direction.component(m);
                 // The first pixel of a quad could meet another face.
-                if !direction.stays(face, least) {
+                let (odd_column, odd_row) = ((batch.first.0 & 1) as f64, (batch.first.1 & 1) as f64);
+                let meets =
+                    |line: Line| line.c - falls(line.x, odd_column, local.columns) - falls(line.y, odd_row, 0.0);
+                if !(if ROW { direction.stays(face, meets) } else { direction.stays(face, least) }) {
                     return None;
                 }
                 let size = 128.0 * f64::from(sampler.sides[0]);

@@ -2,11 +2,11 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{Reason, Reasons};
-use super::kernels::{PerLane, STEP};
+use super::kernels::{LANES, PerLane, STEP};
 use super::planes::Plane;
-use super::quotient::{Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
+use super::quotient::{IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::interpolate::Sample;
+use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample};
 use crate::raster::setup::Triangle;
 use crate::state::Named;
 use crate::texture::cube::Face;
@@ -42,9 +42,47 @@ pub(super) struct PixelBatch<'a> {
     pub(super) extent: (i32, i32),
     /// For a box: row, first column and number of pixels of each of its rows.
     pub(super) runs: &'a [(i64, i64, usize)],
+    /// The pixels that the triangle covers. In a row that completes quads, there are others before and after them.
+    pub(super) covered: Covered,
 }
 
+/// First and number of pixels of a batch that the triangle covers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Covered(pub(super) usize, pub(super) usize);
+
+static ZEROS: [i32; LANES] = [0; LANES];
+
 impl PixelBatch<'_> {
+    /// Returns covered pixels that lie side by side, from `first` on.
+    #[inline(always)]
+    pub(super) fn row(first: (i64, i64), count: usize, lane: usize) -> PixelBatch<'static> {
+        let (lanes, last) = (whole_steps(count), count as i32 - 1);
+        let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
+        PixelBatch { first, at, count, lane, extent: (last, 0), runs: &[], covered: Covered(0, count) }
+    }
+
+    /// Returns whether it has pixels that the triangle does not cover.
+    #[inline(always)]
+    pub(super) fn reaches_beyond(&self) -> bool {
+        self.covered.1 != self.count
+    }
+
+    /// Returns `count` pixels of a row from one on.
+    #[inline(always)]
+    pub(super) fn part(&self, from: usize, count: usize) -> PixelBatch<'static> {
+        let part = PixelBatch::row((self.first.0 + from as i64, self.first.1), count, self.lane + from);
+        let Covered(first, covered) = self.covered;
+        let (first, end) = (first.max(from), (first + covered).min(from + count));
+        PixelBatch { covered: if first < end { Covered(first - from, end - first) } else { Covered(0, 0) }, ..part }
+    }
+
+    /// Returns the covered pixels of a row.
+    #[inline(always)]
+    pub(super) fn inside(&self) -> PixelBatch<'static> {
+        let Covered(first, count) = self.covered;
+        PixelBatch::row((self.first.0 + first as i64, self.first.1), count, self.lane + first)
+    }
+
     /// Returns column and row of a pixel.
     pub(super) fn pixel(&self, n: usize) -> (i64, i64) {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
@@ -120,6 +158,19 @@ impl<'a> Setup<'a> {
         batch.sample(n, &self.context.triangle)
     }
 
+    /// Returns whether D is positive at all pixels of a row.
+    pub(super) fn is_positive(&self, row: &PixelBatch<'_>) -> bool {
+        let d = self.denominator.exact(&self.context.triangle.edges(row.first.0, row.first.1));
+        d.c > 0 && d.at(i64::from(row.at.last), 0) > 0
+    }
+
+    /// Returns whether no coordinate of a batch is limited, as some are beyond the triangle.
+    #[inline(always)]
+    pub(super) fn stays_near(&self, batch: &PixelBatch<'_>, planes: &[Plane; 2], local: &BatchSetup) -> bool {
+        let reach = if planes[0].reach > planes[1].reach { planes[0].reach } else { planes[1].reach };
+        !batch.reaches_beyond() || reach * local.ratio < QUOTIENT_LIMIT as f64
+    }
+
     /// Sets up a batch.
     #[inline(always)]
     pub(super) fn local<const FMA: bool, const ROW: bool>(&self, batch: PixelBatch<'_>, divides: bool) -> BatchSetup {
@@ -129,7 +180,12 @@ impl<'a> Setup<'a> {
         if !divides {
             return BatchSetup { e, real, denominator, columns: f64::from(batch.at.last), ..BatchSetup::default() };
         }
-        let terms = |columns, rows| self.denominator.terms(&real, columns, rows);
+        let terms = |columns, rows| match ends::<ROW>(&self.context.triangle, &real, columns) {
+            Some(ends) => {
+                larger(self.denominator.terms(&ends[0], 0.0, 0.0), self.denominator.terms(&ends[1], 0.0, 0.0))
+            }
+            None => self.denominator.terms(&real, columns, rows),
+        };
         BatchSetup::new::<FMA, ROW>(batch, (e, real, denominator), self.widest, terms)
     }
 
@@ -171,7 +227,8 @@ impl<'a> Setup<'a> {
         v: &mut [i32],
         whole: &mut PerLane<i32>,
     ) {
-        if let Some(estimates) = self.estimates::<ROW>(planes, bias, local) {
+        let estimates = self.estimates::<ROW>(planes, bias, local);
+        if let Some(estimates) = estimates.filter(|_| !ROW || self.stays_near(&batch, planes, local)) {
             let close = estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, u, v);
             if close[0] | close[1] {
                 self.correct_coordinates::<ROW>(batch, bias, planes, close, &local.e, u, v, whole);
@@ -212,7 +269,8 @@ impl<'a> Setup<'a> {
             let top = plane.exact(e).less(i64::from(bias), bottom);
             let whole = &mut whole[..values.len()];
             correct::<ROW>(batch.at, top, bottom, values, whole);
-            if plane.lowers(&self.context.triangle) {
+            // Beyond the triangle, weights may be negative.
+            if plane.lowers(&self.context.triangle) || batch.reaches_beyond() {
                 for k in (0..batch.count).filter(|k| whole[*k] != 0) {
                     values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
                 }
@@ -240,6 +298,19 @@ impl<'a> Setup<'a> {
             break_ties(w0, w2, whole0, whole2);
         }
     }
+}
+
+/// Returns the edge functions at both ends of a row, where sums of their magnitudes are largest.
+#[inline(always)]
+pub(super) fn ends<const ROW: bool>(triangle: &Triangle, e: &[f64; 3], columns: f64) -> Option<[[f64; 3]; 2]> {
+    let a = &triangle.a;
+    let end = |k: usize| e[k] + a[k] as f64 * columns;
+    ROW.then(|| [*e, [end(0), end(1), end(2)]])
+}
+
+#[inline(always)]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// INT-4 of a plane, less a bias, by the definition.
@@ -282,7 +353,18 @@ impl BatchSetup {
             let end = denominator.at::<FMA, true>(columns, 0.0);
             let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
             let widest = 1.0 / low;
-            return BatchSetup { e, real, denominator, ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
+            // Only within the triangle no term is negative.
+            let largest = if batch.reaches_beyond() { terms(columns, 0.0) } else { high };
+            return BatchSetup {
+                e,
+                real,
+                denominator,
+                ratio: largest * widest,
+                reciprocal,
+                widest,
+                columns,
+                rows: 0.0,
+            };
         }
         let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
         // The box may reach beyond the triangle, but no sample does.
@@ -297,7 +379,7 @@ impl BatchSetup {
     pub(super) fn margin<const ROW: bool>(&self, reach: f64, terms: impl FnOnce(f64, f64) -> f64) -> f64 {
         // What is subtracted is at most `reach` denominators.
         if ROW {
-            // All other terms are, too, because no term of the denominator is negative.
+            // All other terms are, too: `ratio` bounds those of the denominator.
             return 2.0 * reach * self.ratio * SLACK;
         }
         (terms(self.columns, self.rows) * self.widest + 2.0 * reach * self.ratio) * SLACK

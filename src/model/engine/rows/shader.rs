@@ -49,7 +49,7 @@ pub(super) struct Stage {
     pub(super) moved: usize,
     /// TSH-8: [`luminance_factor`] for the low nine bits of the earlier unit's red register.
     pub(super) luminance: Vec<f32>,
-    /// TSH-6: u and v of each byte, less the sampler's bias.
+    /// TSH-6: u and v of each byte, 1/65536 texel.
     pub(super) dependent: [Vec<i32>; 2],
 }
 
@@ -61,6 +61,9 @@ pub(super) struct Bump {
     pub(super) sides: [u32; 2],
     /// Largest distance by which it moves u and v, 1/256 texel.
     pub(super) most: [f64; 2],
+    /// Whether it needs a level of detail, and the binary logarithm of the largest reduction of a side on its levels.
+    pub(super) mixes: bool,
+    pub(super) shift: u32,
 }
 
 /// A texture shader compiled to rows.
@@ -75,7 +78,10 @@ pub(super) struct Shader {
     pub(super) moved: Vec<Bump>,
     /// For each remapped colour: the earlier unit, the channels whose registers hold twice the byte, and the mapping.
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
+    /// Whether stages drop fragments.
     pub(super) kills: bool,
+    /// Whether a dependent read has levels: then the results of all pixels of a quad are needed.
+    pub(super) completes_quads: bool,
 }
 
 /// Largest distance by which rows move coordinates, 1/256 texel. It is beyond the limit of coordinates.
@@ -98,8 +104,8 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
 }
 
 impl Shader {
-    /// Compiles the shader of a draw whose units rows can sample. Returns `None` if a dependent read has levels, or if coordinates are
-    /// moved too far.
+    /// Compiles the shader of a draw whose units rows can sample. Returns `None` if coordinates are moved too far, or if a dependent read has
+    /// levels beside a volume, a depth texture or several taps.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -108,8 +114,12 @@ impl Shader {
             same: Vec::new(),
             moved: Vec::new(),
             vectors: Vec::new(),
-            kills: planned.kills(),
+            kills: draw.kills(),
+            completes_quads: samplers.iter().any(|sampler| sampler.depends && sampler.mixes),
         };
+        if shader.completes_quads && samplers.iter().any(|sampler| sampler.third.is_some() || sampler.pairs > 0) {
+            return None;
+        }
         for index in 0..TEXTURE_UNITS {
             let stage = shader.stage(draw, &planned.stages, index, samplers, scale)?;
             shader.stages.push(stage);
@@ -142,9 +152,6 @@ impl Shader {
         };
         if !stage.runs {
             return Some(stage);
-        }
-        if is_dependent(&state.operation) && samplers[sampler?].mixes {
-            return None;
         }
         if let Some(sampler) = sampler {
             let has_luminance = matches!(state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
@@ -182,7 +189,11 @@ impl Shader {
                     return None;
                 }
                 stage.moved = self.moved.len();
-                self.moved.push(Bump { stage: index, sides, most });
+                let unit = &draw.units[samplers[sampler?].index];
+                let smallest = unit.levels.last().filter(|_| unit.needs_lod());
+                let [along, down] = smallest.map_or([0; 2], |level| unit.plane_shifts(level));
+                let mixes = unit.needs_lod();
+                self.moved.push(Bump { stage: index, sides, most, mixes, shift: along.max(down) });
                 if let Some(state) = luminance {
                     let factors: Vec<f32> = (0..=255).map(|red| luminance_factor(red, state)).collect();
                     let doubled = self.stages[planned.state.previous].doubled[0];
@@ -192,9 +203,9 @@ impl Shader {
             }
             ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
                 let sampler = &samplers[sampler?];
-                stage.dependent = sampler.sides.map(|side| {
-                    (0..=255).map(|byte| shader::dependent(byte, side, scale) as i32 - sampler.bias()).collect()
-                });
+                stage.dependent = sampler
+                    .sides
+                    .map(|side| (0..=255).map(|byte| shader::dependent(byte, side << 8, scale) as i32).collect());
             }
             _ => {}
         }

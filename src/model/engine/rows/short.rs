@@ -118,7 +118,8 @@ impl Dominance {
         }
         self.functions = [lines[0], lines[2]];
         let (functions, error) = ([lines[0], lines[2], local.denominator], 4.0 * SLACK * terms);
-        self.count = if ROW { self.divide_row::<FMA>(triangle, batch, functions, error) } else { 0 };
+        self.count =
+            if ROW && !batch.reaches_beyond() { self.divide_row::<FMA>(triangle, batch, functions, error) } else { 0 };
         if self.count == 0 {
             self.lanes::<FMA, ROW>(triangle, batch, functions, error);
         }
@@ -280,6 +281,8 @@ fn classify<const FMA: bool, const ROW: bool>(
     let (a, c, d) = (first.at::<FMA, ROW>(x, y), third.at::<FMA, ROW>(x, y), denominator.at::<FMA, ROW>(x, y));
     let b = d - a - c;
     let close = near(a, d, error) | near(b, d, error) | near(c, d, error);
+    // Beyond the triangle, weights may be above 1, where there are more classes.
+    let close = close | (d - a - error).to_bits() | (d - b - error).to_bits() | (d - c - error).to_bits();
     (most_dominant([class(a, d), class(b, d), class(c, d)]), close, [a, c])
 }
 

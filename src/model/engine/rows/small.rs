@@ -5,17 +5,14 @@
 use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
 use super::kernels::Lanes256;
-use super::planes::inverse;
+use super::planes::{FOUR, inverse};
 use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
 use super::setup::{PixelBatch, Planes};
-use super::triangle::{Interpolators, Varying};
+use super::triangle::{Functions, Interpolators, Varying};
 use super::{CompiledDraw, Reasons};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
-
-/// Number of functions that are set up at once.
-const FOUR: usize = 4;
 
 /// Two quotients that belong together.
 #[derive(Clone, Copy, Debug)]
@@ -151,7 +148,7 @@ pub(super) fn interpolate<const FMA: bool>(
     batch: PixelBatch<'_>,
     varying: &mut Varying,
     rows: &mut [Lanes256],
-    planes: &mut Vec<Planes>,
+    planes: &mut Functions,
 ) -> bool {
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
     let mut count = 0;
@@ -188,7 +185,7 @@ fn divide<const FMA: bool>(
     batch: PixelBatch<'_>,
     (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
     varying: &mut Varying,
-    planes: &mut Vec<Planes>,
+    planes: &mut Functions,
 ) -> bool {
     let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
     varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
@@ -251,7 +248,7 @@ fn correct(
     pairs: &[Pair],
     close: &[[bool; 2]],
     varying: &mut Varying,
-    planes: &mut Vec<Planes>,
+    planes: &mut Functions,
 ) {
     context.complete();
     let e = context.triangle.edges(batch.first.0, batch.first.1);

@@ -1,7 +1,8 @@
-//! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading and packing surface words, and the tests.
+//! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading, packing and writing surface words, and the tests.
 
 use super::depth::OUTSIDE;
 use super::kernels::Lanes256;
+use super::setup::Run;
 use super::{BLOCK, CompiledDraw};
 use crate::plan::PlannedDraw;
 use crate::rop::{stencil, surface};
@@ -69,6 +70,89 @@ fn pack_halves(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16]
         let high = (surface::pack(format, [*r as u8, 0, 0, *a as u8]) >> 16) as u16;
         *word = u32::from(low) | (u32::from(high) << 16);
     }
+}
+
+/// Number of pixels that are copied at once if a run is shorter and the slices have room.
+const SHORT_RUN: usize = 16;
+
+/// Reads the words of some runs from the surface or its depth buffer. What is read past the end of a short run is overwritten by the next.
+#[inline(always)]
+pub(super) fn read_runs(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
+    for run in runs {
+        let (from, to) = (&words[run.at..], &mut out[run.lane..]);
+        // Not more than needed, because each line of a surface may have to come from far away.
+        let done = run.count <= SHORT_RUN / 2 && read_short::<{ SHORT_RUN / 2 }>(from, to)
+            || run.count <= SHORT_RUN && read_short::<SHORT_RUN>(from, to);
+        if !done {
+            to[..run.count].copy_from_slice(&from[..run.count]);
+        }
+    }
+}
+
+/// Copies the first words. Returns `false` if there are not so many.
+#[inline(always)]
+fn read_short<const COUNT: usize>(from: &[u32], to: &mut [u32]) -> bool {
+    let (Some(from), Some(to)) = (from.first_chunk::<COUNT>(), to.first_chunk_mut::<COUNT>()) else { return false };
+    *to = *from;
+    true
+}
+
+/// Writes a run to the surface or its depth buffer. Most runs are short. Two copies of their ends, which may overlap, need neither a call nor a
+/// branch for each pixel.
+#[inline(always)]
+pub(super) fn write_run(from: &[u32], to: &mut [u32]) {
+    match from.len() {
+        1 => to[0] = from[0],
+        2..4 => write_ends::<2>(from, to),
+        4..8 => write_ends::<4>(from, to),
+        8..=SHORT_RUN => write_ends::<8>(from, to),
+        _ => to.copy_from_slice(from),
+    }
+}
+
+/// Copies the first and the last `COUNT` words.
+#[inline(always)]
+fn write_ends<const COUNT: usize>(from: &[u32], to: &mut [u32]) {
+    if let (Some(first), Some(last)) = (from.first_chunk::<COUNT>(), from.last_chunk::<COUNT>()) {
+        to[..COUNT].copy_from_slice(first);
+        let start = to.len() - COUNT;
+        to[start..].copy_from_slice(last);
+    }
+}
+
+/// Returns the 64-bit words that have bits of the given pixels.
+#[inline(always)]
+fn words(at: usize, count: usize) -> std::ops::Range<usize> {
+    at / 64..(at + count - 1) / 64 + 1
+}
+
+/// Returns the bits of a 64-bit word that belong to the given pixels, at least one of which lies in the word.
+#[inline(always)]
+fn bits(word: usize, at: usize, count: usize) -> u64 {
+    let (first, last) = (word * 64, word * 64 + 63);
+    let low = if at > first { u64::MAX << (at - first) } else { u64::MAX };
+    let end = at + count - 1;
+    if end < last { low & (u64::MAX >> (last - end)) } else { low }
+}
+
+/// Flips the bits of the given pixels.
+#[inline(always)]
+pub(super) fn mark(taken: &mut [u64], at: usize, count: usize) {
+    for word in words(at, count) {
+        taken[word] ^= bits(word, at, count);
+    }
+}
+
+/// Returns whether a bit of the given pixels is set.
+#[inline(always)]
+pub(super) fn is_marked(taken: &[u64], at: usize, count: usize) -> bool {
+    words(at, count).any(|word| taken[word] & bits(word, at, count) != 0)
+}
+
+/// Returns whether all lanes are true. It has no branches, because they usually are.
+#[inline(always)]
+pub(super) fn all(alive: &[bool]) -> bool {
+    alive.iter().fold(true, |all, alive| all & alive)
 }
 
 /// ROP-6: keeps the bits that are not written, and the words of dropped fragments.

@@ -235,10 +235,10 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
 }
 
 /// Returns the axes of the levels of a unit: of level 0, or of all levels if it needs a level of detail. Returns `None` if rows cannot
-/// sample it (several taps of 16-bit formats or of a volume).
+/// sample it (levels or several taps of a volume or of depths).
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
     let single = is_volume(unit) || unit.state.shadow.is_some();
-    if single && unit.needs_lod() || (single || unit.is_wide()) && unit.state.anisotropy > 1 {
+    if single && (unit.needs_lod() || unit.state.anisotropy > 1) {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
@@ -284,7 +284,7 @@ impl Table {
         let beyond = i32::from(linear);
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
         let mut all = Vec::with_capacity(size(unit, levels) as usize);
-        let mut placed = Vec::new();
+        let (mut placed, comparison) = (Vec::new(), compares_r(unit));
         for (n, number) in images.iter().enumerate() {
             let start = all.len();
             for (level, axes) in unit.levels.iter().zip(levels) {
@@ -296,13 +296,19 @@ impl Table {
                 // Nobody reads the entries past the end of smaller levels.
                 let column = |x: i32| slice.column(i64::from(x.min(columns.count) + columns.first));
                 let at: Vec<Option<i64>> = (0..wide as i32).map(column).collect();
+                let in_order = at.iter().zip(0..).take_while(|(column, n)| **column == Some(*n)).count();
                 for y in 0..rows.count + beyond {
                     let row = slice.row(i64::from(y + rows.first));
-                    all.extend(at.iter().map(|column| decode(&slice, image, *column, row)));
+                    // A depth buffer is decoded anew for every frame, so most of its words are not decoded one by one.
+                    let words = match (row, comparison) {
+                        (Some(y), Some(_)) => slice.words(image.words, y, in_order),
+                        _ => &[],
+                    };
+                    all.extend(words.iter().map(|word| depth_of(*word)));
+                    all.extend(at[words.len()..].iter().map(|column| decode(&slice, image, *column, row)));
                 }
             }
         }
-        let comparison = compares_r(unit);
         let channels = match comparison {
             // The result of a comparison is the same in all channels.
             Some(_) if folds => [Channel::Of(0); 4],

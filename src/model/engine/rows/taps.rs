@@ -6,7 +6,7 @@ use super::depth::{cut, floor};
 use super::kernels::{LANES, PerLane, STEP};
 use super::quads::{AtQuads, Known, Measure, Quads};
 use super::quotient::nearest;
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
@@ -182,11 +182,6 @@ fn pairs_of_near<const WIDE: bool>(deltas: &[[f64; STEP]; 4], limit: f64, out: &
     }
 }
 
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
 impl Setup<'_> {
     /// Computes the taps of a batch.
     #[inline(always)]
@@ -200,7 +195,7 @@ impl Setup<'_> {
     ) {
         let unit = &self.context.draw.units[sampler.index];
         let Footprints { pairs, known } = footprints;
-        let Some(base) = self.base_level::<FMA, ROW>(sampler, planes, local) else {
+        let Some(base) = self.base_level::<FMA, ROW>(batch, (sampler, planes), local) else {
             for n in 0..batch.count {
                 let quad = self.defined_quad::<PairsOfQuad>(batch, unit, batch.pixel(n));
                 Footprints::set(pairs, batch.lane + n, &quad);

@@ -3,10 +3,10 @@
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::depth::{UNKNOWN, floor, word};
-use super::direction::{CubeDirection, positive};
+use super::direction::positive;
 use super::kernels::PerLane;
-use super::planes::Plane;
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
+use super::planes::{FourPlanes, Plane};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table;
@@ -44,28 +44,36 @@ pub(super) enum ThirdPlanes {
 pub(super) enum Reference {
     /// The same word everywhere.
     Same(u32),
-    /// A multiple of a quotient by D.
-    Plane(Plane, f64),
-    /// A multiple of r divided by a positive q.
-    Ratio([Plane; 3], f64),
+    /// r divided by D.
+    Plane(FourPlanes),
+    /// r divided by q, which are the first two functions. q is positive.
+    Ratio(FourPlanes),
     /// Other references, which the definition computes pixel by pixel.
     Other,
 }
 
-/// Returns the functions of r of a draw's samplers; none if no sampler uses r.
+/// Sets the functions of r of a draw's samplers; none if no sampler uses r.
 #[inline(always)]
-pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &CompiledDraw, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
-    if !compiled.estimates {
-        return Vec::new();
+pub(super) fn set_thirds(
+    context: &TriangleContext<'_>,
+    compiled: &CompiledDraw,
+    inverse: &[f64; 3],
+    thirds: &mut Vec<ThirdPlanes>,
+) {
+    thirds.clear();
+    if compiled.estimates {
+        for sampler in &compiled.samplers {
+            thirds.push(third(context, sampler, inverse));
+        }
     }
-    compiled.samplers.iter().map(|sampler| third(context, sampler, inverse)).collect()
 }
 
+#[inline(always)]
 fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -> ThirdPlanes {
     let triangle = &context.triangle;
     let unit = &context.draw.units[sampler.index];
-    let set = context.coordinate_set(unit.stage.coordinate_set);
-    let [r, q] = [2, 3].map(|n| set.map(|vertex| vertex[n]));
+    let (vertices, set) = (context.vertices(), unit.stage.coordinate_set);
+    let (r, q) = (vertices.coordinate(set, 2), vertices.coordinate(set, 3));
     match (&sampler.third, context.coordinates_of(sampler.unit)) {
         (Some(Third::Layer(..)), Some(coordinates)) => {
             ThirdPlanes::Layer(match layer_planes(triangle, coordinates, [r, q], unit.layers) {
@@ -78,20 +86,20 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
         }
         (Some(Third::Reference(format)), Some(_)) => {
             let same = |values: [f32; 3]| values[0] == values[1] && values[1] == values[2];
+            let (mut planes, sign) = (FourPlanes::default(), if q[0] < 0.0 { -1.0 } else { 1.0 });
+            let [a, b, c] = [0, 1, 2].map(|k| [r[k] * sign, q[k] * sign, 0.0, 0.0]);
+            planes.set(triangle, inverse, &[a, b, c]);
             ThirdPlanes::Reference(if same(r) && same(q) {
                 // Equal to that at its first vertex.
                 let sample = Sample::new(triangle, [triangle.doubled_area, 0, 0]);
                 Reference::Same(defined(context, unit, *format, &sample, (0, 0)))
             } else if q == [1.0; 3] {
-                let (plane, scale) = Plane::number(triangle, inverse, r);
-                Reference::Plane(plane, scale)
+                Reference::Plane(planes)
+            } else if least(planes.g(1)) > planes.lost[1] {
+                // The definition's q is more than half of this one, and the bound of what is lost has as much to spare.
+                Reference::Ratio(planes)
             } else {
-                let ((above, over), (below, by)) =
-                    (Plane::number(triangle, inverse, r), Plane::number(triangle, inverse, q));
-                match positive([above.g, above.g, below.g]) {
-                    Some((g, _)) => Reference::Ratio(Plane::three(triangle, inverse, &g), over / by),
-                    None => Reference::Other,
-                }
+                Reference::Other
             })
         }
         _ => ThirdPlanes::None,
@@ -107,6 +115,11 @@ fn defined(
     pixel: (i64, i64),
 ) -> u32 {
     context.sample_coordinates(unit, sample, pixel).map_or(0, |place| depth::word(format, place.reference()))
+}
+
+/// Returns the least of a triangle's numbers.
+fn least(g: [f64; 3]) -> f64 {
+    g[0].min(g[1]).min(g[2])
 }
 
 impl Setup<'_> {
@@ -158,15 +171,19 @@ impl Setup<'_> {
                 out.fill(*word);
                 return false;
             }
-            Reference::Plane(plane, scale) => {
-                let off = self.margin::<ROW>(plane, local) * scale;
-                ((plane.line(&local.real).times(*scale), local.denominator), off)
+            Reference::Plane(planes) => {
+                let ([line, ..], terms) = planes.around(&local.real, local.columns, local.rows);
+                let lost = planes.lost[0] / least(self.context.triangle.p.map(|p| p as f64));
+                ((line, local.denominator), local.margin::<ROW>(planes.reach[0], |_, _| terms[0]) + lost)
             }
-            Reference::Ratio(planes, scale) => {
-                let direction = CubeDirection::new(planes, local);
-                let [r, _, q] = direction.lines;
-                let (off, _) = direction.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], local), *scale);
-                ((r.times(*scale), q), off)
+            Reference::Ratio(planes) => {
+                let ([r, q, ..], terms) = planes.around(&local.real, local.columns, local.rows);
+                let (lost, area) = (planes.lost, self.context.triangle.doubled_area as f64);
+                let widest = 1.0 / (least(planes.g(1)) * area);
+                let most = 1.0 + terms[0] * widest;
+                // The errors of both lines and of the quotient, and twice that; and what is lost at the vertices.
+                let off = 8.0 * SLACK * (terms[0] + terms[1] * most) + (lost[0] + lost[1] * most) * area;
+                ((r, q), off * widest)
             }
             Reference::Other => (Default::default(), f64::NAN),
         };

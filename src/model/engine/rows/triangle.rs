@@ -15,11 +15,14 @@ use super::quotient::{Reciprocals, estimate_two};
 use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::taps::Footprints;
-use super::third::{ThirdPlanes, thirds};
+use super::third::{ThirdPlanes, set_thirds};
 use crate::engine::pixel::TriangleContext;
 use crate::state::TEXTURE_UNITS;
 use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::Image;
+
+/// Lists of the functions of samplers and of their r.
+pub(super) type Functions = (Vec<Planes>, Vec<ThirdPlanes>);
 
 /// The functions of all attributes of a triangle.
 pub(super) struct Interpolators<'a> {
@@ -99,12 +102,12 @@ impl Varying {
 }
 
 impl<'a> Interpolators<'a> {
-    /// Sets up a triangle. `samplers` is scratch space that [`given_back`](Self::given_back) returns.
+    /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns.
     #[inline(always)]
     pub(super) fn new(
         context: &'a TriangleContext<'a>,
         compiled: &CompiledDraw,
-        mut samplers: Vec<Planes>,
+        (mut samplers, mut thirds): Functions,
     ) -> Interpolators<'a> {
         let triangle = &context.triangle;
         let weighted = compiled.varies(context);
@@ -125,19 +128,20 @@ impl<'a> Interpolators<'a> {
                 None => Planes::Other,
             });
         }
+        set_thirds(context, compiled, &inverse, &mut thirds);
         Interpolators {
             setup: Setup::new(context, &inverse),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
-            thirds: thirds(context, compiled, &inverse),
+            thirds,
             fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
         }
     }
 
     /// Returns the scratch space of [`new`](Self::new), and adds the numbers of pixels that the definition computed.
-    pub(super) fn given_back(self, reasons: &mut Reasons) -> Vec<Planes> {
+    pub(super) fn given_back(self, reasons: &mut Reasons) -> Functions {
         self.setup.count(reasons);
-        self.samplers
+        (self.samplers, self.thirds)
     }
 
     /// Sets up the DDAs of a row, from its first pixel on. Batches use the DDAs only after this has been called.
@@ -149,7 +153,8 @@ impl<'a> Interpolators<'a> {
         for sampler in samplers.iter_mut() {
             sampler.1 = false;
         }
-        if self.setup.denominator.x() != 0 {
+        // DDAs are bounded within the triangle only.
+        if self.setup.denominator.x() != 0 || compiled.completes_quads {
             return;
         }
         let triangle = &self.setup.context.triangle;
@@ -224,7 +229,8 @@ impl<'a> Interpolators<'a> {
         if !(ROW && varying.dda.complete) {
             self.estimated::<FMA, ROW>(batch, compiled, varying, rows);
         }
-        colors(self.setup.context, compiled, batch, &varying.narrow, rows);
+        let covered = if ROW && batch.reaches_beyond() { batch.inside() } else { batch };
+        colors(self.setup.context, compiled, covered, &varying.narrow, rows);
         if compiled.samples_pixels {
             self.setup.pixel_by_pixel(batch, compiled, textures, &mut varying.alive, rows);
         }
@@ -257,7 +263,7 @@ impl<'a> Interpolators<'a> {
         // A loop of its own, so that values which compilers compute before it are not computed if nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
-            if sampler.shares.is_some() {
+            if sampler.shares.is_some() || sampler.depends {
                 continue;
             }
             if sampler.mixes {
@@ -296,6 +302,18 @@ impl<'a> Interpolators<'a> {
             let (out, work) = (([&mut faces[..], &mut references[..]], layers), (&mut **short, &mut whole[0]));
             setup.thirds::<FMA, ROW>(batch, planes, local, out, work);
         }
+        // What stages of a texture shader do not read is computed for covered pixels only.
+        let inside;
+        let (batch, local) = if ROW && batch.reaches_beyond() {
+            let covered = batch.inside();
+            if covered.count == 0 {
+                return;
+            }
+            inside = setup.local::<FMA, ROW>(covered, true);
+            (covered, &inside)
+        } else {
+            (batch, local)
+        };
         if let Some(planes) = &self.weights
             && !(ROW && varying.dda.weights.1)
         {
