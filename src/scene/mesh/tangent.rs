@@ -160,7 +160,8 @@ fn split(surface: &Surface, faces: &[Option<Face>]) -> (Vec<(usize, bool)>, Vec<
 
 /// Returns tangent and binormal at right angles to the normal. If no triangle gives a direction, the tangent is arbitrary.
 fn basis(normal: Vector, sum: Vector, mirrored: bool) -> ([f32; 3], [f32; 3]) {
-    let flat = minus(sum, scaled(normal, dot(sum, normal)));
+    // Divided, because a normal that was rounded to f32 is not quite as long as 1, and the sum may be nearly parallel to it.
+    let flat = minus(sum, scaled(normal, dot(sum, normal) / dot(normal, normal)));
     let length = dot(sum, sum).sqrt();
     // What remains beside the normal has to be more than rounding.
     let tangent = unit(flat, length * 1e6).or_else(|| {
@@ -208,6 +209,20 @@ pub(super) mod tests {
         }
         prop_assert!(mesh.indices.iter().all(|index| (*index as usize) < mesh.positions.len()));
         Ok(())
+    }
+
+    /// Tangents of which hardly anything remains beside the normal, whose length is 1 but for rounding.
+    #[test]
+    fn nearly_parallel_tangents_are_at_right_angles() {
+        let normal = wide([0.463_048_7, -0.722_368_1, 0.513_585_7]);
+        let beside = unit(cross(normal, [1.0, 0.0, 0.0]), 0.0).expect("a direction");
+        for part in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6] {
+            let mut sum = normal;
+            add(&mut sum, scaled(beside, part));
+            let [tangent, binormal] = <[_; 2]>::from(basis(normal, sum, false)).map(wide);
+            assert!(dot(tangent, normal).abs() < 1e-7 && dot(binormal, normal).abs() < 1e-7, "{part}: {tangent:?}");
+            assert!(dot(tangent, beside) > 0.999, "{part}: {tangent:?}");
+        }
     }
 
     proptest! {
