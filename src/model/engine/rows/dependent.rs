@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "integers that doubles hold, and estimates that exact products correct")]
 
 use super::depth::floor;
-use super::dot::Floats;
+use super::dot::{Facing, Floats};
 use super::kernels::{LANES, PerLane};
 use super::levels::{MipFetches, choose};
 use super::quads::{AtQuads, Measure};
@@ -54,10 +54,14 @@ pub(super) struct BlockQuads {
     at: AtQuads,
     /// Sign bits of quads whose level of detail is not known.
     unknown: PerLane<u64>,
-    /// Whether no level of detail is defined, because a pixel's direction points away from the face.
-    is_behind: PerLane<bool>,
+    /// Not 0 for quads that are left open.
+    opened: PerLane<i32>,
+    /// Not 0 for quads that have no level of detail, because a pixel's direction points away from the face.
+    behind: PerLane<i32>,
     /// Directions at the three pixels.
     directions: [[PerLane<f32>; 3]; 3],
+    /// s, t and the major component of a pixel's direction on the face.
+    meets: [PerLane<f32>; 3],
     of_quads: PerLane<i32>,
     lods: PerLane<i32>,
     levels: [PerLane<i32>; 2],
@@ -71,8 +75,10 @@ impl Default for BlockQuads {
             close: [0; LANES],
             at: [[[0.0; LANES]; 2]; 3],
             unknown: [0; LANES],
-            is_behind: [false; LANES],
+            opened: [0; LANES],
+            behind: [0; LANES],
             directions: [[[0.0; LANES]; 3]; 3],
+            meets: [[0.0; LANES]; 3],
             of_quads: [0; LANES],
             lods: [0; LANES],
             levels: [[0; LANES]; 2],
@@ -91,8 +97,17 @@ impl BlockQuads {
         self.all.clear();
     }
 
-    /// TSH-4: sets where pixels sample from results of the dot unit, which are finite in number. Lanes whose coordinates are limited are left
-    /// open, because smaller levels have limits of their own.
+    /// Begins a stage, of whose quads nothing is unknown yet. Returns their number in whole steps.
+    fn begin(&mut self) -> usize {
+        let rounded = whole_steps(count(&self.all));
+        self.unknown[..rounded].fill(0);
+        self.opened[..rounded].fill(0);
+        self.behind[..rounded].fill(0);
+        rounded
+    }
+
+    /// TSH-4: sets where pixels sample from results of the dot unit. Lanes whose coordinates are limited are left open, because smaller levels
+    /// have limits of their own.
     #[inline(always)]
     pub(super) fn set_floats<const FMA: bool>(
         &mut self,
@@ -114,45 +129,20 @@ impl BlockQuads {
     /// TSH-4, TSH-5: sets where the pixels of quads sample from directions, on the face of the first pixel.
     #[inline(always)]
     pub(super) fn set_directions(&mut self, vector: [&Floats; 3], size: u32) {
-        let BlockQuads { all, at, unknown, is_behind, directions, .. } = self;
+        let rounded = self.begin();
+        let BlockQuads { all, at, unknown, opened, behind, directions, meets, .. } = self;
         for (pixel, direction) in directions.iter_mut().enumerate() {
             for (from, to) in vector.iter().zip(direction) {
                 gather(all, pixel, *from, to);
             }
         }
-        let rounded = whole_steps(count(all));
-        unknown[..rounded].fill(0);
-        is_behind[..rounded].fill(false);
-        let [[first_x, first_y, first_z], ..] = &*directions;
-        let scale = f64::from(32768 * size);
-        for (pixel, ([x, y, z], [u, v])) in directions.iter().zip(at).enumerate() {
-            for n in 0..rounded {
-                let ([a, b, c], [x, y, z]) = ([first_x[n], first_y[n], first_z[n]], [x[n], y[n], z[n]]);
-                // The face as in `dot::on_faces`.
-                let on_x = (a.abs() >= b.abs()) & (a.abs() >= c.abs());
-                let on_y = !on_x & (b.abs() >= c.abs());
-                let major = if on_y { b } else { c };
-                let sign = if (if on_x { a } else { major }) < 0.0 { -1.0 } else { 1.0 };
-                let [x, y, z] = [f64::from(x), f64::from(y), f64::from(z)];
-                let m = if on_y { y } else { z };
-                let m = sign * if on_x { x } else { m };
-                let other = sign * if on_x { -z } else { x };
-                let s = if on_y { x } else { other };
-                let t = if on_y { sign * z } else { -y };
-                let largest = larger(larger(x.abs(), y.abs()), z.abs());
-                // A direction that is not finite counts as 0.
-                let ahead = (m > 0.0) & (largest < f64::INFINITY) & !(x + y + z).is_nan();
-                is_behind[n] |= !ahead;
-                let m = if ahead { m } else { 1.0 };
-                let tiny = |s: f64| (pixel > 0) & (s != 0.0) & (s.abs() < largest * TINY);
-                let (near_u, near_v) = (whole(s * scale / m), whole(t * scale / m));
-                let coarse =
-                    (m < largest * LEAST) | tiny(s) | tiny(t) | (larger(near_u.abs(), near_v.abs()) > FARTHEST);
-                unknown[n] |= if coarse { 1 << 63 } else { 0 };
-                // Both products are exact.
-                let below = |s: f64, near: f64| if s * scale < near * m { 1.0 } else { 0.0 };
-                (u[n], v[n]) = (scale + near_u - below(s, near_u), scale + near_v - below(t, near_v));
-            }
+        let [first, ..] = directions.each_ref().map(|direction| direction.each_ref().map(|of| &of[..rounded]));
+        let (opened, behind) = (&mut opened[..rounded], &mut behind[..rounded]);
+        for (pixel, (direction, [u, v])) in directions.iter().zip(at).enumerate() {
+            let direction = direction.each_ref().map(|of| &of[..rounded]);
+            let [s, t, m] = meets.each_mut().map(|of| &mut of[..rounded]);
+            meet(first, direction, pixel == 0, s, t, m, opened, behind);
+            project(s, t, m, f64::from(32768 * size), &mut u[..rounded], &mut v[..rounded], &mut unknown[..rounded]);
         }
     }
 
@@ -180,15 +170,13 @@ impl BlockQuads {
 
     /// Takes where the pixels of quads sample from what was set for each lane.
     pub(super) fn take_lanes(&mut self) {
-        let BlockQuads { all, fine, at, unknown, is_behind, .. } = self;
+        self.begin();
+        let BlockQuads { all, fine, at, .. } = self;
         for (pixel, at) in at.iter_mut().enumerate() {
             for (from, to) in fine.iter().zip(at) {
                 gather(all, pixel, from, to);
             }
         }
-        let rounded = whole_steps(count(all));
-        unknown[..rounded].fill(0);
-        is_behind[..rounded].fill(false);
     }
 
     /// TEX-9, TEX-11: computes the fetches of a block at the floors `u` and `v` on level 0. Quads with an open lane, or an unknown level of
@@ -204,24 +192,32 @@ impl BlockQuads {
         open: &mut [i32; BLOCK],
         reads: &mut MipFetches,
     ) {
-        let BlockQuads { all, at, unknown, is_behind, of_quads, lods, levels, .. } = self;
+        let BlockQuads { all, at, unknown, behind, of_quads, lods, levels, opened, .. } = self;
         let count = count(all);
         let rounded = whole_steps(count);
-        i32::measure::<FMA>(unit, at, count, &mut of_quads[..rounded], &mut unknown[..rounded]);
+        let (of_quads, unknown) = (&mut of_quads[..rounded], &mut unknown[..rounded]);
+        i32::measure::<FMA>(unit, at, count, of_quads, unknown);
+        let (behind, opened) = (&behind[..rounded], &mut opened[..rounded]);
+        for n in 0..rounded {
+            of_quads[n] = if behind[n] != 0 { lod::LEAST } else { of_quads[n] };
+            opened[n] = if behind[n] != 0 { 0 } else { opened[n] | (unknown[n] >> 63) as i32 };
+        }
         lods.fill(lod::LEAST);
         let mut quad = 0;
-        for PixelQuads { upper, lower, count, .. } in all.iter() {
-            for first in 0..*count {
-                let (upper, lower) = (upper + 2 * first, lower + 2 * first);
-                let lod = if is_behind[quad] { lod::LEAST } else { of_quads[quad] };
-                let is_unknown = !is_behind[quad] && unknown[quad] >> 63 != 0;
-                let is_open = i32::from(is_unknown) | open[upper] | open[upper + 1] | open[lower];
-                for lane in [upper, upper + 1, lower, lower + 1] {
-                    lods[lane] = lod;
-                    open[lane] |= is_open;
-                }
-                quad += 1;
+        for PixelQuads { upper, lower, count, .. } in all.iter().copied() {
+            let (of_quads, opened) = (&of_quads[quad..quad + count], &mut opened[quad..quad + count]);
+            let (above, below) = (open[upper..][..2 * count].as_chunks::<2>().0, open[lower..].as_chunks::<2>().0);
+            for ((opened, above), below) in opened.iter_mut().zip(above).zip(below) {
+                *opened |= above[0] | above[1] | below[0];
             }
+            for row in [upper, lower] {
+                let (lods, open) = (lods[row..].as_chunks_mut::<2>().0, open[row..].as_chunks_mut::<2>().0);
+                for (((lods, open), of_quad), opened) in lods.iter_mut().zip(open).zip(of_quads).zip(&*opened) {
+                    *lods = [*of_quad; 2];
+                    *open = [open[0] | opened, open[1] | opened];
+                }
+            }
+            quad += count;
         }
         let ranges = choose(unit, lods, levels, &mut reads.weights[..BLOCK]);
         reads.place_all((unit, table, 0), 0..BLOCK, ranges, lods, levels, &u[..BLOCK], &v[..BLOCK]);
@@ -235,14 +231,64 @@ impl BlockQuads {
     }
 }
 
-/// Components that are smaller, relative to the largest, may lose bits in the definition ([`direction`](crate::texture::shader)).
-const TINY: f64 = 1.0 / (1_u64 << 36) as f64;
+/// Components that are smaller than the largest by such a factor may lose bits in the definition ([`direction`](crate::texture::shader)).
+const TINY: f32 = (1_u64 << 36) as f32;
 
-/// The least accepted major component relative to the largest one. It keeps all of its bits.
-const LEAST: f64 = 1.0 / (1 << 14) as f64;
+/// The largest accepted ratio of any component to the major one, which then keeps all of its bits.
+const STEEPEST: f32 = (1 << 14) as f32;
 
 /// Largest distance from the middle of a face, 1/65536 texel, whose product with a component doubles hold.
 const FARTHEST: f64 = (1 << 28) as f64;
+
+/// TSH-5: writes s, t and the major component of directions on the faces that the `first` ones meet. Marks quads for which directions point away
+/// from the face, and those for which doubles do not hold what the definition computes.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+fn meet(
+    first: [&[f32]; 3],
+    direction: [&[f32]; 3],
+    is_first: bool,
+    s: &mut [f32],
+    t: &mut [f32],
+    m: &mut [f32],
+    opened: &mut [i32],
+    behind: &mut [i32],
+) {
+    let lanes = s.len();
+    let (t, m, opened, behind) = (&mut t[..lanes], &mut m[..lanes], &mut opened[..lanes], &mut behind[..lanes]);
+    let ([a, b, c], [x, y, z]) = (first.map(|of| &of[..lanes]), direction.map(|of| &of[..lanes]));
+    for n in 0..lanes {
+        let [along, down, major] = Facing::new([a[n], b[n], c[n]]).components([x[n], y[n], z[n]]);
+        let (x, y, z) = (x[n].abs(), y[n].abs(), z[n].abs());
+        // A direction that is not finite counts as 0.
+        let finite = (x <= f32::MAX) & (y <= f32::MAX) & (z <= f32::MAX);
+        let ahead = (major > 0.0) & finite;
+        behind[n] |= i32::from(!ahead);
+        let largest = if x > y { x } else { y };
+        let largest = if z > largest { z } else { largest };
+        let tiny = |s: f32| (s != 0.0) & (s.abs() * TINY < largest);
+        let coarse = (major * STEEPEST < largest) | !is_first & (tiny(along) | tiny(down));
+        opened[n] |= i32::from(coarse);
+        (s[n], t[n], m[n]) = (along, down, if ahead { major } else { 1.0 });
+    }
+}
+
+/// TSH-5: writes the places of [`meet`]'s directions on a face whose half is `scale` wide, 1/65536 texel, as floors. Marks those that are too far
+/// away.
+#[inline(always)]
+fn project(s: &[f32], t: &[f32], m: &[f32], scale: f64, u: &mut [f64], v: &mut [f64], unknown: &mut [u64]) {
+    let lanes = u.len();
+    let (s, t, m, v, unknown) = (&s[..lanes], &t[..lanes], &m[..lanes], &mut v[..lanes], &mut unknown[..lanes]);
+    for n in 0..lanes {
+        let (s, t, m) = (f64::from(s[n]) * scale, f64::from(t[n]) * scale, f64::from(m[n]));
+        let r = 1.0 / m;
+        let (near_u, near_v) = (whole(s * r), whole(t * r));
+        unknown[n] |= (FARTHEST - larger(near_u.abs(), near_v.abs())).to_bits() & 1 << 63;
+        // Both products are exact.
+        let below = |s: f64, near: f64| if s < near * m { 1.0 } else { 0.0 };
+        (u[n], v[n]) = (scale + near_u - below(s, near_u), scale + near_v - below(t, near_v));
+    }
+}
 
 fn count(all: &[PixelQuads]) -> usize {
     all.iter().map(|quads| quads.count).sum()
@@ -253,9 +299,13 @@ fn count(all: &[PixelQuads]) -> usize {
 fn gather<T: Copy>(all: &[PixelQuads], pixel: usize, from: &[T], to: &mut [T]) {
     let mut quad = 0;
     for PixelQuads { upper, lower, count, .. } in all {
-        let lanes = &from[if pixel == 2 { *lower } else { upper + pixel }..];
-        for (to, from) in to[quad..quad + count].iter_mut().zip(lanes.iter().step_by(2)) {
-            *to = *from;
+        let pairs = from[if pixel == 2 { *lower } else { *upper }..].as_chunks::<2>().0;
+        let to = to[quad..quad + count].iter_mut().zip(pairs);
+        // Two loops, because compilers do not take the choice out of one.
+        if pixel == 1 {
+            to.for_each(|(to, pair)| *to = pair[1]);
+        } else {
+            to.for_each(|(to, pair)| *to = pair[0]);
         }
         quad += count;
     }

@@ -208,7 +208,7 @@ impl Depths<'_> {
                 if first >= until {
                     (reference, until) = same_reference(first, count, row);
                 }
-                if self.floored::<FMA>(edges, reference, &steps.reciprocals, first..until, out) {
+                if self.floored::<FMA>(edges, reference, first..until, steps, out) {
                     first = until;
                     continue;
                 }
@@ -247,36 +247,45 @@ impl Depths<'_> {
         &self,
         edges: [Line; 3],
         reference: usize,
-        reciprocals: &ReciprocalLine,
         pixels: Range<usize>,
+        Steps { reciprocals, terms: weighted, .. }: &mut Steps,
         out: &mut [u32],
     ) -> bool {
         // A copy, which cannot overlap what is stored.
-        let reciprocals = *reciprocals;
+        let line = *reciprocals;
         let [one, other] = OTHERS[reference];
         let (one, other, largest) = (edges[one], edges[other], edges[reference]);
-        let terms = |x: f64, by: [f64; 2]| {
+        // The weights of the two other vertices.
+        let weights = |x: f64| {
             let [one, other, largest] = [one, other, largest].map(|edge| cut24(edge.at::<FMA, true>(x, 0.0)));
-            let reciprocal = reciprocals.at::<FMA>(one + other + largest);
-            [cut24(one * reciprocal) * by[0], cut24(other * reciprocal) * by[1]]
+            let reciprocal = line.at::<FMA>(one + other + largest);
+            [cut24(one * reciprocal), cut24(other * reciprocal)]
         };
-        let by = self.differences[reference].map(|difference| difference * reciprocals.unit);
+        let [by_one, by_other] = self.differences[reference].map(|difference| difference * line.unit);
         let z = self.z[reference];
-        let at = |pixel: usize| terms(pixel as f64, by);
+        let at = |pixel: usize| {
+            let [one, other] = weights(pixel as f64);
+            [one * by_one, other * by_other]
+        };
         let Some(top) = same_power(z, at(pixels.start), at(pixels.end - 1)) else { return false };
         // The terms become multiples of 2^(Y-28).
         let scale = (1 << 28) as f64 / top;
-        let by = by.map(|by| by * scale);
+        let (by_one, by_other) = (by_one * scale, by_other * scale);
         let start = cut::<FMA>(z * scale) + MAGIC;
         // Smaller terms yield no depth.
         let shift = (1023 + 28 - (top.to_bits() >> 52) as i32).min(31);
         let full = self.full as i32;
         let lanes = pixels.start..pixels.start + whole_steps(pixels.len());
-        let (out, xs) = (out[lanes.clone()].as_chunks_mut::<8>().0, IOTA_REAL[lanes].as_chunks::<8>().0);
-        for (out, xs) in out.iter_mut().zip(xs) {
-            for n in 0..8 {
-                let [a, b] = terms(xs[n], by);
-                let sum = (cut::<FMA>(a) + cut::<FMA>(b) + start).to_bits() as i32;
+        let [of_one, of_other] = weighted;
+        for (out, xs) in out[lanes.clone()].chunks_mut(CHUNK).zip(IOTA_REAL[lanes].chunks(CHUNK)) {
+            // Two short steps: see `CHUNK`.
+            let (of_one, of_other, xs) = (&mut of_one[..out.len()], &mut of_other[..out.len()], &xs[..out.len()]);
+            for n in 0..out.len() {
+                [of_one[n], of_other[n]] = weights(xs[n]);
+            }
+            for n in 0..out.len() {
+                let sum =
+                    (cut::<FMA>(of_one[n] * by_one) + cut::<FMA>(of_other[n] * by_other) + start).to_bits() as i32;
                 out[n] = (sum >> shift).max(0).min(full) as u32;
             }
         }

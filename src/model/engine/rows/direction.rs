@@ -3,7 +3,7 @@
 
 use super::Sampler;
 use super::kernels::PerLane;
-use super::planes::Plane;
+use super::planes::{LinearFunction, Plane};
 use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::{Losses, Short, floors};
@@ -182,7 +182,7 @@ impl Setup<'_> {
         let done = match planes {
             Planes::Plane(planes) if self.context.triangle.loses_on_planes() => {
                 // The sum bounds both, and is NaN if one of them is.
-                let margin = self.margin::<ROW>(&planes[0], local) + self.margin::<ROW>(&planes[1], local);
+                let margin = local.margin::<ROW>(&planes[0]) + local.margin::<ROW>(&planes[1]);
                 let lines = [planes[0].line(&local.real), planes[1].line(&local.real), local.denominator];
                 let functions = (lines, self.losses_on_planes(planes), margin);
                 self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)

@@ -181,6 +181,39 @@ fn floor(t: f64) -> i32 {
     nearest(t) - i32::from(whole(t) > t)
 }
 
+/// TEX-12: the face that a direction meets.
+#[derive(Clone, Copy)]
+pub(super) struct Facing {
+    on_x: bool,
+    on_y: bool,
+    /// The sign bit of the major component.
+    sign: u32,
+}
+
+impl Facing {
+    /// Chooses X before Y and Y before Z, as `Face::from_direction`. One choice at a time, because compilers turn nested ones into branches.
+    #[inline(always)]
+    pub(super) fn new([x, y, z]: [f32; 3]) -> Facing {
+        let on_x = (x.abs() >= y.abs()) & (x.abs() >= z.abs());
+        let on_y = !on_x & (y.abs() >= z.abs());
+        let major = if on_y { y } else { z };
+        let major = if on_x { x } else { major };
+        Facing { on_x, on_y, sign: if major < 0.0 { 1 << 31 } else { 0 } }
+    }
+
+    /// Returns s, t and the major component of a direction on the face. The last is not positive if the direction points away from it.
+    #[inline(always)]
+    pub(super) fn components(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        // By bits, which takes less than a choice.
+        let turned = |v: f32| f32::from_bits(v.to_bits() ^ self.sign);
+        let other = turned(if self.on_x { -z } else { x });
+        let s = if self.on_y { x } else { other };
+        let t = if self.on_y { turned(z) } else { -y };
+        let major = if self.on_y { y } else { z };
+        [s, t, turned(if self.on_x { x } else { major })]
+    }
+}
+
 /// TEX-12 and TEX-13 of vectors: writes the face, and u and v on it as floors in 1/256 texel less `bias`.
 ///
 /// With the major component m, K = 128 `size`, which is a power of two, and n the integer nearest to K s / m, computed roughly, the floor
@@ -197,30 +230,19 @@ pub(super) fn on_faces<const FMA: bool>(
 ) {
     let k = (128 * size) as f32;
     for n in 0..BLOCK {
-        let (x, y, z) = (x[n], y[n], z[n]);
-        let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
+        let direction = [x[n], y[n], z[n]];
+        let [ax, ay, az] = [x[n].abs(), y[n].abs(), z[n].abs()];
         let finite = (ax <= f32::MAX) & (ay <= f32::MAX) & (az <= f32::MAX);
-        // X goes before Y, Y before Z, as in `Face::from_direction`. One choice at a time, because compilers turn nested ones into
-        // branches.
-        let on_x = (ax >= ay) & (ax >= az);
-        let on_y = !on_x & (ay >= az);
-        let major = if on_y { y } else { z };
-        let major = if on_x { x } else { major };
-        // Signs are changed by bits, which takes less than a choice.
-        let sign = if major < 0.0 { 1 << 31 } else { 0 };
-        let turned = |v: f32| f32::from_bits(v.to_bits() ^ sign);
-        let other = turned(if on_x { -z } else { x });
-        let s = if on_y { x } else { other };
-        let t = if on_y { turned(z) } else { -y };
+        let facing = Facing::new(direction);
+        let [s, t, m] = facing.components(direction);
         // Number of the face, as a float.
-        let axis = if on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
-        let axis = if on_x { Face::PositiveX as u32 as f32 } else { axis };
-        let face = axis + if major < 0.0 { 1.0 } else { 0.0 };
+        let axis = if facing.on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
+        let axis = if facing.on_x { Face::PositiveX as u32 as f32 } else { axis };
+        let face = axis + if facing.sign != 0 { 1.0 } else { 0.0 };
         // By bits, because compilers turn a choice into masked stores, which are slow.
         let kept = if finite { u32::MAX } else { 0 };
         let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
         faces[n] = nearest_32(kept(face)) as u32;
-        let m = major.abs();
         let scale = if m < TINY { 1.0 / TINY } else { 1.0 };
         (along[n], down[n], majors[n]) = (kept(s) * scale, kept(t) * scale, kept(m) * scale);
     }

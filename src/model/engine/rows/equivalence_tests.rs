@@ -120,11 +120,11 @@ pub(super) fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
 }
 
 /// The texture formats with depths.
-const DEPTHS: &[TextureFormat] =
+pub(super) const DEPTHS: &[TextureFormat] =
     &[TextureFormat::Z16, TextureFormat::Z24S8, TextureFormat::Z16F, TextureFormat::Z24S8F];
 
 /// Returns a factor for an r of 0 to 1, after which r spans the layers or the range of the depth format, or a part of it.
-fn steps(r: &mut Random, third: Third) -> f32 {
+pub(super) fn steps(r: &mut Random, third: Third) -> f32 {
     match third {
         Third::Reference(format) => match format.depth() {
             Some(depth) if depth.is_float() => r.of(&[1.0, 600.0, 1e30]),

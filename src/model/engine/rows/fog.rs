@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use super::Reason;
 use super::kernels::LANES;
-use super::planes::{Plane, inverse};
+use super::planes::{LinearFunction, Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
@@ -137,7 +137,7 @@ impl Setup<'_> {
             }
             Fog::Function(curve) => {
                 let line = curve.coordinate.line(&local.real).times(curve.scale);
-                let off = self.margin::<ROW>(&curve.coordinate, local) * curve.scale.abs();
+                let off = local.margin::<ROW>(&curve.coordinate) * curve.scale.abs();
                 // NaN proves nothing either.
                 let proves = off < COARSEST;
                 if !proves {

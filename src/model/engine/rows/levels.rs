@@ -248,6 +248,11 @@ impl MipFetches {
             let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
             let (to_u, to_v) = (&mut to_u[lanes.clone()], &mut to_v[lanes.clone()]);
             let entries = &mut entries[lanes.clone()];
+            if high > low && table.halves {
+                let levels = &levels[which][..lanes.len()];
+                halved((unit, table, face), filters, (lods, levels), u, v, to_u, to_v, entries);
+                continue;
+            }
             if high - low >= SCATTERED {
                 let levels = &levels[which][..lanes.len()];
                 scattered((unit, table, face), filters, (lods, levels), u, v, to_u, to_v, entries);
@@ -393,6 +398,42 @@ fn scattered(
     for n in 0..lanes {
         let (placed, shifts) = &all[levels[n] as usize % MAX_LEVELS];
         (to_u[n], to_v[n], entries[n]) = entry(placed, filters, *shifts, lods[n], [u[n], v[n]]);
+    }
+}
+
+/// Does what [`scattered`] does for a table that [halves](Table::halves).
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
+fn halved(
+    (unit, table, face): (&PlannedUnit, &Table, u32),
+    filters: [Taken; 2],
+    (lods, levels): (&[i32], &[i32]),
+    u: &[i32],
+    v: &[i32],
+    to_u: &mut [i32],
+    to_v: &mut [i32],
+    entries: &mut [i32],
+) {
+    let mut firsts = [0; MAX_LEVELS];
+    for (n, first) in firsts.iter_mut().take(unit.levels.len()).enumerate() {
+        *first = table.placed(n, face).first;
+    }
+    let most = unit.levels.last().map_or([0; 2], |level| unit.plane_shifts(level).map(|shift| shift as i32));
+    let (width, height) = (unit.levels[0].width as i32, unit.levels[0].height as i32);
+    let ([columns, rows], pitch) = (table.axes, table.pitch);
+    let lanes = lods.len();
+    let (u, v, levels) = (&u[..lanes], &v[..lanes], &levels[..lanes]);
+    let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
+    // A loop of its own, because compilers do not make vectors of look-ups.
+    for n in 0..lanes {
+        entries[n] = firsts[levels[n] as usize % MAX_LEVELS];
+    }
+    for n in 0..lanes {
+        let shifts = [levels[n].min(most[0]), levels[n].min(most[1])];
+        let axes = [columns.shifted(width, shifts[0]), rows.shifted(height, shifts[1])];
+        let placed = Placed { axes, first: entries[n], pitch };
+        (to_u[n], to_v[n], entries[n]) =
+            entry(&placed, filters, shifts.map(|shift| shift as u32), lods[n], [u[n], v[n]]);
     }
 }
 

@@ -212,7 +212,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         if samples_pixels {
             compiled.samplers.clear();
         }
-        compiled.completes_quads = shader.as_ref().is_some_and(|shader| shader.completes_quads);
+        compiled.completes_quads = shader::completes_quads(&compiled.samplers);
         compiled.shader = shader.map(Arc::new);
     }
     // Each stage of a texture shader has its own coordinates.

@@ -4,7 +4,7 @@
 use super::depth::floor;
 use super::dot::Floats;
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{RealPlane, fraction_bits};
+use super::planes::{LinearFunction, RealPlane, fraction_bits};
 use super::quotient::{multiply_add, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, larger};
 use super::shader::Bump;
@@ -82,9 +82,7 @@ impl MovedPlanes {
     ) -> bool {
         let MovedPlanes { planes: [along, down], losses, floors, exact } = self;
         let BatchSetup { real, ratio, denominator, .. } = local;
-        let margin =
-            |plane: &RealPlane| local.margin::<ROW>(plane.reach, |columns, rows| plane.terms(real, columns, rows));
-        let (offs, scale) = ([margin(along), margin(down)], f64::from(1 << bump.shift));
+        let (offs, scale) = ([local.margin::<ROW>(along), local.margin::<ROW>(down)], f64::from(1 << bump.shift));
         let off = larger(offs[0], offs[1]) + floors * ratio + SUM + if bump.shift > 0 { OFFSET_FLOOR } else { 0.0 };
         // Hardly beyond the triangle no number has more bits.
         let exact = *exact && (!batch.reaches_beyond() || *ratio < 2.0);
@@ -148,7 +146,7 @@ pub(super) fn place<const FMA: bool>(
     let place = |n: usize| {
         let [at_u, at_v] = by::<FMA>(&moved.at, sampler.sides, [along[n], down[n]], n);
         let (near_u, near_v) = ((at_u - whole(at_u)).abs(), (at_v - whole(at_v)).abs());
-        (at_u, at_v, if near_u > near_v { near_u } else { near_v })
+        (at_u, at_v, larger(near_u, near_v))
     };
     for (step, off) in moved.off[..BLOCK / STEP].iter().enumerate() {
         let (lanes, mut close) = (step * STEP..(step + 1) * STEP, 0);

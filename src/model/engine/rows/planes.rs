@@ -4,6 +4,18 @@
 use super::quotient::{Exact, Line};
 use crate::raster::setup::Triangle;
 
+/// A linear function across a triangle, around a pixel with edge functions `e`.
+pub(super) trait LinearFunction {
+    /// Returns the function relative to the pixel.
+    fn line(&self, e: &[f64; 3]) -> Line;
+
+    /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
+    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64;
+
+    /// Returns an upper bound of the magnitude of its quotient by D.
+    fn reach(&self) -> f64;
+}
+
 /// The function sum G_k E_k.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Plane {
@@ -90,20 +102,6 @@ impl Plane {
         self.whole[0]
     }
 
-    /// Returns the function relative to a pixel with edge functions `e`.
-    #[inline(always)]
-    pub(super) fn line(&self, e: &[f64; 3]) -> Line {
-        let c = self.real[0] * e[0] + self.real[1] * e[1] + self.real[2] * e[2];
-        Line { c, x: self.slope[0], y: self.slope[1] }
-    }
-
-    /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
-    #[inline(always)]
-    pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.real[0].abs() * e[0].abs() + self.real[1].abs() * e[1].abs() + self.real[2].abs() * e[2].abs();
-        at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
-    }
-
     /// Returns the function modulo 2^64.
     #[inline(always)]
     pub(super) fn exact(&self, e: &[i64; 3]) -> Exact {
@@ -126,6 +124,25 @@ impl Plane {
             return None;
         }
         Some((g0 * e[0] + g1 * e[1] + g2 * e[2], g0 * a0 + g1 * a1 + g2 * a2))
+    }
+}
+
+impl LinearFunction for Plane {
+    #[inline(always)]
+    fn line(&self, e: &[f64; 3]) -> Line {
+        let c = self.real[0] * e[0] + self.real[1] * e[1] + self.real[2] * e[2];
+        Line { c, x: self.slope[0], y: self.slope[1] }
+    }
+
+    #[inline(always)]
+    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
+        let at = self.real[0].abs() * e[0].abs() + self.real[1].abs() * e[1].abs() + self.real[2].abs() * e[2].abs();
+        at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        self.reach
     }
 }
 
@@ -161,24 +178,29 @@ impl RealPlane {
         plane
     }
 
-    /// Returns the function relative to a pixel with edge functions `e`.
-    #[inline(always)]
-    pub(super) fn line(&self, e: &[f64; 3]) -> Line {
-        let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
-        Line { c, x: self.slope[0], y: self.slope[1] }
-    }
-
-    /// Returns the sum of the magnitudes of all terms of [`line`](Self::line), so many columns and rows around the pixel.
-    #[inline(always)]
-    pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.g[0].abs() * e[0].abs() + self.g[1].abs() * e[1].abs() + self.g[2].abs() * e[2].abs();
-        at + self.sizes[0] * columns + self.sizes[1] * rows
-    }
-
     /// Returns the values g_k at the vertices.
     #[inline(always)]
     pub(super) fn g(&self) -> &[f64; 3] {
         &self.g
+    }
+}
+
+impl LinearFunction for RealPlane {
+    #[inline(always)]
+    fn line(&self, e: &[f64; 3]) -> Line {
+        let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
+        Line { c, x: self.slope[0], y: self.slope[1] }
+    }
+
+    #[inline(always)]
+    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
+        let at = self.g[0].abs() * e[0].abs() + self.g[1].abs() * e[1].abs() + self.g[2].abs() * e[2].abs();
+        at + self.sizes[0] * columns + self.sizes[1] * rows
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        self.reach
     }
 }
 
@@ -229,7 +251,7 @@ impl FourPlanes {
         for n in 0..FOUR {
             let c = g[0][n] * e[0] + g[1][n] * e[1] + g[2][n] * e[2];
             lines[n] = Line { c, x: x[n], y: y[n] };
-            let at = g[0][n].abs() * e[0] + g[1][n].abs() * e[1] + g[2][n].abs() * e[2];
+            let at = g[0][n].abs() * e[0].abs() + g[1][n].abs() * e[1].abs() + g[2][n].abs() * e[2].abs();
             terms[n] = at + sizes[0][n] * columns + sizes[1][n] * rows;
         }
         (lines, terms)

@@ -4,7 +4,7 @@
 
 use super::direction::{CubeDirection, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::Plane;
+use super::planes::{LinearFunction, Plane};
 use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;

@@ -3,7 +3,7 @@
 
 use super::compiled::{Reason, Reasons};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::Plane;
+use super::planes::{LinearFunction, Plane};
 use super::quotient::{IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample};
@@ -174,25 +174,12 @@ impl<'a> Setup<'a> {
     /// Sets up a batch.
     #[inline(always)]
     pub(super) fn local<const FMA: bool, const ROW: bool>(&self, batch: PixelBatch<'_>, divides: bool) -> BatchSetup {
-        let e = self.context.triangle.edges(batch.first.0, batch.first.1);
-        let real = [e[0] as f64, e[1] as f64, e[2] as f64];
-        let denominator = self.denominator.line(&real);
-        if !divides {
-            return BatchSetup { e, real, denominator, columns: f64::from(batch.at.last), ..BatchSetup::default() };
+        let (triangle, denominator) = (&self.context.triangle, &self.denominator);
+        if divides {
+            BatchSetup::new::<FMA, ROW>(triangle, batch, denominator, self.widest)
+        } else {
+            BatchSetup::undivided(triangle, batch, denominator)
         }
-        let terms = |columns, rows| match ends::<ROW>(&self.context.triangle, &real, columns) {
-            Some(ends) => {
-                larger(self.denominator.terms(&ends[0], 0.0, 0.0), self.denominator.terms(&ends[1], 0.0, 0.0))
-            }
-            None => self.denominator.terms(&real, columns, rows),
-        };
-        BatchSetup::new::<FMA, ROW>(batch, (e, real, denominator), self.widest, terms)
-    }
-
-    /// Returns the largest error of the estimate of a plane's quotient.
-    #[inline(always)]
-    pub(super) fn margin<const ROW: bool>(&self, plane: &Plane, local: &BatchSetup) -> f64 {
-        local.margin::<ROW>(plane.reach, |columns, rows| plane.terms(&local.real, columns, rows))
     }
 
     /// Sets up two quotients less a bias. Returns `None` if one of them would prove nothing.
@@ -209,7 +196,7 @@ impl<'a> Setup<'a> {
 
     #[inline(always)]
     fn estimate_of<const ROW: bool>(&self, plane: &Plane, bias: i32, local: &BatchSetup) -> Option<QuotientEstimate> {
-        let margin = self.margin::<ROW>(plane, local);
+        let margin = local.margin::<ROW>(plane);
         let (extent, reciprocals) = ((local.columns, local.rows), (local.reciprocal, local.widest));
         QuotientEstimate::new::<ROW>(plane.line(&local.real), local.denominator, extent, reciprocals, margin, bias)
     }
@@ -300,14 +287,6 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// Returns the edge functions at both ends of a row, where sums of their magnitudes are largest.
-#[inline(always)]
-pub(super) fn ends<const ROW: bool>(triangle: &Triangle, e: &[f64; 3], columns: f64) -> Option<[[f64; 3]; 2]> {
-    let a = &triangle.a;
-    let end = |k: usize| e[k] + a[k] as f64 * columns;
-    ROW.then(|| [*e, [end(0), end(1), end(2)]])
-}
-
 #[inline(always)]
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -338,50 +317,61 @@ pub(super) struct BatchSetup {
 }
 
 impl BatchSetup {
-    /// Sets up a batch. `widest` is the reciprocal of a lower bound of D; `terms` returns the sum of the magnitudes of D's terms, so many
-    /// columns and rows around.
+    /// Sets up a batch in which nothing is divided by D.
     #[inline(always)]
-    pub(super) fn new<const FMA: bool, const ROW: bool>(
-        batch: PixelBatch<'_>,
-        (e, real, denominator): ([i64; 3], [f64; 3], Line),
-        widest: f64,
-        terms: impl FnOnce(f64, f64) -> f64,
-    ) -> BatchSetup {
-        let reciprocal = 1.0 / denominator.c;
-        if ROW {
-            let columns = f64::from(batch.at.last);
-            let end = denominator.at::<FMA, true>(columns, 0.0);
-            let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
-            let widest = 1.0 / low;
-            // Only within the triangle no term is negative.
-            let largest = if batch.reaches_beyond() { terms(columns, 0.0) } else { high };
-            return BatchSetup {
-                e,
-                real,
-                denominator,
-                ratio: largest * widest,
-                reciprocal,
-                widest,
-                columns,
-                rows: 0.0,
-            };
-        }
+    fn undivided(triangle: &Triangle, batch: PixelBatch<'_>, denominator: &impl LinearFunction) -> BatchSetup {
+        let e = triangle.edges(batch.first.0, batch.first.1);
+        let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
-        // The box may reach beyond the triangle, but no sample does.
-        let here = 1.0 / denominator.least(columns, rows);
-        let widest = if here > 0.0 && here < widest { here } else { widest };
-        BatchSetup { e, real, denominator, ratio: terms(columns, rows) * widest, reciprocal, widest, columns, rows }
+        BatchSetup { e, real, denominator: denominator.line(&real), columns, rows, ..BatchSetup::default() }
     }
 
-    /// Returns the largest error of the estimate of a quotient. `reach` bounds its magnitude, with what is subtracted; `terms` returns the
-    /// sum of the magnitudes of its numerator's terms.
+    /// Sets up a batch. `widest` is the reciprocal of a lower bound of the denominator D.
     #[inline(always)]
-    pub(super) fn margin<const ROW: bool>(&self, reach: f64, terms: impl FnOnce(f64, f64) -> f64) -> f64 {
-        // What is subtracted is at most `reach` denominators.
-        if ROW {
-            // All other terms are, too: `ratio` bounds those of the denominator.
-            return 2.0 * reach * self.ratio * SLACK;
-        }
-        (terms(self.columns, self.rows) * self.widest + 2.0 * reach * self.ratio) * SLACK
+    pub(super) fn new<const FMA: bool, const ROW: bool>(
+        triangle: &Triangle,
+        batch: PixelBatch<'_>,
+        denominator: &impl LinearFunction,
+        widest: f64,
+    ) -> BatchSetup {
+        let undivided = BatchSetup::undivided(triangle, batch, denominator);
+        let BatchSetup { real, denominator: line, columns, rows, .. } = undivided;
+        // Upper bounds of the terms of D and of 1 / D.
+        let (largest, widest) = if ROW {
+            let end = line.at::<FMA, true>(columns, 0.0);
+            let (low, high) = if line.c < end { (line.c, end) } else { (end, line.c) };
+            // Only within the triangle no term is negative. Sums of magnitudes are largest at the ends of a row.
+            let largest = if batch.reaches_beyond() {
+                let mut last = real;
+                for k in 0..3 {
+                    last[k] += triangle.a[k] as f64 * columns;
+                }
+                larger(denominator.terms(&real, 0.0, 0.0), denominator.terms(&last, 0.0, 0.0))
+            } else {
+                high
+            };
+            (largest, 1.0 / low)
+        } else {
+            // The box may reach beyond the triangle, but no sample does.
+            let here = 1.0 / line.least(columns, rows);
+            let widest = if here > 0.0 && here < widest { here } else { widest };
+            (denominator.terms(&real, columns, rows), widest)
+        };
+        BatchSetup { ratio: largest * widest, reciprocal: 1.0 / line.c, widest, ..undivided }
+    }
+
+    /// Returns the largest error of the estimate of a function's quotient by D.
+    #[inline(always)]
+    pub(super) fn margin<const ROW: bool>(&self, function: &impl LinearFunction) -> f64 {
+        self.margin_by::<ROW>(function.reach(), function.terms(&self.real, self.columns, self.rows))
+    }
+
+    /// Returns the largest error of the estimate of a quotient. `reach` bounds its magnitude, with what is subtracted; `terms` bounds those of
+    /// its numerator, which a row does not need.
+    #[inline(always)]
+    pub(super) fn margin_by<const ROW: bool>(&self, reach: f64, terms: f64) -> f64 {
+        // What is subtracted is at most `reach` denominators. Along a row all other terms are, too: `ratio` bounds those of the denominator.
+        let numerator = if ROW { 0.0 } else { terms * self.widest };
+        (numerator + 2.0 * reach * self.ratio) * SLACK
     }
 }

@@ -80,8 +80,6 @@ pub(super) struct Shader {
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
     /// Whether stages drop fragments.
     pub(super) kills: bool,
-    /// Whether a dependent read has levels: then the results of all pixels of a quad are needed.
-    pub(super) completes_quads: bool,
 }
 
 /// Largest distance by which rows move coordinates, 1/256 texel. It is beyond the limit of coordinates.
@@ -103,9 +101,13 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
     }
 }
 
+/// Returns whether a dependent read has levels: then the results of all pixels of a quad are needed.
+pub(super) fn completes_quads(samplers: &[Sampler]) -> bool {
+    samplers.iter().any(|sampler| sampler.depends && sampler.mixes)
+}
+
 impl Shader {
-    /// Compiles the shader of a draw whose units rows can sample. Returns `None` if coordinates are moved too far, or if a dependent read has
-    /// levels beside a volume, a depth texture or several taps.
+    /// Compiles the shader of a draw whose units rows can sample. Returns `None` if coordinates are moved too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -115,11 +117,7 @@ impl Shader {
             moved: Vec::new(),
             vectors: Vec::new(),
             kills: draw.kills(),
-            completes_quads: samplers.iter().any(|sampler| sampler.depends && sampler.mixes),
         };
-        if shader.completes_quads && samplers.iter().any(|sampler| sampler.third.is_some() || sampler.pairs > 0) {
-            return None;
-        }
         for index in 0..TEXTURE_UNITS {
             let stage = shader.stage(draw, &planned.stages, index, samplers, scale)?;
             shader.stages.push(stage);

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::Isa;
-use super::equivalence_tests::{Random, Third, options, scene, triangle};
+use super::equivalence_tests::{DEPTHS, Random, Third, options, scene, steps, triangle};
 use crate::engine::{Engine, RenderOptions, Renderer};
 use crate::plan::Plan;
 use crate::state::*;
@@ -116,12 +116,25 @@ fn dependent_reads_with_levels_are_those_of_the_definition() {
         [O::Sample, O::DotProduct, O::DotProduct, O::DotProductCube],
     ];
     let (mut pixels, mut defined) = (0, 0);
-    for round in 0..24 {
+    for round in 0..42 {
         let (small, squares) = (round % 2 == 0, round % 4 == 1);
         let count = if small { 256 } else { 3 };
         let mut vertices: Vec<Vertex> = (0..count).flat_map(|_| triangle(&mut random, small)).collect();
         if squares {
             vertices = (0..4).flat_map(|_| square(&mut random)).collect();
+        }
+        // Normals come from layers of a volume in some rounds, or from comparisons of depths.
+        let third = match round % 7 {
+            1 => Third::Layers(random.of(&[AddressMode::Wrap, AddressMode::ClampToEdge])),
+            3 | 4 => Third::Reference(random.of(DEPTHS)),
+            _ => Third::Nothing,
+        };
+        if third != Third::Nothing {
+            let (times, set) = (steps(&mut random, third), random.of(&[2, 3]));
+            for vertex in &mut vertices {
+                let [s, t, r, q] = vertex.texture_coordinates[set];
+                vertex.texture_coordinates[0] = [s, t, r * times, q];
+            }
         }
         let program = programs[round / 2 % programs.len()];
         for vertex in &mut vertices {
@@ -130,16 +143,21 @@ fn dependent_reads_with_levels_are_those_of_the_definition() {
                 let bumps = matches!(operation, O::BumpEnvironment { .. });
                 vertex.texture_coordinates[n] = if bumps { near } else { [0; 4].map(|_| random.unit() * 2.0 - 0.5) };
             }
-            // The normals are coordinates divided by q in some rounds.
-            if round % 5 == 2 {
+            // They are divided by q in others.
+            if round % 5 == 2 && third == Third::Nothing {
                 vertex.texture_coordinates[0] = vertex.texture_coordinates[2];
             }
         }
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
-        let mut scene = scene(vertices, filter, DepthFormat::Z24S8, None, [true; 2], (Third::Nothing, false, 1));
+        let of = |third| scene(vertices.clone(), filter, DepthFormat::Z24S8, None, [true; 2], (third, false, 1));
+        let [flat, cube, _, levels] = of(Third::Nothing).draws[0].textures;
+        let mut scene = of(third);
         let draw = &mut scene.draws[0];
-        let [flat, cube, _, levels] = draw.textures;
-        let first = if round % 3 == 0 { flat } else { levels };
+        let first = match third {
+            Third::Nothing if round % 3 == 0 => flat,
+            Third::Nothing => levels,
+            _ => draw.textures[3],
+        };
         draw.textures = std::array::from_fn(|n| match program[n] {
             O::Sample => first,
             operation if !operation.samples() => None,

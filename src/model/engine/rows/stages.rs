@@ -11,7 +11,7 @@ use super::kernels::{LANES, Lanes256};
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
-use super::setup::{BatchSetup, PixelBatch, Run, ends, larger};
+use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Dominance;
 use super::triangle::Varying;
@@ -172,22 +172,13 @@ impl Workshop {
         triangles.push((batch.lane, context.number));
         let open = &mut open[batch.lanes()];
         open.fill(0);
-        let e = triangle.edges(batch.first.0, batch.first.1);
-        let real = [e[0] as f64, e[1] as f64, e[2] as f64];
-        let denominator = attributes.denominator.line(&real);
-        let terms = |columns, rows| match ends::<ROW>(triangle, &real, columns) {
-            Some([first, last]) => {
-                larger(attributes.denominator.terms(&first, 0.0, 0.0), attributes.denominator.terms(&last, 0.0, 0.0))
-            }
-            None => attributes.denominator.terms(&real, columns, rows),
-        };
-        let local = BatchSetup::new::<FMA, ROW>(batch, (e, real, denominator), attributes.widest, terms);
+        let local = BatchSetup::new::<FMA, ROW>(triangle, batch, &attributes.denominator, attributes.widest);
         if !attributes.numbers.is_empty() {
-            reciprocals.set::<FMA, ROW>(batch.at, denominator);
+            reciprocals.set::<FMA, ROW>(batch.at, local.denominator);
         }
         let four = numbers.chunks_mut(FOUR).zip(shader.varying.chunks(FOUR));
         for (Numbers { planes, first, is_same, floors }, (numbers, varying)) in attributes.numbers.iter().zip(four) {
-            let (lines, terms) = planes.around(&real, local.columns, local.rows);
+            let (lines, terms) = planes.around(&local.real, local.columns, local.rows);
             for (n, (out, (_, _, purpose))) in numbers.iter_mut().zip(varying).enumerate() {
                 let out = &mut out[batch.lanes()];
                 if is_same[n] {
@@ -195,7 +186,7 @@ impl Workshop {
                     out.fill(if *purpose == Purpose::Byte { byte_of(f64::from(value)) } else { value + 0.0 });
                     continue;
                 }
-                let margin = local.margin::<ROW>(planes.reach[n], |_, _| terms[n]);
+                let margin = local.margin_by::<ROW>(planes.reach[n], terms[n]);
                 let off = match floors[n] {
                     // Hardly beyond the triangle no number has more bits.
                     None if !batch.reaches_beyond() || local.ratio < 2.0 => 0.0,

@@ -69,6 +69,13 @@ impl Axis {
         }
     }
 
+    /// Returns the axis with a side that is shifted by some bits, as that of a smaller level mostly is.
+    #[inline(always)]
+    pub(super) fn shifted(&self, side: i32, shift: i32) -> Axis {
+        let shorter = (side - (side >> shift)) << 8;
+        Axis { high: if self.repeats() { self.high } else { self.high - shorter }, mask: self.mask >> shift, ..*self }
+    }
+
     /// Returns the entry of a coordinate within its limits.
     #[inline(always)]
     pub(super) fn entry(&self, coordinate: i32) -> i32 {
@@ -154,6 +161,8 @@ pub(super) struct Table {
     pub(super) channels: [Channel; 4],
     /// Positions of the levels, if the unit needs a level of detail.
     levels: Vec<Placed>,
+    /// Whether the axes of all levels are those of level 0, [shifted](Axis::shifted) by the level or until a side is 1.
+    pub(super) halves: bool,
 }
 
 /// The position of a level in a table.
@@ -345,7 +354,16 @@ impl Table {
             });
             (Texels::One(one, footprints.collect()), columns.count as usize, count)
         };
-        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
+        let last = unit.levels.last().map_or([0; 2], |level| unit.plane_shifts(level));
+        let halves = placed.iter().zip(0..).all(|(of_level, level)| {
+            let is_shifted = |axis: usize, side: u32| {
+                let wanted = of_level.axes[axis];
+                let shifted = axes[axis].shifted(side as i32, level.min(last[axis] as i32));
+                wanted.period.is_none() && wanted == Axis { count: wanted.count, ..shifted }
+            };
+            is_shifted(0, unit.levels[0].width) && is_shifted(1, unit.levels[0].height)
+        });
+        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed, halves }
     }
 
     /// Returns the position of a level of a face.

@@ -7,7 +7,7 @@ use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::Short;
 use super::table;
 use crate::engine::pixel::TriangleContext;
@@ -147,7 +147,7 @@ impl Setup<'_> {
                 }
                 (Some(Third::Reference(format)), ThirdPlanes::Reference(reference)) => {
                     let out = &mut references[batch.lanes()];
-                    if self.references::<FMA, ROW>(batch.at, *format, reference, local, out) {
+                    if self.references::<FMA, ROW>(&batch, *format, reference, local, out) {
                         self.defined_references(batch, sampler, *format, out);
                     }
                 }
@@ -160,12 +160,13 @@ impl Setup<'_> {
     #[inline(always)]
     fn references<const FMA: bool, const ROW: bool>(
         &self,
-        at: Positions<'_>,
+        batch: &PixelBatch<'_>,
         format: DepthFormat,
         reference: &Reference,
         local: &BatchSetup,
         out: &mut [u32],
     ) -> bool {
+        let (at, beyond) = (batch.at, ROW && batch.reaches_beyond());
         let (lines, off) = match reference {
             Reference::Same(word) => {
                 out.fill(*word);
@@ -174,12 +175,22 @@ impl Setup<'_> {
             Reference::Plane(planes) => {
                 let ([line, ..], terms) = planes.around(&local.real, local.columns, local.rows);
                 let lost = planes.lost[0] / least(self.context.triangle.p.map(|p| p as f64));
-                ((line, local.denominator), local.margin::<ROW>(planes.reach[0], |_, _| terms[0]) + lost)
+                // Beyond the triangle, the magnitudes of weights add up to more than 1.
+                let lost = if beyond { lost * local.ratio } else { lost };
+                ((line, local.denominator), local.margin_by::<ROW>(planes.reach[0], terms[0]) + lost)
             }
             Reference::Ratio(planes) => {
                 let ([r, q, ..], terms) = planes.around(&local.real, local.columns, local.rows);
-                let (lost, area) = (planes.lost, self.context.triangle.doubled_area as f64);
-                let widest = 1.0 / (least(planes.g(1)) * area);
+                let (lost, mut area) = (planes.lost, self.context.triangle.doubled_area as f64);
+                let mut lowest = least(planes.g(1)) * area;
+                if beyond {
+                    // There, edge functions may be negative, and so may q.
+                    let end = |k: usize| local.real[k] + self.context.triangle.a[k] as f64 * local.columns;
+                    let size = |e: [f64; 3]| e[0].abs() + e[1].abs() + e[2].abs();
+                    area = larger(size(local.real), size([end(0), end(1), end(2)]));
+                    lowest = q.c.min(q.at::<FMA, true>(local.columns, 0.0)) - 2.0 * (lost[1] * area + SLACK * terms[1]);
+                }
+                let widest = if lowest > 0.0 { 1.0 / lowest } else { f64::NAN };
                 let most = 1.0 + terms[0] * widest;
                 // The errors of both lines and of the quotient, and twice that; and what is lost at the vertices.
                 let off = 8.0 * SLACK * (terms[0] + terms[1] * most) + (lost[0] + lost[1] * most) * area;
