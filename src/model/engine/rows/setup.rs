@@ -326,6 +326,16 @@ impl BatchSetup {
         BatchSetup { e, real, denominator: denominator.line(&real), columns, rows, ..BatchSetup::default() }
     }
 
+    /// Returns the edge functions at the last pixel of a row.
+    #[inline(always)]
+    pub(super) fn at_end(&self, triangle: &Triangle) -> [f64; 3] {
+        let mut e = self.real;
+        for k in 0..3 {
+            e[k] += triangle.a[k] as f64 * self.columns;
+        }
+        e
+    }
+
     /// Sets up a batch. `widest` is the reciprocal of a lower bound of the denominator D.
     #[inline(always)]
     pub(super) fn new<const FMA: bool, const ROW: bool>(
@@ -342,10 +352,7 @@ impl BatchSetup {
             let (low, high) = if line.c < end { (line.c, end) } else { (end, line.c) };
             // Only within the triangle no term is negative. Sums of magnitudes are largest at the ends of a row.
             let largest = if batch.reaches_beyond() {
-                let mut last = real;
-                for k in 0..3 {
-                    last[k] += triangle.a[k] as f64 * columns;
-                }
+                let last = undivided.at_end(triangle);
                 larger(denominator.terms(&real, 0.0, 0.0), denominator.terms(&last, 0.0, 0.0))
             } else {
                 high

@@ -185,9 +185,8 @@ impl Setup<'_> {
                 let mut lowest = least(planes.g(1)) * area;
                 if beyond {
                     // There, edge functions may be negative, and so may q.
-                    let end = |k: usize| local.real[k] + self.context.triangle.a[k] as f64 * local.columns;
                     let size = |e: [f64; 3]| e[0].abs() + e[1].abs() + e[2].abs();
-                    area = larger(size(local.real), size([end(0), end(1), end(2)]));
+                    area = larger(size(local.real), size(local.at_end(&self.context.triangle)));
                     lowest = q.c.min(q.at::<FMA, true>(local.columns, 0.0)) - 2.0 * (lost[1] * area + SLACK * terms[1]);
                 }
                 let widest = if lowest > 0.0 { 1.0 / lowest } else { f64::NAN };
