@@ -248,25 +248,12 @@ impl MipFetches {
             let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
             let (to_u, to_v) = (&mut to_u[lanes.clone()], &mut to_v[lanes.clone()]);
             let entries = &mut entries[lanes.clone()];
-            if high > low && table.halves {
-                let levels = &levels[which][..lanes.len()];
-                halved((unit, table, face), filters, (lods, levels), u, v, to_u, to_v, entries);
-                continue;
-            }
-            if high - low >= SCATTERED {
-                let levels = &levels[which][..lanes.len()];
-                scattered((unit, table, face), filters, (lods, levels), u, v, to_u, to_v, entries);
-                continue;
-            }
-            for level in low..=high {
-                let placed = table.placed(level as usize, face);
-                let shifts = unit.plane_shifts(&unit.levels[level as usize]);
-                if level == low {
-                    places::<true>(&placed, filters, shifts, (lods, &[]), level, u, v, to_u, to_v, entries);
-                } else {
-                    let of = (lods, &levels[which][..lanes.len()]);
-                    places::<false>(&placed, filters, shifts, of, level, u, v, to_u, to_v, entries);
-                }
+            if low == high {
+                let shifts = unit.plane_shifts(&unit.levels[low as usize]);
+                places(&table.placed(low as usize, face), filters, shifts, lods, u, v, to_u, to_v, entries);
+            } else {
+                let of = (lods, &levels[which][..lanes.len()]);
+                scattered((unit, table, face), filters, of, u, v, to_u, to_v, entries);
             }
         }
     }
@@ -275,7 +262,7 @@ impl MipFetches {
     fn place(&mut self, which: usize, lane: usize, placed: &Placed, filters: [Taken; 2], lod: i32, [u, v]: [i32; 2]) {
         let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
         let (to_u, to_v, entries) = (&mut to_u[lane..=lane], &mut to_v[lane..=lane], &mut entries[lane..=lane]);
-        places::<true>(placed, filters, [0; 2], (&[lod], &[]), 0, &[u], &[v], to_u, to_v, entries);
+        places(placed, filters, [0; 2], &[lod], &[u], &[v], to_u, to_v, entries);
     }
 }
 
@@ -369,42 +356,14 @@ impl Taken {
     }
 }
 
-/// If lanes lie on more levels, each one looks its level up. Otherwise all lanes are placed on each level.
-const SCATTERED: i32 = 3;
-
 /// Number of levels of the largest side, rounded up to a power of two.
 const MAX_LEVELS: usize = 16;
 
-/// Computes the entry of each lane on its own level.
+/// Computes the entry of each lane on its own level. The axes of a level are those of level 0, [shifted](super::table::Axis::shifted), because only textures
+/// whose sides are powers of two have several levels.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn scattered(
-    (unit, table, face): (&PlannedUnit, &Table, u32),
-    filters: [Taken; 2],
-    (lods, levels): (&[i32], &[i32]),
-    u: &[i32],
-    v: &[i32],
-    to_u: &mut [i32],
-    to_v: &mut [i32],
-    entries: &mut [i32],
-) {
-    let mut all = [(table.placed(0, face), [0; 2]); MAX_LEVELS];
-    for (n, (of_level, level)) in all.iter_mut().zip(&unit.levels).enumerate() {
-        *of_level = (table.placed(n, face), unit.plane_shifts(level));
-    }
-    let lanes = lods.len();
-    let (u, v, levels) = (&u[..lanes], &v[..lanes], &levels[..lanes]);
-    let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
-    for n in 0..lanes {
-        let (placed, shifts) = &all[levels[n] as usize % MAX_LEVELS];
-        (to_u[n], to_v[n], entries[n]) = entry(placed, filters, *shifts, lods[n], [u[n], v[n]]);
-    }
-}
-
-/// Does what [`scattered`] does for a table that [halves](Table::halves).
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-fn halved(
     (unit, table, face): (&PlannedUnit, &Table, u32),
     filters: [Taken; 2],
     (lods, levels): (&[i32], &[i32]),
@@ -456,15 +415,14 @@ fn entry(
 }
 
 /// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
-/// texel of the footprint; and the coordinates for the weights. Without `ALL`, lanes of other levels keep what they have.
+/// texel of the footprint; and the coordinates for the weights.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-fn places<const ALL: bool>(
+fn places(
     placed: &Placed,
     filters: [Taken; 2],
     shifts: [u32; 2],
-    (lods, levels): (&[i32], &[i32]),
-    level: i32,
+    lods: &[i32],
     u: &[i32],
     v: &[i32],
     to_u: &mut [i32],
@@ -473,26 +431,16 @@ fn places<const ALL: bool>(
 ) {
     let Placed { axes: [columns, rows], first, pitch } = *placed;
     let lanes = lods.len();
-    let (u, v, levels) = (&u[..lanes], &v[..lanes], &levels[..if ALL { 0 } else { lanes }]);
+    let (u, v) = (&u[..lanes], &v[..lanes]);
     let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
-    let periodic = columns.period.is_some() || rows.period.is_some();
-    // By bits, because compilers turn a choice into masked loads and stores, which are slow.
-    let put = |to: &mut i32, from: i32, n: usize| {
-        *to = if ALL { from } else { *to ^ ((*to ^ from) & -i32::from(levels[n] == level)) };
-    };
     for n in 0..lanes {
-        let (u, v, entry) = entry(placed, filters, shifts, lods[n], [u[n], v[n]]);
-        put(&mut to_u[n], u, n);
-        put(&mut to_v[n], v, n);
-        put(&mut entries[n], entry, n);
+        (to_u[n], to_v[n], entries[n]) = entry(placed, filters, shifts, lods[n], [u[n], v[n]]);
     }
-    if periodic {
+    if columns.period.is_some() || rows.period.is_some() {
+        columns.reduce(to_u);
+        rows.reduce(to_v);
         for n in 0..lanes {
-            if ALL || levels[n] == level {
-                columns.reduce(&mut to_u[n..=n]);
-                rows.reduce(&mut to_v[n..=n]);
-                entries[n] = rows.entry(to_v[n]) * pitch + columns.entry(to_u[n]) + first;
-            }
+            entries[n] = rows.entry(to_v[n]) * pitch + columns.entry(to_u[n]) + first;
         }
     }
 }

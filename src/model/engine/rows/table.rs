@@ -69,7 +69,7 @@ impl Axis {
         }
     }
 
-    /// Returns the axis with a side that is shifted by some bits, as that of a smaller level mostly is.
+    /// Returns the axis of a smaller level, whose side is shifted by some bits. `count` stays.
     #[inline(always)]
     pub(super) fn shifted(&self, side: i32, shift: i32) -> Axis {
         let shorter = (side - (side >> shift)) << 8;
@@ -161,8 +161,6 @@ pub(super) struct Table {
     pub(super) channels: [Channel; 4],
     /// Positions of the levels, if the unit needs a level of detail.
     levels: Vec<Placed>,
-    /// Whether the axes of all levels are those of level 0, [shifted](Axis::shifted) by the level or until a side is 1.
-    pub(super) halves: bool,
 }
 
 /// The position of a level in a table.
@@ -354,16 +352,7 @@ impl Table {
             });
             (Texels::One(one, footprints.collect()), columns.count as usize, count)
         };
-        let last = unit.levels.last().map_or([0; 2], |level| unit.plane_shifts(level));
-        let halves = placed.iter().zip(0..).all(|(of_level, level)| {
-            let is_shifted = |axis: usize, side: u32| {
-                let wanted = of_level.axes[axis];
-                let shifted = axes[axis].shifted(side as i32, level.min(last[axis] as i32));
-                wanted.period.is_none() && wanted == Axis { count: wanted.count, ..shifted }
-            };
-            is_shifted(0, unit.levels[0].width) && is_shifted(1, unit.levels[0].height)
-        });
-        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed, halves }
+        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
     }
 
     /// Returns the position of a level of a face.
@@ -434,6 +423,21 @@ mod tests {
                     let same = weight == wanted && next == at((f >> 8) + 1);
                     let alone = weight == 0 && at(f >> 8) == at((f >> 8) + 1);
                     assert!(same || alone, "{mode:?} {n} {f}");
+                }
+            }
+        }
+    }
+
+    /// The axes of levels are those of level 0, shifted.
+    #[test]
+    fn axes_of_levels_are_shifted() {
+        for mode in AddressMode::ALL {
+            for (bits, border) in (0..=12).flat_map(|bits| [(bits, false), (bits, true)]) {
+                let largest = Axis::new(*mode, 1 << bits, border);
+                for shift in 0..=bits {
+                    let axis = Axis::new(*mode, 1 << (bits - shift), border);
+                    assert_eq!(Axis { count: largest.count, ..axis }, largest.shifted(1 << bits, shift), "{mode:?}");
+                    assert_eq!(axis.period, None);
                 }
             }
         }
