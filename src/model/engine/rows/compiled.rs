@@ -115,7 +115,7 @@ pub(crate) struct CompiledDraw {
     pub(super) plain: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,
-    /// Whether quads are drawn with all of their pixels, because stages of the texture shader need the results of all.
+    /// Whether quads are drawn with all of their pixels: a dependent read has levels, which follow from the results of all.
     pub(super) completes_quads: bool,
     /// Whether the surface is read: for blending, because some bits are not written, or because fragments can be dropped.
     pub(super) reads_surface: bool,

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "integers that doubles hold, and estimates that exact products correct")]
 
 use super::depth::floor;
-use super::dot::{Facing, Floats};
+use super::dot::{Facing, Floats, is_finite};
 use super::kernels::{LANES, PerLane};
 use super::levels::{MipFetches, choose};
 use super::quads::{AtQuads, Measure};
@@ -258,14 +258,12 @@ fn meet(
     let (t, m, opened, behind) = (&mut t[..lanes], &mut m[..lanes], &mut opened[..lanes], &mut behind[..lanes]);
     let ([a, b, c], [x, y, z]) = (first.map(|of| &of[..lanes]), direction.map(|of| &of[..lanes]));
     for n in 0..lanes {
-        let [along, down, major] = Facing::new([a[n], b[n], c[n]]).components([x[n], y[n], z[n]]);
-        let (x, y, z) = (x[n].abs(), y[n].abs(), z[n].abs());
+        let direction = [x[n], y[n], z[n]];
+        let [along, down, major] = Facing::new([a[n], b[n], c[n]]).components(direction);
         // A direction that is not finite counts as 0.
-        let finite = (x <= f32::MAX) & (y <= f32::MAX) & (z <= f32::MAX);
-        let ahead = (major > 0.0) & finite;
+        let ahead = (major > 0.0) & is_finite(direction);
         behind[n] |= i32::from(!ahead);
-        let largest = if x > y { x } else { y };
-        let largest = if z > largest { z } else { largest };
+        let largest = larger(larger(x[n].abs(), y[n].abs()), z[n].abs());
         let tiny = |s: f32| (s != 0.0) & (s.abs() * TINY < largest);
         let coarse = (major * STEEPEST < largest) | !is_first & (tiny(along) | tiny(down));
         opened[n] |= i32::from(coarse);

@@ -3,7 +3,7 @@
 
 use super::Sampler;
 use super::kernels::PerLane;
-use super::planes::{LinearFunction, Plane};
+use super::planes::Plane;
 use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::{Losses, Short, floors};
@@ -80,9 +80,12 @@ impl CubeDirection {
     /// Returns the direction across so many columns and rows.
     #[inline(always)]
     pub(super) fn around(planes: &[Plane; 3], e: &[f64; 3], columns: f64, rows: f64) -> CubeDirection {
-        let lines = [planes[0].line(e), planes[1].line(e), planes[2].line(e)];
-        let terms =
-            [planes[0].terms(e, columns, rows), planes[1].terms(e, columns, rows), planes[2].terms(e, columns, rows)];
+        let lines = [planes[0].real.line(e), planes[1].real.line(e), planes[2].real.line(e)];
+        let terms = [
+            planes[0].real.terms(e, columns, rows),
+            planes[1].real.terms(e, columns, rows),
+            planes[2].real.terms(e, columns, rows),
+        ];
         CubeDirection { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
     }
 
@@ -182,8 +185,8 @@ impl Setup<'_> {
         let done = match planes {
             Planes::Plane(planes) if self.context.triangle.loses_on_planes() => {
                 // The sum bounds both, and is NaN if one of them is.
-                let margin = local.margin::<ROW>(&planes[0]) + local.margin::<ROW>(&planes[1]);
-                let lines = [planes[0].line(&local.real), planes[1].line(&local.real), local.denominator];
+                let margin = local.margin::<ROW>(&planes[0].real) + local.margin::<ROW>(&planes[1].real);
+                let lines = [planes[0].real.line(&local.real), planes[1].real.line(&local.real), local.denominator];
                 let functions = (lines, self.losses_on_planes(planes), margin);
                 self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
             }
@@ -269,7 +272,7 @@ impl Setup<'_> {
             if widest <= 0.0 {
                 return false;
             }
-            reach *= planes[2].terms(&local.real, local.columns, 0.0) * widest;
+            reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
         }
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
         let most = if width > height { width } else { height };

@@ -181,6 +181,12 @@ fn floor(t: f64) -> i32 {
     nearest(t) - i32::from(whole(t) > t)
 }
 
+/// Returns whether all components are finite, without branches.
+#[inline(always)]
+pub(super) fn is_finite([x, y, z]: [f32; 3]) -> bool {
+    (x.abs() <= f32::MAX) & (y.abs() <= f32::MAX) & (z.abs() <= f32::MAX)
+}
+
 /// TEX-12: the face that a direction meets.
 #[derive(Clone, Copy)]
 pub(super) struct Facing {
@@ -231,8 +237,7 @@ pub(super) fn on_faces<const FMA: bool>(
     let k = (128 * size) as f32;
     for n in 0..BLOCK {
         let direction = [x[n], y[n], z[n]];
-        let [ax, ay, az] = [x[n].abs(), y[n].abs(), z[n].abs()];
-        let finite = (ax <= f32::MAX) & (ay <= f32::MAX) & (az <= f32::MAX);
+        let finite = is_finite(direction);
         let facing = Facing::new(direction);
         let [s, t, m] = facing.components(direction);
         // Number of the face, as a float.

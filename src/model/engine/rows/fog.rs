@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use super::Reason;
 use super::kernels::LANES;
-use super::planes::{LinearFunction, Plane, inverse};
+use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
@@ -136,8 +136,8 @@ impl Setup<'_> {
                 }
             }
             Fog::Function(curve) => {
-                let line = curve.coordinate.line(&local.real).times(curve.scale);
-                let off = local.margin::<ROW>(&curve.coordinate) * curve.scale.abs();
+                let line = curve.coordinate.real.line(&local.real).times(curve.scale);
+                let off = local.margin::<ROW>(&curve.coordinate.real) * curve.scale.abs();
                 // NaN proves nothing either.
                 let proves = off < COARSEST;
                 if !proves {

@@ -359,8 +359,8 @@ impl Taken {
 /// Number of levels of the largest side, rounded up to a power of two.
 const MAX_LEVELS: usize = 16;
 
-/// Computes the entry of each lane on its own level. The axes of a level are those of level 0, [shifted](super::table::Axis::shifted), because only textures
-/// whose sides are powers of two have several levels.
+/// Computes the entry of each lane on its own level. The axes of a level are those of level 0,
+/// [shifted](super::table::Axis::shifted), because only textures whose sides are powers of two have several levels.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn scattered(

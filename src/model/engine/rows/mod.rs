@@ -212,7 +212,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         if samples_pixels {
             compiled.samplers.clear();
         }
-        compiled.completes_quads = shader::completes_quads(&compiled.samplers);
+        compiled.completes_quads = compiled.samplers.iter().any(|sampler| sampler.depends && sampler.mixes);
         compiled.shader = shader.map(Arc::new);
     }
     // Each stage of a texture shader has its own coordinates.

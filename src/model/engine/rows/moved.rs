@@ -4,7 +4,7 @@
 use super::depth::floor;
 use super::dot::Floats;
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{LinearFunction, RealPlane, fraction_bits};
+use super::planes::{RealPlane, fraction_bits};
 use super::quotient::{multiply_add, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, larger};
 use super::shader::Bump;

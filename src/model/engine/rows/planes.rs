@@ -4,31 +4,17 @@
 use super::quotient::{Exact, Line};
 use crate::raster::setup::Triangle;
 
-/// A linear function across a triangle, around a pixel with edge functions `e`.
-pub(super) trait LinearFunction {
-    /// Returns the function relative to the pixel.
-    fn line(&self, e: &[f64; 3]) -> Line;
-
-    /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
-    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64;
-
-    /// Returns an upper bound of the magnitude of its quotient by D.
-    fn reach(&self) -> f64;
-}
-
 /// The function sum G_k E_k.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Plane {
     /// The values G_k at the vertices.
     pub(super) g: [i64; 3],
-    real: [f64; 3],
-    /// Slopes along x and y.
-    slope: [f64; 2],
+    /// The same in double precision.
+    pub(super) real: RealPlane,
+    /// Slopes along x and y modulo 2^64.
     whole: [i64; 2],
     /// Number of factors of two that all G_k and P_k share.
     pub(super) shared: u32,
-    /// Upper bound of the magnitude of its quotient by D.
-    pub(super) reach: f64,
 }
 
 impl Plane {
@@ -38,19 +24,13 @@ impl Plane {
         let (x, y) = (slope(&g, &triangle.a), slope(&g, &triangle.b));
         let p = &triangle.p;
         let real = [g[0] as f64, g[1] as f64, g[2] as f64];
-        let mut reach = 0.0;
-        for k in 0..3 {
-            let quotient = real[k].abs() * inverse[k];
-            reach = if quotient > reach { quotient } else { reach };
-        }
+        // Adds half a denominator, half a texel, and the rounding error of this number.
+        let reach = largest_quotient(&real, inverse) + 260.0;
         Plane {
             g,
-            real,
-            slope: [x.0, y.0],
+            real: RealPlane { g: real, slope: [x.0, y.0], sizes: [x.0.abs(), y.0.abs()], reach },
             whole: [x.1, y.1],
             shared: (g[0] | g[1] | g[2] | p[0] | p[1] | p[2]).trailing_zeros(),
-            // Adds half a denominator, half a texel, and the rounding error of this number.
-            reach: reach + 260.0,
         }
     }
 
@@ -65,12 +45,14 @@ impl Plane {
     #[inline(always)]
     pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {
         let p = &triangle.p;
-        let mut plane = Plane { reach: 516.0, shared: (p[0] | p[1] | p[2]).trailing_zeros(), ..Plane::default() };
+        let mut plane = Plane { shared: (p[0] | p[1] | p[2]).trailing_zeros(), ..Plane::default() };
         // Below 2^36; slopes are below 2^24.
         let g = 256 * p[k];
-        (plane.g[k], plane.real[k]) = (g, g as f64);
+        plane.g[k] = g;
         plane.whole = [g * triangle.a[k], g * triangle.b[k]];
-        plane.slope = [plane.whole[0] as f64, plane.whole[1] as f64];
+        let [x, y] = [plane.whole[0] as f64, plane.whole[1] as f64];
+        plane.real = RealPlane { slope: [x, y], sizes: [x.abs(), y.abs()], reach: 516.0, ..RealPlane::default() };
+        plane.real.g[k] = g as f64;
         plane
     }
 
@@ -127,35 +109,16 @@ impl Plane {
     }
 }
 
-impl LinearFunction for Plane {
-    #[inline(always)]
-    fn line(&self, e: &[f64; 3]) -> Line {
-        let c = self.real[0] * e[0] + self.real[1] * e[1] + self.real[2] * e[2];
-        Line { c, x: self.slope[0], y: self.slope[1] }
-    }
-
-    #[inline(always)]
-    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.real[0].abs() * e[0].abs() + self.real[1].abs() * e[1].abs() + self.real[2].abs() * e[2].abs();
-        at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
-    }
-
-    #[inline(always)]
-    fn reach(&self) -> f64 {
-        self.reach
-    }
-}
-
 /// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.
 const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// The function sum g_k E_k in double precision, where the g_k are not floored.
+/// The function sum g_k E_k in double precision.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RealPlane {
     g: [f64; 3],
     /// Slopes along x and y.
     slope: [f64; 2],
-    /// Sums of the magnitudes of the terms of the slopes.
+    /// Upper bounds of the magnitudes of the slopes, or sums of those of their terms if the slopes are rounded sums.
     sizes: [f64; 2],
     /// Upper bound of the magnitude of its quotient by D.
     pub(super) reach: f64,
@@ -165,42 +128,34 @@ impl RealPlane {
     /// Sets up a plane. `inverse` has the triangle's [`inverse`]s, and `more` bounds what is added to quotients.
     #[inline(always)]
     pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [f64; 3], more: f64) -> RealPlane {
-        let mut plane = RealPlane { g, reach: more, ..RealPlane::default() };
-        let mut reach = 0.0;
+        let reach = more + largest_quotient(&g, inverse);
+        let mut plane = RealPlane { g, reach, ..RealPlane::default() };
         for k in 0..3 {
             let (x, y) = (g[k] * triangle.a[k] as f64, g[k] * triangle.b[k] as f64);
             plane.slope = [plane.slope[0] + x, plane.slope[1] + y];
             plane.sizes = [plane.sizes[0] + x.abs(), plane.sizes[1] + y.abs()];
-            let quotient = g[k].abs() * inverse[k];
-            reach = if quotient > reach { quotient } else { reach };
         }
-        plane.reach += reach;
         plane
+    }
+
+    /// Returns the function relative to a pixel with edge functions `e`.
+    #[inline(always)]
+    pub(super) fn line(&self, e: &[f64; 3]) -> Line {
+        let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
+        Line { c, x: self.slope[0], y: self.slope[1] }
+    }
+
+    /// Returns a bound of the terms of [`line`](Self::line), so many columns and rows around the pixel.
+    #[inline(always)]
+    pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
+        let at = self.g[0].abs() * e[0].abs() + self.g[1].abs() * e[1].abs() + self.g[2].abs() * e[2].abs();
+        at + self.sizes[0] * columns + self.sizes[1] * rows
     }
 
     /// Returns the values g_k at the vertices.
     #[inline(always)]
     pub(super) fn g(&self) -> &[f64; 3] {
         &self.g
-    }
-}
-
-impl LinearFunction for RealPlane {
-    #[inline(always)]
-    fn line(&self, e: &[f64; 3]) -> Line {
-        let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
-        Line { c, x: self.slope[0], y: self.slope[1] }
-    }
-
-    #[inline(always)]
-    fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
-        let at = self.g[0].abs() * e[0].abs() + self.g[1].abs() * e[1].abs() + self.g[2].abs() * e[2].abs();
-        at + self.sizes[0] * columns + self.sizes[1] * rows
-    }
-
-    #[inline(always)]
-    fn reach(&self) -> f64 {
-        self.reach
     }
 }
 
@@ -280,6 +235,17 @@ pub(super) fn fraction_bits(triangle: &Triangle, g: &[f64; 3]) -> Option<i32> {
     // Sums of three terms, along two axes.
     let bits = exponent(largest) + area.ilog2() as i32 + 4 - last;
     (bits <= 53).then(|| (p.ilog2() + area.ilog2()) as i32 - last)
+}
+
+/// Returns the largest magnitude of the quotients g_k / P_k.
+#[inline(always)]
+fn largest_quotient(g: &[f64; 3], inverse: &[f64; 3]) -> f64 {
+    let mut largest = 0.0;
+    for k in 0..3 {
+        let quotient = g[k].abs() * inverse[k];
+        largest = if quotient > largest { quotient } else { largest };
+    }
+    largest
 }
 
 /// Returns 1 / P_k, rounded.

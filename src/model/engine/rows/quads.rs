@@ -4,7 +4,7 @@
 
 use super::direction::{CubeDirection, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{LinearFunction, Plane};
+use super::planes::Plane;
 use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
@@ -237,15 +237,17 @@ impl Setup<'_> {
             Planes::Plane(planes) if !self.stays_near(&batch, planes, local) => return None,
             Planes::Plane(planes) => {
                 let widest = 1.0 / lowest;
-                let ratio = self.denominator.terms(&local.real, columns, rows) * widest;
+                let ratio = self.denominator.real.terms(&local.real, columns, rows) * widest;
                 // Outside of the triangle, numbers can be larger than at the vertices.
-                let most = |plane: &Plane| plane.terms(&local.real, columns, rows) * widest + 2.0 * plane.reach * ratio;
+                let most = |plane: &Plane| {
+                    plane.real.terms(&local.real, columns, rows) * widest + 2.0 * plane.real.reach * ratio
+                };
                 let (one, other) = (most(&planes[0]), most(&planes[1]));
                 let range = (if one > other { one } else { other }) * (1.0 + ratio);
                 let p = &self.context.triangle.p;
                 let base = BaseLevel {
-                    along: planes[0].line(&local.real),
-                    down: planes[1].line(&local.real),
+                    along: planes[0].real.line(&local.real),
+                    down: planes[1].real.line(&local.real),
                     denominator: local.denominator,
                     lowest,
                     reach,

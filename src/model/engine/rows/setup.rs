@@ -3,7 +3,7 @@
 
 use super::compiled::{Reason, Reasons};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{LinearFunction, Plane};
+use super::planes::{Plane, RealPlane};
 use super::quotient::{IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample};
@@ -167,14 +167,14 @@ impl<'a> Setup<'a> {
     /// Returns whether no coordinate of a batch is limited, as some are beyond the triangle.
     #[inline(always)]
     pub(super) fn stays_near(&self, batch: &PixelBatch<'_>, planes: &[Plane; 2], local: &BatchSetup) -> bool {
-        let reach = if planes[0].reach > planes[1].reach { planes[0].reach } else { planes[1].reach };
+        let reach = larger(planes[0].real.reach, planes[1].real.reach);
         !batch.reaches_beyond() || reach * local.ratio < QUOTIENT_LIMIT as f64
     }
 
     /// Sets up a batch.
     #[inline(always)]
     pub(super) fn local<const FMA: bool, const ROW: bool>(&self, batch: PixelBatch<'_>, divides: bool) -> BatchSetup {
-        let (triangle, denominator) = (&self.context.triangle, &self.denominator);
+        let (triangle, denominator) = (&self.context.triangle, &self.denominator.real);
         if divides {
             BatchSetup::new::<FMA, ROW>(triangle, batch, denominator, self.widest)
         } else {
@@ -196,9 +196,9 @@ impl<'a> Setup<'a> {
 
     #[inline(always)]
     fn estimate_of<const ROW: bool>(&self, plane: &Plane, bias: i32, local: &BatchSetup) -> Option<QuotientEstimate> {
-        let margin = local.margin::<ROW>(plane);
+        let margin = local.margin::<ROW>(&plane.real);
         let (extent, reciprocals) = ((local.columns, local.rows), (local.reciprocal, local.widest));
-        QuotientEstimate::new::<ROW>(plane.line(&local.real), local.denominator, extent, reciprocals, margin, bias)
+        QuotientEstimate::new::<ROW>(plane.real.line(&local.real), local.denominator, extent, reciprocals, margin, bias)
     }
 
     /// INT-4, INT-4t: computes coordinates less a bias.
@@ -288,7 +288,7 @@ impl<'a> Setup<'a> {
 }
 
 #[inline(always)]
-pub(super) fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger<T: Copy + PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
@@ -319,7 +319,7 @@ pub(super) struct BatchSetup {
 impl BatchSetup {
     /// Sets up a batch in which nothing is divided by D.
     #[inline(always)]
-    fn undivided(triangle: &Triangle, batch: PixelBatch<'_>, denominator: &impl LinearFunction) -> BatchSetup {
+    fn undivided(triangle: &Triangle, batch: PixelBatch<'_>, denominator: &RealPlane) -> BatchSetup {
         let e = triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
@@ -341,7 +341,7 @@ impl BatchSetup {
     pub(super) fn new<const FMA: bool, const ROW: bool>(
         triangle: &Triangle,
         batch: PixelBatch<'_>,
-        denominator: &impl LinearFunction,
+        denominator: &RealPlane,
         widest: f64,
     ) -> BatchSetup {
         let undivided = BatchSetup::undivided(triangle, batch, denominator);
@@ -369,8 +369,8 @@ impl BatchSetup {
 
     /// Returns the largest error of the estimate of a function's quotient by D.
     #[inline(always)]
-    pub(super) fn margin<const ROW: bool>(&self, function: &impl LinearFunction) -> f64 {
-        self.margin_by::<ROW>(function.reach(), function.terms(&self.real, self.columns, self.rows))
+    pub(super) fn margin<const ROW: bool>(&self, function: &RealPlane) -> f64 {
+        self.margin_by::<ROW>(function.reach, function.terms(&self.real, self.columns, self.rows))
     }
 
     /// Returns the largest error of the estimate of a quotient. `reach` bounds its magnitude, with what is subtracted; `terms` bounds those of

@@ -101,11 +101,6 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
     }
 }
 
-/// Returns whether a dependent read has levels: then the results of all pixels of a quad are needed.
-pub(super) fn completes_quads(samplers: &[Sampler]) -> bool {
-    samplers.iter().any(|sampler| sampler.depends && sampler.mixes)
-}
-
 impl Shader {
     /// Compiles the shader of a draw whose units rows can sample. Returns `None` if coordinates are moved too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
