@@ -30,6 +30,9 @@ export LP_NUM_THREADS
 pin=
 if [ "$threads" = 1 ] && command -v taskset >/dev/null; then pin="taskset -c $(taskset -cp $$ | sed 's/.*[ ,-]//')"; fi
 
+# A wrong name of an instruction set is said here: the pipes below would hide it.
+"$ninebit" bench "$scenes/w1.ron" ${isa:+--isa "$isa"} >"$work/first.txt"
+
 round=0
 while [ "$round" -lt "$rounds" ]; do
     round=$((round + 1))
