@@ -1,8 +1,69 @@
-//! Sorts the triangles of a draw by the bands of rows that they meet.
+//! Cuts the rows of a target into bands, and sorts the triangles of a draw by the bands that they meet.
 
 use crate::raster::assemble::Assembly;
 use crate::raster::setup::centres;
 use std::ops::Range;
+
+/// Returns the borders of bands of so many rows: the first row of each band, and the end of the last.
+pub(super) fn equal(height: usize, rows: usize) -> Vec<usize> {
+    (0..height).step_by(rows).chain([height]).collect()
+}
+
+/// Setting up a triangle takes about as long as so many pixels.
+const SETUP: u64 = 24;
+
+/// Returns the borders of at most `bands` bands, each of at least `least` rows, on which the triangles of some draws take about the same
+/// time. Borders are even, so that quads stay whole.
+pub(super) fn balanced<'a>(
+    draws: impl Iterator<Item = &'a Assembly>,
+    (width, height): (usize, usize),
+    bands: usize,
+    least: usize,
+) -> Vec<usize> {
+    // By how much the cost of each row exceeds that of the one above, in 256ths of a pixel.
+    let mut changes = vec![0_i64; height + 1];
+    for assembly in draws {
+        for number in 0..assembly.triangles.len() {
+            let (rows, cost) = cost(assembly, number, (width, height));
+            changes[rows.start] += cost;
+            changes[rows.end] -= cost;
+        }
+    }
+    // The cost of all rows up to each one. An empty row has some cost too, so that such rows are shared.
+    let (mut cost, mut total) = (1, 0);
+    let totals = changes[..height].iter().map(|change| {
+        cost += change;
+        total += cost;
+        total
+    });
+    let totals: Vec<i64> = totals.collect();
+    let mut borders = vec![0];
+    let mut last = 0;
+    for band in 1..bands as i64 {
+        let part = total / bands as i64 * band;
+        let border = totals.partition_point(|total| *total < part).next_multiple_of(2);
+        if border >= last + least && border + least <= height {
+            borders.push(border);
+            last = border;
+        }
+    }
+    borders.push(height);
+    borders
+}
+
+/// Returns the rows of a triangle within a target, and its cost on each of them, in 256ths of a pixel.
+fn cost(assembly: &Assembly, number: usize, (width, height): (usize, usize)) -> (Range<usize>, i64) {
+    let [(left, right), (top, bottom)] = [0, 1].map(|axis| bounds(assembly, number, axis));
+    let (rows, columns) = (within((top, bottom), height), within((left, right), width));
+    if rows.is_empty() || columns.is_empty() {
+        return (0..0, 0);
+    }
+    // About as much of the triangle lies within the target as of its bounding box.
+    let (inside, all) = (rows.len() * columns.len(), (bottom - top) * (right - left));
+    let pixels = u128::from(assembly.area(number)) * inside as u128 / all as u128;
+    let cost = (pixels as u64 + SETUP) * 256 / rows.len() as u64;
+    (rows, cost as i64)
+}
 
 /// The triangles of a draw, in order, for each band in which they may cover pixels.
 #[derive(Debug)]
@@ -13,12 +74,12 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Sorts triangles into `bands` bands of `height` rows.
-    pub(super) fn new(assembly: &Assembly, height: usize, bands: usize) -> Bins {
-        let count = assembly.triangles.len();
+    /// Sorts triangles into the bands between borders.
+    pub(super) fn new(assembly: &Assembly, borders: &[usize]) -> Bins {
+        let (count, bands) = (assembly.triangles.len(), borders.len() - 1);
         let mut starts = vec![0; bands + 1];
         for number in 0..count {
-            for band in met(assembly, number, height, bands) {
+            for band in met(assembly, number, borders) {
                 starts[band + 1] += 1;
             }
         }
@@ -28,7 +89,7 @@ impl Bins {
         let mut numbers = vec![0; starts[bands]];
         let mut ends = starts.clone();
         for number in 0..count {
-            for band in met(assembly, number, height, bands) {
+            for band in met(assembly, number, borders) {
                 // A draw has 32-bit indices, and three make a triangle.
                 numbers[ends[band]] = number as u32;
                 ends[band] += 1;
@@ -43,13 +104,23 @@ impl Bins {
     }
 }
 
+/// Returns the columns or the rows of a triangle's bounding box, for axis 0 or 1.
+fn bounds(assembly: &Assembly, number: usize, axis: usize) -> (i64, i64) {
+    centres(assembly.triangles.vertices(number).map(|v| i64::from(assembly.corners[v as usize].position[axis])))
+}
+
+/// Returns those that lie between 0 and `end`.
+fn within((first, last): (i64, i64), end: usize) -> Range<usize> {
+    first.clamp(0, end as i64) as usize..last.clamp(0, end as i64) as usize
+}
+
 /// Returns the bands that a triangle's rows lie in.
-fn met(assembly: &Assembly, number: usize, height: usize, bands: usize) -> Range<usize> {
-    let y = assembly.triangles.vertices(number).map(|v| i64::from(assembly.corners[v as usize].position[1]));
-    let (top, bottom) = centres(y);
-    let end = (height * bands) as i64;
-    let (top, bottom) = (top.clamp(0, end) as usize, bottom.clamp(0, end) as usize);
-    if top < bottom { top / height..bottom.div_ceil(height) } else { 0..0 }
+fn met(assembly: &Assembly, number: usize, borders: &[usize]) -> Range<usize> {
+    let rows = within(bounds(assembly, number, 1), borders.last().copied().unwrap_or(0));
+    if rows.is_empty() {
+        return 0..0;
+    }
+    borders.partition_point(|border| *border <= rows.start) - 1..borders.partition_point(|border| *border < rows.end)
 }
 
 #[cfg(test)]
@@ -61,21 +132,50 @@ mod tests {
     use crate::state::{ProvokingVertex, Topology, Vertices};
     use std::sync::Arc;
 
+    fn triangles(count: u32) -> Assembly {
+        let mut sequence = Random::seeded(7);
+        let mut random = || sequence.below(4000) as i32 - 1000;
+        let corners: Vec<Corner> = (0..3 * count)
+            .map(|_| Corner { position: [random(), random() >> (random() & 3)], ..Corner::default() })
+            .collect();
+        let indices: Arc<[u32]> = (0..3 * count).collect();
+        let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
+        Assembly { vertices: Vertices::default(), corners, triangles, clipping: Clipping::default() }
+    }
+
+    /// No band costs more than its part, one row and what makes a border even.
+    #[test]
+    fn bands_cost_the_same() {
+        let assembly = triangles(2_000);
+        let size = (150, 188);
+        let of_row = |row: usize| {
+            let all = (0..2_000).map(|number| cost(&assembly, number, size));
+            all.filter(|(rows, _)| rows.contains(&row)).map(|(_, cost)| cost).sum::<i64>()
+        };
+        let costs: Vec<i64> = (0..188).map(of_row).collect();
+        let (total, largest) = (costs.iter().sum::<i64>(), costs.iter().copied().max().unwrap_or(0));
+        for bands in [1, 2, 3, 8] {
+            let borders = balanced([&assembly].into_iter(), size, bands, 2);
+            assert_eq!((borders.len(), borders[0], borders[bands]), (bands + 1, 0, 188));
+            for rows in borders.windows(2) {
+                assert!(rows[0] < rows[1] && rows[0] % 2 == 0, "{borders:?}");
+                let cost = costs[rows[0]..rows[1]].iter().sum::<i64>();
+                assert!(cost < total / bands as i64 + 3 * largest, "{borders:?}");
+            }
+        }
+        let lowest = balanced([&assembly].into_iter(), size, 8, 40);
+        assert!(lowest.windows(2).all(|rows| rows[1] - rows[0] >= 40), "{lowest:?}");
+        assert_eq!(balanced(std::iter::empty(), (64, 48), 3, 2), [0, 16, 32, 48]);
+    }
+
     /// Every triangle is in the bins of exactly those bands that one of its rows lies in.
     #[test]
     fn bins_hold_what_meets_their_rows() {
-        let mut sequence = Random::seeded(7);
-        let mut random = || sequence.below(4000) as i32 - 1000;
-        let corners: Vec<Corner> = (0..600)
-            .map(|_| Corner { position: [random(), random() >> (random() & 3)], ..Corner::default() })
-            .collect();
-        let indices: Arc<[u32]> = (0..600).collect();
-        let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
-        let assembly = Assembly { vertices: Vertices::default(), corners, triangles, clipping: Clipping::default() };
-        for (height, bands) in [(16, 8), (6, 21), (200, 1)] {
-            let bins = Bins::new(&assembly, height, bands);
-            for band in 0..bands {
-                let rows = ((band * height) as i64, ((band + 1) * height) as i64);
+        let assembly = triangles(200);
+        for borders in [equal(128, 16), equal(126, 6), equal(200, 200), vec![0, 2, 40, 150]] {
+            let bins = Bins::new(&assembly, &borders);
+            for band in 0..borders.len() - 1 {
+                let rows = (borders[band] as i64, borders[band + 1] as i64);
                 let wanted: Vec<u32> = (0..200)
                     .filter(|n| {
                         let y = [0, 1, 2].map(|k| i64::from(assembly.corners[3 * *n as usize + k].position[1]));
@@ -83,7 +183,7 @@ mod tests {
                         top.max(rows.0) < bottom.min(rows.1)
                     })
                     .collect();
-                assert_eq!(bins.of(band), wanted, "{height} {band}");
+                assert_eq!(bins.of(band), wanted, "{borders:?} {band}");
             }
         }
     }

@@ -20,7 +20,7 @@ pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
 
 use crate::frame::{Frames, Surface};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Named, Target, named};
 use crate::texture::planned::Image;
@@ -80,6 +80,10 @@ const SMALL: usize = 16_384;
 /// Number of pixels of a band that stays in the cache while several draws pass over it.
 const CACHED: usize = 32_768;
 
+/// Number of bands for each thread, if there are several. More would share the work more evenly, but triangles on a border are set up on
+/// both sides of it.
+const BANDS: usize = 3;
+
 /// Up to so many triangles per draw, it costs hardly anything to set up each triangle for every band.
 const MAX_UNSORTED_TRIANGLES: usize = 16;
 
@@ -97,7 +101,7 @@ pub fn render_counted(
 ) -> (Frames, Statistics) {
     let mut frames = cleared(plan);
     let renderer = Renderer::new(plan, options);
-    let total = renderer.groups().map(|draws| draws.len() * renderer.bands(&draws)).sum();
+    let total = renderer.groups.iter().map(|group| group.draws.len() * (group.borders.len() - 1)).sum();
     let done = AtomicUsize::new(0);
     let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     let statistics = renderer.draw_all(&mut frames, &band_done);
@@ -110,10 +114,19 @@ pub struct Renderer<'a> {
     plan: &'a Plan,
     rows: Option<Rows>,
     isa: Isa,
-    band: Option<usize>,
     team: Team,
-    /// The sorted triangles of each draw that the fast engine draws in several bands.
-    bins: Vec<Option<Bins>>,
+    groups: Vec<Group>,
+}
+
+/// Neighbouring draws on one target. They are drawn band by band: all draws of a group on one band, then on the next, so that the band
+/// stays in the cache. No draw reads what another one of its group has drawn, except through the surface itself.
+#[derive(Debug)]
+struct Group {
+    draws: Range<usize>,
+    /// First row of each band, and the end of the last.
+    borders: Vec<usize>,
+    /// The sorted triangles of each draw, if the fast engine draws them in several bands.
+    bins: Vec<Bins>,
 }
 
 impl<'a> Renderer<'a> {
@@ -126,17 +139,15 @@ impl<'a> Renderer<'a> {
             .filter(|isa| isa.is_available())
             .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
         let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan));
-        let mut renderer = Renderer { plan, rows, isa, band: options.band, team, bins: Vec::new() };
-        if renderer.rows.is_some() {
-            renderer.bins = renderer.groups().flat_map(|draws| renderer.bin(draws)).collect();
-        }
-        renderer
-    }
-
-    /// Sorts the triangles of draws that are drawn together.
-    fn bin(&self, draws: Range<usize>) -> impl Iterator<Item = Option<Bins>> {
-        let (height, bands) = (self.band(&draws), self.bands(&draws));
-        self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
+        let group = |draws: Range<usize>| {
+            let all = &plan.draws[draws.clone()];
+            let borders = borders(plan, all, rows.is_some(), options.band, team.count());
+            let is_sorted = rows.is_some() && borders.len() > 2;
+            let bins = all.iter().filter(|_| is_sorted).map(|draw| Bins::new(&draw.assembly, &borders)).collect();
+            Group { draws, borders, bins }
+        };
+        let groups = groups(plan).map(group).collect();
+        Renderer { plan, rows, isa, team, groups }
     }
 
     /// Returns the engine that draws.
@@ -174,51 +185,16 @@ impl<'a> Renderer<'a> {
 
     fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
         let defined = [const { AtomicU64::new(0) }; Reason::ALL.len()];
-        let shaded = self.groups().flat_map(|draws| self.draw_group(draws, frames, band_done, &defined));
+        let shaded = self.groups.iter().flat_map(|group| self.draw_group(group, frames, band_done, &defined));
         let shaded_pixels = shaded.collect();
         let defined = Reason::ALL.iter().copied().zip(defined.map(AtomicU64::into_inner));
         Statistics { shaded_pixels, defined_pixels: defined.filter(|(_, count)| *count > 0).collect() }
     }
 
-    /// Returns groups of neighbouring draws on one target. They are drawn band by band: all draws of a group on one band, then on the next,
-    /// so that the band stays in the cache. No draw reads what another one of its group has drawn, except through the surface itself.
-    fn groups(&self) -> impl Iterator<Item = Range<usize>> {
-        let draws = &self.plan.draws;
-        let mut first = 0;
-        std::iter::from_fn(move || {
-            let target = draws.get(first)?.target;
-            let count = draws[first..].iter().take_while(|draw| draw.target == target).count();
-            first += count;
-            Some(first - count..first)
-        })
-    }
-
-    /// Returns the number of rows of a band for some draws.
-    fn band(&self, draws: &Range<usize>) -> usize {
-        let target = &self.plan.targets[self.plan.draws[draws.start].target];
-        let (width, height) = (target.width as usize, target.height as usize);
-        let triangles: usize = self.plan.draws[draws.clone()].iter().map(|draw| draw.assembly.triangles.len()).sum();
-        let rows = match (&self.rows, self.team.count()) {
-            (None, _) => BAND,
-            // A triangle is set up once for each band that it meets.
-            (Some(_), 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
-            (Some(_), 1) => CACHED / width,
-            // More bands would share the work more evenly, but triangles on a border are set up on both sides of it.
-            (Some(_), threads) => height.div_ceil(4 * threads),
-        };
-        // Even, so that quads stay whole.
-        self.band.unwrap_or(rows.min(height).max(BAND)).max(1).next_multiple_of(2)
-    }
-
-    fn bands(&self, draws: &Range<usize>) -> usize {
-        let target = &self.plan.targets[self.plan.draws[draws.start].target];
-        (target.height as usize).div_ceil(self.band(draws))
-    }
-
-    /// Runs some draws on their target. Returns the number of covered pixels of each.
+    /// Runs a group. Returns the number of covered pixels of each draw.
     fn draw_group(
         &self,
-        draws: Range<usize>,
+        Group { draws, borders, bins }: &Group,
         frames: &mut Frames,
         band_done: &(dyn Fn() + Sync),
         defined: &[AtomicU64],
@@ -231,18 +207,16 @@ impl<'a> Renderer<'a> {
         let alone = Team::new(1);
         let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
         let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
-        let height = self.band(&draws);
-        draw_bands(plan, draws.clone(), height, frames, team, |words| {
+        draw_bands(plan, draws.clone(), borders, frames, team, |words| {
             let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, draws.clone(), words));
             let (draws, shaded) = (draws.clone(), &shaded);
-            move |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
+            move |textures: &[Image<'_, i32>], number: usize, band: &mut walk::Band<'_>, block: &mut rows::Block| {
                 for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
                     let draw = &plan.draws[index];
                     let pixels = match &compiled {
                         Some(compiled) => {
                             let compiled = &compiled[n];
-                            let bins = self.bins.get(index).and_then(Option::as_ref);
-                            let triangles = bins.map(|bins| bins.of(band.first_row / height));
+                            let triangles = bins.get(n).map(|bins| bins.of(number));
                             let compiled = compiled.as_ref();
                             let job =
                                 rows::Job { plan, draw, compiled, textures, triangles, vectors: Default::default() };
@@ -260,6 +234,40 @@ impl<'a> Renderer<'a> {
         });
         shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
+}
+
+/// Returns the draws of a plan, [grouped](Group).
+fn groups(plan: &Plan) -> impl Iterator<Item = Range<usize>> {
+    let draws = &plan.draws;
+    let mut first = 0;
+    std::iter::from_fn(move || {
+        let target = draws.get(first)?.target;
+        let count = draws[first..].iter().take_while(|draw| draw.target == target).count();
+        first += count;
+        Some(first - count..first)
+    })
+}
+
+/// Returns the borders of the bands in which some draws, of which there is at least one, are drawn on their target. `rows` is the wanted
+/// number of rows of a band.
+fn borders(plan: &Plan, draws: &[PlannedDraw], is_fast: bool, rows: Option<usize>, threads: usize) -> Vec<usize> {
+    let target = &plan.targets[draws[0].target];
+    let (width, height) = (target.width as usize, target.height as usize);
+    let triangles: usize = draws.iter().map(|draw| draw.assembly.triangles.len()).sum();
+    let rows = match (is_fast, threads) {
+        _ if rows.is_some() => rows.unwrap_or(BAND).max(1),
+        (false, _) => BAND,
+        // A triangle is set up once for each band that it meets.
+        (true, 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
+        (true, 1) => (CACHED / width).min(height).max(BAND),
+        (true, threads) => {
+            let visible = draws.iter().filter(|draw| draw.folded.invisible.is_none());
+            let assemblies = visible.map(|draw| &draw.assembly);
+            return bins::balanced(assemblies, (width, height), BANDS * threads, BAND);
+        }
+    };
+    // Even, so that quads stay whole.
+    bins::equal(height, rows.next_multiple_of(2))
 }
 
 /// Returns the surfaces after the clears, or with their initial contents.
@@ -291,17 +299,17 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Runs draws on their target in bands of so many rows. Each thread begins with bands of its own, the same every time, because they may be
+/// Runs draws on their target in the bands between borders. Each thread begins with bands of its own, the same every time, because they may be
 /// in its cache, and then takes what others have left. `prepare` returns what draws a band, from the words of textures.
 fn draw_bands<R>(
     plan: &Plan,
     draws: Range<usize>,
-    height: usize,
+    borders: &[usize],
     frames: &mut Frames,
     team: &Team,
     prepare: impl FnOnce(&TextureWords<'_>) -> R,
 ) where
-    R: Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync,
+    R: Fn(&[Image<'_, i32>], usize, &mut walk::Band<'_>, &mut rows::Block) + Sync,
 {
     let target = plan.draws[draws.start].target;
     let surface = &mut frames.surfaces[target];
@@ -310,20 +318,22 @@ fn draw_bands<R>(
     let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
     let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
     let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
-    let mut depths = depth.chunks_mut(height * width);
-    let band = |(number, words)| {
-        let depth = depths.next().unwrap_or_default();
-        Mutex::new(Some(walk::Band { first_row: number * height, width, words, depth }))
-    };
-    let bands: Vec<_> = words.chunks_mut(height * width).enumerate().map(band).collect();
+    let (mut words_left, mut depth_left) = (&mut words[..], &mut depth[..]);
+    let mut bands = Vec::with_capacity(borders.len());
+    for (number, rows) in borders.windows(2).enumerate() {
+        let count = (rows[1] - rows[0]) * width;
+        let words = words_left.split_off_mut(..count).unwrap_or_default();
+        let depth = depth_left.split_off_mut(..count).unwrap_or_default();
+        bands.push(Mutex::new(Some((number, walk::Band { first_row: rows[0], width, words, depth }))));
+    }
     let work = |thread: usize| {
         let mut block = rows::Block::default();
         let (before, own) = bands.split_at(thread * bands.len() / team.count());
         for band in own.iter().chain(before) {
             // A panic in another thread ends the render anyway.
             let band = band.lock().unwrap_or_else(PoisonError::into_inner).take();
-            if let Some(mut band) = band {
-                run_band(&textures, &mut band, &mut block);
+            if let Some((number, mut band)) = band {
+                run_band(&textures, number, &mut band, &mut block);
             }
         }
     };
@@ -335,8 +345,9 @@ fn draw_bands<R>(
 /// Runs one draw by the definition, on one thread.
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
     let draw = &plan.draws[index];
-    draw_bands(plan, index..index + 1, BAND, frames, &Team::new(1), |_| {
-        |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, _: &mut rows::Block| {
+    let borders = bins::equal(frames.surfaces[draw.target].height as usize, BAND);
+    draw_bands(plan, index..index + 1, &borders, frames, &Team::new(1), |_| {
+        |textures: &[Image<'_, i32>], _, band: &mut walk::Band<'_>, _: &mut rows::Block| {
             walk::draw(plan, draw, textures, band, &mut Silent);
         }
     });

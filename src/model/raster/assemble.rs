@@ -33,6 +33,15 @@ pub struct Assembly {
     pub clipping: Clipping,
 }
 
+impl Assembly {
+    /// Returns the area of a triangle in pixels, rounded down.
+    pub(crate) fn area(&self, number: usize) -> u64 {
+        let [a, b, c] = self.triangles.vertices(number).map(|v| self.corners[v as usize].position.map(i64::from));
+        // Twice the area in 1/256 square pixel.
+        ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
+    }
+}
+
 /// The effects of clipping on the triangles of a draw (RAS-6).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Clipping {

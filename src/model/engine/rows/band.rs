@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, batch_of, boxes, few, is_box, is_small};
+use super::boxes::{BoxCoverage, batch, boxes, few, is_box, is_small};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -117,18 +117,15 @@ fn draw_window<T: Kernels>(
 ) -> u64 {
     let (draw, mut shaded) = (job.draw, 0);
     let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
-    let mut seen = [0; CHUNK];
-    for first in (0..count).step_by(CHUNK) {
-        let chunk = T::select(job, (first, count.min(first + CHUNK)), rows, &mut seen);
-        for number in seen.iter().take(chunk) {
-            shaded += draw_triangle::<T>(job, *number as usize, (rows, columns), context, band, block);
+    for n in 0..count {
+        let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
+        // Most others are culled.
+        if TriangleContext::may_cover(draw, number, rows) {
+            shaded += draw_triangle::<T>(job, number, (rows, columns), context, band, block);
         }
     }
     shaded
 }
-
-/// Number of triangles that are selected at once.
-pub(super) const CHUNK: usize = 64;
 
 /// Draws the part of a triangle that lies in some rows and columns of a band. Returns the number of covered pixels.
 #[inline(always)]
@@ -354,24 +351,6 @@ pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     )
 }
 
-/// Selects those of some triangles of a job that may cover pixels in the given rows. Returns their number. Most others are culled. Without
-/// branches, which would depend on that.
-#[inline(always)]
-pub(super) fn select<const WIDE: bool>(
-    job: Job<'_>,
-    (first, end): (usize, usize),
-    rows: (i64, i64),
-    seen: &mut [u32; CHUNK],
-) -> usize {
-    let mut count = 0;
-    for n in first..end {
-        let number = job.triangles.map_or(n as u32, |numbers| numbers[n]);
-        seen[count % CHUNK] = number;
-        count += usize::from(TriangleContext::may_cover(job.draw, number as usize, rows));
-    }
-    count
-}
-
 /// Sets up a triangle that may cover pixels for the given rows and columns, and finds its coverage if it is a single box.
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
@@ -414,7 +393,7 @@ pub(super) fn plain<const FMA: bool>(
     block: &mut Block,
 ) -> bool {
     let Block { varying, rows, coverage, used, planes, .. } = block;
-    small::interpolate::<FMA>(context, compiled, few(coverage, *used), varying, rows, planes)
+    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows, planes)
 }
 
 /// Interpolates all attributes in the block's box, for any draw.
@@ -429,8 +408,7 @@ pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<
 #[inline(always)]
 pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: Job<'_>, block: &mut Block) {
     let Block { varying, rows, coverage, used, .. } = block;
-    let batch = batch_of(job.compiled, coverage, *used);
-    interpolators.interpolate::<FMA, false>(batch, job.compiled, job.textures, varying, rows);
+    interpolators.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
 }
 
 /// Interpolates all attributes along a batch of a row.
@@ -475,7 +453,7 @@ pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: 
 /// Computes the depths in the block's box.
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block) {
-    depths::<FMA, false>(context, few(&block.coverage, block.used), block.varying.depths());
+    depths::<FMA, false>(context, batch(&block.coverage, block.used), block.varying.depths());
 }
 
 /// Runs the stages of the texture shader for a block.

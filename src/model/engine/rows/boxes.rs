@@ -1,9 +1,8 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
-use super::CompiledDraw;
 use super::kernels::STEP;
-use super::quotient::{Positions, SMALL_BATCH};
+use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch, whole_steps};
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
@@ -74,21 +73,10 @@ impl Default for BoxCoverage {
 impl BoxCoverage {
     /// RAS-3: finds the covered pixels of a [box](is_box) of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
-    pub(super) fn cover(&mut self, triangle: &Triangle, window: Window) {
-        let (rows, _) = window;
-        if rows.1 - rows.0 <= SIDE / 2 {
-            self.cover_rows::<{ SIDE as usize / 2 }>(triangle, window);
-        } else {
-            self.cover_rows::<{ SIDE as usize }>(triangle, window);
-        }
-    }
-
-    /// Does the same for at most `ROWS` rows.
-    #[inline(always)]
-    fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, (rows, columns): Window) {
+    pub(super) fn cover(&mut self, triangle: &Triangle, (rows, columns): Window) {
         (self.count, self.filled) = (0, 0);
         let left = columns.0;
-        let (mut low, mut high) = ([0; ROWS], [(columns.1 - left) as i32; ROWS]);
+        let (mut low, mut high) = ([0; SIDE as usize], [(columns.1 - left) as i32; SIDE as usize]);
         let e = triangle.edges(left, rows.0);
         for k in 0..3 {
             // Not negative inside the triangle. On an edge that belongs to the other triangle, the value is one less.
@@ -120,36 +108,26 @@ impl BoxCoverage {
     }
 }
 
-/// Returns the pixels of a box as a batch for a draw. Samplers with quads need whole steps.
-#[inline(always)]
-pub(super) fn batch_of<'c>(compiled: &CompiledDraw, coverage: &'c BoxCoverage, lane: usize) -> PixelBatch<'c> {
-    let quads = compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0);
-    if quads { batch(coverage, lane) } else { few(coverage, lane) }
-}
-
 /// Returns the pixels of a box as a batch.
 #[inline(always)]
-fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let lanes = whole_steps(coverage.count);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
     let (first, count, runs) = (coverage.first, coverage.count, &coverage.runs[..coverage.filled]);
     PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs, covered: Covered(0, count) }
 }
 
+/// Number of lanes that [`few`] pixels take.
+const FEW: usize = STEP / 2;
+
 /// Returns the pixels of a box as a batch, with fewer lanes than a step if those suffice.
 #[inline(always)]
 pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let all = batch(coverage, lane);
     let Positions { x, y, last } = all.at;
-    if all.count <= SMALL_BATCH {
-        PixelBatch { at: Positions { x: &x[..SMALL_BATCH], y: &y[..SMALL_BATCH], last }, ..all }
-    } else {
-        all
-    }
+    let is_few = all.count <= FEW;
+    if is_few { PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], last }, ..all } } else { all }
 }
-
-/// 1.5 2^23: adding it to a small number leaves the nearest integer in the low bits.
-const MAGIC: f32 = 12_582_912.0;
 
 /// A limit beyond all columns.
 const BEYOND: i32 = 1 << 23;
@@ -160,7 +138,7 @@ const BEYOND: i32 = 1 << 23;
 /// integer is at least half of 1/a. For quotients below 32 single precision is more exact than that, because a is below 2^15; larger
 /// quotients put the whole box on one side.
 #[inline(always)]
-fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high: &mut [i32; ROWS]) {
+fn limit(e: i32, a: i32, b: i32, low: &mut [i32; SIDE as usize], high: &mut [i32; SIDE as usize]) {
     // A horizontal edge covers all columns of a row or none. The chosen factor moves the limit out of the box.
     let inverse = if a == 0 { 40.0 } else { 1.0 / a.unsigned_abs() as f32 };
     // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the
@@ -168,9 +146,10 @@ fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high:
     let (from, to) = if a > 0 { (0, BEYOND) } else { (-BEYOND, 0) };
     for ((j, low), high) in low.iter_mut().enumerate().zip(high) {
         let r = (b * j as i32 + e) as f32 + 0.5;
-        let floor = (r * inverse - 0.5 + MAGIC).to_bits() as i32 - MAGIC.to_bits() as i32;
-        *low = (*low).max(from - floor);
-        *high = (*high).min(to + floor + 1);
+        let floor = nearest_32(r * inverse - 0.5);
+        // Rows below the box, which nobody reads, may wrap.
+        *low = (*low).max(from.wrapping_sub(floor));
+        *high = (*high).min(to.wrapping_add(floor.wrapping_add(1)));
     }
 }
 

@@ -2,22 +2,13 @@
 
 use super::CompiledDraw;
 use super::kernels::{Lanes256, PerLane};
-use super::quotient::SMALL_BATCH;
 use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
 
-/// Narrows weights to 16 bits. A batch of [`SMALL_BATCH`] lanes is handled apart: since the compiler knows its length, it is one vector
-/// without a loop.
+/// Narrows weights to 16 bits.
 #[inline(always)]
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
-    if let (Ok(wide), Ok(out)) = (<&[i32; SMALL_BATCH]>::try_from(wide), <&mut [u16; SMALL_BATCH]>::try_from(&mut *out))
-    {
-        for n in 0..SMALL_BATCH {
-            out[n] = wide[n] as u16;
-        }
-        return;
-    }
     for (out, wide) in out.iter_mut().zip(wide) {
         *out = *wide as u16;
     }
@@ -58,19 +49,9 @@ pub(super) fn colors(
     }
 }
 
-/// INT-2 of one channel. [`SMALL_BATCH`] lanes are handled apart, as in [`narrow`].
+/// INT-2 of one channel.
 #[inline(always)]
 fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
-    if let (Ok(w0), Ok(w2), Ok(out)) = (
-        <&[u16; SMALL_BATCH]>::try_from(w0),
-        <&[u16; SMALL_BATCH]>::try_from(w2),
-        <&mut [i16; SMALL_BATCH]>::try_from(&mut *out),
-    ) {
-        for n in 0..SMALL_BATCH {
-            out[n] = interpolate::color(corners, w0[n], w2[n]) as i16;
-        }
-        return;
-    }
     for ((out, w0), w2) in out.iter_mut().zip(w0).zip(w2) {
         *out = interpolate::color(corners, *w0, *w2) as i16;
     }

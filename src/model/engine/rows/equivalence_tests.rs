@@ -5,7 +5,7 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::band::common;
-use super::boxes::{BoxCoverage, batch_of, boxes, few, is_small};
+use super::boxes::{BoxCoverage, batch, boxes, is_small};
 use super::kernels::Lanes256;
 use super::levels::MipFetches;
 use super::quads::Measure;
@@ -464,13 +464,12 @@ fn rows_interpolate(seed: u64) {
                     if coverage.count == 0 {
                         continue;
                     }
-                    let batch = batch_of(compiled, &coverage, 0);
+                    let batch = batch(&coverage, 0);
                     let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
-                    let few = few(&coverage, 0);
                     let four = if round.is_multiple_of(4) {
-                        compare_small::<true>(&mut alone, &plain, few, &mut varying, &mut rows)
+                        compare_small::<true>(&mut alone, &plain, batch, &mut varying, &mut rows)
                     } else {
-                        compare_small::<false>(&mut alone, &plain, few, &mut varying, &mut rows)
+                        compare_small::<false>(&mut alone, &plain, batch, &mut varying, &mut rows)
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {

@@ -169,7 +169,7 @@ impl Graph {
                 let (a, b) = (one.0.min(one.1), one.0.max(one.1));
                 if self.are_bytes(&[a, b]) {
                     let ends = self.product_range(a, b);
-                    return self.add(Node::Bytes(a, b), (kernels::rounded(ends.0), kernels::rounded(ends.1)));
+                    return self.add(Node::Bytes([a, b]), (kernels::rounded(ends.0), kernels::rounded(ends.1)));
                 }
             }
             [one, other] => {
@@ -266,8 +266,7 @@ impl Graph {
             return self.rounded_sum(&[(a, b)]);
         }
         if let (Some(first), Some(second)) = (self.times_one((a, b)), self.times_one((c, d))) {
-            let (x, y) = (self.range(first), self.range(second));
-            return self.add(Node::Minus(first, second), (x.0 - y.1, x.1 - y.0));
+            return self.minus(first, second);
         }
         let (first, second) = (self.product_range(a, b), self.product_range(c, d));
         let range = (kernels::rounded(first.0 - second.1), kernels::rounded(first.1 - second.0));
@@ -291,7 +290,7 @@ impl Graph {
             (_, Some(0)) => a,
             _ => {
                 let (x, y) = (self.range(a), self.range(b));
-                self.add(Node::Add(a.min(b), a.max(b)), (x.0 + y.0, x.1 + y.1))
+                self.add(Node::Add([a.min(b), a.max(b)]), (x.0 + y.0, x.1 + y.1))
             }
         }
     }
@@ -414,7 +413,7 @@ impl Algebra for Graph {
 
     fn minus(&mut self, a: Value, b: Value) -> Value {
         let (x, y) = (self.range(a), self.range(b));
-        self.add(Node::Minus(a, b), (x.0 - y.1, x.1 - y.0))
+        self.add(Node::Minus([a, b]), (x.0 - y.1, x.1 - y.0))
     }
 
     fn least(&mut self, a: Value, b: Value) -> Value {
@@ -424,7 +423,7 @@ impl Algebra for Graph {
         } else if y.1 <= x.0 {
             b
         } else {
-            self.add(Node::Least(a, b), (x.0.min(y.0), x.1.min(y.1)))
+            self.add(Node::Least([a, b]), (x.0.min(y.0), x.1.min(y.1)))
         }
     }
 
@@ -435,7 +434,7 @@ impl Algebra for Graph {
         } else if y.0 >= x.1 {
             b
         } else {
-            self.add(Node::Greatest(a, b), (x.0.max(y.0), x.1.max(y.1)))
+            self.add(Node::Greatest([a, b]), (x.0.max(y.0), x.1.max(y.1)))
         }
     }
 

@@ -1,6 +1,6 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
-use super::band::{self, Block, CHUNK, Entered};
+use super::band::{self, Block, Entered};
 use super::boxes::BoxCoverage;
 use super::compiled::{CompiledDraw, Job};
 use super::filter::Vectors;
@@ -108,8 +108,6 @@ text! {
     {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
-        /// Calls [`band::select`] with this instruction set.
-        fn select(job: Job<'_>, range: (usize, usize), rows: (i64, i64), seen: &mut [u32; CHUNK]) -> usize;
         /// Calls [`band::enter`] with this instruction set.
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
         /// Calls [`band::cover`] with this instruction set.

@@ -215,7 +215,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
                 Scale::Half => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Half)),
             }
         }
-        Node::Bytes(a, b) => {
+        Node::Bytes([a, b]) => {
             let (a, b) = (row(a), row(b));
             each(out, |n| byte_product(a[n], b[n]));
         }
@@ -259,19 +259,19 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
                 Mux(MuxSelect::Lsb, _) => select(Mux(MuxSelect::Lsb, MuxNegative::Sign)),
             }
         }
-        Node::Add(a, b) => {
+        Node::Add([a, b]) => {
             let (a, b) = (row(a), row(b));
             each(out, |n| a[n] + b[n]);
         }
-        Node::Minus(a, b) => {
+        Node::Minus([a, b]) => {
             let (a, b) = (row(a), row(b));
             each(out, |n| a[n] - b[n]);
         }
-        Node::Least(a, b) => {
+        Node::Least([a, b]) => {
             let (a, b) = (row(a), row(b));
             each(out, |n| a[n].min(b[n]));
         }
-        Node::Greatest(a, b) => {
+        Node::Greatest([a, b]) => {
             let (a, b) = (row(a), row(b));
             each(out, |n| a[n].max(b[n]));
         }

@@ -75,7 +75,6 @@ pub(crate) use kernels::BLOCK;
 
 use crate::engine::TextureWords;
 use crate::plan::{Plan, PlannedDraw};
-use crate::raster::assemble::Assembled;
 use crate::rop::surface;
 use crate::state::{Filter, MipFilter, TextureImage, TextureKind};
 use crate::texture::planned::{Image, PlannedUnit};
@@ -144,13 +143,7 @@ impl Rows {
 /// Estimates the number of pixels that a draw covers: at most its window for each triangle.
 fn pixels(draw: &PlannedDraw) -> u64 {
     let window = draw.windows.iter().map(|window| u64::from(window.width) * u64::from(window.height)).sum::<u64>();
-    let all = &draw.assembly.corners;
-    let area = |t: Assembled| {
-        let [a, b, c] = t.vertices.map(|v| all[v as usize].position.map(i64::from));
-        // Twice the area in 1/256 square pixel.
-        ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
-    };
-    draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
+    (0..draw.assembly.triangles.len()).map(|number| draw.assembly.area(number).min(window)).sum()
 }
 
 /// Tables of textures, shared by draws.
@@ -320,8 +313,13 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     for value in &outputs {
         reached[usize::from(value.0)] = true;
     }
-    for n in (0..count).rev().filter(|n| reached[*n]).collect::<Vec<_>>() {
-        mark(n, built, &mut reached);
+    for n in (0..count).rev() {
+        if reached[n] {
+            // All of them are earlier.
+            for operand in built.graph.node(Value(n as u16)).operands() {
+                reached[usize::from(operand.0)] = true;
+            }
+        }
     }
     // The first rows are the spare ones.
     compiled.rows.resize(SPARE, 0);
@@ -349,17 +347,5 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     }
     if draw.alpha_test.is_some() {
         compiled.alpha = row_of[usize::from(built.alpha.0)];
-    }
-}
-
-/// Marks the values that a value depends on.
-fn mark(value: usize, built: &build::Built, reached: &mut [bool]) {
-    let mut open = vec![Value(value as u16)];
-    while let Some(value) = open.pop() {
-        for operand in built.graph.node(value).operands() {
-            if !std::mem::replace(&mut reached[usize::from(operand.0)], true) {
-                open.push(operand);
-            }
-        }
     }
 }

@@ -43,13 +43,6 @@ impl Pairs {
         }
         Pairs { count: pairs.len(), values }
     }
-
-    fn renamed(mut self, name: impl Fn(Value) -> Value) -> Pairs {
-        for value in &mut self.values[..2 * self.count] {
-            *value = name(*value);
-        }
-        self
-    }
 }
 
 /// A mapping with the policies that concern it. Other policies have their defaults.
@@ -103,7 +96,7 @@ pub(super) enum Node {
     /// CMB-9=after of a sum of products, not saturated. The flag tells whether factors are in halves.
     After(Bias, Scale, bool, Pairs),
     /// NUM-2 of a product of two bytes.
-    Bytes(Value, Value),
+    Bytes([Value; 2]),
     /// NUM-2 of a sum of two products of bytes, at most 255.
     ByteSum([Value; 4]),
     /// NUM-2 of a difference of two products.
@@ -117,13 +110,13 @@ pub(super) enum Node {
     /// CMB-10: the first value decides between CD, the second, and AB, the third.
     Select(Mux, [Value; 3]),
     /// a + b.
-    Add(Value, Value),
+    Add([Value; 2]),
     /// a - b.
-    Minus(Value, Value),
+    Minus([Value; 2]),
     /// The smaller of two values.
-    Least(Value, Value),
+    Least([Value; 2]),
     /// The larger of two values.
-    Greatest(Value, Value),
+    Greatest([Value; 2]),
     /// Limited to 0..=255.
     Clamp(Value),
     /// ROP-5: clears so many low bits.
@@ -134,49 +127,30 @@ pub(super) enum Node {
 
 impl Node {
     /// Returns the values that it is computed from.
-    pub(super) fn operands(&self) -> Vec<Value> {
+    pub(super) fn operands(&mut self) -> &mut [Value] {
         match self {
-            Node::Constant(_) | Node::Input(_) => Vec::new(),
+            Node::Constant(_) | Node::Input(_) => &mut [],
             Node::Map(_, v)
             | Node::Scaled(_, _, v)
             | Node::Output(_, _, _, v)
             | Node::Clamp(v)
             | Node::Truncate(_, v)
-            | Node::Signed(v) => vec![*v],
+            | Node::Signed(v) => std::slice::from_mut(v),
             Node::Sum(pairs) | Node::HalfSum(pairs) | Node::After(_, _, _, pairs) => {
-                pairs.values[..2 * pairs.count].to_vec()
+                &mut pairs.values[..2 * pairs.count]
             }
-            Node::ByteSum(v) | Node::Difference(v) => v.to_vec(),
-            Node::UnsignedDot(v) => v.to_vec(),
-            Node::Select(_, v) => v.to_vec(),
-            Node::Bytes(a, b) | Node::Add(a, b) | Node::Minus(a, b) | Node::Least(a, b) | Node::Greatest(a, b) => {
-                vec![*a, *b]
-            }
+            Node::Bytes(v) | Node::Add(v) | Node::Minus(v) | Node::Least(v) | Node::Greatest(v) => v,
+            Node::ByteSum(v) | Node::Difference(v) => v,
+            Node::UnsignedDot(v) => v,
+            Node::Select(_, v) => v,
         }
     }
 
     /// Returns the node with its values renamed.
-    pub(super) fn renamed(self, name: impl Fn(Value) -> Value) -> Node {
-        match self {
-            Node::Constant(_) | Node::Input(_) => self,
-            Node::Map(mapping, v) => Node::Map(mapping, name(v)),
-            Node::Sum(pairs) => Node::Sum(pairs.renamed(name)),
-            Node::HalfSum(pairs) => Node::HalfSum(pairs.renamed(name)),
-            Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
-            Node::ByteSum(v) => Node::ByteSum(v.map(name)),
-            Node::Difference(v) => Node::Difference(v.map(name)),
-            Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
-            Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
-            Node::Output(bias, scale, floor, v) => Node::Output(bias, scale, floor, name(v)),
-            Node::Select(mux, v) => Node::Select(mux, v.map(name)),
-            Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),
-            Node::Add(a, b) => Node::Add(name(a), name(b)),
-            Node::Minus(a, b) => Node::Minus(name(a), name(b)),
-            Node::Least(a, b) => Node::Least(name(a), name(b)),
-            Node::Greatest(a, b) => Node::Greatest(name(a), name(b)),
-            Node::Clamp(v) => Node::Clamp(name(v)),
-            Node::Truncate(bits, v) => Node::Truncate(bits, name(v)),
-            Node::Signed(v) => Node::Signed(name(v)),
+    pub(super) fn renamed(mut self, name: impl Fn(Value) -> Value) -> Node {
+        for value in self.operands() {
+            *value = name(*value);
         }
+        self
     }
 }

@@ -39,9 +39,6 @@ pub(super) static IOTA_REAL: [f64; LANES] = {
     all
 };
 
-/// Number of lanes of a small batch, which is less than a step. Code for small batches has no loops.
-pub(super) const SMALL_BATCH: usize = 8;
-
 /// Columns and rows of a batch's pixels, relative to its first.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
@@ -302,18 +299,6 @@ impl Reciprocals {
             }
             return;
         }
-        if let (Ok(xs), Ok(ys)) = (<&[i32; SMALL_BATCH]>::try_from(at.x), <&[i32; SMALL_BATCH]>::try_from(at.y)) {
-            for n in 0..SMALL_BATCH {
-                self.x[n] = f64::from(xs[n]);
-            }
-            for n in 0..SMALL_BATCH {
-                self.y[n] = f64::from(ys[n]);
-            }
-            for n in 0..SMALL_BATCH {
-                self.r[n] = 1.0 / denominator.at::<FMA, false>(self.x[n], self.y[n]);
-            }
-            return;
-        }
         let lanes = at.x.len();
         let (xs, ys) = (&at.x[..lanes], &at.y[..lanes]);
         let (to_x, to_y, to_r) = (&mut self.x[..lanes], &mut self.y[..lanes], &mut self.r[..lanes]);
@@ -338,11 +323,6 @@ impl Reciprocals {
         second: &mut [i32],
     ) -> [bool; 2] {
         let lanes = first.len();
-        if let (SMALL_BATCH, Some(first), Some(second)) =
-            (lanes, first.first_chunk_mut::<SMALL_BATCH>(), second.first_chunk_mut::<SMALL_BATCH>())
-        {
-            return [self.few::<FMA>(one, first), self.few::<FMA>(other, second)];
-        }
         let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         let mut close = [0_i32; 2];
         for n in 0..lanes {
@@ -353,21 +333,6 @@ impl Reciprocals {
             close[1] |= b_close;
         }
         [close[0] < 0, close[1] < 0]
-    }
-
-    #[inline(always)]
-    fn few<const FMA: bool>(&self, numerator: QuotientEstimate, out: &mut [i32; SMALL_BATCH]) -> bool {
-        let (mut steps, mut close) = ([0; SMALL_BATCH], 0);
-        // Separate loops, because compilers split one that does both.
-        for n in 0..SMALL_BATCH {
-            steps[n] = numerator.step::<FMA, false>(self.x[n], self.y[n], self.r[n]);
-        }
-        for n in 0..SMALL_BATCH {
-            let (value, is_close) = numerator.floor(steps[n]);
-            out[n] = value;
-            close |= is_close;
-        }
-        close < 0
     }
 }
 

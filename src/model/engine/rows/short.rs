@@ -334,18 +334,11 @@ fn linear<const FMA: bool>(
 ) {
     let lanes = u.len();
     let (v, iota) = (&mut v[..lanes], &iota[..lanes]);
-    let r = 1.0 / denominator.c;
-    let line = |numerator: Line| Line { c: multiply_add::<FMA>(numerator.c, r, plus), ..numerator.times(r) };
-    let quotients = [line(along), line(down)];
     for n in 0..lanes {
         let x = if iota[n] < last { iota[n] } else { last };
-        if denominator.x == 0.0 {
-            (u[n], v[n]) = (quotients[0].at::<FMA, true>(x, 0.0), quotients[1].at::<FMA, true>(x, 0.0));
-        } else {
-            let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);
-            u[n] = multiply_add::<FMA>(along.at::<FMA, true>(x, 0.0), r, plus);
-            v[n] = multiply_add::<FMA>(down.at::<FMA, true>(x, 0.0), r, plus);
-        }
+        let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);
+        u[n] = multiply_add::<FMA>(along.at::<FMA, true>(x, 0.0), r, plus);
+        v[n] = multiply_add::<FMA>(down.at::<FMA, true>(x, 0.0), r, plus);
     }
 }
 

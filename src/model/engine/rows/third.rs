@@ -6,7 +6,7 @@ use super::depth::{UNKNOWN, floor, word};
 use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::Short;
 use super::table;
@@ -206,17 +206,6 @@ impl Setup<'_> {
         if format.is_float() {
             return words::<FMA, ROW, true>(at, lines, off, format, out);
         }
-        if ROW && within::<FMA>(at, lines, off, f64::from(format.largest())) {
-            let level = lines.1.x == 0.0;
-            let proved = if level {
-                floors::<FMA, false>(at, (lines.0.times(1.0 / lines.1.c), lines.1), off, out)
-            } else {
-                floors::<FMA, true>(at, lines, off, out)
-            };
-            if proved {
-                return false;
-            }
-        }
         words::<FMA, ROW, false>(at, lines, off, format, out)
     }
 
@@ -230,40 +219,6 @@ impl Setup<'_> {
             *word = defined(self.context, unit, format, &self.sample(batch, n), batch.pixel(n));
         }
     }
-}
-
-/// Returns whether all quotients of a row lie within a buffer's range. Between the ends of a row they are monotone.
-#[inline(always)]
-fn within<const FMA: bool>(at: Positions<'_>, lines: (Line, Line), off: f64, full: f64) -> bool {
-    let last = f64::from(at.last);
-    let (first, last) =
-        (lines.0.c / lines.1.c, lines.0.at::<FMA, true>(last, 0.0) / lines.1.at::<FMA, true>(last, 0.0));
-    let (low, high) = if first < last { (first, last) } else { (last, first) };
-    // NaN is refused too.
-    low - off > 0.0 && high + off < full
-}
-
-/// Writes the floors of quotients along a row, whose error is less than `off` and which lie within the buffer's range. Returns whether all
-/// are proved. Without `DIVIDES` the divisor is 1.
-#[inline(always)]
-fn floors<const FMA: bool, const DIVIDES: bool>(
-    at: Positions<'_>,
-    lines: (Line, Line),
-    off: f64,
-    out: &mut [u32],
-) -> bool {
-    let lanes = out.len();
-    let (last, limit) = (f64::from(at.last), 0.5 - off);
-    let iota = &IOTA_REAL[..lanes];
-    let mut close = 0;
-    for n in 0..lanes {
-        let x = if iota[n] < last { iota[n] } else { last };
-        let value = lines.0.at::<FMA, true>(x, 0.0);
-        let value = if DIVIDES { value / lines.1.at::<FMA, true>(x, 0.0) } else { value } - 0.5;
-        out[n] = nearest(value) as u32;
-        close |= (limit - (value - whole(value)).abs()).to_bits();
-    }
-    close >> 63 == 0
 }
 
 /// DEP-3 in a fixed-point format.
