@@ -156,9 +156,11 @@ fn draw_triangle<T: Kernels>(
             for window in boxes(common(&context.triangle, (rows, columns))) {
                 T::cover(&context.triangle, window, &mut block.coverage);
                 if block.coverage.count > 0 {
-                    make_room::<T>(job, band, block);
-                    T::in_box(&interpolators, job, block);
-                    shaded += append_box::<T>(job, context, band, block);
+                    if begin_box::<T>(job, context, band, block) {
+                        T::in_box(&interpolators, job, block);
+                        append_box::<T>(job, context, band, block);
+                    }
+                    shaded += block.coverage.count as u64;
                 }
             }
             block.planes = interpolators.given_back(&mut block.defined);
@@ -175,7 +177,7 @@ fn draw_triangle<T: Kernels>(
                 }
                 // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
                 block.used = whole_steps(block.used);
-                interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
+                let mut has_begun = false;
                 while i < end {
                     let wanted = ((end - i) as usize).min(BLOCK);
                     if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
@@ -184,14 +186,18 @@ fn draw_triangle<T: Kernels>(
                     let count = wanted.min(BLOCK - block.used);
                     // By reference, because a copy of what has just been written in parts has to wait for all of them.
                     let batch = &PixelBatch::row((i, j), count, block.used);
-                    T::row(&interpolators, batch, job, block);
-                    if compiled.shader.is_some() {
-                        T::row_attributes(context, batch, job, block);
+                    let is_visible = job.draw.depth_test.is_none() || T::row_depths(context, batch, block, band);
+                    if is_visible {
+                        if !has_begun {
+                            interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
+                        }
+                        T::row(&interpolators, batch, job, block);
+                        if compiled.shader.is_some() {
+                            T::row_attributes(context, batch, job, block);
+                        }
+                        block.append(band, (i, j), count, compiled.reads_surface);
                     }
-                    if job.draw.depth_test.is_some() {
-                        T::row_depths(context, batch, block);
-                    }
-                    block.append(band, (i, j), count, compiled.reads_surface);
+                    has_begun = is_visible;
                     shaded += count as u64;
                     i += count as i64;
                 }
@@ -263,7 +269,7 @@ fn draw_quads<T: Kernels>(
                 let Covered(first, count) = covered[n];
                 if count > 0 {
                     if job.draw.depth_test.is_some() {
-                        T::row_depths(context, &whole.inside(), block);
+                        T::row_depths(context, &whole.inside(), block, band);
                     }
                     block.used += first;
                     block.append(band, at(n), count, compiled.reads_surface);
@@ -296,37 +302,37 @@ fn draw_box<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    make_room::<T>(job, band, block);
-    if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
-        context.complete();
-        T::coverage(context, job, block);
+    if begin_box::<T>(job, context, band, block) {
+        if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
+            context.complete();
+            T::coverage(context, job, block);
+        }
+        append_box::<T>(job, context, band, block);
     }
-    append_box::<T>(job, context, band, block)
+    block.coverage.count as u64
 }
 
-/// Computes the block if it has no room for the pixels of its coverage.
+/// Computes the block if it has no room for the pixels of its coverage, and then their depths. Returns `false` if the depth test drops all of
+/// them, so that nothing else has to be computed.
 #[inline(always)]
-fn make_room<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) {
+fn begin_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
     if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
+    job.draw.depth_test.is_none() || T::box_depths(context, block, band)
 }
 
-/// Appends the pixels of the block's coverage to the block. Returns their number.
+/// Appends the pixels of the block's coverage to the block.
 #[inline(always)]
-fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &Band<'_>, block: &mut Block) -> u64 {
+fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &Band<'_>, block: &mut Block) {
     let compiled = job.compiled;
     if compiled.shader.is_some() {
         T::box_attributes(context, job, block);
-    }
-    if job.draw.depth_test.is_some() {
-        T::box_depths(context, block);
     }
     for n in 0..block.coverage.filled {
         let (j, i, count) = block.coverage.runs[n];
         block.append(band, (i, j), count, compiled.reads_surface);
     }
-    block.coverage.count as u64
 }
 
 /// How a triangle is drawn.
@@ -444,16 +450,29 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
     }
 }
 
-/// Computes the depths along a batch of a row.
+/// Computes the depths along a batch of a row. Returns `false` if the depth test drops all its pixels.
 #[inline(always)]
-pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, block: &mut Block) {
+pub(super) fn row_depths<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    batch: &PixelBatch<'_>,
+    block: &mut Block,
+    band: &Band<'_>,
+) -> bool {
     depths::<FMA, true>(context, *batch, block.varying.depths());
+    let at = index(band, batch.first);
+    store::may_pass(context.draw, &block.varying.depth[batch.lane..][..batch.count], &band.depth[at..])
 }
 
-/// Computes the depths in the block's box.
+/// Computes the depths in the block's box. Returns `false` if the depth test drops all its pixels.
 #[inline(always)]
-pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block) {
+pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block, band: &Band<'_>) -> bool {
     depths::<FMA, false>(context, batch(&block.coverage, block.used), block.varying.depths());
+    let (coverage, mut left) = (&block.coverage, &block.varying.depth[block.used..]);
+    coverage.runs[..coverage.filled].iter().any(|(j, i, count)| {
+        let (incoming, later) = left.split_at(*count);
+        left = later;
+        store::may_pass(context.draw, incoming, &band.depth[index(band, (*i, *j))..])
+    })
 }
 
 /// Runs the stages of the texture shader for a block.

@@ -28,17 +28,12 @@ impl Remap {
 
     /// Computes the fractions of the registers R, G, B and A. `doubled` tells which of them hold twice the byte.
     #[inline(always)]
-    pub(super) fn run<const FMA: bool>(
-        self,
-        registers: [Option<&[i16; BLOCK]>; 4],
-        doubled: [bool; 4],
-        out: &mut [Floats; 3],
-    ) {
+    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: &mut [Floats; 3]) {
         match self {
             Remap::Bytes(linear) => {
                 for n in 0..3 {
                     if let Some(register) = registers[n] {
-                        linear.run::<FMA>(register, doubled[n], &mut out[n]);
+                        linear.run(register, doubled[n], &mut out[n]);
                     }
                 }
             }
@@ -91,19 +86,10 @@ impl Linear {
 
     /// Computes the fractions of a channel. `doubled` tells whether it holds twice the byte.
     #[inline(always)]
-    fn run<const FMA: bool>(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+    fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
         let whole = f32::from(self.whole);
-        let reciprocal = 1.0 / whole;
         for n in 0..BLOCK {
-            let numerator = f32::from(self.numerator(register[n] >> u32::from(doubled)));
-            out[n] = if FMA {
-                // The correctly rounded quotient: the remainder of a product by the reciprocal corrects the product. A test covers all
-                // bytes.
-                let near = numerator * reciprocal;
-                near.mul_add(-whole, numerator).mul_add(reciprocal, near)
-            } else {
-                numerator / whole
-            };
+            out[n] = f32::from(self.numerator(register[n] >> u32::from(doubled))) / whole;
         }
     }
 }
@@ -298,11 +284,7 @@ mod tests {
                 };
                 let registers = [register(0), register(1), register(2), register(3)];
                 let mut out = [[0.0; BLOCK]; 3];
-                if round % 2 == 0 {
-                    Remap::new(*mapping).run::<true>(registers.each_ref().map(Some), doubled, &mut out);
-                } else {
-                    Remap::new(*mapping).run::<false>(registers.each_ref().map(Some), doubled, &mut out);
-                }
+                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, &mut out);
                 for n in 0..BLOCK {
                     let got = out.each_ref().map(|out| out[n]);
                     assert_eq!(got, dot::remap(*mapping, bytes(n)), "{mapping:?} {:?}", bytes(n));

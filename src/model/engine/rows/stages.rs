@@ -260,7 +260,7 @@ pub(super) fn run<const FMA: bool>(
     }
     for (index, stage) in shader.stages.iter().enumerate().filter(|(_, stage)| stage.runs) {
         if stage.dots {
-            dot_product::<FMA>(job.compiled, shader, index, &mut dotted, workshop, rows);
+            dot_product(job.compiled, shader, index, &mut dotted, workshop, rows);
         }
         let wanted = job.compiled.textures[index];
         match stage.state.operation {
@@ -337,7 +337,7 @@ pub(super) fn run<const FMA: bool>(
                     }
                     ShaderOperation::DotProduct2D => {
                         for n in 0..2 {
-                            dot_product::<FMA>(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
+                            dot_product(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
                             let Some(out) = numbers[n].first_chunk_mut() else { continue };
                             let limit = COORDINATE_LIMIT as i32;
                             let (floats, side) = (&workshop.dot.dots[index + n - 1], sampler.sides[n]);
@@ -352,7 +352,7 @@ pub(super) fn run<const FMA: bool>(
                     }
                     _ => {
                         for n in 1..4 {
-                            dot_product::<FMA>(job.compiled, shader, n, &mut dotted, workshop, rows);
+                            dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
                         }
                         let Some((vector, scratch, quads)) = workshop.vector(shader, &operation) else { continue };
                         let [u, v] = numbers;
@@ -427,7 +427,7 @@ impl Workshop {
 
 /// TSH-4: computes the dot product of a stage, unless it is known already.
 #[inline(always)]
-fn dot_product<const FMA: bool>(
+fn dot_product(
     compiled: &CompiledDraw,
     shader: &Shader,
     index: usize,
@@ -444,7 +444,7 @@ fn dot_product<const FMA: bool>(
         let [r, g, b, a] = &compiled.textures[*previous];
         let register = |slot: &Option<u16>| slot.map(|slot| rows[usize::from(slot)].block());
         let registers = [register(r), register(g), register(b), register(a)];
-        remap.run::<FMA>(registers, *doubled, &mut work.vectors[stage.vector]);
+        remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
     }
     let Workshop { numbers, same, vectors, dot, .. } = work;
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {

@@ -208,6 +208,14 @@ pub(super) fn test_depths(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u3
     write_depths(draw, incoming, memory, alive)
 }
 
+/// Returns `false` if DEP-2 drops all fragments and nothing is written. The words of depth begin with theirs.
+#[inline(always)]
+pub(super) fn may_pass(draw: &PlannedDraw, incoming: &[u32], memory: &[u32]) -> bool {
+    let Some(state) = &draw.depth_test else { return true };
+    let passes = |(incoming, word): (&u32, &u32)| state.function.passes(*incoming, depth_of(*word));
+    draw.stencil_test.is_some() || incoming.iter().zip(memory).any(passes)
+}
+
 /// DEP-4: drops fragments outside the depth range.
 #[inline(always)]
 fn drop_outside(draw: &PlannedDraw, incoming: &[u32], alive: &mut [bool]) {
