@@ -64,8 +64,16 @@ impl Axis {
     #[inline(always)]
     pub(super) fn reduce(&self, coordinates: &mut [i32]) {
         let Some(period) = self.period else { return };
+        // By a reciprocal, because no vector has an instruction that divides integers. The quotient of a number below 2^32 is at most one
+        // too small.
+        let (divisor, half) = (period as u32, 1 << 31);
+        let (reciprocal, less) = ((1_u64 << 32) / u64::from(divisor), (half % divisor) as i32);
         for c in coordinates {
-            *c = c.rem_euclid(period);
+            let above = *c as u32 ^ half;
+            let quotient = ((u64::from(above) * reciprocal) >> 32) as u32;
+            let rest = above - quotient * divisor;
+            let rest = rest.min(rest.wrapping_sub(divisor)) as i32 - less;
+            *c = rest + (period & (rest >> 31));
         }
     }
 
@@ -425,6 +433,21 @@ mod tests {
                     assert!(same || alone, "{mode:?} {n} {f}");
                 }
             }
+        }
+    }
+
+    /// Remainders by all kinds of periods, of the largest numbers too.
+    #[test]
+    fn periods_are_taken_off() {
+        let mut random = crate::random::Random::seeded(9);
+        for round in 0..4_000 {
+            let side = 1 + (random.bits() % (1 << (1 + round % 13))) as u32;
+            let axis = Axis { period: Some((side << 8) as i32), ..Axis::new(AddressMode::Wrap, 3, false) };
+            let numbers: Vec<i32> = (0..64).map(|n| (random.bits() as i32) >> (n % 20)).collect();
+            let mut reduced = [numbers.clone(), vec![i32::MIN, i32::MAX, 0, -1]].concat();
+            let wanted: Vec<i32> = reduced.iter().map(|n| n.rem_euclid((side << 8) as i32)).collect();
+            axis.reduce(&mut reduced);
+            assert_eq!(reduced, wanted, "{side}");
         }
     }
 
