@@ -174,12 +174,7 @@ impl<'a> Sample<'a> {
     /// With u_k = G_k / P_k the quotient loses 2^-24 b_i (u_i - u_1) for each weight i that falls short, which is 2^-24
     /// / (P_1 D) times E_i (G_i P_1 - P_i G_1).
     pub fn shortfall(&self, g: &[i64; 3]) -> i128 {
-        let (p, [first, third]) = (&self.triangle.p, self.short());
-        let lost = |i: usize, short: bool| {
-            let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
-            if short { difference * i128::from(self.e[i]) } else { 0 }
-        };
-        lost(0, first) + lost(2, third)
+        shortfall(self.triangle, &self.e, g, self.short())
     }
 
     /// INT-4t: returns whether a quotient is one step lower, given whether it is exact and what its numerator loses.
@@ -187,6 +182,16 @@ impl<'a> Sample<'a> {
     pub(crate) fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
         exact && !self.triangle.exact_reciprocal && shortfall() > 0
     }
+}
+
+/// INT-4t: returns [`Sample::shortfall`] where the weights 0 and 2 fall short as given. It is linear in the edge functions.
+pub(crate) fn shortfall(triangle: &Triangle, e: &[i64; 3], g: &[i64; 3], short: [bool; 2]) -> i128 {
+    let p = &triangle.p;
+    let lost = |i: usize, short: bool| {
+        let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
+        if short { difference * i128::from(e[i]) } else { 0 }
+    };
+    lost(0, short[0]) + lost(2, short[1])
 }
 
 /// INT-3: returns the index of the dominant of three weights n_k / d. d is positive. Outside the triangle some weights

@@ -249,6 +249,7 @@ pub(super) struct DdaRow {
 
 impl Setup<'_> {
     /// INT-4, INT-4t: corrects the coordinates of a row where some may be exact.
+    #[inline(never)]
     #[allow(
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
@@ -259,15 +260,25 @@ impl Setup<'_> {
         planes: &[Plane; 2],
         bias: i32,
         found: [bool; 2],
-        exact: [bool; 2],
+        ddas: [&Dda; 2],
         u: &mut [i32],
         v: &mut [i32],
         whole: &mut PerLane<i32>,
     ) {
         let triangle = &self.context.triangle;
-        let found = [0, 1].map(|n| found[n] && (!exact[n] || planes[n].lowers(triangle)));
         let e = triangle.edges(batch.first.0, batch.first.1);
-        self.correct_coordinates::<true>(batch, bias, planes, found, &e, u, v, whole);
+        for (n, values) in [(0, u), (1, v)] {
+            let (plane, dda) = (&planes[n], ddas[n]);
+            if found[n] && !dda.is_exact() {
+                self.correct_coordinate::<true>(batch, bias, plane, &e, values, whole);
+            } else if found[n] && plane.lowers(triangle) {
+                let whole = &mut whole[..values.len()];
+                for (step, whole) in whole.as_chunks_mut::<STEP>().0.iter_mut().enumerate() {
+                    *whole = dda.whole(step);
+                }
+                self.lower_ties::<true>(batch, plane, whole, values);
+            }
+        }
     }
 }
 

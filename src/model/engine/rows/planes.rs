@@ -109,6 +109,20 @@ impl Plane {
     }
 }
 
+/// Returns the function sum g_k E_k, with g_k divided by a power of two that divides them all, if doubles hold all its terms and sums exactly
+/// in the triangle.
+#[inline(always)]
+pub(super) fn exact_line(triangle: &Triangle, e: &[i64; 3], g: &[i64; 3], shared: u32) -> Option<Line> {
+    let g = [(g[0] >> shared) as f64, (g[1] >> shared) as f64, (g[2] >> shared) as f64];
+    // No edge function is larger than the area. A sum has three terms along each of two axes, and may be multiplied by a bias of half a texel.
+    let most = (g[0].abs() + g[1].abs() + g[2].abs()) * triangle.doubled_area as f64;
+    if most * 8.0 * 128.0 >= (1_u64 << 53) as f64 {
+        return None;
+    }
+    let sum = |of: &[i64; 3]| g[0] * of[0] as f64 + g[1] * of[1] as f64 + g[2] * of[2] as f64;
+    Some(Line { c: sum(e), x: sum(&triangle.a), y: sum(&triangle.b) })
+}
+
 /// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.
 const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 

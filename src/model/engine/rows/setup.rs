@@ -3,10 +3,13 @@
 
 use super::compiled::{Reason, Reasons};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{Plane, RealPlane};
-use super::quotient::{IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, estimate_two};
+use super::planes::{Plane, RealPlane, exact_line};
+use super::quotient::{
+    IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, correct_exactly, estimate_two,
+};
+use super::short::{Parts, lower_in_box};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample};
+use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample, shortfall};
 use crate::raster::setup::Triangle;
 use crate::state::Named;
 use crate::texture::cube::Face;
@@ -248,19 +251,89 @@ impl<'a> Setup<'a> {
         whole: &mut PerLane<i32>,
     ) {
         for (n, values) in [(0, u), (1, v)] {
-            if !close[n] {
-                continue;
+            if close[n] {
+                self.correct_coordinate::<ROW>(batch, bias, &planes[n], e, values, whole);
             }
-            let plane = &planes[n];
-            let bottom = self.denominator.exact(e);
-            let top = plane.exact(e).less(i64::from(bias), bottom);
-            let whole = &mut whole[..values.len()];
-            correct::<ROW>(batch.at, top, bottom, values, whole);
-            // Beyond the triangle, weights may be negative.
-            if plane.lowers(&self.context.triangle) || batch.reaches_beyond() {
-                for k in (0..batch.count).filter(|k| whole[*k] != 0) {
-                    values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
-                }
+        }
+    }
+
+    /// Does the same for one of the coordinates.
+    #[inline(always)]
+    pub(super) fn correct_coordinate<const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        bias: i32,
+        plane: &Plane,
+        e: &[i64; 3],
+        values: &mut [i32],
+        whole: &mut PerLane<i32>,
+    ) {
+        let whole = &mut whole[..values.len()];
+        self.correct::<ROW>(batch, bias, plane, e, values, whole);
+        self.lower_ties::<ROW>(batch, plane, whole, values);
+    }
+
+    /// Corrects quotients less a bias, and marks those that are whole.
+    #[inline(always)]
+    fn correct<const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        bias: i32,
+        plane: &Plane,
+        e: &[i64; 3],
+        values: &mut [i32],
+        whole: &mut [i32],
+    ) {
+        if !ROW {
+            let of = |g: &[i64; 3]| exact_line(&self.context.triangle, e, g, plane.shared);
+            if let (Some(top), Some(bottom)) = (of(&plane.g), of(&self.denominator.g)) {
+                let top = top.less(f64::from(bias), bottom);
+                return correct_exactly(batch.at, top, bottom, values, whole);
+            }
+        }
+        let bottom = self.denominator.exact(e);
+        correct::<ROW>(batch.at, plane.exact(e).less(i64::from(bias), bottom), bottom, values, whole);
+    }
+
+    /// INT-4t: lowers those of the coordinates that are whole. A row is divided into parts in which the same weights fall short: there, what
+    /// a numerator loses is a linear function.
+    #[inline(never)]
+    pub(super) fn lower_ties<const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        plane: &Plane,
+        whole: &[i32],
+        values: &mut [i32],
+    ) {
+        let triangle = &self.context.triangle;
+        // Beyond the triangle, weights may be negative.
+        if !(plane.lowers(triangle) || batch.reaches_beyond()) {
+            return;
+        }
+        if !ROW && lower_in_box(triangle, batch, &plane.g, whole, values) {
+            return;
+        }
+        let parts =
+            if ROW { Parts::new(triangle, batch, &self.local::<false, ROW>(batch, false)) } else { Parts::default() };
+        let mut parts = parts.ranges(batch.count).peekable();
+        if parts.peek().is_none() {
+            for k in (0..batch.count).filter(|k| whole[*k] != 0) {
+                values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
+            }
+        }
+        for (part, short) in parts {
+            let lost = |e: &[i64; 3]| shortfall(triangle, e, &plane.g, short.map(|short| short > 0.0));
+            let (here, slope) = (lost(&triangle.edges(batch.first.0, batch.first.1)), lost(&triangle.a));
+            // The first lane that loses something, and the first after those.
+            let (first, end) = (part.start as i128, part.end as i128);
+            let (from, to) = match slope {
+                0 => (first, if here > 0 { end } else { first }),
+                1.. => ((-here).div_euclid(slope) + 1, end),
+                _ => (first, (here - slope - 1).div_euclid(-slope)),
+            };
+            let lanes = from.clamp(first, end) as usize..to.clamp(first, end) as usize;
+            for (value, whole) in values[lanes.clone()].iter_mut().zip(&whole[lanes]) {
+                *value -= whole;
             }
         }
     }
@@ -278,9 +351,8 @@ impl<'a> Setup<'a> {
     ) {
         let [whole0, whole2] = whole;
         let (whole0, whole2) = (&mut whole0[..w0.len()], &mut whole2[..w2.len()]);
-        let bottom = self.denominator.exact(e);
-        correct::<ROW>(batch.at, planes[0].exact(e), bottom, w0, whole0);
-        correct::<ROW>(batch.at, planes[1].exact(e), bottom, w2, whole2);
+        self.correct::<ROW>(batch, 0, &planes[0], e, w0, whole0);
+        self.correct::<ROW>(batch, 0, &planes[1], e, w2, whole2);
         if !self.context.triangle.exact_reciprocal {
             break_ties(w0, w2, whole0, whole2);
         }

@@ -7,8 +7,9 @@ use super::kernels::{LANES, PerLane};
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, multiply_add, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
-use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
+use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant, shortfall};
 use crate::raster::setup::Triangle;
+use std::ops::Range;
 
 /// The missing part of a weight.
 const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
@@ -38,10 +39,8 @@ impl Default for Short {
 pub(super) struct Dominance {
     /// N_0 and N_2 as functions.
     functions: [Line; 2],
-    /// First lane of each part of a row in which the same weights fall short, and 1 for those of the weights 0 and 2 that do.
-    parts: [(usize, [f64; 2]); PARTS],
-    /// Number of parts. It is 0 if lanes are classified one by one.
-    count: usize,
+    /// Parts of a row; none if lanes are classified one by one.
+    parts: Parts,
     /// N_0 and N_2 of lanes that are classified one by one, or 0 where the weights do not fall short.
     first: PerLane<f64>,
     third: PerLane<f64>,
@@ -53,8 +52,7 @@ impl Default for Dominance {
     fn default() -> Self {
         Dominance {
             functions: [Line::default(); 2],
-            parts: [(0, [0.0; 2]); PARTS],
-            count: 0,
+            parts: Parts::default(),
             first: [0.0; LANES],
             third: [0.0; LANES],
             close: [0; LANES],
@@ -92,50 +90,39 @@ impl Setup<'_> {
     }
 }
 
-impl Dominance {
-    /// Sets the dominance of a batch.
+/// Parts of a row in which the same weights fall short.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Parts {
+    /// First lane of each part, and 1 for those of the weights 0 and 2 that fall short.
+    all: [(usize, [f64; 2]); PARTS],
+    count: usize,
+}
+
+impl Parts {
+    /// Returns the parts of a row of a triangle; none if it cannot be divided.
+    pub(super) fn new(triangle: &Triangle, batch: PixelBatch<'_>, local: &BatchSetup) -> Parts {
+        let (functions, error) = numerators(triangle, local);
+        Parts::of_row::<false>(triangle, batch, functions, error)
+    }
+
+    /// Returns the lanes of each part, up to the given end, and 1 for those of the weights 0 and 2 that fall short.
     #[inline(always)]
-    pub(super) fn set<const FMA: bool, const ROW: bool>(
-        &mut self,
-        triangle: &Triangle,
-        batch: PixelBatch<'_>,
-        local: &BatchSetup,
-    ) {
-        let lanes = batch.at.x.len();
-        if triangle.exact_reciprocal {
-            (self.parts[0], self.count) = ((0, [0.0; 2]), usize::from(ROW));
-            if !ROW {
-                self.first[..lanes].fill(0.0);
-                self.third[..lanes].fill(0.0);
-            }
-            return;
-        }
-        let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
-        for k in 0..3 {
-            let p = triangle.p[k] as f64;
-            lines[k] = Line { c: p * local.real[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
-            terms += lines[k].c.abs() + lines[k].x.abs() * local.columns + lines[k].y.abs() * local.rows;
-        }
-        self.functions = [lines[0], lines[2]];
-        let (functions, error) = ([lines[0], lines[2], local.denominator], 4.0 * SLACK * terms);
-        self.count =
-            if ROW && !batch.reaches_beyond() { self.divide_row::<FMA>(triangle, batch, functions, error) } else { 0 };
-        if self.count == 0 {
-            self.lanes::<FMA, ROW>(triangle, batch, functions, error);
-        }
+    pub(super) fn ranges(&self, end: usize) -> impl ExactSizeIterator<Item = (Range<usize>, [f64; 2])> {
+        let all = &self.all[..self.count];
+        all.iter()
+            .enumerate()
+            .map(move |(n, (first, short))| (*first..all.get(n + 1).map_or(end, |next| next.0), *short))
     }
 
     /// Divides a row where four times or twice a weight's numerator passes D: everything is linear, so all pixels between two such places
-    /// have the same classes. A pixel that is too close is a part of its own. Returns the number of parts, or 0 if a numerator passes D so
-    /// slowly that several pixels are too close.
+    /// have the same classes. A pixel that is too close is a part of its own. There are no parts if a numerator passes D so slowly that
+    /// several pixels are too close, or if the row reaches beyond the triangle. `error` is as in [`numerators`].
     #[inline(always)]
-    fn divide_row<const FMA: bool>(
-        &mut self,
-        triangle: &Triangle,
-        batch: PixelBatch<'_>,
-        functions: [Line; 3],
-        error: f64,
-    ) -> usize {
+    fn of_row<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>, functions: [Line; 3], error: f64) -> Parts {
+        let mut parts = Parts::default();
+        if batch.reaches_beyond() {
+            return parts;
+        }
         let [first, third, denominator] = functions;
         let middle = denominator.less(1.0, first).less(1.0, third);
         // One line comes twice, because vectors are filled.
@@ -160,22 +147,61 @@ impl Dominance {
             longest = (starts[1][n] - starts[0][n]).max(longest);
         }
         if longest > 1 {
-            return 0;
+            return parts;
         }
-        let (mut start, mut count) = (0, 0);
-        while start <= batch.at.last && count < PARTS {
+        let mut start = 0;
+        while start <= batch.at.last && parts.count < PARTS {
             let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
             let short =
                 if close >> 63 != 0 { batch.sample(start as usize, triangle).short() } else { [!is_first, !is_third] };
-            self.parts[count] = (start as usize, short.map(|short| if short { 1.0 } else { 0.0 }));
-            count += 1;
+            parts.all[parts.count] = (start as usize, short.map(|short| if short { 1.0 } else { 0.0 }));
+            parts.count += 1;
             start =
                 starts.as_flattened().iter().fold(BLOCK as i32, |next, n| if *n > start { next.min(*n) } else { next });
         }
-        count
+        parts
+    }
+}
+
+/// Returns N_0, N_2 and D as functions, and a bound of the error of four times a numerator less D.
+#[inline(always)]
+fn numerators(triangle: &Triangle, local: &BatchSetup) -> ([Line; 3], f64) {
+    let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
+    for k in 0..3 {
+        let p = triangle.p[k] as f64;
+        lines[k] = Line { c: p * local.real[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
+        terms += lines[k].c.abs() + lines[k].x.abs() * local.columns + lines[k].y.abs() * local.rows;
+    }
+    ([lines[0], lines[2], local.denominator], 4.0 * SLACK * terms)
+}
+
+impl Dominance {
+    /// Sets the dominance of a batch.
+    #[inline(always)]
+    pub(super) fn set<const FMA: bool, const ROW: bool>(
+        &mut self,
+        triangle: &Triangle,
+        batch: PixelBatch<'_>,
+        local: &BatchSetup,
+    ) {
+        let lanes = batch.at.x.len();
+        if triangle.exact_reciprocal {
+            self.parts = Parts { count: usize::from(ROW), ..Parts::default() };
+            if !ROW {
+                self.first[..lanes].fill(0.0);
+                self.third[..lanes].fill(0.0);
+            }
+            return;
+        }
+        let (functions, error) = numerators(triangle, local);
+        self.functions = [functions[0], functions[1]];
+        self.parts = if ROW { Parts::of_row::<FMA>(triangle, batch, functions, error) } else { Parts::default() };
+        if self.parts.count == 0 {
+            self.lanes::<FMA, ROW>(triangle, batch, functions, error);
+        }
     }
 
-    /// Sets the dominance of lanes, one by one. `error` bounds the error of four times a weight's numerator less D.
+    /// Sets the dominance of lanes, one by one. `error` is as in [`numerators`].
     #[inline(always)]
     fn lanes<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -224,17 +250,15 @@ impl Dominance {
         [u, v]: [&mut [f64]; 2],
     ) {
         let (lanes, last) = (at.x.len(), f64::from(at.last));
-        let parts = &self.parts[..self.count];
-        if !ROW || parts.is_empty() {
+        if !ROW || self.parts.count == 0 {
             let positions = (at.x, at.y, &IOTA_REAL[..lanes]);
             let (u, v) = (&mut u[..lanes], &mut v[..lanes]);
             quotients::<FMA, ROW>((last, plus), positions, functions, losses, (&self.first, &self.third), u, v);
             return;
         }
-        for (n, (first, short)) in parts.iter().enumerate() {
+        for (part, short) in self.parts.ranges(lanes) {
             // In whole steps from its first lane: the next part writes over lanes past its end.
-            let end = parts.get(n + 1).map_or(lanes, |next| next.0);
-            let lanes = *first..first + whole_steps(end - first);
+            let lanes = part.start..part.start + whole_steps(part.len());
             // The losses are linear as well. No choices, because those of lines go through memory.
             let less = |n: usize| {
                 let [a, b] = losses[n];
@@ -284,6 +308,56 @@ fn classify<const FMA: bool, const ROW: bool>(
     // Beyond the triangle, weights may be above 1, where there are more classes.
     let close = close | (d - a - error).to_bits() | (d - b - error).to_bits() | (d - c - error).to_bits();
     (most_dominant([class(a, d), class(b, d), class(c, d)]), close, [a, c])
+}
+
+/// INT-4t: lowers those coordinates of a box that are whole, if a function with these G_k loses something there. Returns `false`, and
+/// changes nothing, unless double precision decides it for all.
+#[inline(always)]
+pub(super) fn lower_in_box(
+    triangle: &Triangle,
+    batch: PixelBatch<'_>,
+    g: &[i64; 3],
+    whole: &[i32],
+    values: &mut [i32],
+) -> bool {
+    let (p, first) = (triangle.p, triangle.edges(batch.first.0, batch.first.1));
+    let largest = p[0].max(p[1]).max(p[2]) as f64 * triangle.doubled_area as f64;
+    // Then four times a numerator is exact, and weights are classified exactly.
+    let fits = 4.0 * largest < (1_u64 << 53) as f64;
+    if !fits {
+        return false;
+    }
+    let edge = |k: usize| Line { c: first[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
+    let (edges, [p0, p1, p2]) = ([edge(0), edge(1), edge(2)], p.map(|p| p as f64));
+    let loss = |k: usize| shortfall(triangle, &[1; 3], g, [k == 0, k == 2]) as f64;
+    let (loss_first, loss_third) = (loss(0), loss(2));
+    let (mut lowered, mut open) = ([0; LANES], 0);
+    let lanes = values.len();
+    let (lowered, whole) = (&mut lowered[..lanes], &whole[..lanes]);
+    let (xs, ys) = (&batch.at.x[..lanes], &batch.at.y[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
+        let e0 = edges[0].at::<false, false>(x, y);
+        let e1 = edges[1].at::<false, false>(x, y);
+        let e2 = edges[2].at::<false, false>(x, y);
+        let (a, b, c) = (p0 * e0, p1 * e1, p2 * e2);
+        let d = a + b + c;
+        let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
+        let of_first = if is_first { 0.0 } else { loss_first * e0 };
+        let of_third = if is_third { 0.0 } else { loss_third * e2 };
+        let (sum, terms) = (of_first + of_third, of_first.abs() + of_third.abs());
+        lowered[n] = if sum > 0.0 { whole[n] } else { 0 };
+        // Terms that almost cancel each other decide nothing.
+        let is_open = (sum.abs() < terms * SLACK) & (whole[n] != 0);
+        open |= i32::from(is_open);
+    }
+    if open != 0 {
+        return false;
+    }
+    for (value, lowered) in values.iter_mut().zip(lowered) {
+        *value -= *lowered;
+    }
+    true
 }
 
 /// Returns 2 above a half of d, 1 above a quarter, and otherwise 0.

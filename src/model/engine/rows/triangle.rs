@@ -192,8 +192,7 @@ impl<'a> Interpolators<'a> {
             let found = [along.run(batch.count, u), down.run(batch.count, v)];
             if found[0] | found[1] {
                 let bias = compiled.samplers[n].bias();
-                let exact = [along.is_exact(), down.is_exact()];
-                self.setup.correct_dda(batch, planes, bias, found, exact, u, v, &mut whole[0]);
+                self.setup.correct_dda(batch, planes, bias, found, [along, down], u, v, &mut whole[0]);
             }
         }
         if let (([first, third], true), Some(planes)) = (&mut dda.weights, &self.weights) {
