@@ -1,9 +1,9 @@
 //! The engines, which draw the frames of a plan or trace one of its pixels.
 //!
 //! The scalar engine is the definition: `pixel.rs` has the order in which the blocks process one pixel, generic over the lane and the observer, and
-//! `walk.rs` walks triangles and quads. `rows/` is the fast engine, which computes the same bytes for a block of pixels at a time. `bins.rs` sorts
-//! triangles by bands of rows. This module runs draws and bands on threads. A pixel's result is a pure function of the plan, whatever the engine, the
-//! bands and the threads.
+//! `walk.rs` walks triangles and quads. `rows/` is the fast engine, which computes the same bytes for a block of pixels at a time. `bins.rs` cuts
+//! rows into bands and sorts triangles by them. This module runs draws and bands on threads. A pixel's result is a pure function of the plan, whatever
+//! the engine, the bands and the threads.
 
 mod bins;
 mod counting;
