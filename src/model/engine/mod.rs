@@ -142,8 +142,10 @@ impl<'a> Renderer<'a> {
         let group = |draws: Range<usize>| {
             let all = &plan.draws[draws.clone()];
             let borders = borders(plan, all, rows.is_some(), options.band, team.count());
-            let is_sorted = rows.is_some() && borders.len() > 2;
-            let bins = all.iter().filter(|_| is_sorted).map(|draw| Bins::new(&draw.assembly, &borders)).collect();
+            let mut bins = Vec::new();
+            if rows.is_some() && borders.len() > 2 {
+                bins.extend(all.iter().map(|draw| Bins::new(&draw.assembly, &borders)));
+            }
             Group { draws, borders, bins }
         };
         let groups = groups(plan).map(group).collect();
@@ -254,13 +256,13 @@ fn borders(plan: &Plan, draws: &[PlannedDraw], is_fast: bool, rows: Option<usize
     let target = &plan.targets[draws[0].target];
     let (width, height) = (target.width as usize, target.height as usize);
     let triangles: usize = draws.iter().map(|draw| draw.assembly.triangles.len()).sum();
-    let rows = match (is_fast, threads) {
-        _ if rows.is_some() => rows.unwrap_or(BAND).max(1),
-        (false, _) => BAND,
+    let rows = match (rows, is_fast, threads) {
+        (Some(rows), ..) => rows.max(1),
+        (None, false, _) => BAND,
         // A triangle is set up once for each band that it meets.
-        (true, 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
-        (true, 1) => (CACHED / width).min(height).max(BAND),
-        (true, threads) => {
+        (None, true, 1) if draws.len() == 1 || triangles > MAX_UNSORTED_TRIANGLES * draws.len() => height,
+        (None, true, 1) => (CACHED / width).max(BAND),
+        (None, true, threads) => {
             let visible = draws.iter().filter(|draw| draw.folded.invisible.is_none());
             let assemblies = visible.map(|draw| &draw.assembly);
             return bins::balanced(assemblies, (width, height), BANDS * threads, BAND);

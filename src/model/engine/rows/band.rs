@@ -188,6 +188,7 @@ fn draw_triangle<T: Kernels>(
                     let batch = &PixelBatch::row((i, j), count, block.used);
                     let is_visible = job.draw.depth_test.is_none() || T::row_depths(context, batch, block, band);
                     if is_visible {
+                        // Quotients by steps go on from the batch before, if there is one.
                         if !has_begun {
                             interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
                         }

@@ -5,6 +5,7 @@
 )]
 
 use super::kernels::{PerLane, STEP};
+use super::planes::edge_lines;
 use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whole};
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
@@ -97,7 +98,6 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
     let Some(test) = &draw.depth_test else { return };
     let e = triangle.edges(batch.first.0, batch.first.1);
-    let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
     let format = draw.depth_format;
     let unit = power_of_two(plane.offset.exponent);
     let high = plane.offset.mantissa as f64;
@@ -110,7 +110,7 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let (first, second, third) = (between(1, 0), between(2, 0), between(2, 1));
     let differences = [[first, second], [-first, third], [-second, -third]];
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
-    let edges = [edge(0), edge(1), edge(2)];
+    let edges = edge_lines(triangle, &e);
     // The lanes after those of a row are not in use yet, so they may be overwritten.
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
     let along_row = ((e, triangle.a), batch.count);

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor;
@@ -128,8 +128,7 @@ impl Setup<'_> {
                     return self.defined_factors(batch, |_| true, out);
                 };
                 if estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, values, spare)[0] {
-                    let bottom = self.denominator.exact(&local.e);
-                    correct::<ROW>(batch.at, plane.exact(&local.e), bottom, values, spare);
+                    self.correct::<ROW>(batch, 0, plane, &local.e, values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
                     *out = factor((*value).clamp(0, 4096)) as i16;

@@ -109,6 +109,18 @@ impl Plane {
     }
 }
 
+/// Returns the edge functions relative to a pixel where they are `e`.
+#[inline(always)]
+pub(super) fn edge_lines(triangle: &Triangle, e: &[i64; 3]) -> [Line; 3] {
+    let (a, b) = (&triangle.a, &triangle.b);
+    // Not a closure, because one that is called three times is not inlined.
+    [
+        Line { c: e[0] as f64, x: a[0] as f64, y: b[0] as f64 },
+        Line { c: e[1] as f64, x: a[1] as f64, y: b[1] as f64 },
+        Line { c: e[2] as f64, x: a[2] as f64, y: b[2] as f64 },
+    ]
+}
+
 /// Returns the function sum g_k E_k, with g_k divided by a power of two that divides them all, if doubles hold all its terms and sums exactly
 /// in the triangle.
 #[inline(always)]

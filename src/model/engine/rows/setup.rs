@@ -275,7 +275,7 @@ impl<'a> Setup<'a> {
 
     /// Corrects quotients less a bias, and marks those that are whole.
     #[inline(always)]
-    fn correct<const ROW: bool>(
+    pub(super) fn correct<const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         bias: i32,
@@ -322,7 +322,7 @@ impl<'a> Setup<'a> {
             }
         }
         for (part, short) in parts {
-            let lost = |e: &[i64; 3]| shortfall(triangle, e, &plane.g, short.map(|short| short > 0.0));
+            let lost = |e: &[i64; 3]| shortfall(triangle, e, &plane.g, short);
             let (here, slope) = (lost(&triangle.edges(batch.first.0, batch.first.1)), lost(&triangle.a));
             // The first lane that loses something, and the first after those.
             let (first, end) = (part.start as i128, part.end as i128);

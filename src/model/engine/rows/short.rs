@@ -4,7 +4,7 @@
 
 use super::BLOCK;
 use super::kernels::{LANES, PerLane};
-use super::planes::{Plane, inverse};
+use super::planes::{Plane, edge_lines, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, multiply_add, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
 use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant, shortfall};
@@ -93,8 +93,8 @@ impl Setup<'_> {
 /// Parts of a row in which the same weights fall short.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Parts {
-    /// First lane of each part, and 1 for those of the weights 0 and 2 that fall short.
-    all: [(usize, [f64; 2]); PARTS],
+    /// First lane of each part, and whether the weights 0 and 2 fall short.
+    all: [(usize, [bool; 2]); PARTS],
     count: usize,
 }
 
@@ -105,9 +105,9 @@ impl Parts {
         Parts::of_row::<false>(triangle, batch, functions, error)
     }
 
-    /// Returns the lanes of each part, up to the given end, and 1 for those of the weights 0 and 2 that fall short.
+    /// Returns the lanes of each part, up to the given end, and whether the weights 0 and 2 fall short.
     #[inline(always)]
-    pub(super) fn ranges(&self, end: usize) -> impl ExactSizeIterator<Item = (Range<usize>, [f64; 2])> {
+    pub(super) fn ranges(&self, end: usize) -> impl ExactSizeIterator<Item = (Range<usize>, [bool; 2])> {
         let all = &self.all[..self.count];
         all.iter()
             .enumerate()
@@ -154,7 +154,7 @@ impl Parts {
             let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
             let short =
                 if close >> 63 != 0 { batch.sample(start as usize, triangle).short() } else { [!is_first, !is_third] };
-            parts.all[parts.count] = (start as usize, short.map(|short| if short { 1.0 } else { 0.0 }));
+            parts.all[parts.count] = (start as usize, short);
             parts.count += 1;
             start =
                 starts.as_flattened().iter().fold(BLOCK as i32, |next, n| if *n > start { next.min(*n) } else { next });
@@ -260,6 +260,7 @@ impl Dominance {
             // In whole steps from its first lane: the next part writes over lanes past its end.
             let lanes = part.start..part.start + whole_steps(part.len());
             // The losses are linear as well. No choices, because those of lines go through memory.
+            let short = short.map(|short| f64::from(u8::from(short)));
             let less = |n: usize| {
                 let [a, b] = losses[n];
                 functions[n].less(a * short[0], self.functions[0]).less(b * short[1], self.functions[1])
@@ -327,8 +328,7 @@ pub(super) fn lower_in_box(
     if !fits {
         return false;
     }
-    let edge = |k: usize| Line { c: first[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
-    let (edges, [p0, p1, p2]) = ([edge(0), edge(1), edge(2)], p.map(|p| p as f64));
+    let (edges, [p0, p1, p2]) = (edge_lines(triangle, &first), p.map(|p| p as f64));
     let loss = |k: usize| shortfall(triangle, &[1; 3], g, [k == 0, k == 2]) as f64;
     let (loss_first, loss_third) = (loss(0), loss(2));
     let (mut lowered, mut open) = ([0; LANES], 0);
