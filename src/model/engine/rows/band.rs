@@ -158,7 +158,7 @@ fn draw_triangle<T: Kernels>(
                 if block.coverage.count > 0 {
                     if begin_box::<T>(job, context, band, block) {
                         T::in_box(&interpolators, job, block);
-                        append_box::<T>(job, context, band, block);
+                        append_box::<T>(job, context, block);
                     }
                     shaded += block.coverage.count as u64;
                 }
@@ -186,7 +186,7 @@ fn draw_triangle<T: Kernels>(
                     let count = wanted.min(BLOCK - block.used);
                     // By reference, because a copy of what has just been written in parts has to wait for all of them.
                     let batch = &PixelBatch::row((i, j), count, block.used);
-                    let is_visible = job.draw.depth_test.is_none() || T::row_depths(context, batch, block, band);
+                    let is_visible = job.draw.depth_test.is_none() || T::row_depths(context, batch, job, block, band);
                     if is_visible {
                         // Quotients by steps go on from the batch before, if there is one.
                         if !has_begun {
@@ -268,10 +268,8 @@ fn draw_quads<T: Kernels>(
                     block.workshop.leave_open(whole.lanes());
                 }
                 let Covered(first, count) = covered[n];
-                if count > 0 {
-                    if job.draw.depth_test.is_some() {
-                        T::row_depths(context, &whole.inside(), block, band);
-                    }
+                let tests = job.draw.depth_test.is_some();
+                if count > 0 && (!tests || T::row_depths(context, &whole.inside(), job, block, band)) {
                     block.used += first;
                     block.append(band, at(n), count, compiled.reads_surface);
                 }
@@ -308,31 +306,42 @@ fn draw_box<T: Kernels>(
             context.complete();
             T::coverage(context, job, block);
         }
-        append_box::<T>(job, context, band, block);
+        append_box::<T>(job, context, block);
     }
     block.coverage.count as u64
 }
 
-/// Computes the block if it has no room for the pixels of its coverage, and then their depths. Returns `false` if the depth test drops all of
-/// them, so that nothing else has to be computed.
+/// Computes the block if it has no room for the pixels of its coverage, adds their runs, and computes their depths. Returns `false` if the
+/// depth test drops all of them, so that nothing else has to be computed; then there are no runs of them.
 #[inline(always)]
 fn begin_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
     if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
-    job.draw.depth_test.is_none() || T::box_depths(context, block, band)
+    let (before, mut lane) = (block.runs.len(), block.used);
+    for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
+        block.runs.push(Run { lane, at: index(band, (i, j)), count });
+        lane += count;
+    }
+    let is_visible = job.draw.depth_test.is_none() || T::box_depths(context, before, job, block, band);
+    if !is_visible {
+        block.runs.truncate(before);
+    }
+    is_visible
 }
 
-/// Appends the pixels of the block's coverage to the block.
+/// Adds the pixels of the block's coverage, whose runs it has.
 #[inline(always)]
-fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &Band<'_>, block: &mut Block) {
+fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, block: &mut Block) {
     let compiled = job.compiled;
     if compiled.shader.is_some() {
         T::box_attributes(context, job, block);
     }
-    for n in 0..block.coverage.filled {
-        let (j, i, count) = block.coverage.runs[n];
-        block.append(band, (i, j), count, compiled.reads_surface);
+    block.used += block.coverage.count;
+    if compiled.reads_surface {
+        for run in &block.runs[block.runs.len() - block.coverage.filled..] {
+            store::mark(&mut block.taken, run.at, run.count);
+        }
     }
 }
 
@@ -451,29 +460,52 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
     }
 }
 
-/// Computes the depths along a batch of a row. Returns `false` if the depth test drops all its pixels.
+/// Computes the depths along a batch of a row, and tests them if nothing else drops fragments. Returns `false` if the test drops all its
+/// pixels.
 #[inline(always)]
 pub(super) fn row_depths<const FMA: bool>(
     context: &TriangleContext<'_>,
     batch: &PixelBatch<'_>,
+    job: Job<'_>,
     block: &mut Block,
-    band: &Band<'_>,
+    band: &mut Band<'_>,
 ) -> bool {
-    depths::<FMA, true>(context, *batch, block.varying.depths());
-    let at = index(band, batch.first);
-    store::may_pass(context.draw, &block.varying.depth[batch.lane..][..batch.count], &band.depth[at..])
+    let Block { varying, alive, .. } = block;
+    depths::<FMA, true>(context, *batch, varying.depths());
+    let (lanes, at) = (batch.lane..batch.lane + batch.count, index(band, batch.first));
+    let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..batch.count]);
+    if job.compiled.tests_early {
+        store::test_early(job.draw, incoming, memory, &mut alive[lanes])
+    } else {
+        store::may_pass(job.draw, incoming, memory)
+    }
 }
 
-/// Computes the depths in the block's box. Returns `false` if the depth test drops all its pixels.
+/// Computes the depths in the block's box, whose runs begin with the given one, and tests them if nothing else drops fragments. Returns
+/// `false` if the test drops all its pixels.
 #[inline(always)]
-pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block, band: &Band<'_>) -> bool {
-    depths::<FMA, false>(context, batch(&block.coverage, block.used), block.varying.depths());
-    let (coverage, mut left) = (&block.coverage, &block.varying.depth[block.used..]);
-    coverage.runs[..coverage.filled].iter().any(|(j, i, count)| {
-        let (incoming, later) = left.split_at(*count);
-        left = later;
-        store::may_pass(context.draw, incoming, &band.depth[index(band, (*i, *j))..])
-    })
+pub(super) fn box_depths<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    first: usize,
+    job: Job<'_>,
+    block: &mut Block,
+    band: &mut Band<'_>,
+) -> bool {
+    let Block { varying, alive, coverage, used, runs, depth, .. } = block;
+    depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
+    let (incoming, runs) = (&varying.depth, &runs[first..]);
+    if job.compiled.tests_early {
+        let lanes = *used..*used + coverage.count;
+        store::read_runs(band.depth, runs, depth);
+        let (incoming, memory) = (&incoming[lanes.clone()], &mut depth[lanes.clone()]);
+        let is_visible = store::test_early(job.draw, incoming, memory, &mut alive[lanes]);
+        if is_visible {
+            store::write_runs(depth, runs, band.depth);
+        }
+        return is_visible;
+    }
+    let lanes = |run: &Run| run.lane..run.lane + run.count;
+    runs.iter().any(|run| store::may_pass(job.draw, &incoming[lanes(run)], &band.depth[run.at..]))
 }
 
 /// Runs the stages of the texture shader for a block.
@@ -516,7 +548,7 @@ fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
     (j as usize - band.first_row) * band.width + i as usize
 }
 
-/// From this average length of runs on, words of the surface and its depth buffer are worked on in place instead of being copied.
+/// From this average length of runs on, words of the surface are worked on in place instead of being copied.
 const LONG_RUN: usize = 48;
 
 /// Computes and stores a block whose texture shader stages have run.
@@ -530,7 +562,7 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
     let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
         return;
     };
-    if compiled.drops {
+    if compiled.drops && !compiled.tests_early {
         *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
     }
     let mut found = None;
@@ -553,25 +585,16 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
         kernels::run(node, *at, rows);
     }
     let is_long = runs.len() * LONG_RUN <= *used;
-    if compiled.drops {
+    if compiled.drops && !compiled.tests_early {
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
         }
         let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
-        if draw.stencil_test.is_none() && draw.depth_test.is_some() && is_long {
-            for Run { lane, at, count } in runs.iter().copied() {
-                let (memory, alive) = (&mut band.depth[at..][..count], &mut alive[lane..][..count]);
-                store::test_depths(draw, &incoming[lane..][..count], memory, alive);
-            }
-        } else if draw.stencil_test.is_some() || draw.depth_test.is_some() {
-            if let Some(depth) = depth.first_chunk_mut() {
-                store::read_runs(band.depth, runs, depth);
-            }
+        if draw.stencil_test.is_some() || draw.depth_test.is_some() {
+            store::read_runs(band.depth, runs, depth);
             if store::test_depth_stencil(draw, incoming, depth, alive) {
-                for Run { lane, at, count } in runs.iter().copied() {
-                    store::write_run(&depth[lane..][..count], &mut band.depth[at..][..count]);
-                }
+                store::write_runs(depth, runs, band.depth);
             }
         }
     }
@@ -589,9 +612,10 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
             }
             store::merge(draw.write_mask, alive, stored, words);
         }
-        for Run { lane, at, count } in runs.iter().copied() {
-            store::write_run(&words[lane..][..count], &mut band.words[at..][..count]);
-        }
+        store::write_runs(words, runs, band.words);
+    }
+    if compiled.tests_early {
+        alive.fill(true);
     }
     runs.clear();
     *used = 0;

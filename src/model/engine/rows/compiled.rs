@@ -121,6 +121,8 @@ pub(crate) struct CompiledDraw {
     pub(super) reads_surface: bool,
     /// Whether fragments can be dropped.
     pub(super) drops: bool,
+    /// Whether the depth test alone drops them, so that it comes before anything else.
+    pub(super) tests_early: bool,
     /// Whether parts of the surface's words may stay: bits that are not written, or dropped fragments.
     pub(super) merges: bool,
     /// Whether all bits of a pixel are written.

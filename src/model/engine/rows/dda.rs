@@ -241,6 +241,8 @@ pub(super) struct DdaRow {
     pub(super) samplers: [([Dda; 2], bool); TEXTURE_UNITS],
     /// Weights 0 and 2, and whether they are in use.
     pub(super) weights: ([Dda; 2], bool),
+    /// The fog factor of the row, if it does not vary.
+    pub(super) fog: Option<i16>,
     /// Whether nothing else is interpolated.
     pub(super) complete: bool,
     /// Whether nothing else is divided by D.

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, floor_of_factor, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor;
@@ -106,6 +106,27 @@ impl Fog {
     }
 }
 
+impl Fog {
+    /// Returns the factor of all pixels of a row within the triangle, if it does not vary along rows and is proved. `e` has the edge
+    /// functions at one of them. D does not vary along rows.
+    pub(super) fn of_row(&self, setup: &Setup<'_>, e: &[i64; 3]) -> Option<i16> {
+        let curve = match self {
+            Fog::Same(factor) => return Some(*factor),
+            Fog::Function(curve) => curve,
+            Fog::Factor(_) => return None,
+        };
+        let (e, real) = (e.map(|e| e as f64), &curve.coordinate.real);
+        let lines = (real.line(&e).times(curve.scale), setup.denominator.real.line(&e));
+        if lines.0.x != 0.0 {
+            return None;
+        }
+        let off = 2.0 * real.reach * SLACK * curve.scale.abs();
+        let (at, mut factor) = (Positions { x: &[0], y: &[0], last: 0 }, [0]);
+        let is_proved = off < COARSEST && !curve.look_up::<false, true>(at, lines, off, &mut factor, &mut [0], &mut [0]);
+        is_proved.then_some(factor[0])
+    }
+}
+
 impl Setup<'_> {
     /// Computes the fog factors of a batch. `values` and `spare` are scratch space.
     #[inline(always)]
@@ -142,18 +163,9 @@ impl Setup<'_> {
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
-                let is_same = ROW && line.x == 0.0 && local.denominator.x == 0.0;
-                // If the coordinate does not vary along the row, one lane suffices.
-                let lanes = if is_same { 1 } else { out.len() };
-                let (first, values, spare) = (&mut out[..lanes], &mut values[..lanes], &mut spare[..lanes]);
-                let (at, lines) = (batch.at, (line, local.denominator));
-                let close = curve.look_up::<FMA, ROW>(at, lines, off, first, values, spare);
-                if is_same {
-                    let same = out[0];
-                    out.fill(same);
-                }
-                if close {
-                    self.defined_factors(batch, |n| spare[if is_same { 0 } else { n }] != 0, out);
+                let lines = (line, local.denominator);
+                if curve.look_up::<FMA, ROW>(batch.at, lines, off, out, values, spare) {
+                    self.defined_factors(batch, |n| spare[n] != 0, out);
                 }
             }
         }

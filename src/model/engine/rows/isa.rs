@@ -125,9 +125,9 @@ text! {
         /// Calls [`band::box_attributes`] with this instruction set.
         fn box_attributes(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// Calls [`band::row_depths`] with this instruction set.
-        fn row_depths(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, block: &mut Block, band: &Band<'_>) -> bool;
+        fn row_depths(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::box_depths`] with this instruction set.
-        fn box_depths(context: &TriangleContext<'_>, block: &mut Block, band: &Band<'_>) -> bool;
+        fn box_depths(context: &TriangleContext<'_>, first: usize, job: Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::shade`] with this instruction set.
         fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }

@@ -215,7 +215,9 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
     }
     let kills = draw.kills();
-    compiled.drops = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some() || draw.depth_test.is_some();
+    let drops_late = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some();
+    compiled.drops = drops_late || draw.depth_test.is_some();
+    compiled.tests_early = compiled.drops && !drops_late;
     let whole = surface::write_mask(draw.surface, [true; 4]);
     let reads = compiled.destination.iter().any(Option::is_some);
     compiled.writes_whole = draw.write_mask == whole;

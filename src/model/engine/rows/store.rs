@@ -97,10 +97,18 @@ fn read_short<const COUNT: usize>(from: &[u32], to: &mut [u32]) -> bool {
     true
 }
 
+/// Writes the words of some runs to the surface or its depth buffer.
+#[inline(always)]
+pub(super) fn write_runs(from: &[u32; BLOCK], runs: &[Run], words: &mut [u32]) {
+    for Run { lane, at, count } in runs.iter().copied() {
+        write_run(&from[lane..][..count], &mut words[at..][..count]);
+    }
+}
+
 /// Writes a run to the surface or its depth buffer. Most runs are short. Two copies of their ends, which may overlap, need neither a call nor a
 /// branch for each pixel.
 #[inline(always)]
-pub(super) fn write_run(from: &[u32], to: &mut [u32]) {
+fn write_run(from: &[u32], to: &mut [u32]) {
     match from.len() {
         1 => to[0] = from[0],
         2..4 => write_ends::<2>(from, to),
@@ -164,6 +172,21 @@ pub(super) fn merge(mask: u32, alive: &[bool; BLOCK], stored: &[u32; BLOCK], wor
     }
 }
 
+/// Runs a loop with a comparison that is constant in it, because compilers leave a choice of eight inside a loop.
+macro_rules! each_function {
+    ($function:expr, |$name:ident| $loop:expr) => {
+        each_function!(@ $function, $name, $loop, Never Less Equal LessOrEqual Greater NotEqual GreaterOrEqual Always)
+    };
+    (@ $function:expr, $name:ident, $loop:expr, $($case:ident)*) => {
+        match $function {
+            $(CompareFunction::$case => {
+                let $name = CompareFunction::$case;
+                $loop
+            })*
+        }
+    };
+}
+
 /// Compares rows, and drops fragments that fail.
 #[inline(always)]
 pub(super) fn test<T: Copy + PartialOrd>(
@@ -172,18 +195,9 @@ pub(super) fn test<T: Copy + PartialOrd>(
     stored: impl Fn(usize) -> T,
     alive: &mut [bool],
 ) {
-    use CompareFunction::*;
-    // Separate loops, because compilers leave a choice of eight inside a loop.
-    macro_rules! each {
-        ($($name:ident)*) => {
-            match function {
-                $($name => for n in 0..alive.len() {
-                    alive[n] &= $name.passes(incoming(n), stored(n));
-                },)*
-            }
-        };
-    }
-    each!(Never Less Equal LessOrEqual Greater NotEqual GreaterOrEqual Always)
+    each_function!(function, |function| for n in 0..alive.len() {
+        alive[n] &= function.passes(incoming(n), stored(n));
+    });
 }
 
 /// STN-1 and DEP-2: drops fragments and updates the words of depth and stencil. Returns whether any word may have changed.
@@ -194,18 +208,26 @@ pub(super) fn test_depth_stencil(
     memory: &mut [u32; BLOCK],
     alive: &mut [bool; BLOCK],
 ) -> bool {
-    let Some(state) = &draw.stencil_test else { return test_depths(draw, incoming, memory, alive) };
+    let writes_depth = draw.depth_test.is_some_and(|test| test.write);
     drop_outside(draw, incoming, alive);
-    let writes_stencil = test_stencil(state, draw, incoming, memory, alive);
-    write_depths(draw, incoming, memory, alive) || writes_stencil
+    let Some(state) = &draw.stencil_test else {
+        test_depth(draw, incoming, memory, alive);
+        return writes_depth;
+    };
+    test_stencil(state, draw, incoming, memory, alive) || writes_depth
 }
 
-/// DEP-2 without a stencil test: drops fragments and updates the words of depth. Returns whether any word may have changed.
+/// DEP-2 without a stencil test, of fragments that are all alive: drops fragments, and stores the depths of those that are left. Returns
+/// `false` if none is; then all are alive again.
 #[inline(always)]
-pub(super) fn test_depths(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &mut [bool]) -> bool {
+pub(super) fn test_early(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &mut [bool]) -> bool {
     drop_outside(draw, incoming, alive);
     test_depth(draw, incoming, memory, alive);
-    write_depths(draw, incoming, memory, alive)
+    let is_any_left = alive.iter().fold(false, |any, alive| any | alive);
+    if !is_any_left {
+        alive.fill(true);
+    }
+    is_any_left
 }
 
 /// Returns `false` if DEP-2 drops all fragments and nothing is written. The words of depth begin with theirs.
@@ -226,25 +248,20 @@ fn drop_outside(draw: &PlannedDraw, incoming: &[u32], alive: &mut [bool]) {
     }
 }
 
-/// DEP-2: stores the depths of the fragments that are left. Returns whether the draw writes depth.
+/// DEP-2: drops fragments, and stores the depths of those that are left.
 #[inline(always)]
-fn write_depths(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &[bool]) -> bool {
-    let writes = draw.depth_test.is_some_and(|test| test.write);
-    if writes {
-        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(alive) {
-            *word = if *alive { depth_stencil(*incoming, stencil_of(*word)) } else { *word };
-        }
-    }
-    writes
-}
-
-/// DEP-2: drops fragments.
-#[inline(always)]
-fn test_depth(draw: &PlannedDraw, incoming: &[u32], memory: &[u32], alive: &mut [bool]) {
-    if let Some(state) = &draw.depth_test {
-        let (incoming, memory) = (&incoming[..alive.len()], &memory[..alive.len()]);
-        test(state.function, |n| incoming[n], |n| depth_of(memory[n]), alive);
-    }
+fn test_depth(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &mut [bool]) {
+    // Not a reference to the test, because compilers would not know that nothing is stored there.
+    let Some((function, writes)) = draw.depth_test.as_ref().map(|test| (test.function, test.write)) else { return };
+    let (incoming, memory) = (&incoming[..alive.len()], &mut memory[..alive.len()]);
+    each_function!(function, |function| for n in 0..alive.len() {
+        let old = memory[n];
+        let passes = alive[n] & function.passes(incoming[n], depth_of(old));
+        // Not a choice of words, because compilers turn that into stores of chosen lanes, which are slow on some processors.
+        let kept = if passes & writes { depth_stencil(0, u8::MAX) } else { u32::MAX };
+        memory[n] = (old & kept) | (incoming[n] & !kept);
+        alive[n] = passes;
+    });
 }
 
 /// STN-1, around the depth test. Returns whether a stencil may have changed.

@@ -147,8 +147,8 @@ impl<'a> Interpolators<'a> {
     /// Sets up the DDAs of a row, from its first pixel on. Batches use the DDAs only after this has been called.
     #[inline(always)]
     pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &CompiledDraw, varying: &mut Varying) {
-        let DdaRow { samplers, weights, complete, undivided } = &mut varying.dda;
-        (*complete, *undivided) = (false, false);
+        let DdaRow { samplers, weights, fog, complete, undivided } = &mut varying.dda;
+        (*fog, *complete, *undivided) = (None, false, false);
         weights.1 = false;
         for sampler in samplers.iter_mut() {
             sampler.1 = false;
@@ -160,7 +160,8 @@ impl<'a> Interpolators<'a> {
         let triangle = &self.setup.context.triangle;
         let e = triangle.edges(i, j);
         let d = self.setup.denominator.exact(&e).c;
-        *undivided = compiled.fog.is_none() && !compiled.estimates;
+        *fog = self.fog.as_ref().and_then(|fog| fog.of_row(&self.setup, &e));
+        *undivided = compiled.fog.is_none() == fog.is_none() && !compiled.estimates;
         *complete = *undivided;
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
             if let (Planes::Plane(planes), false) = (planes, triangle.loses_on_planes()) {
@@ -224,6 +225,9 @@ impl<'a> Interpolators<'a> {
     ) {
         if ROW {
             self.dda(batch, compiled, varying);
+            if let (Some(slot), Some(factor)) = (compiled.fog, varying.dda.fog) {
+                rows[usize::from(slot)].0[batch.lanes()].fill(factor);
+            }
         }
         if !(ROW && varying.dda.complete) {
             self.estimated::<FMA, ROW>(batch, compiled, varying, rows);
@@ -335,7 +339,9 @@ impl<'a> Interpolators<'a> {
             }
             narrow_weights(batch, &varying.weights, &mut varying.narrow);
         }
-        if let (Some(slot), Some(fog)) = (compiled.fog, &self.fog) {
+        if let (Some(slot), Some(fog)) = (compiled.fog, &self.fog)
+            && !(ROW && varying.dda.fog.is_some())
+        {
             let Varying { whole: [values, spare], .. } = &mut *varying;
             let row = &mut rows[usize::from(slot)].0;
             setup.fog_factors::<FMA, ROW>(batch, fog, local, values, spare, row);
