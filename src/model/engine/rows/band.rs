@@ -5,7 +5,7 @@ use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
 use super::isa::Kernels;
-use super::kernels::{self, LANES, Lanes256};
+use super::kernels::{self, PerLane};
 use super::levels::MipFetches;
 use super::setup::{Covered, PixelBatch, Run, whole_steps};
 use super::stages::{self, Workshop};
@@ -17,9 +17,9 @@ use crate::engine::walk::{self, Band, Window};
 use crate::raster::setup::Triangle;
 
 /// The buffers of a thread. They are kept from draw to draw.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Block {
-    pub(super) rows: Vec<Lanes256>,
+    pub(super) rows: Vec<PerLane<i16>>,
     pub(super) varying: Varying,
     pub(super) work: Workspace,
     pub(super) workshop: Workshop,
@@ -30,33 +30,12 @@ pub(crate) struct Block {
     used: usize,
     /// A bit for each pixel of the band, set if the block has a lane for the pixel. Maintained only if the draw reads the surface.
     taken: Vec<u64>,
-    words: [u32; LANES],
-    stored: [u32; LANES],
-    depth: [u32; BLOCK],
-    alive: [bool; BLOCK],
+    words: PerLane<u32>,
+    stored: PerLane<u32>,
+    depth: PerLane<u32>,
+    alive: PerLane<bool>,
     /// Number of pixels, by reason, of which the definition computed something.
     pub(crate) defined: Reasons,
-}
-
-impl Default for Block {
-    fn default() -> Self {
-        Block {
-            rows: Vec::new(),
-            varying: Varying::default(),
-            work: Workspace::default(),
-            workshop: Workshop::default(),
-            coverage: BoxCoverage::default(),
-            planes: Functions::default(),
-            runs: Vec::with_capacity(BLOCK),
-            used: 0,
-            taken: Vec::new(),
-            words: [0; LANES],
-            stored: [0; LANES],
-            depth: [0; BLOCK],
-            alive: [true; BLOCK],
-            defined: Reasons::default(),
-        }
-    }
 }
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
@@ -67,7 +46,7 @@ pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Blo
     if walk::windows(draw, band.rows()).next().is_none() {
         return shaded;
     }
-    block.rows.resize(compiled.rows.len(), Lanes256::from_value(0));
+    block.rows.resize(compiled.rows.len(), PerLane::from_value(0));
     for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
         row.fill(*constant);
     }
@@ -493,7 +472,7 @@ pub(super) fn box_depths<const FMA: bool>(
 ) -> bool {
     let Block { varying, alive, coverage, used, runs, depth, .. } = block;
     depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
-    let (incoming, runs) = (&varying.depth, &runs[first..]);
+    let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if job.compiled.tests_early {
         let lanes = *used..*used + coverage.count;
         store::read_runs(band.depth, runs, depth);
@@ -559,11 +538,10 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
     if *used == 0 {
         return;
     }
-    let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
-        return;
-    };
+    let (words, stored) = (words.block_mut(), stored.block_mut());
+    let (depth, alive) = (depth.block_mut(), alive.block_mut());
     if compiled.drops && !compiled.tests_early {
-        *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
+        *alive = *varying.alive.block();
     }
     let mut found = None;
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
@@ -590,7 +568,7 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
         }
-        let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
+        let incoming = varying.depth.block();
         if draw.stencil_test.is_some() || draw.depth_test.is_some() {
             store::read_runs(band.depth, runs, depth);
             if store::test_depth_stencil(draw, incoming, depth, alive) {

@@ -1,7 +1,7 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
-use super::kernels::STEP;
+use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch, whole_steps};
 use crate::engine::walk::Window;
@@ -16,9 +16,6 @@ const WIDEST: i64 = 8 * SIDE;
 /// The same for triangles with a single w. Their quotients are often exact: along rows the DDA handles that, in boxes each one has to be
 /// corrected.
 const WIDEST_FLAT: i64 = 2 * SIDE;
-
-/// Number of lanes of a box, with room for the whole steps that are written past its end.
-const MAX_LANES: usize = (SIDE * SIDE) as usize + 2 * STEP;
 
 /// Returns whether a triangle is drawn as boxes instead of row by row.
 #[inline(always)]
@@ -44,30 +41,17 @@ pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
 }
 
 /// The pixels of a small triangle that lie in a box.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct BoxCoverage {
     /// Column and row of the first covered pixel.
     pub(super) first: (i64, i64),
     /// Columns and rows of the pixels relative to the first. Lanes past the end repeat the last pixel.
-    pub(super) x: [i32; MAX_LANES],
-    pub(super) y: [i32; MAX_LANES],
+    pub(super) x: PerLane<i32>,
+    pub(super) y: PerLane<i32>,
     pub(super) count: usize,
     /// For each row: its number, the first column and the number of pixels.
     pub(super) runs: [(i64, i64, usize); SIDE as usize],
     pub(super) filled: usize,
-}
-
-impl Default for BoxCoverage {
-    fn default() -> Self {
-        BoxCoverage {
-            first: (0, 0),
-            x: [0; MAX_LANES],
-            y: [0; MAX_LANES],
-            count: 0,
-            runs: [(0, 0, 0); SIDE as usize],
-            filled: 0,
-        }
-    }
 }
 
 impl BoxCoverage {

@@ -1,7 +1,7 @@
 //! INT-2 on rows: 16-bit weights, and the colours that they yield.
 
 use super::CompiledDraw;
-use super::kernels::{Lanes256, PerLane};
+use super::kernels::PerLane;
 use super::setup::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
@@ -33,7 +33,7 @@ pub(super) fn colors(
     compiled: &CompiledDraw,
     batch: PixelBatch<'_>,
     [w0, w2]: &[PerLane<u16>; 2],
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) {
     for (slots, colors) in [(&compiled.primary, &context.primary), (&compiled.secondary, &context.secondary)] {
         for channel in 0..4 {

@@ -1,7 +1,7 @@
 //! A draw compiled to rows, and the statistics of its pixels.
 
 use super::filter::Vectors;
-use super::kernels::Lanes256;
+use super::kernels::PerLane;
 use super::node::Node;
 use super::shader::Shader;
 use super::table::{Axis, Table};
@@ -141,7 +141,7 @@ impl CompiledDraw {
     }
 
     /// Puts the texture registers of a pixel into the rows that read them.
-    pub(super) fn put_textures(&self, registers: &Registers<i32>, lane: usize, rows: &mut [Lanes256]) {
+    pub(super) fn put_textures(&self, registers: &Registers<i32>, lane: usize, rows: &mut [PerLane<i16>]) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (slots, register) in self.textures.iter().zip(UNITS) {

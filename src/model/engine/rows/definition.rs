@@ -1,7 +1,7 @@
 //! Values that the definition computes for a batch: those that estimates do not prove, and those of textures that rows do not support.
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
-use super::kernels::{Lanes256, PerLane};
+use super::kernels::PerLane;
 use super::setup::{PixelBatch, Setup};
 use crate::combiner::registers::Registers;
 use crate::texture::coordinates::SampleCoordinates;
@@ -51,7 +51,7 @@ impl Setup<'_> {
         compiled: &CompiledDraw,
         textures: &[Image<'_, i32>],
         alive: &mut PerLane<bool>,
-        rows: &mut [Lanes256],
+        rows: &mut [PerLane<i16>],
     ) {
         self.count_defined(Reason::Textures, batch.count);
         for n in 0..batch.count {

@@ -3,7 +3,7 @@
 
 use super::depth::floor;
 use super::dot::{Facing, Floats, is_finite};
-use super::kernels::{LANES, PerLane};
+use super::kernels::PerLane;
 use super::levels::{MipFetches, choose};
 use super::quads::{AtQuads, Measure};
 use super::quotient::whole;
@@ -43,7 +43,7 @@ impl<'a> DefinedTriangle<'a> {
 }
 
 /// The quads of a block, and scratch space of a stage that needs their levels of detail.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct BlockQuads {
     all: Vec<PixelQuads>,
     /// Where pixels sample on level 0, 1/65536 texel, whole numbers.
@@ -65,25 +65,6 @@ pub(super) struct BlockQuads {
     of_quads: PerLane<i32>,
     lods: PerLane<i32>,
     levels: [PerLane<i32>; 2],
-}
-
-impl Default for BlockQuads {
-    fn default() -> Self {
-        BlockQuads {
-            all: Vec::new(),
-            fine: [[0.0; LANES]; 2],
-            close: [0; LANES],
-            at: [[[0.0; LANES]; 2]; 3],
-            unknown: [0; LANES],
-            opened: [0; LANES],
-            behind: [0; LANES],
-            directions: [[[0.0; LANES]; 3]; 3],
-            meets: [[0.0; LANES]; 3],
-            of_quads: [0; LANES],
-            lods: [0; LANES],
-            levels: [[0; LANES]; 2],
-        }
-    }
 }
 
 impl BlockQuads {
@@ -223,7 +204,7 @@ impl BlockQuads {
         reads.place_all((unit, table, 0), 0..BLOCK, ranges, lods, levels, &u[..BLOCK], &v[..BLOCK]);
         if let Some(faces) = faces {
             for entries in &mut reads.entries {
-                for (entry, face) in entries[..BLOCK].iter_mut().zip(faces) {
+                for (entry, face) in entries[..BLOCK].iter_mut().zip(&**faces) {
                     *entry += (face * table.face) as i32;
                 }
             }

@@ -28,12 +28,12 @@ impl Remap {
 
     /// Computes the fractions of the registers R, G, B and A. `doubled` tells which of them hold twice the byte.
     #[inline(always)]
-    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: &mut [Floats; 3]) {
+    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: [&mut Floats; 3]) {
         match self {
             Remap::Bytes(linear) => {
                 for n in 0..3 {
                     if let Some(register) = registers[n] {
-                        linear.run(register, doubled[n], &mut out[n]);
+                        linear.run(register, doubled[n], out[n]);
                     }
                 }
             }
@@ -96,7 +96,7 @@ impl Linear {
 
 /// TSH-4: dot products of three numbers and a remapped colour.
 #[inline(always)]
-pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: &[Floats; 3], out: &mut Floats) {
+pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: [&Floats; 3], out: &mut Floats) {
     for n in 0..BLOCK {
         out[n] = dot::dot([s[n], t[n], r[n]], [x[n], y[n], z[n]]);
     }
@@ -284,7 +284,7 @@ mod tests {
                 };
                 let registers = [register(0), register(1), register(2), register(3)];
                 let mut out = [[0.0; BLOCK]; 3];
-                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, &mut out);
+                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, out.each_mut());
                 for n in 0..BLOCK {
                     let got = out.each_ref().map(|out| out[n]);
                     assert_eq!(got, dot::remap(*mapping, bytes(n)), "{mapping:?} {:?}", bytes(n));

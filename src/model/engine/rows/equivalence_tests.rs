@@ -6,7 +6,7 @@
 
 use super::band::common;
 use super::boxes::{BoxCoverage, batch, boxes, is_small};
-use super::kernels::Lanes256;
+use super::kernels::PerLane;
 use super::levels::MipFetches;
 use super::quads::Measure;
 use super::setup::PixelBatch;
@@ -298,7 +298,7 @@ fn compare_small<const FMA: bool>(
     plain: &super::CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) -> bool {
     let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Default::default());
     super::depth::depths::<FMA, false>(context, batch, varying.depths());
@@ -328,7 +328,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     compiled: &super::CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) {
     // Results of an earlier batch must not pass for those of this one.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
@@ -446,7 +446,7 @@ fn rows_interpolate(seed: u64) {
         let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
         let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
-        let (mut varying, mut rows) = (Varying::default(), vec![Lanes256::from_value(0); compiled.rows.len()]);
+        let (mut varying, mut rows) = (Varying::default(), vec![PerLane::from_value(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), MipFetches::default());
         varying.footprints.resize(compiled.samplers.len(), Footprints::default());
         varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));

@@ -1,7 +1,7 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
 use super::filter::{Vectors, filter, filter_half, filter_one};
-use super::kernels::{LANES, Lanes256, PerLane};
+use super::kernels::{LANES, PerLane};
 use super::levels::MipFetches;
 use super::store;
 use super::table::{Axis, Table, Texels};
@@ -51,7 +51,7 @@ pub(super) fn sample_unit(
     found: Found,
     varying: &mut Varying,
     work: &mut Workspace,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) -> Found {
     let sampler = &job.compiled.samplers[n];
     let Some(table) = &sampler.table else { return found };
@@ -85,12 +85,12 @@ pub(super) fn locate(
     faces: Option<&PerLane<u32>>,
     work: &mut Workspace,
 ) {
-    let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
+    let (u, v) = (u.block_mut(), v.block_mut());
     let entries = &mut work.entries;
     let [columns, rows] = &table.axes;
     columns.reduce(u);
     rows.reduce(v);
-    match faces.and_then(|faces| faces.first_chunk::<BLOCK>()) {
+    match faces.map(PerLane::block) {
         Some(faces) => address::<true>(table, u, v, |n| faces[n] * table.face, entries),
         None if table.axes.iter().all(Axis::repeats) => address::<false>(table, u, v, |_| 0, entries),
         None => address::<true>(table, u, v, |_| 0, entries),
@@ -109,7 +109,7 @@ pub(super) fn sample(
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) {
     if texels(vectors, table, at, references, signed, wanted, work, rows) {
         load(signed, wanted, rows);
@@ -127,9 +127,9 @@ fn texels(
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) -> bool {
-    let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
+    let (u, v) = (u.block(), v.block());
     if let Texels::Wide(texels, linear) = &table.texels {
         work.filter_halves(texels, *linear, table.pitch, (u, v));
         bytes_of_halves(&work.halves, signed, wanted, rows);
@@ -198,12 +198,12 @@ fn sample_taps(
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) {
     if let Texels::Wide(texels, linear) = &table.texels {
         let mut sums = [[0_i32; BLOCK]; 2];
         each_tap(table, at, pairs, work, |[u, v], weights, work| {
-            let (Some(u), Some(v)) = (u.first_chunk(), v.first_chunk()) else { return };
+            let (u, v) = (u.block(), v.block());
             work.filter_halves(texels, *linear, table.pitch, (u, v));
             for (sums, half) in sums.iter_mut().zip(&work.halves) {
                 for n in 0..BLOCK {
@@ -245,11 +245,11 @@ fn each_tap(
     mut take: impl FnMut(&[PerLane<i32>; 2], &[u16; BLOCK], &mut Workspace),
 ) {
     for Pair { offsets, weights } in pairs {
-        let Some(weights) = weights.first_chunk::<BLOCK>() else { return };
+        let weights = weights.block();
         for side in [1, -1] {
-            let mut at = *at;
+            let mut at = at.clone();
             for axis in 0..2 {
-                for (at, offset) in at[axis].iter_mut().zip(&offsets[axis]) {
+                for (at, offset) in at[axis].iter_mut().zip(&*offsets[axis]) {
                     *at += side * offset;
                 }
             }
@@ -260,7 +260,7 @@ fn each_tap(
 }
 
 /// References for units that do not compare.
-static NO_REFERENCES: PerLane<u32> = [0; LANES];
+static NO_REFERENCES: PerLane<u32> = PerLane([0; LANES]);
 
 /// KEY-1: drops lanes whose single texel, on the only level that is read, equals the sampler's key in the compared bits.
 #[inline(always)]
@@ -290,20 +290,20 @@ fn sample_levels(
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
 ) {
     let (texels, is_wide) = match &table.texels {
         Texels::Levels(texels) => (texels, false),
         Texels::WideLevels(texels) => (texels, true),
         _ => return,
     };
-    let Some(weights) = reads.weights.first_chunk::<BLOCK>() else { return };
+    let weights = reads.weights.block();
     if is_wide {
-        let Some(at) = reads.of_level(0, &mut work.entries) else { return };
+        let at = reads.of_level(0, &mut work.entries);
         work.filter_halves(texels, true, table.pitch, at);
         if both {
             let nearer = work.halves;
-            let Some(at) = reads.of_level(1, &mut work.entries) else { return };
+            let at = reads.of_level(1, &mut work.entries);
             work.filter_halves(texels, true, table.pitch, at);
             for (half, nearer) in work.halves.iter_mut().zip(&nearer) {
                 for n in 0..BLOCK {
@@ -318,11 +318,11 @@ fn sample_levels(
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let Some((u, v)) = reads.of_level(0, entries) else { return };
+    let (u, v) = reads.of_level(0, entries);
     fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
     filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha);
     if both {
-        let Some((u, v)) = reads.of_level(1, entries) else { return };
+        let (u, v) = reads.of_level(1, entries);
         fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
         let [next_red, next_green, next_blue, next_alpha] = next;
         filter::<4>(vectors, upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
@@ -338,12 +338,12 @@ fn sample_levels(
 impl MipFetches {
     /// Writes the entries of one of two levels. Returns the coordinates for its weights.
     #[inline(always)]
-    fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> Option<(&[i32; BLOCK], &[i32; BLOCK])> {
-        for (entry, found) in entries.iter_mut().zip(&self.entries[which]) {
+    fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> (&[i32; BLOCK], &[i32; BLOCK]) {
+        for (entry, found) in entries.iter_mut().zip(self.entries[which].block()) {
             *entry = *found as u32;
         }
         let [u, v] = &self.coordinates[which];
-        Some((u.first_chunk()?, v.first_chunk()?))
+        (u.block(), v.block())
     }
 }
 
@@ -357,7 +357,7 @@ fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[u16; BLOCK]) 
 
 /// TEX-18: subtracts the 128 that the table adds to signed channels, and doubles them.
 #[inline(always)]
-fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
+fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) {
     for (signed, wanted) in signed.into_iter().zip(wanted) {
         if let (true, Some(wanted)) = (signed, wanted) {
             for out in rows[usize::from(wanted)].block_mut() {
@@ -439,7 +439,7 @@ impl Workspace {
 
 /// TEX-1, TEX-18: splits halves into bytes: A and R, G and B.
 #[inline(always)]
-fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
+fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) {
     for (half, [high, low]) in halves.iter().zip([[3, 0], [1, 2]]) {
         if let Some(slot) = wanted[low] {
             for (out, half) in rows[usize::from(slot)].block_mut().iter_mut().zip(half) {

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use super::Reason;
-use super::kernels::LANES;
+use super::kernels::PerLane;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, estimate_two, floor_of_factor, nearest, position, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
@@ -122,7 +122,8 @@ impl Fog {
         }
         let off = 2.0 * real.reach * SLACK * curve.scale.abs();
         let (at, mut factor) = (Positions { x: &[0], y: &[0], last: 0 }, [0]);
-        let is_proved = off < COARSEST && !curve.look_up::<false, true>(at, lines, off, &mut factor, &mut [0], &mut [0]);
+        let is_proved =
+            off < COARSEST && !curve.look_up::<false, true>(at, lines, off, &mut factor, &mut [0], &mut [0]);
         is_proved.then_some(factor[0])
     }
 }
@@ -135,9 +136,9 @@ impl Setup<'_> {
         batch: PixelBatch<'_>,
         fog: &Fog,
         local: &BatchSetup,
-        values: &mut [i32; LANES],
-        spare: &mut [i32; LANES],
-        row: &mut [i16; LANES],
+        values: &mut PerLane<i32>,
+        spare: &mut PerLane<i32>,
+        row: &mut PerLane<i16>,
     ) {
         let out = &mut row[batch.lanes()];
         let (values, spare) = (&mut values[..out.len()], &mut spare[..out.len()]);

@@ -9,12 +9,10 @@ use crate::number::{Factor, Lane, Narrow, Quarters, Sum};
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
+use std::ops::{Deref, DerefMut};
 
 /// Number of pixels of a block.
 pub(crate) const BLOCK: usize = 256;
-
-/// One number for each pixel of a block.
-pub(super) type PerLane<T> = [T; LANES];
 
 /// Number of lanes of a step. Batches are handled in whole steps, so that lanes past their end may be written.
 pub(super) const STEP: usize = 16;
@@ -22,33 +20,51 @@ pub(super) const STEP: usize = 16;
 /// Number of lanes of a row: a block, and room for steps past its end. A multiple of a cache line.
 pub(super) const LANES: usize = BLOCK + 2 * STEP;
 
-/// One number for each pixel of a block.
+/// One number for each pixel of a block. Aligned, so that no vector crosses a cache line.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(super) struct Lanes256(pub(super) [i16; LANES]);
+pub(super) struct PerLane<T>(pub(super) [T; LANES]);
 
-impl Lanes256 {
-    pub(super) fn from_value(value: i16) -> Lanes256 {
-        Lanes256([value; LANES])
-    }
-
-    pub(super) fn fill(&mut self, value: i16) {
-        self.0.fill(value);
+impl<T: Copy> PerLane<T> {
+    pub(super) fn from_value(value: T) -> PerLane<T> {
+        PerLane([value; LANES])
     }
 
     /// Returns the lanes of the block.
     #[inline(always)]
-    pub(super) fn block(&self) -> &[i16; BLOCK] {
-        let Some((block, _)) = self.0.split_first_chunk() else { return &[0; BLOCK] };
-        block
+    pub(super) fn block(&self) -> &[T; BLOCK] {
+        let (block, _) = self.0.split_at(BLOCK);
+        // The length is right.
+        block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
     }
 
     /// Returns the lanes of the block, mutable.
     #[inline(always)]
-    pub(super) fn block_mut(&mut self) -> &mut [i16; BLOCK] {
+    pub(super) fn block_mut(&mut self) -> &mut [T; BLOCK] {
         let (block, _) = self.0.split_at_mut(BLOCK);
-        // The length is right.
         block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
+    }
+}
+
+impl<T: Copy + Default> Default for PerLane<T> {
+    fn default() -> Self {
+        PerLane::from_value(T::default())
+    }
+}
+
+impl<T> Deref for PerLane<T> {
+    type Target = [T];
+
+    #[inline(always)]
+    fn deref(&self) -> &[T] {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for PerLane<T> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.0
     }
 }
 
@@ -151,7 +167,7 @@ fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK])
 
 /// Computes sums of products of rows, and applies a function to them.
 #[inline(always)]
-fn sum_row(pairs: &Pairs, before: &[Lanes256], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
+fn sum_row(pairs: &Pairs, before: &[PerLane<i16>], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
     // Zeros past the last pair, whatever unused rows hold.
     let mut all: [&[i16; BLOCK]; 2 * MAX_PRODUCTS] = [&ZEROS; 2 * MAX_PRODUCTS];
     for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
@@ -175,7 +191,7 @@ fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], 
 
 /// Computes the row of a node from earlier rows.
 #[inline(always)]
-pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
+pub(super) fn run(node: &Node, at: usize, rows: &mut [PerLane<i16>]) {
     let (before, after) = rows.split_at_mut(at);
     let Some(out) = after.first_mut() else { return };
     let out = out.block_mut();
@@ -300,18 +316,18 @@ mod tests {
     #[test]
     fn sums_have_as_many_products_as_they_say() {
         for count in 1..=MAX_PRODUCTS {
-            let mut rows = vec![Lanes256::from_value(99); 4];
+            let mut rows = vec![PerLane::from_value(99); 4];
             let mut values = [Value(0); 2 * MAX_PRODUCTS];
             let mut wanted = 0;
             for (n, value) in values[..2 * count].iter_mut().enumerate() {
                 *value = Value(rows.len() as u16);
-                rows.push(Lanes256::from_value(17 * n as i16 - 40));
+                rows.push(PerLane::from_value(17 * n as i16 - 40));
             }
             for pair in 0..count as i32 {
                 wanted += (34 * pair - 40) * (34 * pair - 23);
             }
             let at = rows.len();
-            rows.push(Lanes256::from_value(0));
+            rows.push(PerLane::from_value(0));
             run(&Node::Sum(Pairs { count, values }), at, &mut rows);
             assert_eq!(rows[at].block(), &[wanted.rounded(); BLOCK], "{count}");
         }

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::CubeDirection;
-use super::kernels::{LANES, PerLane};
+use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quads::{BaseLevel, Known, Quads, floor, parted};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
@@ -17,7 +17,7 @@ use crate::texture::planned::PlannedUnit;
 use std::ops::Range;
 
 /// Fetches of a block from a texture with levels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct MipFetches {
     /// Table entries on the nearer level, and on the next one.
     pub(super) entries: [PerLane<i32>; 2],
@@ -29,19 +29,8 @@ pub(super) struct MipFetches {
     pub(super) known: Known<i32>,
 }
 
-impl Default for MipFetches {
-    fn default() -> Self {
-        MipFetches {
-            entries: [[0; LANES]; 2],
-            coordinates: [[[0; LANES]; 2]; 2],
-            weights: [0; LANES],
-            known: Known::default(),
-        }
-    }
-}
-
 /// Scratch space for placing lanes on levels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Placing {
     /// u and v on level 0 in 1/256 texel, with fractions, if something is taken off them.
     at: [PerLane<f64>; 2],
@@ -51,18 +40,6 @@ pub(super) struct Placing {
     levels: [PerLane<i32>; 2],
     /// Sign bits of lanes whose floors are not proved on some level.
     close: PerLane<i32>,
-}
-
-impl Default for Placing {
-    fn default() -> Self {
-        Placing {
-            at: [[0.0; LANES]; 2],
-            floors: [[0; LANES]; 2],
-            lods: [0; LANES],
-            levels: [[0; LANES]; 2],
-            close: [0; LANES],
-        }
-    }
 }
 
 impl Setup<'_> {

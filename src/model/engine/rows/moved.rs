@@ -105,23 +105,15 @@ impl MovedPlanes {
     }
 }
 
-/// Coordinates that a stage moves. Aligned, because vectors are stored and soon loaded again.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+/// Coordinates that a stage moves.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Moved {
     /// Estimates less a half, 1/256 texel.
-    at: [[f64; LANES]; 2],
+    at: [PerLane<f64>; 2],
     /// The same without losses, if levels of detail follow from them (TEX-11).
-    at_quads: [[f64; LANES]; 2],
+    at_quads: [PerLane<f64>; 2],
     /// The largest error of a coordinate in each step of lanes, on the level where it is.
     off: [f64; LANES / STEP],
-}
-
-impl Default for Moved {
-    fn default() -> Self {
-        let zeros = [[0.0; LANES]; 2];
-        Moved { at: zeros, at_quads: zeros, off: [0.0; LANES / STEP] }
-    }
 }
 
 impl Moved {
@@ -174,7 +166,7 @@ pub(super) fn place<const FMA: bool>(
 
 /// TSH-7: returns u and v of a lane, moved by so many 128ths of the image.
 #[inline(always)]
-fn by<const FMA: bool>([u, v]: &[[f64; LANES]; 2], sides: [u32; 2], offsets: [f32; 2], n: usize) -> [f64; 2] {
+fn by<const FMA: bool>([u, v]: &[PerLane<f64>; 2], sides: [u32; 2], offsets: [f32; 2], n: usize) -> [f64; 2] {
     const PARTS: f64 = (1 << OFFSET_BITS) as f64;
     // A side of the image has 256 steps for each of its texels.
     let [width, height] = [2.0 * f64::from(sides[0]) * PARTS, 2.0 * f64::from(sides[1]) * PARTS];

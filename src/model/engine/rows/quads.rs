@@ -39,7 +39,7 @@ pub(super) trait Measure: Copy {
 }
 
 /// Scratch space for the coordinates of quads.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Quads {
     /// Columns and rows of the upper left pixels of the quads, relative to the batch's first pixel.
     origins: [PerLane<f32>; 2],
@@ -53,21 +53,6 @@ pub(super) struct Quads {
     /// Number of quads of a box, and the quad of each of its lanes.
     count: usize,
     of_lanes: PerLane<u8>,
-}
-
-impl Default for Quads {
-    fn default() -> Self {
-        Quads {
-            origins: [[0.0; LANES]; 2],
-            coordinates: [[[0.0; LANES]; 2]; 3],
-            unknown: [0; LANES],
-            close: [0; LANES],
-            left: [0; LANES],
-            left_origins: [[0.0; LANES]; 2],
-            count: 0,
-            of_lanes: [0; LANES],
-        }
-    }
 }
 
 impl Quads {

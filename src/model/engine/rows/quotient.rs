@@ -2,7 +2,7 @@
 //! integer, and otherwise corrected by exact remainders. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::kernels::LANES;
+use super::kernels::{LANES, PerLane};
 use crate::raster::interpolate::most_dominant;
 
 /// 1.5 2^52: adding it to a small number leaves the nearest integer in the low bits.
@@ -18,25 +18,25 @@ const MAGIC_32: f32 = 12_582_912.0;
 const FRACTION: i32 = 20;
 
 /// Lane numbers as integers.
-pub(super) static IOTA: [i32; LANES] = {
+pub(super) static IOTA: PerLane<i32> = {
     let mut all = [0; LANES];
     let mut n = 0;
     while n < LANES {
         all[n] = n as i32;
         n += 1;
     }
-    all
+    PerLane(all)
 };
 
 /// Lane numbers as floats.
-pub(super) static IOTA_REAL: [f64; LANES] = {
+pub(super) static IOTA_REAL: PerLane<f64> = {
     let mut all = [0.0; LANES];
     let mut n = 0;
     while n < LANES {
         all[n] = n as f64;
         n += 1;
     }
-    all
+    PerLane(all)
 };
 
 /// Columns and rows of a batch's pixels, relative to its first.
@@ -264,19 +264,12 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     [close[0] < 0, close[1] < 0]
 }
 
-/// Positions of a batch and the reciprocals of its denominators. Aligned, because vectors are stored and soon loaded again.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+/// Positions of a batch and the reciprocals of its denominators.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Reciprocals {
-    x: [f64; LANES],
-    y: [f64; LANES],
-    r: [f64; LANES],
-}
-
-impl Default for Reciprocals {
-    fn default() -> Self {
-        Reciprocals { x: [0.0; LANES], y: [0.0; LANES], r: [0.0; LANES] }
-    }
+    x: PerLane<f64>,
+    y: PerLane<f64>,
+    r: PerLane<f64>,
 }
 
 impl Reciprocals {

@@ -18,7 +18,7 @@ const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 pub(super) type Losses = [f64; 2];
 
 /// The weights that fall short in a batch, and two quotients of functions with losses.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Short {
     pub(super) dominance: Dominance,
     /// Sign bits of lanes that are not proved.
@@ -27,15 +27,9 @@ pub(super) struct Short {
     pub(super) at: [PerLane<f64>; 2],
 }
 
-impl Default for Short {
-    fn default() -> Self {
-        Short { dominance: Dominance::default(), close: [0; LANES], at: [[0.0; LANES]; 2] }
-    }
-}
-
 /// INT-3's dominance in a batch. Weights are classified by whether they are above a half, above a quarter, or neither, because the largest
 /// is at least a third.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Dominance {
     /// N_0 and N_2 as functions.
     functions: [Line; 2],
@@ -46,18 +40,6 @@ pub(super) struct Dominance {
     third: PerLane<f64>,
     /// Sign bits of lanes that are too close to a border for an estimate.
     close: PerLane<u64>,
-}
-
-impl Default for Dominance {
-    fn default() -> Self {
-        Dominance {
-            functions: [Line::default(); 2],
-            parts: Parts::default(),
-            first: [0.0; LANES],
-            third: [0.0; LANES],
-            close: [0; LANES],
-        }
-    }
 }
 
 /// Returns 2^-24 (u_i - u_1) for the weights 0 and 2, with u_k = G_k / P_k. This is what a function with these G_k loses for each unit of

@@ -4,7 +4,7 @@
 
 use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
-use super::kernels::Lanes256;
+use super::kernels::PerLane;
 use super::planes::{FOUR, inverse};
 use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
 use super::setup::{PixelBatch, Planes};
@@ -147,7 +147,7 @@ pub(super) fn interpolate<const FMA: bool>(
     compiled: &CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
     planes: &mut Functions,
 ) -> bool {
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];

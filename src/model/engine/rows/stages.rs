@@ -7,7 +7,7 @@
 use super::dependent::{BlockQuads, DefinedTriangle};
 use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
-use super::kernels::{LANES, Lanes256};
+use super::kernels::PerLane;
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
@@ -109,20 +109,20 @@ impl Default for DotUnit {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workshop {
     /// Numbers that vary.
-    numbers: Vec<[f32; LANES]>,
+    numbers: Vec<PerLane<f32>>,
     /// Numbers that are the same everywhere.
-    same: Vec<Floats>,
+    same: Vec<PerLane<f32>>,
     moved: Vec<Moved>,
     attributes: Attributes,
     reciprocals: Box<Reciprocals>,
     dominance: Box<Dominance>,
     /// Not 0 for lanes that are left open: the definition computes them.
-    open: Vec<i32>,
+    open: PerLane<i32>,
     /// First lane and number of each triangle of the block.
     triangles: Vec<(usize, usize)>,
     /// The quads of the block, if stages need them.
     pub(super) quads: Box<BlockQuads>,
-    vectors: Vec<[Floats; 3]>,
+    vectors: Vec<[PerLane<f32>; 3]>,
     is_remapped: Vec<bool>,
     dot: Box<DotUnit>,
 }
@@ -135,16 +135,15 @@ impl Workshop {
 
     /// Makes room for the shader of a draw.
     pub(super) fn begin(&mut self, shader: &Shader) {
-        self.numbers.resize(shader.varying.len(), [0.0; LANES]);
+        self.numbers.resize(shader.varying.len(), PerLane::default());
         self.same.clear();
-        self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
+        self.same.extend(shader.same.iter().map(|value| PerLane::from_value(*value)));
         self.moved.resize(shader.moved.len(), Moved::default());
         self.attributes.triangle = None;
-        self.open.clear();
-        self.open.resize(LANES, 0);
+        self.open.fill(0);
         self.triangles.clear();
         self.quads.clear();
-        self.vectors.resize(shader.vectors.len(), [[0.0; BLOCK]; 3]);
+        self.vectors.resize(shader.vectors.len(), Default::default());
         self.is_remapped.resize(shader.vectors.len(), false);
         for stage in &shader.stages {
             if let ShaderOperation::DotReflectConstantEye { eye } = stage.state.operation {
@@ -249,7 +248,7 @@ pub(super) fn run<const FMA: bool>(
     runs: &[Run],
     varying: &mut Varying,
     workshop: &mut Workshop,
-    (work, rows): (&mut Workspace, &mut [Lanes256]),
+    (work, rows): (&mut Workspace, &mut [PerLane<i16>]),
     band: &Band<'_>,
 ) -> u64 {
     let Some(shader) = &job.compiled.shader else { return 0 };
@@ -326,7 +325,7 @@ pub(super) fn run<const FMA: bool>(
                             let Some(table) = stage.dependent[n].first_chunk::<256>() else { continue };
                             let (from, down) = (rows[usize::from(slot)].block(), u32::from(doubled[channels[n]]));
                             let (bias, fine) = (sampler.bias(), &mut workshop.quads.fine[n]);
-                            for ((out, fine), from) in numbers[n].iter_mut().zip(fine).zip(from) {
+                            for ((out, fine), from) in numbers[n].iter_mut().zip(&mut **fine).zip(from) {
                                 let at = table[usize::from((*from >> down) as u8)];
                                 (*out, *fine) = ((at >> 8) - bias, f64::from(at));
                             }
@@ -338,12 +337,11 @@ pub(super) fn run<const FMA: bool>(
                     ShaderOperation::DotProduct2D => {
                         for n in 0..2 {
                             dot_product(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
-                            let Some(out) = numbers[n].first_chunk_mut() else { continue };
                             let limit = COORDINATE_LIMIT as i32;
                             let (floats, side) = (&workshop.dot.dots[index + n - 1], sampler.sides[n]);
-                            dot::coordinate(floats, side, limit, sampler.bias(), out);
-                            if let (true, Some(open)) = (sampler.mixes, workshop.open.first_chunk_mut()) {
-                                workshop.quads.set_floats::<FMA>(n, floats, side, open);
+                            dot::coordinate(floats, side, limit, sampler.bias(), numbers[n].block_mut());
+                            if sampler.mixes {
+                                workshop.quads.set_floats::<FMA>(n, floats, side, workshop.open.block_mut());
                             }
                         }
                         if sampler.mixes {
@@ -355,21 +353,15 @@ pub(super) fn run<const FMA: bool>(
                             dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
                         }
                         let Some((vector, scratch, quads)) = workshop.vector(shader, &operation) else { continue };
-                        let [u, v] = numbers;
-                        if let (Some(u), Some(v), Some(faces)) =
-                            (u.first_chunk_mut(), v.first_chunk_mut(), faces.first_chunk_mut())
-                        {
-                            dot::on_faces::<FMA>(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
-                            if sampler.mixes {
-                                quads.set_directions(vector, sampler.sides[0]);
-                            }
+                        let ([u, v], faces) = (numbers.each_mut().map(PerLane::block_mut), faces.block_mut());
+                        dot::on_faces::<FMA>(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
+                        if sampler.mixes {
+                            quads.set_directions(vector, sampler.sides[0]);
                         }
                     }
                 }
                 if let (true, Some(reads)) = (sampler.mixes, varying.reads.get_mut(at)) {
-                    let (Some(open), [u, v]) = (workshop.open.first_chunk_mut(), &varying.coordinates[at]) else {
-                        continue;
-                    };
+                    let (open, [u, v]) = (workshop.open.block_mut(), &varying.coordinates[at]);
                     let of = (&job.draw.units[sampler.index], &**table);
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
                     workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
@@ -388,16 +380,16 @@ pub(super) fn run<const FMA: bool>(
             }
         }
     }
-    define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band)
+    define(job, runs, &mut varying.alive, workshop, rows, band)
 }
 
 /// Returns a number of the block's pixels.
 #[inline(always)]
-fn number<'w>(varying: &'w [[f32; LANES]], same: &'w [Floats], number: Number) -> Option<&'w Floats> {
+fn number<'w>(varying: &'w [PerLane<f32>], same: &'w [PerLane<f32>], number: Number) -> Option<&'w Floats> {
     match number {
         Number::Unread => None,
-        Number::Same(n) => Some(&same[n]),
-        Number::Varying(n) => varying[n].first_chunk(),
+        Number::Same(n) => Some(same[n].block()),
+        Number::Varying(n) => Some(varying[n].block()),
     }
 }
 
@@ -433,7 +425,7 @@ fn dot_product(
     index: usize,
     dotted: &mut [bool; TEXTURE_UNITS],
     work: &mut Workshop,
-    rows: &[Lanes256],
+    rows: &[PerLane<i16>],
 ) {
     let stage = &shader.stages[index];
     if std::mem::replace(&mut dotted[index], true) {
@@ -444,11 +436,11 @@ fn dot_product(
         let [r, g, b, a] = &compiled.textures[*previous];
         let register = |slot: &Option<u16>| slot.map(|slot| rows[usize::from(slot)].block());
         let registers = [register(r), register(g), register(b), register(a)];
-        remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
+        remap.run(registers, *doubled, work.vectors[stage.vector].each_mut().map(PerLane::block_mut));
     }
     let Workshop { numbers, same, vectors, dot, .. } = work;
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
-        dot::products([s, t, r], &vectors[stage.vector], &mut dot.dots[index]);
+        dot::products([s, t, r], vectors[stage.vector].each_ref().map(PerLane::block), &mut dot.dots[index]);
     }
 }
 
@@ -459,7 +451,7 @@ fn define(
     runs: &[Run],
     alive: &mut [bool],
     work: &mut Workshop,
-    rows: &mut [Lanes256],
+    rows: &mut [PerLane<i16>],
     band: &Band<'_>,
 ) -> u64 {
     let mut count = 0;

@@ -1,7 +1,7 @@
 //! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading, packing and writing surface words, and the tests.
 
 use super::depth::OUTSIDE;
-use super::kernels::Lanes256;
+use super::kernels::PerLane;
 use super::setup::Run;
 use super::{BLOCK, CompiledDraw};
 use crate::plan::PlannedDraw;
@@ -12,7 +12,7 @@ use crate::state::{
 
 /// Unpacks the channels that blending reads from the surface's words.
 #[inline(always)]
-pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BLOCK], rows: &mut [Lanes256]) {
+pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BLOCK], rows: &mut [PerLane<i16>]) {
     for channel in 0..4 {
         let Some(row) = compiled.destination[channel] else { continue };
         let out = rows[usize::from(row)].block_mut();
@@ -44,7 +44,7 @@ fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], ou
 
 /// Packs the stored rows into words, from a lane on.
 #[inline(always)]
-pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[Lanes256], lane: usize, words: &mut [u32]) {
+pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[PerLane<i16>], lane: usize, words: &mut [u32]) {
     let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
     let (r, g, b, a) = (row(0), row(1), row(2), row(3));
     match draw.surface {

@@ -3,7 +3,7 @@
 
 use super::Sampler;
 use super::depth::{cut, floor};
-use super::kernels::{LANES, PerLane, STEP};
+use super::kernels::{PerLane, STEP};
 use super::quads::{AtQuads, Known, Measure, Quads};
 use super::quotient::nearest;
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
@@ -45,7 +45,7 @@ impl PairsOfQuad {
 }
 
 /// A pair of taps for each lane of a block. Both have the same distance from the pixel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Pair {
     /// Offset of one tap from u and v, 1/256 texel. The other one lies on the opposite side.
     pub(super) offsets: [PerLane<i32>; 2],
@@ -64,7 +64,7 @@ pub(super) struct Footprints {
 impl Footprints {
     /// Makes room for a sampler.
     pub(super) fn begin(&mut self, sampler: &Sampler) {
-        self.pairs.resize(sampler.pairs, Pair { offsets: [[0; LANES]; 2], weights: [0; LANES] });
+        self.pairs.resize(sampler.pairs, Pair::default());
     }
 
     /// Sets the taps of a lane.

@@ -7,7 +7,7 @@ use super::dda::{DdaRow, break_dda_ties, widen};
 use super::depth::Steps;
 use super::direction::{only_face, positive};
 use super::fog::Fog;
-use super::kernels::{LANES, Lanes256, PerLane};
+use super::kernels::PerLane;
 use super::levels::{MipFetches, Placing};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
@@ -36,7 +36,7 @@ pub(super) struct Interpolators<'a> {
 }
 
 /// Results of a block's batches, in its lanes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Varying {
     /// u and v of each sampler in 1/256 texel, less half a texel if it filters.
     pub(super) coordinates: [[PerLane<i32>; 2]; TEXTURE_UNITS],
@@ -68,30 +68,6 @@ pub(super) struct Varying {
     pub(super) whole: [PerLane<i32>; 2],
     /// Scratch space for coordinates that are divided by q.
     pub(super) short: Box<Short>,
-}
-
-impl Default for Varying {
-    fn default() -> Self {
-        Varying {
-            coordinates: [[[0; LANES]; 2]; TEXTURE_UNITS],
-            faces: [[0; LANES]; TEXTURE_UNITS],
-            references: [[0; LANES]; TEXTURE_UNITS],
-            layers: [[0; LANES]; 2],
-            depth: [0; LANES],
-            depth_steps: Box::default(),
-            alive: [true; LANES],
-            reads: Vec::new(),
-            quads: Box::default(),
-            placing: Box::default(),
-            footprints: Vec::new(),
-            dda: DdaRow::default(),
-            weights: [[0; LANES]; 2],
-            narrow: [[0; LANES]; 2],
-            reciprocals: Reciprocals::default(),
-            whole: [[0; LANES]; 2],
-            short: Box::default(),
-        }
-    }
 }
 
 impl Varying {
@@ -221,12 +197,12 @@ impl<'a> Interpolators<'a> {
         compiled: &CompiledDraw,
         textures: &[Image<'_, i32>],
         varying: &mut Varying,
-        rows: &mut [Lanes256],
+        rows: &mut [PerLane<i16>],
     ) {
         if ROW {
             self.dda(batch, compiled, varying);
             if let (Some(slot), Some(factor)) = (compiled.fog, varying.dda.fog) {
-                rows[usize::from(slot)].0[batch.lanes()].fill(factor);
+                rows[usize::from(slot)][batch.lanes()].fill(factor);
             }
         }
         if !(ROW && varying.dda.complete) {
@@ -246,7 +222,7 @@ impl<'a> Interpolators<'a> {
         batch: PixelBatch<'_>,
         compiled: &CompiledDraw,
         varying: &mut Varying,
-        rows: &mut [Lanes256],
+        rows: &mut [PerLane<i16>],
     ) {
         let setup = &self.setup;
         let local = &setup.local::<FMA, ROW>(batch, !(ROW && varying.dda.undivided));
@@ -343,7 +319,7 @@ impl<'a> Interpolators<'a> {
             && !(ROW && varying.dda.fog.is_some())
         {
             let Varying { whole: [values, spare], .. } = &mut *varying;
-            let row = &mut rows[usize::from(slot)].0;
+            let row = &mut rows[usize::from(slot)];
             setup.fog_factors::<FMA, ROW>(batch, fog, local, values, spare, row);
         }
     }
