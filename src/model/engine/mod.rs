@@ -115,7 +115,17 @@ pub struct Renderer<'a> {
     rows: Option<Rows>,
     isa: Isa,
     team: Team,
+    /// Buffers of each thread of the team.
+    blocks: Blocks,
     groups: Vec<Group>,
+}
+
+/// Buffers of threads.
+type Blocks = Box<[Mutex<rows::Block>]>;
+
+/// Makes the buffers of some threads.
+fn blocks(threads: usize) -> Blocks {
+    (0..threads).map(|_| Mutex::default()).collect()
 }
 
 /// Neighbouring draws on one target. They are drawn band by band: all draws of a group on one band, then on the next, so that the band
@@ -149,7 +159,7 @@ impl<'a> Renderer<'a> {
             Group { draws, borders, bins }
         };
         let groups = groups(plan).map(group).collect();
-        Renderer { plan, rows, isa, team, groups }
+        Renderer { plan, rows, isa, blocks: blocks(team.count()), team, groups }
     }
 
     /// Returns the engine that draws.
@@ -209,7 +219,7 @@ impl<'a> Renderer<'a> {
         let alone = Team::new(1);
         let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
         let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
-        draw_bands(plan, draws.clone(), borders, frames, team, |words| {
+        draw_bands(plan, draws.clone(), borders, frames, (team, &self.blocks), |words| {
             let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, draws.clone(), words));
             let (draws, shaded) = (draws.clone(), &shaded);
             move |textures: &[Image<'_, i32>], number: usize, band: &mut walk::Band<'_>, block: &mut rows::Block| {
@@ -308,7 +318,7 @@ fn draw_bands<R>(
     draws: Range<usize>,
     borders: &[usize],
     frames: &mut Frames,
-    team: &Team,
+    (team, blocks): (&Team, &Blocks),
     prepare: impl FnOnce(&TextureWords<'_>) -> R,
 ) where
     R: Fn(&[Image<'_, i32>], usize, &mut walk::Band<'_>, &mut rows::Block) + Sync,
@@ -329,7 +339,8 @@ fn draw_bands<R>(
         bands.push(Mutex::new(Some((number, walk::Band { first_row: rows[0], width, words, depth }))));
     }
     let work = |thread: usize| {
-        let mut block = rows::Block::default();
+        // A thread may come twice, but not at the same time.
+        let mut block = blocks[thread].lock().unwrap_or_else(PoisonError::into_inner);
         let (before, own) = bands.split_at(thread * bands.len() / team.count());
         for band in own.iter().chain(before) {
             // A panic in another thread ends the render anyway.
@@ -348,7 +359,7 @@ fn draw_bands<R>(
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
     let draw = &plan.draws[index];
     let borders = bins::equal(frames.surfaces[draw.target].height as usize, BAND);
-    draw_bands(plan, index..index + 1, &borders, frames, &Team::new(1), |_| {
+    draw_bands(plan, index..index + 1, &borders, frames, (&Team::new(1), &blocks(1)), |_| {
         |textures: &[Image<'_, i32>], _, band: &mut walk::Band<'_>, _: &mut rows::Block| {
             walk::draw(plan, draw, textures, band, &mut Silent);
         }
