@@ -1,6 +1,6 @@
 //! The result of a render: surfaces of stored words.
 
-use crate::rop::surface::show;
+use crate::rop::surface::show_all;
 use crate::state::{SurfaceFormat, depth_of, stencil_of};
 
 /// The memory of a render target after a render.
@@ -41,7 +41,7 @@ impl Surface {
     /// Channels that the format does not store follow TEX-1: alpha is 255 if there is none, and red equals blue for B8
     /// and G8B8.
     pub fn rgba8(&self) -> Vec<[u8; 4]> {
-        self.words.iter().map(|word| show(self.format, *word)).collect()
+        show_all(self.format, &self.words)
     }
 }
 

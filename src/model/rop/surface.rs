@@ -168,6 +168,13 @@ pub fn show(format: SurfaceFormat, word: u32) -> [u8; 4] {
     format::expand(texture, word)
 }
 
+/// Returns [`show`] of all words.
+pub fn show_all(format: SurfaceFormat, words: &[u32]) -> Vec<[u8; 4]> {
+    let mut shown = Vec::with_capacity(words.len());
+    format::expand_all(format.texture_format(), words, |channels| channels, &mut shown);
+    shown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -129,7 +129,7 @@ impl Slice<'_> {
         ((y + beyond) * pitch + x + beyond) as usize
     }
 
-    /// Returns the words of the first `count` texels of a row of an image that is not compressed.
+    /// Returns the words of the first `count` texels of a row of an image that is not compressed; none if there is no image.
     pub(crate) fn words<'w>(&self, words: &'w [u32], y: i64, count: usize) -> &'w [u32] {
         let Some(image) = self.image else { return &[] };
         &words[image * self.unit.face_words + self.level.offset + self.offset(0, y)..][..count]

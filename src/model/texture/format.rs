@@ -66,6 +66,19 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     channels(format, word).map(|channel| channel as u8)
 }
 
+/// Appends what `of` makes of each word's [`expand`]. The format is the same for all, so that a loop for each can be vectorised.
+pub(crate) fn expand_all<T>(format: TextureFormat, words: &[u32], of: impl Fn([u8; 4]) -> T, out: &mut Vec<T>) {
+    macro_rules! each {
+        ($($name:ident)*) => {
+            match format {
+                $(TextureFormat::$name => out.extend(words.iter().map(|word| of(expand(TextureFormat::$name, *word)))),)*
+            }
+        };
+    }
+    each!(A8R8G8B8 X8R8G8B8 A8B8G8R8 B8G8R8A8 R8G8B8A8 R5G6B5 R6G5B5 X1R5G5B5 A1R5G5B5 A4R4G4B4 L8 I8 A8 A8L8 G8B8 R8B8 R16B16 Y16
+        Z16 Z16F Z24S8 Z24S8F P8 Dxt1 Dxt3 Dxt5);
+}
+
 /// Returns whether the format has channels of 5 or 6 bits, which widening does not convert exactly. 1 and 4 bits are
 /// exact.
 pub(crate) fn is_narrow(format: TextureFormat) -> bool {

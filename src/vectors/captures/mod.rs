@@ -307,7 +307,7 @@ impl Frame {
             }
             words = surface.chip_depth_words().collect();
         }
-        Ok(words.into_iter().map(|word| surface::show(SurfaceFormat::A8R8G8B8, word)).collect())
+        Ok(surface::show_all(SurfaceFormat::A8R8G8B8, &words))
     }
 
     /// Returns whether a picture equals the capture outside the programs' text.

@@ -449,8 +449,8 @@ pub(super) fn row_depths<const FMA: bool>(
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
-    let Block { varying, alive, .. } = block;
-    depths::<FMA, true>(context, *batch, varying.depths());
+    let Block { varying, alive, defined, .. } = block;
+    defined[Reason::Depths as usize] += depths::<FMA, true>(context, *batch, varying.depths());
     let (lanes, at) = (batch.lane..batch.lane + batch.count, index(band, batch.first));
     let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..batch.count]);
     if job.compiled.tests_early {
@@ -470,8 +470,8 @@ pub(super) fn box_depths<const FMA: bool>(
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
-    let Block { varying, alive, coverage, used, runs, depth, .. } = block;
-    depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
+    let Block { varying, alive, coverage, used, runs, depth, defined, .. } = block;
+    defined[Reason::Depths as usize] += depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
     let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if job.compiled.tests_early {
         let lanes = *used..*used + coverage.count;

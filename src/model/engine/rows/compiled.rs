@@ -21,10 +21,12 @@ named! {
         Shader = "texture shader not proved",
         /// A level, or a coordinate on a level, was a tie or too close to one.
         Levels = "levels not proved",
-        /// A coordinate of a cube map, or one divided by q, was a tie or too close to one, or a plane's quotients were too coarse.
+        /// A coordinate was a tie or too close to one, or a plane's quotients were too coarse.
         Coordinates = "coordinates not proved",
         /// Weights of colours were too coarse.
         Weights = "weights not proved",
+        /// A depth was too close to a border of two weights, or numbers of a w buffer were too large or too small.
+        Depths = "depths not proved",
         /// A depth to compare with was a tie or too close to one.
         References = "depths to compare with not proved",
         /// A fog factor was a tie or too close to one.

@@ -88,15 +88,15 @@ struct Depths<'a> {
     format: DepthFormat,
 }
 
-/// Computes the depths of a batch's pixels.
+/// Computes the depths of a batch's pixels. Returns how many of them the definition computed.
 #[inline(always)]
 pub(super) fn depths<const FMA: bool, const ROW: bool>(
     context: &TriangleContext<'_>,
     batch: PixelBatch<'_>,
     (out, steps): (&mut PerLane<u32>, &mut Steps),
-) {
+) -> u64 {
     let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
-    let Some(test) = &draw.depth_test else { return };
+    let Some(test) = &draw.depth_test else { return 0 };
     let e = triangle.edges(batch.first.0, batch.first.1);
     let format = draw.depth_format;
     let unit = power_of_two(plane.offset.exponent);
@@ -115,13 +115,13 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
     let along_row = ((e, triangle.a), batch.count);
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
-    // Zero, or far from the limits of binary32 and of the intermediate results.
-    let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
+    // Far from the limits of binary32, so that ratios are.
+    let moderate = |w: &f32| (1e-18..1e30).contains(w);
     // Whether depths are floored and nothing else.
     let is_plain = range.is_none() && plane.offset.mantissa == 0 && !format.is_float();
     let moderate_offset = offset[0] == 0.0 || (1e-250..1e250).contains(&offset[0].abs());
     let unknown = if let Some(w) = plane.w {
-        if moderate_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
+        if moderate_offset && w.iter().all(moderate) {
             let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { ratios, ..depths };
@@ -136,17 +136,20 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
         depths.along::<FMA, ROW, false, false>(batch.at, edges, along_row, steps, out)
-    } else if moderate_offset && plane.z.iter().all(moderate) {
+    } else if moderate_offset && differences.as_flattened().iter().all(|difference| difference.is_finite()) {
         depths.along::<FMA, ROW, true, false>(batch.at, edges, along_row, steps, out)
     } else {
         out.fill(UNKNOWN);
         true
     };
+    let mut defined = 0;
     if unknown {
         for (n, depth) in out[..batch.count].iter_mut().enumerate().filter(|(_, depth)| **depth == UNKNOWN) {
             *depth = context.depth_word(&batch.sample(n, triangle)).unwrap_or(OUTSIDE);
+            defined += 1;
         }
     }
+    defined
 }
 
 /// Returns the reference of a pixel of a row, and up to which of `count` pixels all have it. The third argument has the row's edge functions

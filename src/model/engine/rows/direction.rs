@@ -4,8 +4,10 @@
 use super::Sampler;
 use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quotient::{Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, prove, whole};
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
+use super::quotient::{
+    IOTA_REAL, Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, position, prove, whole,
+};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::{Losses, Short, floors};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
@@ -40,13 +42,13 @@ fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option
     Some((m.signum() * (s + m) * i64::from(128 * size)).div_euclid(m.abs()) as f64)
 }
 
-/// Returns s, t and q with such signs that q is positive, and the largest magnitude of s/q and t/q. `None` if q has no sign.
-pub(super) fn positive(mut g: [[i64; 3]; 3]) -> Option<([[i64; 3]; 3], f64)> {
+/// Returns s, t and q with such signs that q is positive, and the largest magnitude of s/q and t/q. It is infinite if q has no sign.
+pub(super) fn positive(mut g: [[i64; 3]; 3]) -> ([[i64; 3]; 3], f64) {
     if g[2].iter().all(|q| *q < 0) {
         g = [g[0].map(|n| -n), g[1].map(|n| -n), g[2].map(|n| -n)];
     }
     if g[2].iter().any(|q| *q <= 0) {
-        return None;
+        return (g, f64::INFINITY);
     }
     let mut reach = 0.0;
     for k in 0..3 {
@@ -55,7 +57,15 @@ pub(super) fn positive(mut g: [[i64; 3]; 3]) -> Option<([[i64; 3]; 3], f64)> {
             reach = magnitude;
         }
     }
-    Some((g, reach))
+    (g, reach)
+}
+
+/// The error that is accepted of a quotient by a divisor that changes its sign.
+const BY_ANY_SIGN: f64 = 1.0 / 1024.0;
+
+/// Returns the magnitude of a divisor d down to which a quotient's error, `first` / d + `second` / d^2, is accepted.
+pub(super) fn smallest_divisor(first: f64, second: f64) -> f64 {
+    larger(2.0 * first / BY_ANY_SIGN, (2.0 * second / BY_ANY_SIGN).sqrt())
 }
 
 /// Returns whether coordinates of that magnitude, in images, may reach their limit (TEX-15).
@@ -188,7 +198,7 @@ impl Setup<'_> {
                 let margin = local.margin::<ROW>(&planes[0].real) + local.margin::<ROW>(&planes[1].real);
                 let lines = [planes[0].real.line(&local.real), planes[1].real.line(&local.real), local.denominator];
                 let functions = (lines, self.losses_on_planes(planes), margin);
-                self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
+                self.short_quotients::<FMA, ROW>(batch, sampler, functions, 0.0, short, numbers, faces)
             }
             Planes::Plane(planes) => {
                 let [u, v] = &mut *numbers;
@@ -249,8 +259,8 @@ impl Setup<'_> {
         self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, numbers, faces)
     }
 
-    /// TEX-15 of a batch for s, t and a positive q: two quotients of numbers that lose something where weights fall short. `reach` bounds
-    /// their magnitudes, in images. Returns `false` if nothing would be proved.
+    /// TEX-15 of a batch for s, t and q: two quotients of numbers that lose something where weights fall short. `reach` bounds
+    /// their magnitudes, in images, if q is positive. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn projected<const FMA: bool, const ROW: bool>(
@@ -266,34 +276,42 @@ impl Setup<'_> {
     ) -> bool {
         let direction = CubeDirection::new(planes, local);
         let [s, t, q] = direction.lines;
-        let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
-        let mut reach = reach;
-        if ROW && batch.reaches_beyond() {
-            if widest <= 0.0 {
-                return false;
-            }
-            reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
-        }
         let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
         let most = if width > height { width } else { height };
-        // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.
-        let margin = 8.0 * direction.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
-        if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
-            return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
-        }
+        // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.
+        let error = 8.0 * direction.error * most;
+        let (margin, smallest) = if reach.is_infinite() {
+            // The largest s or t in place of those at the vertices. Losses take less than 2^-20 of the divisor.
+            (BY_ANY_SIGN, smallest_divisor(2.0 * error, 2.0 * error * direction.error / SLACK))
+        } else {
+            let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
+            let mut reach = reach;
+            if ROW && batch.reaches_beyond() {
+                if widest <= 0.0 {
+                    return false;
+                }
+                reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
+            }
+            let margin = error * (1.0 + reach) * widest;
+            if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
+                return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
+            }
+            (margin, 0.0)
+        };
         let functions = (lines, self.losses_by_q(planes, [width, height]), margin);
-        self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
+        self.short_quotients::<FMA, ROW>(batch, sampler, functions, smallest, short, numbers, faces)
     }
 
-    /// INT-4t: computes two quotients of lines with losses by a third one. `margin` is the largest error. The definition computes lanes that
-    /// are not proved. Returns `false` if nothing would be proved.
+    /// INT-4t: computes two quotients of lines with losses by a third one. `margin` is the largest error unless the divisor's magnitude is
+    /// below `smallest`. The definition computes lanes that are not proved. Returns `false` if nothing would be proved.
     #[inline(always)]
     fn short_quotients<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
         (lines, losses, margin): ([Line; 3], [Losses; 3], f64),
+        smallest: f64,
         short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
@@ -306,6 +324,13 @@ impl Setup<'_> {
         short.keep::<FMA, ROW>(batch.at, lines, losses);
         let (lanes, [u, v], Short { at, close, .. }) = (batch.at.x.len(), &mut *numbers, short);
         close[..lanes].fill(0);
+        if smallest > 0.0 {
+            let (last, xs, ys) = (f64::from(batch.at.last), &batch.at.x[..lanes], &batch.at.y[..lanes]);
+            for n in 0..lanes {
+                let (x, y) = position::<ROW>(n, last, xs, ys, &IOTA_REAL[..lanes]);
+                close[n] = (lines[2].at::<FMA, ROW>(x, y).abs() - smallest).to_bits();
+            }
+        }
         floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[batch.lanes()]);
         floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[batch.lanes()]);
         let count = if any_negative(&close[..lanes]) { batch.count } else { 0 };

@@ -103,6 +103,8 @@ pub(super) fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
         vertex.texture_coordinates[0] = [st[0], st[1], 0.0, 1.0];
         let q = match kind {
             4 | 7 | 8 => r.of(&[1.0, 2.0, 4.0, -0.5]),
+            // Some have no sign.
+            5 | 6 => 2.0 * r.unit() - 0.7,
             _ if lean[0] < 0.0 => -0.5 - r.unit(),
             _ => 0.5 + 2.0 * r.unit(),
         };
@@ -127,7 +129,7 @@ pub(super) const DEPTHS: &[TextureFormat] =
 pub(super) fn steps(r: &mut Random, third: Third) -> f32 {
     match third {
         Third::Reference(format) => match format.depth() {
-            Some(depth) if depth.is_float() => r.of(&[1.0, 600.0, 1e30]),
+            Some(depth) if depth.is_float() => r.of(&[1.0, 600.0, 1e30, 3e38]),
             _ => r.of(&[8.0, 1000.0, 65535.0, 16_777_215.0]),
         },
         _ => r.of(&[1.0, 1.0, 0.375, 4.0]),

@@ -9,6 +9,7 @@ use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
 use super::{BLOCK, Reason, Sampler};
+use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::coordinates::{Coordinates, SampleCoordinates};
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
@@ -247,20 +248,26 @@ impl Setup<'_> {
                 };
                 (base, range)
             }
-            Planes::Ratio(_, reach) if reaches_limit(*reach, sampler.sides) => return None,
-            Planes::Ratio(planes, _) => {
+            Planes::Ratio(_, reach) if reach.is_finite() && reaches_limit(*reach, sampler.sides) => return None,
+            Planes::Ratio(planes, reach) => {
                 let direction = CubeDirection::around(planes, &local.real, columns, rows);
-                let [s, t, q] = direction.lines;
+                // Where q changes its sign, it has one in most batches.
+                let sign = if reach.is_infinite() && direction.lines[2].c < 0.0 { -1.0 } else { 1.0 };
+                let [s, t, q] = direction.lines.map(|line| line.times(sign));
                 let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
                 let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
                 let (off, range) = direction.off(1.0 / least(q), most);
+                if reach.is_infinite() && range >= COORDINATE_LIMIT as f64 {
+                    return None;
+                }
                 let lines = [s.times(sides[0]), t.times(sides[1])];
                 // The signs of all three were changed if q was negative.
                 let behind = match self.context.coordinates_of(sampler.unit) {
-                    Some(Coordinates::Ratio(g)) => g[2][0] < 0,
-                    _ => false,
+                    Some(Coordinates::Ratio(g)) if reach.is_finite() => g[2][0] < 0,
+                    _ => sign < 0.0,
                 };
-                let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
+                let losses = (!self.context.triangle.exact_reciprocal)
+                    .then(|| self.losses_by_q(planes, sides).map(|of| of.map(|loss| loss * sign)));
                 (BaseLevel { behind, losses, ..divided(lines, q, off, Face::PositiveX) }, range)
             }
             Planes::Direction(planes, face) => {

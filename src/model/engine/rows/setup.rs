@@ -7,7 +7,7 @@ use super::planes::{Plane, RealPlane, exact_line};
 use super::quotient::{
     IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, correct_exactly, estimate_two,
 };
-use super::short::{Parts, lower_in_box};
+use super::short::{Parts, lower_by_lane};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample, shortfall};
 use crate::raster::setup::Triangle;
@@ -307,10 +307,10 @@ impl<'a> Setup<'a> {
     ) {
         let triangle = &self.context.triangle;
         // Beyond the triangle, weights may be negative.
-        if !(plane.lowers(triangle) || batch.reaches_beyond()) {
+        if triangle.exact_reciprocal || !(plane.lowers(triangle) || batch.reaches_beyond()) {
             return;
         }
-        if !ROW && lower_in_box(triangle, batch, &plane.g, whole, values) {
+        if (!ROW || batch.reaches_beyond()) && lower_by_lane(triangle, batch, &plane.g, whole, values) {
             return;
         }
         let parts =
@@ -318,6 +318,7 @@ impl<'a> Setup<'a> {
         let mut parts = parts.ranges(batch.count).peekable();
         if parts.peek().is_none() {
             for k in (0..batch.count).filter(|k| whole[*k] != 0) {
+                self.count_defined(Reason::Coordinates, 1);
                 values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
             }
         }

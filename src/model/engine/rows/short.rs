@@ -293,10 +293,10 @@ fn classify<const FMA: bool, const ROW: bool>(
     (most_dominant([class(a, d), class(b, d), class(c, d)]), close, [a, c])
 }
 
-/// INT-4t: lowers those coordinates of a box that are whole, if a function with these G_k loses something there. Returns `false`, and
+/// INT-4t: lowers those coordinates that are whole, if a function with these G_k loses something there, lane by lane. Returns `false`, and
 /// changes nothing, unless double precision decides it for all.
 #[inline(always)]
-pub(super) fn lower_in_box(
+pub(super) fn lower_by_lane(
     triangle: &Triangle,
     batch: PixelBatch<'_>,
     g: &[i64; 3],
@@ -304,7 +304,13 @@ pub(super) fn lower_in_box(
     values: &mut [i32],
 ) -> bool {
     let (p, first) = (triangle.p, triangle.edges(batch.first.0, batch.first.1));
-    let largest = p[0].max(p[1]).max(p[2]) as f64 * triangle.doubled_area as f64;
+    // No edge function is larger than the area within the triangle.
+    let reach = |k: usize| {
+        let (columns, rows) = (i64::from(batch.extent.0), i64::from(batch.extent.1));
+        first[k].abs() + triangle.a[k].abs() * columns + triangle.b[k].abs() * rows
+    };
+    let edge = if batch.reaches_beyond() { reach(0).max(reach(1)).max(reach(2)) } else { triangle.doubled_area };
+    let largest = p[0].max(p[1]).max(p[2]) as f64 * edge as f64;
     // Then four times a numerator is exact, and weights are classified exactly.
     let fits = 4.0 * largest < (1_u64 << 53) as f64;
     if !fits {

@@ -3,11 +3,12 @@
 use crate::number::Lane;
 use crate::state::{
     AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, CompareFunction, Filter, Level, ShadowComparison,
-    ShadowReference, TextureKind, depth_of,
+    ShadowReference, TextureFormat, TextureKind, depth_of,
 };
 use crate::texture::address::address;
 use crate::texture::color_key;
-use crate::texture::fetch::{Slice, lanes};
+use crate::texture::fetch::{Slice, lanes, palette_entry};
+use crate::texture::format;
 use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::shadow;
 use crate::trace::Silent;
@@ -311,16 +312,19 @@ impl Table {
                 // Nobody reads the entries past the end of smaller levels.
                 let column = |x: i32| slice.column(i64::from(x.min(columns.count) + columns.first));
                 let at: Vec<Option<i64>> = (0..wide as i32).map(column).collect();
-                let in_order = at.iter().zip(0..).take_while(|(column, n)| **column == Some(*n)).count();
+                // Most words of a row are neighbours, which are decoded together.
+                let before = at.iter().take_while(|column| **column != Some(0)).count();
+                let in_order = at[before..].iter().zip(0..).take_while(|(column, n)| **column == Some(*n)).count();
                 for y in 0..rows.count + beyond {
                     let row = slice.row(i64::from(y + rows.first));
-                    // A depth buffer is decoded anew for every frame, so most of its words are not decoded one by one.
-                    let words = match (row, comparison) {
-                        (Some(y), Some(_)) => slice.words(image.words, y, in_order),
+                    let words = match row {
+                        Some(y) if decodes_rows(unit) => slice.words(image.words, y, in_order),
                         _ => &[],
                     };
-                    all.extend(words.iter().map(|word| depth_of(*word)));
-                    all.extend(at[words.len()..].iter().map(|column| decode(&slice, image, *column, row)));
+                    let (first, last) = if words.is_empty() { (0, 0) } else { (before, before + words.len()) };
+                    all.extend(at[..first].iter().map(|column| decode(&slice, image, *column, row)));
+                    decode_row(unit, words, &mut all);
+                    all.extend(at[last..].iter().map(|column| decode(&slice, image, *column, row)));
                 }
             }
         }
@@ -368,6 +372,27 @@ impl Table {
         let placed = self.levels[level];
         Placed { first: placed.first + (face * self.face) as i32, ..placed }
     }
+}
+
+/// Returns whether [`decode_row`] decodes a unit's texels.
+fn decodes_rows(unit: &PlannedUnit) -> bool {
+    let is_compared = unit.state.shadow.is_some() && compares_r(unit).is_none();
+    !(unit.format.is_compressed() || unit.is_wide() || is_compared || unit.state.color_key.is_some())
+}
+
+/// Does what [`decode`] does with the words of neighbouring texels.
+fn decode_row(unit: &PlannedUnit, words: &[u32], all: &mut Vec<u32>) {
+    if compares_r(unit).is_some() {
+        all.extend(words.iter().map(|word| depth_of(*word)));
+        return;
+    }
+    let biased = u32::from_le_bytes(unit.state.signed.map(|signed| if signed { 128 } else { 0 }));
+    let entry = |bytes: [u8; 4]| u32::from_le_bytes(bytes) ^ biased;
+    if unit.format == TextureFormat::P8 {
+        let colors: Vec<u32> = words.iter().map(|index| palette_entry(unit, *index)).collect();
+        return format::expand_all(TextureFormat::A8R8G8B8, &colors, entry, all);
+    }
+    format::expand_all(unit.format, words, entry, all);
 }
 
 /// Decodes a texel to bytes, with 128 added to signed ones, or to 16-bit halves, with 32,768 added to signed ones. `None` stands for an

@@ -46,10 +46,8 @@ pub(super) enum Reference {
     Same(u32),
     /// r divided by D.
     Plane(FourPlanes),
-    /// r divided by q, which are the first two functions. q is positive.
+    /// r divided by q, which are the first two functions.
     Ratio(FourPlanes),
-    /// Other references, which the definition computes pixel by pixel.
-    Other,
 }
 
 /// Sets the functions of r of a draw's samplers; none if no sampler uses r.
@@ -78,16 +76,16 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
         (Some(Third::Layer(..)), Some(coordinates)) => {
             ThirdPlanes::Layer(match layer_planes(triangle, coordinates, [r, q], unit.layers) {
                 (r, None) => Planes::Plane([Plane::new(triangle, inverse, r); 2]),
-                (r, Some(q)) => match positive([r, r, q]) {
-                    Some((g, reach)) => Planes::Ratio(Plane::three(triangle, inverse, &g), reach),
-                    None => Planes::Other,
-                },
+                (r, Some(q)) => {
+                    let (g, reach) = positive([r, r, q]);
+                    Planes::Ratio(Plane::three(triangle, inverse, &g), reach)
+                }
             })
         }
         (Some(Third::Reference(format)), Some(_)) => {
             let same = |values: [f32; 3]| values[0] == values[1] && values[1] == values[2];
-            let (mut planes, sign) = (FourPlanes::default(), if q[0] < 0.0 { -1.0 } else { 1.0 });
-            let [a, b, c] = [0, 1, 2].map(|k| [r[k] * sign, q[k] * sign, 0.0, 0.0]);
+            let mut planes = FourPlanes::default();
+            let [a, b, c] = [0, 1, 2].map(|k| [r[k], q[k], 0.0, 0.0]);
             planes.set(triangle, inverse, &[a, b, c]);
             ThirdPlanes::Reference(if same(r) && same(q) {
                 // Equal to that at its first vertex.
@@ -95,11 +93,8 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
                 Reference::Same(defined(context, unit, *format, &sample, (0, 0)))
             } else if q == [1.0; 3] {
                 Reference::Plane(planes)
-            } else if least(planes.g(1)) > planes.lost[1] {
-                // The definition's q is more than half of this one, and the bound of what is lost has as much to spare.
-                Reference::Ratio(planes)
             } else {
-                Reference::Other
+                Reference::Ratio(planes)
             })
         }
         _ => ThirdPlanes::None,
@@ -167,7 +162,7 @@ impl Setup<'_> {
         out: &mut [u32],
     ) -> bool {
         let (at, beyond) = (batch.at, ROW && batch.reaches_beyond());
-        let (lines, off) = match reference {
+        let (lines, errors) = match reference {
             Reference::Same(word) => {
                 out.fill(*word);
                 return false;
@@ -177,36 +172,38 @@ impl Setup<'_> {
                 let lost = planes.lost[0] / least(self.context.triangle.p.map(|p| p as f64));
                 // Beyond the triangle, the magnitudes of weights add up to more than 1.
                 let lost = if beyond { lost * local.ratio } else { lost };
-                ((line, local.denominator), local.margin_by::<ROW>(planes.reach[0], terms[0]) + lost)
+                let off = local.margin_by::<ROW>(planes.reach[0], terms[0]) + lost;
+                ((line, local.denominator), [off, 0.0, 0.0])
             }
             Reference::Ratio(planes) => {
                 let ([r, q, ..], terms) = planes.around(&local.real, local.columns, local.rows);
-                let (lost, mut area) = (planes.lost, self.context.triangle.doubled_area as f64);
-                let mut lowest = least(planes.g(1)) * area;
+                let mut area = self.context.triangle.doubled_area as f64;
                 if beyond {
-                    // There, edge functions may be negative, and so may q.
+                    // There, edge functions may be negative.
                     let size = |e: [f64; 3]| e[0].abs() + e[1].abs() + e[2].abs();
                     area = larger(size(local.real), size(local.at_end(&self.context.triangle)));
-                    lowest = q.c.min(q.at::<FMA, true>(local.columns, 0.0)) - 2.0 * (lost[1] * area + SLACK * terms[1]);
                 }
-                let widest = if lowest > 0.0 { 1.0 / lowest } else { f64::NAN };
-                let most = 1.0 + terms[0] * widest;
-                // The errors of both lines and of the quotient, and twice that; and what is lost at the vertices.
-                let off = 8.0 * SLACK * (terms[0] + terms[1] * most) + (lost[0] + lost[1] * most) * area;
-                ((r, q), off * widest)
+                // The error of a line, and twice that for the quotient; and what is lost at the vertices.
+                let error = |n: usize| 8.0 * SLACK * terms[n] + planes.lost[n] * area;
+                let (of_r, of_q) = (error(0) + error(1), error(1));
+                // One error for all, unless q is close to 0 somewhere.
+                let least = q.c.abs() - (q.x * local.columns).abs() - (q.y * local.rows).abs() - 4.0 * of_q;
+                let off = (of_r + of_q * (terms[0] / least)) / least;
+                ((r, q), if least > 0.0 && off < SMALL_ERROR { [off, 0.0, 0.0] } else { [0.0, of_r, of_q] })
             }
-            Reference::Other => (Default::default(), f64::NAN),
         };
         // NaN proves nothing either.
-        let proves = off >= 0.0 && off < f64::from(format.largest());
+        let proves = errors[1] > 0.0 || errors[0] < f64::from(format.largest());
         if !proves {
             out.fill(UNKNOWN);
             return true;
         }
-        if format.is_float() {
-            return words::<FMA, ROW, true>(at, lines, off, format, out);
+        match (format.is_float(), errors[1] > 0.0) {
+            (false, false) => words::<FMA, ROW, false, false>(at, lines, errors, format, out),
+            (false, true) => words::<FMA, ROW, false, true>(at, lines, errors, format, out),
+            (true, false) => words::<FMA, ROW, true, false>(at, lines, errors, format, out),
+            (true, true) => words::<FMA, ROW, true, true>(at, lines, errors, format, out),
         }
-        words::<FMA, ROW, false>(at, lines, off, format, out)
     }
 
     /// Computes the unknown references by the definition.
@@ -228,12 +225,16 @@ fn floored(full: f64, depth: f64) -> u32 {
     nearest(floor::<false>(if depth < full { depth } else { full })) as u32
 }
 
-/// DEP-3 of quotients whose error is less than `off`. Returns whether some are unknown. `FLOAT` says that the format has floats.
+/// An error of references that leaves few of them open.
+const SMALL_ERROR: f64 = 1.0 / 64.0;
+
+/// DEP-3 of quotients x = r/q, whose error is less than `off` or, in an `EACH` of its own, than (`of_r` + `of_q` |x|) / |q| unless that of q
+/// is more than a quarter of it. Returns whether some are unknown. `FLOAT` says that the format has floats.
 #[inline(always)]
-fn words<const FMA: bool, const ROW: bool, const FLOAT: bool>(
+fn words<const FMA: bool, const ROW: bool, const FLOAT: bool, const EACH: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
-    off: f64,
+    [off, of_r, of_q]: [f64; 3],
     format: DepthFormat,
     out: &mut [u32],
 ) -> bool {
@@ -244,10 +245,14 @@ fn words<const FMA: bool, const ROW: bool, const FLOAT: bool>(
     let mut open = 0;
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let q = lines.1.at::<FMA, ROW>(x, y);
+        let value = lines.0.at::<FMA, ROW>(x, y) / q;
+        let off = if EACH { (of_r + of_q * value.abs()) / q.abs() } else { off };
         let (low, high) = (value - off, value + off);
         let (low, high) =
             if FLOAT { (word(format, low), word(format, high)) } else { (floored(full, low), floored(full, high)) };
+        // NaN proves nothing either.
+        let high = if !EACH || (q.abs() > 4.0 * of_q) & (off >= 0.0) { high } else { UNKNOWN };
         open |= low ^ high;
         out[n] = if low == high { low } else { UNKNOWN };
     }

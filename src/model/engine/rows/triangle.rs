@@ -97,10 +97,10 @@ impl<'a> Interpolators<'a> {
                     Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
                 Some(Coordinates::Direction(g)) => Planes::Direction(Plane::three(triangle, &inverse, g), only_face(g)),
-                Some(Coordinates::Ratio(g)) => match positive(*g) {
-                    Some((g, reach)) => Planes::Ratio(Plane::three(triangle, &inverse, &g), reach),
-                    None => Planes::Other,
-                },
+                Some(Coordinates::Ratio(g)) => {
+                    let (g, reach) = positive(*g);
+                    Planes::Ratio(Plane::three(triangle, &inverse, &g), reach)
+                }
                 None => Planes::Other,
             });
         }
