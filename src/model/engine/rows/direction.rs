@@ -197,8 +197,8 @@ impl Setup<'_> {
                 // The sum bounds both, and is NaN if one of them is.
                 let margin = local.margin::<ROW>(&planes[0].real) + local.margin::<ROW>(&planes[1].real);
                 let lines = [planes[0].real.line(&local.real), planes[1].real.line(&local.real), local.denominator];
-                let functions = (lines, self.losses_on_planes(planes), margin);
-                self.short_quotients::<FMA, ROW>(batch, sampler, functions, 0.0, short, numbers, faces)
+                let functions = (lines, self.losses_on_planes(planes), (margin, 0.0));
+                self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
             }
             Planes::Plane(planes) => {
                 let [u, v] = &mut *numbers;
@@ -281,7 +281,7 @@ impl Setup<'_> {
         let lines = [s.times(width), t.times(height), q];
         // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.
         let error = 8.0 * direction.error * most;
-        let (margin, smallest) = if reach.is_infinite() {
+        let proved = if reach.is_infinite() {
             // The largest s or t in place of those at the vertices. Losses take less than 2^-20 of the divisor.
             (BY_ANY_SIGN, smallest_divisor(2.0 * error, 2.0 * error * direction.error / SLACK))
         } else {
@@ -299,8 +299,8 @@ impl Setup<'_> {
             }
             (margin, 0.0)
         };
-        let functions = (lines, self.losses_by_q(planes, [width, height]), margin);
-        self.short_quotients::<FMA, ROW>(batch, sampler, functions, smallest, short, numbers, faces)
+        let functions = (lines, self.losses_by_q(planes, [width, height]), proved);
+        self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
     }
 
     /// INT-4t: computes two quotients of lines with losses by a third one. `margin` is the largest error unless the divisor's magnitude is
@@ -310,8 +310,7 @@ impl Setup<'_> {
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
-        (lines, losses, margin): ([Line; 3], [Losses; 3], f64),
-        smallest: f64,
+        (lines, losses, (margin, smallest)): ([Line; 3], [Losses; 3], (f64, f64)),
         short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,

@@ -104,9 +104,7 @@ impl Fog {
         let unit = f64::from_bits(((exponent + FACTOR_BITS + 1023).max(0) as u64) << 52);
         Some(Fog::Function(Curve { coordinate: plane(g), scale: scale * unit, kind }))
     }
-}
 
-impl Fog {
     /// Returns the factor of all pixels of a row within the triangle, if it does not vary along rows and is proved. `e` has the edge
     /// functions at one of them. D does not vary along rows.
     pub(super) fn of_row(&self, setup: &Setup<'_>, e: &[i64; 3]) -> Option<i16> {
