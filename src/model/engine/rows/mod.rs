@@ -87,9 +87,6 @@ use table::{Key, Table};
 /// Number of spare rows, for channels that nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
 
-/// Decoding this many texels costs no more than sampling one pixel by the definition.
-const TEXELS_PER_PIXEL: u64 = 16;
-
 /// Largest number of entries of all tables, each of four bytes.
 const MAX_ENTRIES: u64 = 1 << 25;
 
@@ -167,11 +164,11 @@ impl Tables {
         }
     }
 
-    /// Returns whether a new table costs less than sampling by the definition, and fits into memory.
-    fn pays(&self, key: &Key, size: u64) -> bool {
+    /// Returns whether a unit's new table of some size costs less than sampling by the definition, and fits into memory.
+    fn pays(&self, key: &Key, unit: &PlannedUnit, size: u64) -> bool {
         let pixels = self.wanted.iter().find(|(other, _)| other == key).map_or(0, |(_, pixels)| *pixels);
         let held: u64 = self.made.iter().map(|(_, table)| table.entries()).sum();
-        size <= TEXELS_PER_PIXEL * pixels && size + held <= MAX_ENTRIES
+        size <= table::texels_per_pixel(unit) * pixels && size + held <= MAX_ENTRIES
     }
 }
 
@@ -265,7 +262,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
         let table_key = Key::from_unit(unit, folds);
         let texture = &plan.textures[unit.state.texture];
         let known = tables.made.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
-        if known.is_none() && !tables.pays(&table_key, table::size(unit, &axes)) {
+        if known.is_none() && !tables.pays(&table_key, unit, table::size(unit, &axes)) {
             return None;
         }
         let table = match (&texture.image, known) {

@@ -309,9 +309,8 @@ impl Table {
                     placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
                 let slice = Slice { unit, level, image: *number };
-                // Nobody reads the entries past the end of smaller levels.
-                let column = |x: i32| slice.column(i64::from(x.min(columns.count) + columns.first));
-                let at: Vec<Option<i64>> = (0..wide as i32).map(column).collect();
+                let column = |x: i32| slice.column(i64::from(x + columns.first));
+                let at: Vec<Option<i64>> = (0..columns.count + beyond).map(column).collect();
                 // Most words of a row are neighbours, which are decoded together.
                 let before = at.iter().take_while(|column| **column != Some(0)).count();
                 let in_order = at[before..].iter().zip(0..).take_while(|(column, n)| **column == Some(*n)).count();
@@ -325,6 +324,9 @@ impl Table {
                     all.extend(at[..first].iter().map(|column| decode(&slice, image, *column, row)));
                     decode_row(unit, words, &mut all);
                     all.extend(at[last..].iter().map(|column| decode(&slice, image, *column, row)));
+                    // Nobody reads the entries past the end of smaller levels. They hold a texel, so that constant channels stay constant.
+                    let filler = all.last().copied().unwrap_or(0);
+                    all.resize(all.len() + wide - at.len(), filler);
                 }
             }
         }
@@ -372,6 +374,11 @@ impl Table {
         let placed = self.levels[level];
         Placed { first: placed.first + (face * self.face) as i32, ..placed }
     }
+}
+
+/// Returns how many texels of a unit can be decoded in the time in which the definition samples one pixel.
+pub(super) fn texels_per_pixel(unit: &PlannedUnit) -> u64 {
+    if decodes_rows(unit) { 128 } else { 16 }
 }
 
 /// Returns whether [`decode_row`] decodes a unit's texels.
