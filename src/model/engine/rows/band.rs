@@ -297,14 +297,14 @@ fn begin_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &mut
     if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
-    let (before, mut lane) = (block.runs.len(), block.used);
+    let mut lane = block.used;
     for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
         block.runs.push(Run { lane, at: index(band, (i, j)), count });
         lane += count;
     }
-    let is_visible = job.draw.depth_test.is_none() || T::box_depths(context, before, job, block, band);
+    let is_visible = job.draw.depth_test.is_none() || T::box_depths(context, job, block, band);
     if !is_visible {
-        block.runs.truncate(before);
+        block.runs.truncate(block.runs.len() - block.coverage.filled);
     }
     is_visible
 }
@@ -453,27 +453,26 @@ pub(super) fn row_depths<const FMA: bool>(
     defined[Reason::Depths as usize] += depths::<FMA, true>(context, *batch, varying.depths());
     let (lanes, at) = (batch.lane..batch.lane + batch.count, index(band, batch.first));
     let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..batch.count]);
-    if job.compiled.tests_early {
-        store::test_early(job.draw, incoming, memory, &mut alive[lanes])
-    } else {
+    if job.compiled.drops_late {
         store::may_pass(job.draw, incoming, memory)
+    } else {
+        store::test_early(job.draw, incoming, memory, &mut alive[lanes])
     }
 }
 
-/// Computes the depths in the block's box, whose runs begin with the given one, and tests them if nothing else drops fragments. Returns
-/// `false` if the test drops all its pixels.
+/// Computes the depths in the block's box, whose runs are the last ones, and tests them if nothing else drops fragments. Returns `false` if
+/// the test drops all its pixels.
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(
     context: &TriangleContext<'_>,
-    first: usize,
     job: Job<'_>,
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
     let Block { varying, alive, coverage, used, runs, depth, defined, .. } = block;
     defined[Reason::Depths as usize] += depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
-    let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
-    if job.compiled.tests_early {
+    let (incoming, runs, depth) = (&varying.depth, &runs[runs.len() - coverage.filled..], depth.block_mut());
+    if !job.compiled.drops_late {
         let lanes = *used..*used + coverage.count;
         store::read_runs(band.depth, runs, depth);
         let (incoming, memory) = (&incoming[lanes.clone()], &mut depth[lanes.clone()]);
@@ -540,7 +539,7 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
     }
     let (words, stored) = (words.block_mut(), stored.block_mut());
     let (depth, alive) = (depth.block_mut(), alive.block_mut());
-    if compiled.drops && !compiled.tests_early {
+    if compiled.drops_late {
         *alive = *varying.alive.block();
     }
     let mut found = None;
@@ -563,7 +562,7 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
         kernels::run(node, *at, rows);
     }
     let is_long = runs.len() * LONG_RUN <= *used;
-    if compiled.drops && !compiled.tests_early {
+    if compiled.drops_late {
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
@@ -592,7 +591,7 @@ pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mu
         }
         store::write_runs(words, runs, band.words);
     }
-    if compiled.tests_early {
+    if draw.depth_test.is_some() {
         alive.fill(true);
     }
     runs.clear();

@@ -121,10 +121,8 @@ pub(crate) struct CompiledDraw {
     pub(super) completes_quads: bool,
     /// Whether the surface is read: for blending, because some bits are not written, or because fragments can be dropped.
     pub(super) reads_surface: bool,
-    /// Whether fragments can be dropped.
-    pub(super) drops: bool,
-    /// Whether the depth test alone drops them, so that it comes before anything else.
-    pub(super) tests_early: bool,
+    /// Whether something other than the depth test can drop fragments. If nothing else can, depths are tested before anything else.
+    pub(super) drops_late: bool,
     /// Whether parts of the surface's words may stay: bits that are not written, or dropped fragments.
     pub(super) merges: bool,
     /// Whether all bits of a pixel are written.

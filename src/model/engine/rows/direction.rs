@@ -64,7 +64,7 @@ pub(super) fn positive(mut g: [[i64; 3]; 3]) -> ([[i64; 3]; 3], f64) {
 const BY_ANY_SIGN: f64 = 1.0 / 1024.0;
 
 /// Returns the magnitude of a divisor d down to which a quotient's error, `first` / d + `second` / d^2, is accepted.
-pub(super) fn smallest_divisor(first: f64, second: f64) -> f64 {
+fn smallest_divisor(first: f64, second: f64) -> f64 {
     larger(2.0 * first / BY_ANY_SIGN, (2.0 * second / BY_ANY_SIGN).sqrt())
 }
 

@@ -33,16 +33,13 @@ impl<T: Copy> PerLane<T> {
     /// Returns the lanes of the block.
     #[inline(always)]
     pub(super) fn block(&self) -> &[T; BLOCK] {
-        let (block, _) = self.0.split_at(BLOCK);
-        // The length is right.
-        block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
+        self.0.first_chunk().unwrap_or_else(|| unreachable!("a row is longer than a block"))
     }
 
     /// Returns the lanes of the block, mutable.
     #[inline(always)]
     pub(super) fn block_mut(&mut self) -> &mut [T; BLOCK] {
-        let (block, _) = self.0.split_at_mut(BLOCK);
-        block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
+        self.0.first_chunk_mut().unwrap_or_else(|| unreachable!("a row is longer than a block"))
     }
 }
 

@@ -212,13 +212,12 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
     }
     let kills = draw.kills();
-    let drops_late = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some();
-    compiled.drops = drops_late || draw.depth_test.is_some();
-    compiled.tests_early = compiled.drops && !drops_late;
+    compiled.drops_late = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some();
+    let drops = compiled.drops_late || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
     let reads = compiled.destination.iter().any(Option::is_some);
     compiled.writes_whole = draw.write_mask == whole;
-    compiled.merges = compiled.drops || !compiled.writes_whole;
+    compiled.merges = drops || !compiled.writes_whole;
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;

@@ -137,7 +137,7 @@ impl<'a> Interpolators<'a> {
         let e = triangle.edges(i, j);
         let d = self.setup.denominator.exact(&e).c;
         *fog = self.fog.as_ref().and_then(|fog| fog.of_row(&self.setup, &e));
-        *undivided = compiled.fog.is_none() == fog.is_none() && !compiled.estimates;
+        *undivided = (compiled.fog.is_none() || fog.is_some()) && !compiled.estimates;
         *complete = *undivided;
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
             if let (Planes::Plane(planes), false) = (planes, triangle.loses_on_planes()) {
