@@ -40,8 +40,8 @@ pub(crate) struct Block {
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
 #[inline(always)]
-pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    let Job { plan, draw, compiled, .. } = job;
+pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    let Job { plan, draw, compiled, .. } = *job;
     let mut shaded = 0;
     if walk::windows(draw, band.rows()).next().is_none() {
         return shaded;
@@ -88,7 +88,7 @@ pub(super) fn run<T: Kernels>(job: Job<'_>, band: &mut Band<'_>, block: &mut Blo
 /// Draws the part of a draw that lies in some rows and columns of a band. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_window<T: Kernels>(
-    job: Job<'_>,
+    job: &Job<'_>,
     (rows, columns): Window,
     context: &mut TriangleContext<'_>,
     band: &mut Band<'_>,
@@ -109,7 +109,7 @@ fn draw_window<T: Kernels>(
 /// Draws the part of a triangle that lies in some rows and columns of a band. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_triangle<T: Kernels>(
-    job: Job<'_>,
+    job: &Job<'_>,
     number: usize,
     (rows, columns): Window,
     context: &mut TriangleContext<'_>,
@@ -163,17 +163,17 @@ fn draw_triangle<T: Kernels>(
                         finish::<T>(job, block, band);
                     }
                     let count = wanted.min(BLOCK - block.used);
-                    // By reference, because a copy of what has just been written in parts has to wait for all of them.
-                    let batch = &PixelBatch::row((i, j), count, block.used);
-                    let is_visible = job.draw.depth_test.is_none() || T::row_depths(context, batch, job, block, band);
+                    let (pixel, lane, all) = ((i, j), block.used, Covered(0, count));
+                    let is_visible =
+                        job.draw.depth_test.is_none() || T::row_depths(pixel, count, lane, context, job, block, band);
                     if is_visible {
                         // Quotients by steps go on from the batch before, if there is one.
                         if !has_begun {
                             interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
                         }
-                        T::row(&interpolators, batch, job, block);
+                        T::row(pixel, count, lane, all, &interpolators, job, block);
                         if compiled.shader.is_some() {
-                            T::row_attributes(context, batch, job, block);
+                            T::row_attributes(pixel, count, lane, all, context, job, block);
                         }
                         block.append(band, (i, j), count, compiled.reads_surface);
                     }
@@ -191,7 +191,7 @@ fn draw_triangle<T: Kernels>(
 /// Draws a triangle by two rows at a time, with all pixels of the quads that it meets. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_quads<T: Kernels>(
-    job: Job<'_>,
+    job: &Job<'_>,
     window: Window,
     context: &mut TriangleContext<'_>,
     band: &mut Band<'_>,
@@ -240,15 +240,16 @@ fn draw_quads<T: Kernels>(
                 let is_known = interpolators.setup.is_positive(&whole);
                 let batch = &if is_known { whole } else { whole.inside() };
                 if batch.count > 0 {
-                    T::row(&interpolators, batch, job, block);
-                    T::row_attributes(context, batch, job, block);
+                    let PixelBatch { first, count, lane, covered, .. } = *batch;
+                    T::row(first, count, lane, covered, &interpolators, job, block);
+                    T::row_attributes(first, count, lane, covered, context, job, block);
                 }
                 if !is_known {
                     block.workshop.leave_open(whole.lanes());
                 }
                 let Covered(first, count) = covered[n];
-                let tests = job.draw.depth_test.is_some();
-                if count > 0 && (!tests || T::row_depths(context, &whole.inside(), job, block, band)) {
+                let (tests, lane) = (job.draw.depth_test.is_some(), whole.lane + first);
+                if count > 0 && (!tests || T::row_depths(at(n), count, lane, context, job, block, band)) {
                     block.used += first;
                     block.append(band, at(n), count, compiled.reads_surface);
                 }
@@ -265,7 +266,7 @@ fn draw_quads<T: Kernels>(
 
 /// Computes a block and stores it.
 #[inline(always)]
-fn finish<T: Kernels>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     if job.compiled.shader.is_some() && block.used > 0 {
         T::shade(job, block, band);
     }
@@ -275,7 +276,7 @@ fn finish<T: Kernels>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
 /// Draws the pixels of the block's coverage, of which there is at least one. Returns their number.
 #[inline(always)]
 fn draw_box<T: Kernels>(
-    job: Job<'_>,
+    job: &Job<'_>,
     context: &mut TriangleContext<'_>,
     band: &mut Band<'_>,
     block: &mut Block,
@@ -293,7 +294,7 @@ fn draw_box<T: Kernels>(
 /// Computes the block if it has no room for the pixels of its coverage, adds their runs, and computes their depths. Returns `false` if the
 /// depth test drops all of them, so that nothing else has to be computed; then there are no runs of them.
 #[inline(always)]
-fn begin_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
+fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
     if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
@@ -311,7 +312,7 @@ fn begin_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, band: &mut
 
 /// Adds the pixels of the block's coverage, whose runs it has.
 #[inline(always)]
-fn append_box<T: Kernels>(job: Job<'_>, context: &TriangleContext<'_>, block: &mut Block) {
+fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block) {
     let compiled = job.compiled;
     if compiled.shader.is_some() {
         T::box_attributes(context, job, block);
@@ -393,7 +394,7 @@ pub(super) fn plain<const FMA: bool>(
 
 /// Interpolates all attributes in the block's box, for any draw.
 #[inline(always)]
-pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
     in_box::<FMA>(&interpolators, job, block);
     block.planes = interpolators.given_back(&mut block.defined);
@@ -401,39 +402,48 @@ pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<
 
 /// Interpolates all attributes in one of the boxes of a triangle.
 #[inline(always)]
-pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block) {
     let Block { varying, rows, coverage, used, .. } = block;
     interpolators.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
 }
 
-/// Interpolates all attributes along a batch of a row.
+/// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just
+/// been written in parts, vectors of it would have to wait for all that is stored before.
 #[inline(always)]
 pub(super) fn row<const FMA: bool>(
+    pixel: (i64, i64),
+    count: usize,
+    lane: usize,
+    covered: Covered,
     interpolators: &Interpolators<'_>,
-    batch: &PixelBatch<'_>,
-    job: Job<'_>,
+    job: &Job<'_>,
     block: &mut Block,
 ) {
     let Block { varying, rows, .. } = block;
-    interpolators.interpolate::<FMA, true>(*batch, job.compiled, job.textures, varying, rows);
+    let batch = PixelBatch { covered, ..PixelBatch::row(pixel, count, lane) };
+    interpolators.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
 }
 
 /// Interpolates the inputs of the texture shader along a batch of a row.
 #[inline(always)]
 pub(super) fn row_attributes<const FMA: bool>(
+    pixel: (i64, i64),
+    count: usize,
+    lane: usize,
+    covered: Covered,
     context: &TriangleContext<'_>,
-    batch: &PixelBatch<'_>,
-    job: Job<'_>,
+    job: &Job<'_>,
     block: &mut Block,
 ) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, true>(context, *batch, shader);
+        let batch = PixelBatch { covered, ..PixelBatch::row(pixel, count, lane) };
+        block.workshop.attributes::<FMA, true>(context, batch, shader);
     }
 }
 
 /// Interpolates the inputs of the texture shader in the block's box.
 #[inline(always)]
-pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
         block.workshop.attributes::<FMA, false>(context, few(&block.coverage, block.used), shader);
     }
@@ -443,16 +453,19 @@ pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job
 /// pixels.
 #[inline(always)]
 pub(super) fn row_depths<const FMA: bool>(
+    pixel: (i64, i64),
+    count: usize,
+    lane: usize,
     context: &TriangleContext<'_>,
-    batch: &PixelBatch<'_>,
-    job: Job<'_>,
+    job: &Job<'_>,
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
     let Block { varying, alive, defined, .. } = block;
-    defined[Reason::Depths as usize] += depths::<FMA, true>(context, *batch, varying.depths());
-    let (lanes, at) = (batch.lane..batch.lane + batch.count, index(band, batch.first));
-    let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..batch.count]);
+    let batch = PixelBatch::row(pixel, count, lane);
+    defined[Reason::Depths as usize] += depths::<FMA, true>(context, batch, varying.depths());
+    let (lanes, at) = (lane..lane + count, index(band, pixel));
+    let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..count]);
     if job.compiled.drops_late {
         store::may_pass(job.draw, incoming, memory)
     } else {
@@ -465,7 +478,7 @@ pub(super) fn row_depths<const FMA: bool>(
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(
     context: &TriangleContext<'_>,
-    job: Job<'_>,
+    job: &Job<'_>,
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
@@ -488,7 +501,7 @@ pub(super) fn box_depths<const FMA: bool>(
 
 /// Runs the stages of the texture shader for a block.
 #[inline(always)]
-pub(super) fn shade<const FMA: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+pub(super) fn shade<const FMA: bool>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Block { rows, varying, work, workshop, runs, defined, .. } = block;
     let open = stages::run::<FMA>(job, runs, varying, workshop, (work, rows), band);
     defined[Reason::Shader as usize] += open;
@@ -531,8 +544,8 @@ const LONG_RUN: usize = 48;
 
 /// Computes and stores a block whose texture shader stages have run.
 #[inline(always)]
-pub(super) fn flush<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-    let Job { draw, compiled, .. } = job;
+pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+    let Job { draw, compiled, .. } = *job;
     let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
     if *used == 0 {
         return;

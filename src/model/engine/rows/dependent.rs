@@ -33,7 +33,7 @@ pub(super) struct DefinedTriangle<'a>(Option<(usize, TriangleContext<'a>)>);
 
 impl<'a> DefinedTriangle<'a> {
     /// Returns a triangle of the draw.
-    pub(super) fn set_up(&mut self, job: Job<'a>, number: usize) -> Option<&TriangleContext<'a>> {
+    pub(super) fn set_up(&mut self, job: &Job<'a>, number: usize) -> Option<&TriangleContext<'a>> {
         if self.0.as_ref().is_none_or(|(other, _)| *other != number) {
             let rows = (0, i64::from(job.plan.targets[job.draw.target].height));
             self.0 = TriangleContext::new(job.plan, job.draw, number, rows).map(|context| (number, context));
@@ -129,7 +129,7 @@ impl BlockQuads {
 
     /// TSH-7: sets where [close](Self::close) lanes sample by whole numbers. `offsets` are in 128ths of the image.
     #[inline(never)]
-    pub(super) fn settle(&mut self, job: Job<'_>, unit: &PlannedUnit, offsets: [&Floats; 2]) {
+    pub(super) fn settle(&mut self, job: &Job<'_>, unit: &PlannedUnit, offsets: [&Floats; 2]) {
         let mut triangle = DefinedTriangle::default();
         let sides = unit.scale(&unit.levels[0]);
         for PixelQuads { upper, lower, count, pixel: (i, j), triangle: number } in &self.all {

@@ -46,7 +46,7 @@ pub(super) type Found = Option<(usize, i32)>;
 /// then.
 #[inline(always)]
 pub(super) fn sample_unit(
-    job: Job<'_>,
+    job: &Job<'_>,
     n: usize,
     found: Found,
     varying: &mut Varying,

@@ -4,7 +4,7 @@ use super::band::{self, Block, Entered};
 use super::boxes::BoxCoverage;
 use super::compiled::{CompiledDraw, Job};
 use super::filter::Vectors;
-use super::setup::PixelBatch;
+use super::setup::Covered;
 use super::triangle::Interpolators;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{Band, Window};
@@ -88,7 +88,7 @@ macro_rules! text {
             }
 
             #[multiversion(targets($target))]
-            pub(super) fn run(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
+            pub(super) fn run(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
                 match_target! { $target => Some(band::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
             }
 
@@ -107,7 +107,7 @@ text! {
     }
     {
         /// Calls [`band::flush`] with this instruction set.
-        fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
         /// Calls [`band::cover`] with this instruction set.
@@ -115,25 +115,25 @@ text! {
         /// Calls [`band::plain`] with this instruction set.
         fn plain(context: &mut TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::coverage`] with this instruction set.
-        fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        fn coverage(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::in_box`] with this instruction set.
-        fn in_box(interpolators: &Interpolators<'_>, job: Job<'_>, block: &mut Block);
+        fn in_box(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::row`] with this instruction set.
-        fn row(interpolators: &Interpolators<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::row_attributes`] with this instruction set.
-        fn row_attributes(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row_attributes(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::box_attributes`] with this instruction set.
-        fn box_attributes(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        fn box_attributes(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::row_depths`] with this instruction set.
-        fn row_depths(context: &TriangleContext<'_>, batch: &PixelBatch<'_>, job: Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::box_depths`] with this instruction set.
-        fn box_depths(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn box_depths(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::shade`] with this instruction set.
-        fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        fn shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }
 }
 
-fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+fn run_baseline(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     band::run::<Baseline>(job, band, block)
 }
 
@@ -144,7 +144,7 @@ pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block
         Isa::V3 => Vectors::Avx2,
         Isa::V4 => Vectors::Avx512,
     };
-    let job = Job { vectors, ..job };
+    let job = &Job { vectors, ..job };
     let shaded = match isa {
         Isa::Baseline => None,
         Isa::V2 => v2::run(job, band, block),

@@ -131,7 +131,7 @@ impl Setup<'_> {
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
         let Placing { at, floors: [u, v], lods, levels, close } = placing;
-        spread.hand_out(quads, &reads.known.each, batch.count, &mut lods[..lanes]);
+        spread.hand_out(quads, &reads.known.each, batch.count, lods);
         let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
         let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
@@ -221,13 +221,15 @@ impl MipFetches {
         v: &[i32],
     ) {
         let (filters, lods) = (Taken::of_unit(unit), &lods[..lanes.len()]);
-        for (which, [low, high]) in ranges.into_iter().enumerate() {
+        // By reference: both ends read as one would have to wait until they are stored.
+        for (which, [low, high]) in ranges.iter().enumerate() {
             let ([to_u, to_v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
             let (to_u, to_v) = (&mut to_u[lanes.clone()], &mut to_v[lanes.clone()]);
             let entries = &mut entries[lanes.clone()];
             if low == high {
-                let shifts = unit.plane_shifts(&unit.levels[low as usize]);
-                places(&table.placed(low as usize, face), filters, shifts, lods, u, v, to_u, to_v, entries);
+                let low = *low as usize;
+                let shifts = unit.plane_shifts(&unit.levels[low]);
+                places(&table.placed(low, face), filters, shifts, lods, u, v, to_u, to_v, entries);
             } else {
                 let of = (lods, &levels[which][..lanes.len()]);
                 scattered((unit, table, face), filters, of, u, v, to_u, to_v, entries);

@@ -2,6 +2,7 @@
 //! footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::boxes::SIDE;
 use super::direction::{CubeDirection, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::Plane;
@@ -51,9 +52,11 @@ pub(super) struct Quads {
     close: PerLane<i32>,
     left: PerLane<u8>,
     left_origins: [PerLane<f32>; 2],
-    /// Number of quads of a box, and the quad of each of its lanes.
+    /// Number of quads of a box.
     count: usize,
-    of_lanes: PerLane<u8>,
+    /// The rows of a batch.
+    rows: [QuadsOfRow; SIDE as usize],
+    filled: usize,
 }
 
 impl Quads {
@@ -63,6 +66,7 @@ impl Quads {
         let ((i, j), [xs, ys]) = (batch.first, &mut self.origins);
         let (mut quads, mut lane) = (0, 0);
         let mut runs = batch.runs;
+        self.filled = 0;
         while let Some((row, ..)) = runs.first() {
             let rows = runs.iter().take(2).take_while(|(other, ..)| other >> 1 == row >> 1).count();
             let (pair, later) = runs.split_at(rows);
@@ -71,26 +75,23 @@ impl Quads {
             for (_, first, count) in pair {
                 (low, high) = (low.min(first >> 1), high.max((first + *count as i64 - 1) >> 1));
             }
-            // Whole steps, of which the next run or row overwrites what is too much.
             for (_, first, count) in pair {
-                let (quad, odd) = (quads as i64 + (first >> 1) - low, (first & 1) as usize);
-                for (n, of) in self.of_lanes[lane..lane + STEP].iter_mut().enumerate() {
-                    *of = (quad as u8).wrapping_add(((n + odd) >> 1) as u8);
-                }
+                let quad = quads + ((first >> 1) - low) as usize;
+                self.rows[self.filled] = QuadsOfRow { lane, quad, odd: (first & 1) as usize };
+                self.filled += 1;
                 lane += count;
             }
+            // A whole step, of which the next rows overwrite what is too much.
             let (x, y) = ((2 * low - i) as i32, ((row & !1) - j) as f32);
             for (n, (to_x, to_y)) in xs[quads..quads + STEP].iter_mut().zip(&mut ys[quads..quads + STEP]).enumerate() {
                 (*to_x, *to_y) = ((x + 2 * n as i32) as f32, y);
             }
             quads += (high + 1 - low) as usize;
         }
-        if let (Some(last), Some(last_lane)) = (quads.checked_sub(1), lane.checked_sub(1)) {
-            let (x, y, of) = (xs[last], ys[last], self.of_lanes[last_lane]);
-            let beyond = whole_steps(quads);
+        if let Some(last) = quads.checked_sub(1) {
+            let (x, y, beyond) = (xs[last], ys[last], whole_steps(quads));
             xs[quads..beyond].fill(x);
             ys[quads..beyond].fill(y);
-            self.of_lanes[lane..whole_steps(lane)].fill(of);
         }
         self.count = quads;
     }
@@ -113,48 +114,71 @@ impl<T> Default for Known<T> {
     }
 }
 
+/// Pixels of a row side by side: two of them belong to a quad. If `odd` is 1, the first pixel is the right one of its quad.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct QuadsOfRow {
+    lane: usize,
+    quad: usize,
+    odd: usize,
+}
+
 /// How the lanes of a batch map to the [known](Known) quads.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spread {
     /// All lanes belong to the first quad.
     First,
-    /// Two neighbouring pixels belong to a quad; if `odd` is 1, the first pixel has a quad of its own. `first` is the index of the first
-    /// quad, `last` that of the last one after it.
-    Row { first: usize, odd: usize, last: usize },
-    /// Lanes of a box, as [`Quads`] map them.
-    Box,
+    /// As the [rows](Quads::rows) say.
+    Rows,
 }
 
 impl Spread {
-    /// Returns the index of a lane's quad.
+    /// Copies the results of quads to their lanes. Only the first `count` lanes have pixels; others up to the next whole step repeat the last
+    /// one.
     #[inline(always)]
-    pub(super) fn quad(&self, quads: &Quads, lane: usize) -> usize {
-        match self {
-            Spread::First => 0,
-            Spread::Row { first, odd, last } => first + ((lane + odd) >> 1).min(*last),
-            Spread::Box => usize::from(quads.of_lanes[lane]),
+    pub(super) fn hand_out<T: Copy>(&self, quads: &Quads, known: &[T], count: usize, out: &mut PerLane<T>) {
+        match *self {
+            Spread::First => out[..count].fill(known[0]),
+            Spread::Rows if quads.filled == 1 => {
+                let QuadsOfRow { quad, odd, .. } = quads.rows[0];
+                let known = &known[quad..];
+                let (head, pairs) = out[..count].split_at_mut(odd.min(count));
+                head.fill(known[0]);
+                let mut pairs = pairs.chunks_exact_mut(2);
+                for (pair, known) in (&mut pairs).zip(&known[odd..]) {
+                    [pair[0], pair[1]] = [*known; 2];
+                }
+                pairs.into_remainder().fill(known[(count - 1 + odd) >> 1]);
+            }
+            Spread::Rows => {
+                // Whole steps, of which the next row overwrites what is too much.
+                for QuadsOfRow { lane, quad, odd } in quads.rows[..quads.filled].iter().copied() {
+                    let known = &known[quad..][..=STEP / 2];
+                    let step = &mut out[lane..][..STEP];
+                    for n in 0..STEP {
+                        step[n] = if odd == 1 { known[n.div_ceil(2)] } else { known[n / 2] };
+                    }
+                }
+            }
         }
+        let (last, beyond) = (out[count - 1], count..whole_steps(count));
+        out[beyond].fill(last);
     }
 
-    /// Copies the results of quads to their lanes. Only the first `count` lanes have pixels; the others repeat the last one.
+    /// Calls a function for each of `count` lanes with its quad.
     #[inline(always)]
-    pub(super) fn hand_out<T: Copy>(&self, quads: &Quads, known: &[T], count: usize, out: &mut [T]) {
-        let Spread::Row { first, odd, last } = *self else {
-            for (n, out) in out.iter_mut().enumerate() {
-                *out = known[self.quad(quads, n)];
-            }
-            return;
+    pub(super) fn each(&self, quads: &Quads, count: usize, mut call: impl FnMut(usize, usize)) {
+        let rows = &quads.rows[..quads.filled];
+        let one = [QuadsOfRow { lane: 0, quad: 0, odd: 0 }];
+        let (rows, is_wide) = match self {
+            Spread::First => (&one[..], false),
+            Spread::Rows => (rows, true),
         };
-        let known = &known[first..];
-        let (out, beyond) = out.split_at_mut(count);
-        let (head, pairs) = out.split_at_mut(odd.min(count));
-        head.fill(known[0]);
-        let mut pairs = pairs.chunks_exact_mut(2);
-        for (pair, known) in (&mut pairs).zip(&known[odd..]) {
-            [pair[0], pair[1]] = [*known; 2];
+        for (n, row) in rows.iter().enumerate() {
+            let end = rows.get(n + 1).map_or(count, |next| next.lane);
+            for lane in row.lane..end {
+                call(lane, row.quad + if is_wide { (lane - row.lane + row.odd) >> 1 } else { 0 });
+            }
         }
-        pairs.into_remainder().fill(known[last]);
-        beyond.fill(known[last]);
     }
 }
 
@@ -323,7 +347,7 @@ impl Setup<'_> {
             room(known, 2 * LANES);
             known.of = None;
             self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, &mut known.each);
-            return Spread::Box;
+            return Spread::Rows;
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
         let row = Some((self.context.number, j >> 1));
@@ -346,8 +370,9 @@ impl Setup<'_> {
             self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
             known.columns.end += count as i64;
         }
-        let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
-        Spread::Row { first, odd, last: (batch.count - 1 + odd) >> 1 }
+        let quad = (wanted.start - known.columns.start) as usize;
+        (quads.rows[0], quads.filled) = (QuadsOfRow { lane: 0, quad, odd: (i & 1) as usize }, 1);
+        Spread::Rows
     }
 
     /// Computes the results of quads at the given [origins](Quads::origins). `out` has room for twice as many.

@@ -244,7 +244,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
 /// Runs the stages of a block's pixels, which write their registers to rows. Returns the number of pixels that the definition computed.
 #[inline(always)]
 pub(super) fn run<const FMA: bool>(
-    job: Job<'_>,
+    job: &Job<'_>,
     runs: &[Run],
     varying: &mut Varying,
     workshop: &mut Workshop,
@@ -447,7 +447,7 @@ fn dot_product(
 /// Computes the open lanes by the definition. Returns their number.
 #[inline(never)]
 fn define(
-    job: Job<'_>,
+    job: &Job<'_>,
     runs: &[Run],
     alive: &mut [bool],
     work: &mut Workshop,

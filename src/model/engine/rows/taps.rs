@@ -203,9 +203,7 @@ impl Setup<'_> {
             return;
         };
         let spread = self.of_quads::<FMA, ROW, PairsOfQuad>(batch, (unit, &base), &local.e, quads, known);
-        for n in 0..batch.count {
-            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(quads, n)]);
-        }
+        spread.each(quads, batch.count, |n, quad| Footprints::set(pairs, batch.lane + n, &known.each[quad]));
     }
 }
 
