@@ -5,7 +5,8 @@ use super::Sampler;
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{
-    IOTA_REAL, Line, Positions, QuotientEstimate, SLACK, any_negative, estimate_two, nearest, position, prove, whole,
+    IOTA_REAL, Line, Positions, QuotientEstimate, Reciprocals, SLACK, any_negative, estimate_two, nearest, position,
+    prove, whole,
 };
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::{Losses, Short, floors};
@@ -188,7 +189,7 @@ impl Setup<'_> {
         &self,
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         (numbers, faces): (&mut [PerLane<i32>; 2], &mut PerLane<u32>),
         (short, whole): (&mut Short, &mut PerLane<i32>),
     ) {
@@ -203,7 +204,7 @@ impl Setup<'_> {
             Planes::Plane(planes) => {
                 let [u, v] = &mut *numbers;
                 let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
-                self.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), local, u, v, whole);
+                self.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), (local, reciprocals), u, v, whole);
                 true
             }
             Planes::Direction(planes, face) => {

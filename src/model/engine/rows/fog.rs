@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::PerLane;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, estimate_two, floor_of_factor, nearest, position, whole};
+use super::quotient::{Line, Reciprocals, SLACK, floor_of_factor, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor;
@@ -114,14 +114,14 @@ impl Fog {
             Fog::Factor(_) => return None,
         };
         let (e, real) = (e.map(|e| e as f64), &curve.coordinate.real);
-        let lines = (real.line(&e).times(curve.scale), setup.denominator.real.line(&e));
-        if lines.0.x != 0.0 {
+        let line = real.line(&e).times(curve.scale);
+        if line.x != 0.0 {
             return None;
         }
+        let reciprocal = 1.0 / setup.denominator.real.line(&e).c;
         let off = 2.0 * real.reach * SLACK * curve.scale.abs();
-        let (at, mut factor) = (Positions { x: &[0], y: &[0], last: 0 }, [0]);
-        let is_proved =
-            off < COARSEST && !curve.look_up::<false, true>(at, lines, off, &mut factor, &mut [0], &mut [0]);
+        let (at, mut factor) = ([&[0.0][..], &[0.0], &[reciprocal]], [0]);
+        let is_proved = off < COARSEST && !curve.look_up::<false, true>(at, line, off, &mut factor, &mut [0], &mut [0]);
         is_proved.then_some(factor[0])
     }
 }
@@ -133,7 +133,7 @@ impl Setup<'_> {
         &self,
         batch: PixelBatch<'_>,
         fog: &Fog,
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         values: &mut PerLane<i32>,
         spare: &mut PerLane<i32>,
         row: &mut PerLane<i16>,
@@ -147,7 +147,7 @@ impl Setup<'_> {
                 let Some(estimates) = self.estimates::<ROW>(&planes, 0, local) else {
                     return self.defined_factors(batch, |_| true, out);
                 };
-                if estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, values, spare)[0] {
+                if reciprocals.estimate::<FMA, ROW>(estimates, values, spare)[0] {
                     self.correct::<ROW>(batch, 0, plane, &local.e, values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
@@ -162,8 +162,8 @@ impl Setup<'_> {
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
-                let lines = (line, local.denominator);
-                if curve.look_up::<FMA, ROW>(batch.at, lines, off, out, values, spare) {
+                let at = reciprocals.lanes(out.len());
+                if curve.look_up::<FMA, ROW>(at, line, off, out, values, spare) {
                     self.defined_factors(batch, |n| spare[n] != 0, out);
                 }
             }
@@ -187,8 +187,8 @@ impl Curve {
     #[inline(always)]
     fn look_up<const FMA: bool, const ROW: bool>(
         &self,
-        at: Positions<'_>,
-        lines: (Line, Line),
+        at: [&[f64]; 3],
+        line: Line,
         off: f64,
         out: &mut [i16],
         values: &mut [i32],
@@ -196,14 +196,14 @@ impl Curve {
     ) -> bool {
         match self.kind {
             Kind::Linear { start, sign } => {
-                let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, unknown);
+                let close = linear::<FMA, ROW>(at, line, (start, off, sign), values, unknown);
                 for (out, value) in out.iter_mut().zip(&*values) {
                     *out = *value as i16;
                 }
                 close
             }
             Kind::Table(table) => {
-                let close = steps::<FMA, ROW>(at, lines, off, values, unknown);
+                let close = steps::<FMA, ROW>(at, line, off, values, unknown);
                 for (out, value) in out.iter_mut().zip(&*values) {
                     *out = i16::from(byte(table, *value));
                 }
@@ -224,20 +224,18 @@ impl Curve {
 /// such lanes. `lines` give p1 d', whose error is at most `off`, plus what 24 bits lose.
 #[inline(always)]
 fn linear<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    lines: (Line, Line),
+    [xs, ys, rs]: [&[f64]; 3],
+    line: Line,
     (start, off, sign): (f64, f64, Option<f64>),
     bytes: &mut [i32],
     unknown: &mut [i32],
 ) -> bool {
     let mut close = 0;
     let lanes = bytes.len();
-    let last = f64::from(at.last);
-    let (unknown, xs, ys, iota) = (&mut unknown[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (unknown, xs, ys, rs) = (&mut unknown[..lanes], &xs[..lanes], &ys[..lanes], &rs[..lanes]);
     let rounding = ROUNDED * (4096.0 + start.abs());
     for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let argument = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let argument = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
         let size = argument.abs();
         let argument = sign.map_or(argument, |sign| size * sign);
         let (value, error) = (start + argument, size * TRUNCATED + off + rounding);
@@ -252,22 +250,20 @@ fn linear<const FMA: bool, const ROW: bool>(
 /// give e in 4096ths, whose error is at most `off`. A tie may be one step lower (INT-4t); it is not proved, because `off` is not 0.
 #[inline(always)]
 fn steps<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    lines: (Line, Line),
+    [xs, ys, rs]: [&[f64]; 3],
+    line: Line,
     off: f64,
     steps: &mut [i32],
     unknown: &mut [i32],
 ) -> bool {
     let mut close = 0;
     let lanes = steps.len();
-    let last = f64::from(at.last);
-    let (unknown, xs, ys, iota) = (&mut unknown[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (unknown, xs, ys, rs) = (&mut unknown[..lanes], &xs[..lanes], &ys[..lanes], &rs[..lanes]);
     // The index of q is q - FIRST. The floor is the integer nearest to half a step below.
     let ends = (-(CENTRE + FIRST) as f64 - 0.5, (2 * TABLE_END) as f64);
     let limit = 0.5 - (off + ROUNDED * 8192.0);
     for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let index = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y) + ends.0;
+        let index = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n] + ends.0;
         let index = if index > 0.0 { index } else { 0.0 };
         let index = if index < ends.1 { index } else { ends.1 };
         steps[n] = nearest(index);

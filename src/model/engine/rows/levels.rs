@@ -5,7 +5,7 @@ use super::direction::CubeDirection;
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quads::{BaseLevel, Known, Quads, floor, parted};
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
+use super::quotient::{Line, Reciprocals, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
@@ -40,6 +40,8 @@ pub(super) struct Placing {
     levels: [PerLane<i32>; 2],
     /// Sign bits of lanes whose floors are not proved on some level.
     close: PerLane<i32>,
+    /// Reciprocals by which coordinates other than planes are divided.
+    reciprocals: Reciprocals,
 }
 
 impl Setup<'_> {
@@ -59,12 +61,13 @@ impl Setup<'_> {
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
         floors: Option<[&[i32]; 2]>,
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
     ) {
         if !ROW && let Some(base) = self.base_level::<FMA, false>(batch, (sampler, planes), local) {
+            let local = (local, reciprocals);
             self.levels_by::<FMA, false>(batch, sampler, &base, floors, local, short, (quads, placing), reads);
             return;
         }
@@ -86,6 +89,7 @@ impl Setup<'_> {
                     let local = own.as_ref().unwrap_or(local);
                     if let Some(base) = self.base_level::<FMA, true>(part, (sampler, planes), local) {
                         let work = (&mut *quads, &mut *placing);
+                        let local = (local, reciprocals);
                         self.levels_by::<FMA, true>(part, sampler, &base, floors, local, short, work, reads);
                         break true;
                     }
@@ -121,7 +125,7 @@ impl Setup<'_> {
         sampler: &Sampler,
         base: &BaseLevel<'_>,
         floors: Option<[&[i32]; 2]>,
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
@@ -130,7 +134,7 @@ impl Setup<'_> {
         let unit = &self.context.draw.units[sampler.index];
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
-        let Placing { at, floors: [u, v], lods, levels, close } = placing;
+        let Placing { at, floors: [u, v], lods, levels, close, reciprocals: own } = placing;
         spread.hand_out(quads, &reads.known.each, batch.count, lods);
         let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
@@ -151,7 +155,15 @@ impl Setup<'_> {
                     short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, 0.0, [&mut *at_u, &mut *at_v]);
                     settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
                 }
-                None => quotients::<FMA, ROW>(batch.at, lines, settled, u, v, close),
+                None => {
+                    let reciprocals = if base.planes.is_some() {
+                        reciprocals
+                    } else {
+                        own.set::<FMA, ROW>(batch.at, base.denominator);
+                        own
+                    };
+                    quotients::<FMA, ROW>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
+                }
             }
         }
         let any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
@@ -249,20 +261,17 @@ impl MipFetches {
 /// proved, on that level or on smaller ones.
 #[inline(always)]
 fn quotients<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    [along, down, denominator]: [Line; 3],
+    [xs, ys, rs]: [&[f64]; 3],
+    [along, down]: [Line; 2],
     settled: [(f64, f64); 2],
     u: &mut [i32],
     v: &mut [i32],
     close: &mut [i32],
 ) {
     let lanes = u.len();
-    let last = f64::from(at.last);
-    let (v, close, xs, ys) = (&mut v[..lanes], &mut close[..lanes], &at.x[..lanes], &at.y[..lanes]);
-    let iota = &IOTA_REAL[..lanes];
+    let (v, close, xs, ys, rs) = (&mut v[..lanes], &mut close[..lanes], &xs[..lanes], &ys[..lanes], &rs[..lanes]);
     for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
+        let (x, y, r) = (xs[n], ys[n], rs[n]);
         let (p, q) = (along.at::<FMA, ROW>(x, y) * r, down.at::<FMA, ROW>(x, y) * r);
         let ((p, close_p), (q, close_q)) = (floor_and_proof(p, settled[0]), floor_and_proof(q, settled[1]));
         (u[n], v[n], close[n]) = (p, q, close_p | close_q);

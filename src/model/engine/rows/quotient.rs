@@ -309,7 +309,7 @@ impl Reciprocals {
 
     /// Computes [`estimate_two`] from the reciprocals.
     #[inline(always)]
-    pub(super) fn estimate<const FMA: bool>(
+    pub(super) fn estimate<const FMA: bool, const ROW: bool>(
         &self,
         [one, other]: [QuotientEstimate; 2],
         first: &mut [i32],
@@ -320,7 +320,7 @@ impl Reciprocals {
         let mut close = [0_i32; 2];
         for n in 0..lanes {
             let (x, y, r) = (xs[n], ys[n], rs[n]);
-            let ((a, a_close), (b, b_close)) = (one.at::<FMA, false>(x, y, r), other.at::<FMA, false>(x, y, r));
+            let ((a, a_close), (b, b_close)) = (one.at::<FMA, ROW>(x, y, r), other.at::<FMA, ROW>(x, y, r));
             (first[n], second[n]) = (a, b);
             close[0] |= a_close;
             close[1] |= b_close;

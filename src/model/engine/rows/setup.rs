@@ -5,7 +5,7 @@ use super::compiled::{Reason, Reasons};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::{Plane, RealPlane, exact_line};
 use super::quotient::{
-    IOTA, Line, Positions, QuotientEstimate, SLACK, break_ties, correct, correct_exactly, estimate_two,
+    IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, correct_exactly,
 };
 use super::short::{Parts, lower_by_lane};
 use crate::engine::pixel::TriangleContext;
@@ -212,14 +212,14 @@ impl<'a> Setup<'a> {
         batch: PixelBatch<'_>,
         planes: &[Plane; 2],
         bias: i32,
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         u: &mut [i32],
         v: &mut [i32],
         whole: &mut PerLane<i32>,
     ) {
         let estimates = self.estimates::<ROW>(planes, bias, local);
         if let Some(estimates) = estimates.filter(|_| !ROW || self.stays_near(&batch, planes, local)) {
-            let close = estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, u, v);
+            let close = reciprocals.estimate::<FMA, ROW>(estimates, u, v);
             if close[0] | close[1] {
                 self.correct_coordinates::<ROW>(batch, bias, planes, close, &local.e, u, v, whole);
             }

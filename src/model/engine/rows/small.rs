@@ -223,11 +223,11 @@ fn divide<const FMA: bool>(
                 Pair::None => {}
                 Pair::Sampler(n) => {
                     let [u, v] = &mut coordinates[n];
-                    *close = reciprocals.estimate::<FMA>([along, down], &mut u[at.clone()], &mut v[at]);
+                    *close = reciprocals.estimate::<FMA, false>([along, down], &mut u[at.clone()], &mut v[at]);
                 }
                 Pair::Weights => {
                     let estimates = [along.not_negative(), down.not_negative()];
-                    *close = reciprocals.estimate::<FMA>(estimates, &mut w0[at.clone()], &mut w2[at]);
+                    *close = reciprocals.estimate::<FMA, false>(estimates, &mut w0[at.clone()], &mut w2[at]);
                 }
             }
             corrects |= close[0] | close[1];

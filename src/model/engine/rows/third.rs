@@ -6,7 +6,7 @@ use super::depth::{UNKNOWN, floor, word};
 use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position};
+use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, nearest, position};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::Short;
 use super::table;
@@ -124,7 +124,7 @@ impl Setup<'_> {
         &self,
         batch: PixelBatch<'_>,
         (compiled, planes): (&CompiledDraw, &[ThirdPlanes]),
-        local: &BatchSetup,
+        (local, reciprocals): (&BatchSetup, &Reciprocals),
         ([faces, references], layers): ([&mut [PerLane<u32>]; 2], &mut [PerLane<i32>; 2]),
         (short, whole): (&mut Short, &mut PerLane<i32>),
     ) {
@@ -133,6 +133,7 @@ impl Setup<'_> {
             match (&sampler.third, planes) {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
                     let work = (&mut *short, &mut *whole);
+                    let local = (local, reciprocals);
                     self.coordinates::<FMA, ROW>(batch, (counts, planes), local, (&mut *layers, &mut *faces), work);
                     let (layers, faces) = (&mut layers[0][batch.lanes()], &mut faces[batch.lanes()]);
                     axis.reduce(layers);

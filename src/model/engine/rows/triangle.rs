@@ -11,7 +11,7 @@ use super::kernels::PerLane;
 use super::levels::{MipFetches, Placing};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
-use super::quotient::{Reciprocals, estimate_two};
+use super::quotient::Reciprocals;
 use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::taps::Footprints;
@@ -215,6 +215,18 @@ impl<'a> Interpolators<'a> {
         }
     }
 
+    /// Returns whether something is divided by D that the DDAs of a row, if there are any, do not divide.
+    #[inline(always)]
+    fn divides(&self, compiled: &CompiledDraw, dda: Option<&DdaRow>) -> bool {
+        let by_dda = |n: usize| dda.is_some_and(|dda| dda.samplers[n].1);
+        let is_plane = |planes: &Planes| matches!(planes, Planes::Plane(_));
+        self.weights.is_some() && dda.is_none_or(|dda| !dda.weights.1)
+            || self.fog.is_some() && dda.is_none_or(|dda| dda.fog.is_none())
+            || self.samplers.iter().enumerate().any(|(n, planes)| is_plane(planes) && !by_dda(n))
+            || compiled.estimates
+                && self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(planes) if is_plane(planes)))
+    }
+
     /// Interpolates the attributes that are estimated.
     #[inline(always)]
     fn estimated<const FMA: bool, const ROW: bool>(
@@ -239,6 +251,10 @@ impl<'a> Interpolators<'a> {
         if !ROW && compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0) {
             varying.quads.begin_box(batch);
         }
+        // Everything that is divided by D shares its reciprocals.
+        if self.divides(compiled, ROW.then_some(&varying.dda)) {
+            varying.reciprocals.set::<FMA, ROW>(batch.at, local.denominator);
+        }
         // A loop of its own, so that values which compilers compute before it are not computed if nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
@@ -246,27 +262,29 @@ impl<'a> Interpolators<'a> {
                 continue;
             }
             if sampler.mixes {
-                let Varying { reads, quads, placing, short, coordinates, dda, .. } = &mut *varying;
+                let Varying { reads, quads, placing, short, coordinates, dda, reciprocals, .. } = &mut *varying;
                 let work = (&mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
                 let lanes = || batch.lanes();
                 let floors =
                     (ROW && dda.samplers[n].1).then(|| [&coordinates[n][0][lanes()], &coordinates[n][1][lanes()]]);
+                let local = (local, &*reciprocals);
                 setup.levels::<FMA, ROW>(batch, (sampler, planes), floors, local, short, work, reads);
             } else if let (Planes::Plane(planes), false) = (planes, finite || ROW && varying.dda.samplers[n].1) {
-                let Varying { coordinates, whole, .. } = &mut *varying;
+                let Varying { coordinates, whole, reciprocals, .. } = &mut *varying;
                 let lanes = batch.lanes();
                 let [u, v] = &mut coordinates[n];
                 let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
+                let local = (local, &*reciprocals);
                 setup.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), local, u, v, &mut whole[0]);
             }
         }
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
             let done = matches!(planes, Planes::Plane(_)) && !finite;
             if !(sampler.mixes || done || matches!(planes, Planes::Shared)) {
-                let Varying { coordinates, faces, whole, short, .. } = &mut *varying;
+                let Varying { coordinates, faces, whole, short, reciprocals, .. } = &mut *varying;
                 let (out, work) = ((&mut coordinates[n], &mut faces[n]), (&mut **short, &mut whole[0]));
-                setup.coordinates::<FMA, ROW>(batch, (sampler, planes), local, out, work);
+                setup.coordinates::<FMA, ROW>(batch, (sampler, planes), (local, reciprocals), out, work);
             }
         }
         if compiled.estimates {
@@ -276,8 +294,8 @@ impl<'a> Interpolators<'a> {
                     setup.taps::<FMA, ROW>(batch, (sampler, planes), local, quads, taps);
                 }
             }
-            let Varying { faces, references, layers, whole, short, .. } = &mut *varying;
-            let planes = (compiled, &*self.thirds);
+            let Varying { faces, references, layers, whole, short, reciprocals, .. } = &mut *varying;
+            let (planes, local) = ((compiled, &*self.thirds), (local, &*reciprocals));
             let (out, work) = (([&mut faces[..], &mut references[..]], layers), (&mut **short, &mut whole[0]));
             setup.thirds::<FMA, ROW>(batch, planes, local, out, work);
         }
@@ -289,6 +307,7 @@ impl<'a> Interpolators<'a> {
                 return;
             }
             inside = setup.local::<FMA, ROW>(covered, true);
+            varying.reciprocals.set::<FMA, ROW>(covered.at, inside.denominator);
             (covered, &inside)
         } else {
             (batch, local)
@@ -296,11 +315,11 @@ impl<'a> Interpolators<'a> {
         if let Some(planes) = &self.weights
             && !(ROW && varying.dda.weights.1)
         {
-            let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
+            let Varying { weights: [w0, w2], whole, reciprocals, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
             let close = if let Some(estimates) = setup.estimates::<ROW>(planes, 0, local) {
                 let estimates = [estimates[0].not_negative(), estimates[1].not_negative()];
-                let close = estimate_two::<FMA, ROW>(batch.at, local.denominator, &estimates, w0, w2);
+                let close = reciprocals.estimate::<FMA, ROW>(estimates, w0, w2);
                 close[0] | close[1]
             } else {
                 setup.count_defined(Reason::Weights, batch.count);
@@ -318,9 +337,9 @@ impl<'a> Interpolators<'a> {
         if let (Some(slot), Some(fog)) = (compiled.fog, &self.fog)
             && !(ROW && varying.dda.fog.is_some())
         {
-            let Varying { whole: [values, spare], .. } = &mut *varying;
+            let Varying { whole: [values, spare], reciprocals, .. } = &mut *varying;
             let row = &mut rows[usize::from(slot)];
-            setup.fog_factors::<FMA, ROW>(batch, fog, local, values, spare, row);
+            setup.fog_factors::<FMA, ROW>(batch, fog, (local, reciprocals), values, spare, row);
         }
     }
 }
