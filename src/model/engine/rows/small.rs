@@ -188,11 +188,10 @@ fn divide<const FMA: bool>(
     planes: &mut Functions,
 ) -> bool {
     let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
-    varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
     // Kept apart from the results, because direction for unproved lanes among them would wait until they are stored.
     let (mut close, mut corrects) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
-    for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
-    {
+    let fours = pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0);
+    for (n, (pairs, close)) in fours.enumerate() {
         let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
         for (half, pair) in pairs.iter().enumerate() {
             let (u, v) = (2 * half, 2 * half + 1);
@@ -214,6 +213,10 @@ fn divide<const FMA: bool>(
         let estimates = edges.estimates::<FMA>(&g, &bias);
         if estimates.proves != [1; FOUR] {
             return false;
+        }
+        // Not earlier: the positions have just been stored in parts, and loading them waits for that.
+        if n == 0 {
+            varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
         }
         let Varying { coordinates, weights: [w0, w2], reciprocals, .. } = &mut *varying;
         for (half, (pair, close)) in pairs.iter().zip(close).enumerate() {

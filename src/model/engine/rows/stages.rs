@@ -30,12 +30,12 @@ use std::ops::Range;
 struct Numbers {
     /// Their quotients by D.
     planes: FourPlanes,
-    /// Their values at the first vertex, and whether those at the others are the same.
-    first: [f32; FOUR],
-    is_same: [bool; FOUR],
-    /// Upper bounds of the change of the quotients where the definition [floors](crate::raster::attribute) small numbers. There is no bound if
-    /// doubles hold the quotients exactly.
-    floors: [Option<f64>; FOUR],
+    /// Their values at the vertices.
+    values: [[f32; FOUR]; 3],
+    /// Upper bounds of the change of the quotients where the definition [floors](crate::raster::attribute) small numbers.
+    floors: [f64; FOUR],
+    /// Whether doubles hold the quotients exactly.
+    is_exact: [bool; FOUR],
 }
 
 /// The set-up of a triangle for a texture shader.
@@ -61,20 +61,21 @@ impl Attributes {
         self.triangle = Some(context.number);
         self.denominator = RealPlane::new(triangle, &inverse, p, 0.0);
         self.widest = 1.0 / (least * triangle.doubled_area as f64);
-        self.numbers.resize(shader.varying.len().div_ceil(FOUR), Numbers::default());
-        for (numbers, varying) in self.numbers.iter_mut().zip(shader.varying.chunks(FOUR)) {
-            let mut values = [[0.0; FOUR]; 3];
+        // Of all numbers first: vectors of what has just been stored one by one would have to wait.
+        for (Numbers { values, .. }, varying) in self.numbers.iter_mut().zip(shader.varying.chunks(FOUR)) {
             for (n, (stage, component, _)) in varying.iter().enumerate() {
                 let set = shader.stages[*stage].state.coordinate_set;
                 [values[0][n], values[1][n], values[2][n]] = context.vertices().coordinate(set, *component);
             }
-            let Numbers { planes, first, is_same, floors } = numbers;
-            planes.set(triangle, &inverse, &values);
-            *first = values[0];
+        }
+        for Numbers { planes, values, floors, is_exact } in &mut self.numbers {
+            planes.set(triangle, &inverse, values);
+            let most = 1.0 / least;
             for n in 0..FOUR {
-                is_same[n] = values[0][n] == values[1][n] && values[1][n] == values[2][n];
-                let exact = fraction_bits(triangle, &planes.g(n)).is_some();
-                floors[n] = (!exact).then_some(planes.lost[n] / least);
+                floors[n] = planes.lost[n] * most;
+            }
+            for n in 0..FOUR {
+                is_exact[n] = fraction_bits(triangle, &planes.g(n)).is_some();
             }
         }
         self.moved.clear();
@@ -140,6 +141,7 @@ impl Workshop {
         self.same.extend(shader.same.iter().map(|value| PerLane::from_value(*value)));
         self.moved.resize(shader.moved.len(), Moved::default());
         self.attributes.triangle = None;
+        self.attributes.numbers.resize(shader.varying.len().div_ceil(FOUR), Numbers::default());
         self.open.fill(0);
         self.triangles.clear();
         self.quads.clear();
@@ -176,21 +178,19 @@ impl Workshop {
             reciprocals.set::<FMA, ROW>(batch.at, local.denominator);
         }
         let four = numbers.chunks_mut(FOUR).zip(shader.varying.chunks(FOUR));
-        for (Numbers { planes, first, is_same, floors }, (numbers, varying)) in attributes.numbers.iter().zip(four) {
+        for (Numbers { planes, values, floors, is_exact }, (numbers, varying)) in attributes.numbers.iter().zip(four) {
             let (lines, terms) = planes.around(&local.real, local.columns, local.rows);
             for (n, (out, (_, _, purpose))) in numbers.iter_mut().zip(varying).enumerate() {
                 let out = &mut out[batch.lanes()];
-                if is_same[n] {
-                    let value = first[n];
+                let value = values[0][n];
+                if value == values[1][n] && value == values[2][n] {
                     out.fill(if *purpose == Purpose::Byte { byte_of(f64::from(value)) } else { value + 0.0 });
                     continue;
                 }
                 let margin = local.margin_by::<ROW>(planes.reach[n], terms[n]);
-                let off = match floors[n] {
-                    // Hardly beyond the triangle no number has more bits.
-                    None if !batch.reaches_beyond() || local.ratio < 2.0 => 0.0,
-                    floors => margin + floors.unwrap_or(0.0) * local.ratio,
-                };
+                // Hardly beyond the triangle no number has more bits.
+                let is_exact = is_exact[n] && (!batch.reaches_beyond() || local.ratio < 2.0);
+                let off = if is_exact { 0.0 } else { margin + floors[n] * local.ratio };
                 match purpose {
                     Purpose::Float | Purpose::Sign => {
                         rounded::<FMA, ROW, false>(reciprocals, lines[n], off, out, open);
