@@ -10,7 +10,7 @@ use crate::scene_files;
 use crate::settings::number;
 use ninebit_test_support::random_scene;
 
-use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, render, trace};
+use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, cleared, render, trace};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
@@ -170,6 +170,30 @@ fn foreign_frames_are_replaced() {
     for mut frames in [short, Frames { surfaces: Vec::new() }] {
         renderer.redraw(&mut frames);
         assert!(frames == own);
+    }
+}
+
+/// Threads clear what one does, with depths and with initial contents, and draw the same picture again.
+#[test]
+fn cleared_frames_are_as_before_the_first_draw() {
+    for (name, has_contents) in [("sampling/shadow-map", false), ("buffers/bytes", false), ("clipping/corridor", true)]
+    {
+        let path = at("vectors/scenes").join(name).with_extension("ron");
+        let mut scene = scene::load(&path, &Limits::default()).unwrap().scene;
+        if has_contents {
+            let target = &mut scene.targets[0];
+            target.contents = Some((0..target.width * target.height).collect());
+        }
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        for threads in 1..=3 {
+            let renderer = Renderer::new(&plan, &RenderOptions { threads, ..RenderOptions::default() });
+            let (drawn, _) = renderer.render();
+            let mut frames = drawn.clone();
+            renderer.clear(&mut frames);
+            assert!(frames == cleared(&plan), "{name}, {threads} threads");
+            renderer.redraw(&mut frames);
+            assert!(frames == drawn, "{name}, {threads} threads");
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::*;
 use std::fmt::Write;
 use std::time::Instant;
 
-use ninebit::engine::{Reason, Renderer, cleared};
+use ninebit::engine::{Reason, Renderer};
 use ninebit::threads;
 use ninebit_files::read::page;
 
@@ -119,10 +119,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         lap();
         let mut times: Vec<f64> = (0..arguments.frames)
             .map(|_| {
-                // Against the depths of the frame before, most fragments would fail. The memory is given back first, so that it is not
-                // counted twice.
-                frames.surfaces.clear();
-                frames = cleared(&plan);
+                // Against the depths of the frame before, most fragments would fail.
+                renderer.clear(&mut frames);
                 lap();
                 renderer.redraw(&mut frames);
                 lap()

@@ -99,8 +99,8 @@ pub fn render_counted(
     options: &RenderOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (Frames, Statistics) {
-    let mut frames = cleared(plan);
     let renderer = Renderer::new(plan, options);
+    let mut frames = renderer.cleared();
     let total = renderer.groups.iter().map(|group| group.draws.len() * (group.borders.len() - 1)).sum();
     let done = AtomicUsize::new(0);
     let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
@@ -174,23 +174,53 @@ impl<'a> Renderer<'a> {
 
     /// Clears the targets and draws everything. Returns the frames and the statistics.
     pub fn render(&self) -> (Frames, Statistics) {
-        let mut frames = cleared(self.plan);
+        let mut frames = self.cleared();
         let statistics = self.draw_all(&mut frames, &|| {});
         (frames, statistics)
+    }
+
+    /// Clears frames of [`render`](Self::render) as before the first draw, or sets their initial contents. Others are replaced.
+    pub fn clear(&self, frames: &mut Frames) {
+        if !self.fits(frames) {
+            // What the system has cleared becomes the process's memory where it is first written, by each thread its own.
+            frames.surfaces = self.plan.targets.iter().map(empty).collect();
+        }
+        for (surface, target) in frames.surfaces.iter_mut().zip(&self.plan.targets) {
+            let alone = Team::new(1);
+            let team = if surface.words.len() >= SMALL { &self.team } else { &alone };
+            let rows = (surface.height as usize).div_ceil(team.count());
+            let borders = bins::equal(surface.height as usize, rows.max(1));
+            let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
+            let bands = bands(&borders, surface.width as usize, &mut words, &mut depth);
+            share(team, &bands, |_, (_, band)| clear(target, band));
+            drop(bands);
+            (surface.words, surface.depth) = (words, depth);
+        }
+    }
+
+    /// Returns whether frames have the sizes and the formats of the targets.
+    fn fits(&self, frames: &Frames) -> bool {
+        let fits = |(surface, target): (&Surface, &Target)| {
+            let pixels = target.width as usize * target.height as usize;
+            let depths = if target.depth.is_some() { pixels } else { 0 };
+            (surface.width, surface.height, surface.format) == (target.width, target.height, target.format)
+                && (surface.words.len(), surface.depth.len()) == (pixels, depths)
+        };
+        let (surfaces, targets) = (&frames.surfaces, &self.plan.targets);
+        surfaces.len() == targets.len() && surfaces.iter().zip(targets).all(fits)
+    }
+
+    fn cleared(&self) -> Frames {
+        let mut frames = Frames { surfaces: Vec::new() };
+        self.clear(&mut frames);
+        frames
     }
 
     /// Draws everything once more on frames of [`render`](Self::render), without clearing them. Frames of other sizes are replaced by
     /// cleared ones.
     pub fn redraw(&self, frames: &mut Frames) -> Statistics {
-        let fits = |surface: &Surface, target: &Target| {
-            let pixels = target.width as usize * target.height as usize;
-            let depths = if target.depth.is_some() { pixels } else { 0 };
-            [surface.width, surface.height] == [target.width, target.height]
-                && (surface.words.len(), surface.depth.len()) == (pixels, depths)
-        };
-        let (surfaces, targets) = (&frames.surfaces, &self.plan.targets);
-        if surfaces.len() != targets.len() || !surfaces.iter().zip(targets).all(|(own, target)| fits(own, target)) {
-            *frames = cleared(self.plan);
+        if !self.fits(frames) {
+            *frames = self.cleared();
         }
         self.draw_all(frames, &|| {})
     }
@@ -284,20 +314,58 @@ fn borders(plan: &Plan, draws: &[PlannedDraw], is_fast: bool, rows: Option<usize
 
 /// Returns the surfaces after the clears, or with their initial contents.
 pub fn cleared(plan: &Plan) -> Frames {
-    let clear = |target: &Target| {
-        let pixels = target.width as usize * target.height as usize;
-        Surface {
-            width: target.width,
-            height: target.height,
-            format: target.format,
-            words: match &target.contents {
-                Some(words) => words.to_vec(),
-                None => vec![surface::pack(target.format, target.clear_color); pixels],
-            },
-            depth: target.depth.map_or(Vec::new(), |depth| vec![depth.cleared(); pixels]),
-        }
+    let surface = |target: &Target| {
+        let mut surface = empty(target);
+        let Surface { width, words, depth, .. } = &mut surface;
+        clear(target, walk::Band { first_row: 0, width: *width as usize, words, depth });
+        surface
     };
-    Frames { surfaces: plan.targets.iter().map(clear).collect() }
+    Frames { surfaces: plan.targets.iter().map(surface).collect() }
+}
+
+/// Returns a surface of zeros.
+fn empty(target: &Target) -> Surface {
+    let &Target { width, height, format, .. } = target;
+    let zeros = || vec![0; width as usize * height as usize];
+    Surface { width, height, format, words: zeros(), depth: target.depth.map_or(Vec::new(), |_| zeros()) }
+}
+
+/// Clears a band of a target, or sets its initial contents.
+fn clear(target: &Target, band: walk::Band<'_>) {
+    match &target.contents {
+        Some(contents) => band.words.copy_from_slice(&contents[band.first_row * band.width..][..band.words.len()]),
+        None => band.words.fill(surface::pack(target.format, target.clear_color)),
+    }
+    band.depth.fill(target.depth.map_or(0, |depth| depth.cleared()));
+}
+
+/// The rows of a surface between borders, each with its number, for whoever takes them first.
+type Bands<'a> = Vec<Mutex<Option<(usize, walk::Band<'a>)>>>;
+
+/// Runs `work` on each band, with the number of a thread. Each thread begins with bands of its own, the same every time, because they may be
+/// in its cache, and then takes what others have left.
+fn share<'a>(team: &Team, bands: &Bands<'a>, work: impl Fn(usize, (usize, walk::Band<'a>)) + Sync) {
+    team.run(|thread| {
+        let (before, own) = bands.split_at(thread * bands.len() / team.count());
+        for band in own.iter().chain(before) {
+            // A panic in another thread ends the render anyway.
+            let band = band.lock().unwrap_or_else(PoisonError::into_inner).take();
+            if let Some(band) = band {
+                work(thread, band);
+            }
+        }
+    });
+}
+
+/// Cuts the words and the depths of a surface.
+fn bands<'a>(borders: &[usize], width: usize, mut words: &'a mut [u32], mut depth: &'a mut [u32]) -> Bands<'a> {
+    let band = |(number, rows): (usize, &[usize])| {
+        let count = (rows[1] - rows[0]) * width;
+        let words = words.split_off_mut(..count).unwrap_or_default();
+        let depth = depth.split_off_mut(..count).unwrap_or_default();
+        Mutex::new(Some((number, walk::Band { first_row: rows[0], width, words, depth })))
+    };
+    borders.windows(2).enumerate().map(band).collect()
 }
 
 /// Returns the ideal's colour of pixel `at`, counted row by row, before the first draw: R, G, B and A in 255ths. It is what blending reads
@@ -311,8 +379,7 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Runs draws on their target in the bands between borders. Each thread begins with bands of its own, the same every time, because they may be
-/// in its cache, and then takes what others have left. `prepare` returns what draws a band, from the words of textures.
+/// Runs draws on their target in the bands between borders. `prepare` returns what draws a band, from the words of textures.
 fn draw_bands<R>(
     plan: &Plan,
     draws: Range<usize>,
@@ -330,27 +397,12 @@ fn draw_bands<R>(
     let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
     let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
     let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
-    let (mut words_left, mut depth_left) = (&mut words[..], &mut depth[..]);
-    let mut bands = Vec::with_capacity(borders.len());
-    for (number, rows) in borders.windows(2).enumerate() {
-        let count = (rows[1] - rows[0]) * width;
-        let words = words_left.split_off_mut(..count).unwrap_or_default();
-        let depth = depth_left.split_off_mut(..count).unwrap_or_default();
-        bands.push(Mutex::new(Some((number, walk::Band { first_row: rows[0], width, words, depth }))));
-    }
-    let work = |thread: usize| {
+    let bands = bands(borders, width, &mut words, &mut depth);
+    share(team, &bands, |thread, (number, mut band)| {
         // A thread may come twice, but not at the same time.
         let mut block = blocks[thread].lock().unwrap_or_else(PoisonError::into_inner);
-        let (before, own) = bands.split_at(thread * bands.len() / team.count());
-        for band in own.iter().chain(before) {
-            // A panic in another thread ends the render anyway.
-            let band = band.lock().unwrap_or_else(PoisonError::into_inner).take();
-            if let Some((number, mut band)) = band {
-                run_band(&textures, number, &mut band, &mut block);
-            }
-        }
-    };
-    team.run(work);
+        run_band(&textures, number, &mut band, &mut block);
+    });
     let surface = &mut frames.surfaces[target];
     (surface.words, surface.depth) = (words, depth);
 }
