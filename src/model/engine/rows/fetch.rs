@@ -1,10 +1,10 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
-use super::filter::{Vectors, filter, filter_half, filter_one};
+use super::filter::{Footprint, Vectors, filter, filter_half, filter_one};
 use super::kernels::{LANES, PerLane};
 use super::levels::MipFetches;
 use super::store;
-use super::table::{Axis, Table, Texels};
+use super::table::{Axis, Column, Table, Texels};
 use super::taps::Pair;
 use super::triangle::Varying;
 use super::{BLOCK, Job, Sampler};
@@ -18,8 +18,7 @@ use crate::texture::filter::lerp;
 pub(super) struct Workspace {
     entries: [u32; BLOCK],
     texels: [u32; BLOCK],
-    upper: [[u32; 2]; BLOCK],
-    lower: [[u32; 2]; BLOCK],
+    footprints: [Footprint; BLOCK],
     /// Channels of the second level.
     next: [[i16; BLOCK]; 4],
     /// 16-bit halves: that of A and R, and that of G and B.
@@ -31,8 +30,7 @@ impl Default for Workspace {
         Workspace {
             entries: [0; BLOCK],
             texels: [0; BLOCK],
-            upper: [[0; 2]; BLOCK],
-            lower: [[0; 2]; BLOCK],
+            footprints: [[0; 4]; BLOCK],
             next: [[0; BLOCK]; 4],
             halves: [[0; BLOCK]; 2],
         }
@@ -131,11 +129,11 @@ fn texels(
 ) -> bool {
     let (u, v) = (u.block(), v.block());
     if let Texels::Wide(texels, linear) = &table.texels {
-        work.filter_halves(texels, *linear, table.pitch, (u, v));
+        work.filter_halves(texels, *linear, (u, v));
         bytes_of_halves(&work.halves, signed, wanted, rows);
         return false;
     }
-    let Workspace { entries, texels: found, upper, lower, .. } = work;
+    let Workspace { entries, texels: found, footprints, .. } = work;
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // Channels that are not wanted go to the spare rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
@@ -176,11 +174,11 @@ fn texels(
             filter_one(found, u, v, out);
         }
         Texels::Footprints(texels) => {
-            fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+            fetch_footprints(texels, entries, footprints);
             match last {
-                0 => filter::<1>(vectors, upper, lower, u, v, red, green, blue, alpha),
-                1 | 2 => filter::<3>(vectors, upper, lower, u, v, red, green, blue, alpha),
-                _ => filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha),
+                0 => filter::<1>(vectors, footprints, u, v, red, green, blue, alpha),
+                1 | 2 => filter::<3>(vectors, footprints, u, v, red, green, blue, alpha),
+                _ => filter::<4>(vectors, footprints, u, v, red, green, blue, alpha),
             }
         }
     }
@@ -204,7 +202,7 @@ fn sample_taps(
         let mut sums = [[0_i32; BLOCK]; 2];
         each_tap(table, at, pairs, work, |[u, v], weights, work| {
             let (u, v) = (u.block(), v.block());
-            work.filter_halves(texels, *linear, table.pitch, (u, v));
+            work.filter_halves(texels, *linear, (u, v));
             for (sums, half) in sums.iter_mut().zip(&work.halves) {
                 for n in 0..BLOCK {
                     sums[n] += half[n] * i32::from(weights[n]);
@@ -269,7 +267,7 @@ pub(super) fn drop_keyed(sampler: &Sampler, work: &Workspace, alive: &mut [bool]
     let differs = |texel: u32| texel & mask != key;
     // Separate loops, because compilers do not take the choice out of one.
     if sampler.mixes {
-        for (alive, [texel, _]) in alive.iter_mut().zip(&work.upper) {
+        for (alive, [texel, ..]) in alive.iter_mut().zip(&work.footprints) {
             *alive &= differs(*texel);
         }
     } else {
@@ -300,11 +298,11 @@ fn sample_levels(
     let weights = reads.weights.block();
     if is_wide {
         let at = reads.of_level(0, &mut work.entries);
-        work.filter_halves(texels, true, table.pitch, at);
+        work.filter_halves(texels, true, at);
         if both {
             let nearer = work.halves;
             let at = reads.of_level(1, &mut work.entries);
-            work.filter_halves(texels, true, table.pitch, at);
+            work.filter_halves(texels, true, at);
             for (half, nearer) in work.halves.iter_mut().zip(&nearer) {
                 for n in 0..BLOCK {
                     half[n] = lerp(nearer[n], half[n], i32::from(weights[n]));
@@ -314,18 +312,18 @@ fn sample_levels(
         bytes_of_halves(&work.halves, signed, wanted, rows);
         return;
     }
-    let Workspace { entries, upper, lower, next, .. } = work;
+    let Workspace { entries, footprints, next, .. } = work;
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let (u, v) = reads.of_level(0, entries);
-    fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-    filter::<4>(vectors, upper, lower, u, v, red, green, blue, alpha);
+    fetch_footprints(texels, entries, footprints);
+    filter::<4>(vectors, footprints, u, v, red, green, blue, alpha);
     if both {
         let (u, v) = reads.of_level(1, entries);
-        fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+        fetch_footprints(texels, entries, footprints);
         let [next_red, next_green, next_blue, next_alpha] = next;
-        filter::<4>(vectors, upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
+        filter::<4>(vectors, footprints, u, v, next_red, next_green, next_blue, next_alpha);
         for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
             if wanted.is_some() {
                 mix(channel, next, weights);
@@ -398,29 +396,17 @@ fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
 /// Number of footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
 const GROUP: usize = 4;
 
-/// Fetches both rows of each footprint. The four slices have the same length, so that one bounds check serves all.
+/// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
 #[inline(never)]
-fn fetch_footprints(
-    texels: &[u32],
-    pitch: usize,
-    entries: &[u32; BLOCK],
-    upper: &mut [[u32; 2]; BLOCK],
-    lower: &mut [[u32; 2]; BLOCK],
-) {
-    let Some(count) = texels.len().checked_sub(pitch + 1) else { return };
-    let (a, b) = (&texels[..count], &texels[1..][..count]);
-    let (c, d) = (&texels[pitch..][..count], &texels[pitch + 1..][..count]);
-    let entries = entries.as_chunks::<GROUP>().0.iter();
-    let (upper, lower) = (upper.as_chunks_mut::<GROUP>().0, lower.as_chunks_mut::<GROUP>().0);
-    for ((entries, upper), lower) in entries.zip(upper).zip(lower) {
-        // One row after the other, so that neighbours are stored together.
+fn fetch_footprints(columns: &[Column], entries: &[u32; BLOCK], found: &mut [Footprint; BLOCK]) {
+    let Some(count) = columns.len().checked_sub(1) else { return };
+    let (left, right) = (&columns[..count], &columns[1..]);
+    let (entries, found) = (entries.as_chunks::<GROUP>().0, found.as_chunks_mut::<GROUP>().0);
+    for (entries, found) in entries.iter().zip(found) {
         for n in 0..GROUP {
             let at = entries[n] as usize;
-            upper[n] = [a[at], b[at]];
-        }
-        for n in 0..GROUP {
-            let at = entries[n] as usize;
-            lower[n] = [c[at], d[at]];
+            let ([a, c], [b, d]) = (left[at], right[at]);
+            found[n] = [a, c, b, d];
         }
     }
 }
@@ -428,12 +414,12 @@ fn fetch_footprints(
 impl Workspace {
     /// Filters both 16-bit halves of the footprints at the entries, the one of A and R first.
     #[inline(always)]
-    fn filter_halves(&mut self, texels: &[u32], linear: bool, pitch: i32, at: (&[i32; BLOCK], &[i32; BLOCK])) {
-        let Workspace { entries, upper, lower, halves: [first, second], .. } = self;
-        fetch_footprints(texels, pitch as usize, entries, upper, lower);
+    fn filter_halves(&mut self, texels: &[Column], linear: bool, at: (&[i32; BLOCK], &[i32; BLOCK])) {
+        let Workspace { entries, footprints, halves: [first, second], .. } = self;
+        fetch_footprints(texels, entries, footprints);
         let kept = if linear { -1 } else { 0 };
-        filter_half::<16>(upper, lower, at, kept, first);
-        filter_half::<0>(upper, lower, at, kept, second);
+        filter_half::<16>(footprints, at, kept, first);
+        filter_half::<0>(footprints, at, kept, second);
     }
 }
 

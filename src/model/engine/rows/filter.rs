@@ -4,6 +4,9 @@ use super::BLOCK;
 use crate::number::Swar2;
 use crate::texture::filter::{bilinear, lerp};
 
+/// The upper and the lower left texel, and the upper and the lower right one.
+pub(super) type Footprint = [u32; 4];
+
 /// The vectors that the filter of several channels uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Vectors {
@@ -21,8 +24,7 @@ pub(crate) enum Vectors {
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 pub(super) fn filter<const COUNT: usize>(
     vectors: Vectors,
-    upper: &[[u32; 2]; BLOCK],
-    lower: &[[u32; 2]; BLOCK],
+    footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
     red: &mut [i16; BLOCK],
@@ -35,8 +37,8 @@ pub(super) fn filter<const COUNT: usize>(
         let channels = [&mut *red, &mut *green, &mut *blue, &mut *alpha];
         let done = match vectors {
             Vectors::Portable => false,
-            Vectors::Avx2 => x86::filter_256(upper, lower, u, v, channels),
-            Vectors::Avx512 => x86::filter_512(upper, lower, u, v, channels),
+            Vectors::Avx2 => x86::filter_256(footprints, u, v, channels),
+            Vectors::Avx512 => x86::filter_512(footprints, u, v, channels),
         };
         if done {
             return;
@@ -44,15 +46,14 @@ pub(super) fn filter<const COUNT: usize>(
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = vectors;
-    two_at_a_time::<COUNT>(upper, lower, u, v, red, green, blue, alpha);
+    two_at_a_time::<COUNT>(footprints, u, v, red, green, blue, alpha);
 }
 
 /// TEX-6 of the first `COUNT` channels, two channels at a time.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn two_at_a_time<const COUNT: usize>(
-    upper: &[[u32; 2]; BLOCK],
-    lower: &[[u32; 2]; BLOCK],
+    footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
     red: &mut [i16; BLOCK],
@@ -61,7 +62,7 @@ fn two_at_a_time<const COUNT: usize>(
     alpha: &mut [i16; BLOCK],
 ) {
     for n in 0..BLOCK {
-        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let [a, c, b, d] = footprints[n];
         let (along, down) = (weight(u[n]), weight(v[n]));
         let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
         red[n] = (even.0 & 255) as i16;
@@ -88,15 +89,14 @@ pub(super) fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOC
 /// TEX-6 of a 16-bit half that begins at bit `SHIFT`. `kept` masks the weights.
 #[inline(always)]
 pub(super) fn filter_half<const SHIFT: u32>(
-    upper: &[[u32; 2]; BLOCK],
-    lower: &[[u32; 2]; BLOCK],
+    footprints: &[Footprint; BLOCK],
     (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
     kept: i32,
     out: &mut [i32; BLOCK],
 ) {
     let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
     for n in 0..BLOCK {
-        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let [a, c, b, d] = footprints[n];
         let (along, down) = (weight(u[n]) as i32 & kept, weight(v[n]) as i32 & kept);
         out[n] = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
     }
@@ -119,6 +119,7 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::BLOCK;
+    use crate::engine::rows::filter::Footprint;
     use multiversion::multiversion;
     use multiversion::target::match_target;
     use std::arch::x86_64::*;
@@ -134,8 +135,7 @@ mod x86 {
         ($name:ident, $target:literal, $steps:ident) => {
             #[multiversion(targets($target))]
             pub(super) fn $name(
-                upper: &[[u32; 2]; BLOCK],
-                lower: &[[u32; 2]; BLOCK],
+                footprints: &[Footprint; BLOCK],
                 u: &[i32; BLOCK],
                 v: &[i32; BLOCK],
                 channels: [&mut [i16; BLOCK]; 4],
@@ -145,16 +145,16 @@ mod x86 {
                         let [red, green, blue, alpha] = channels;
                         let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
                         let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
-                        let (upper, lower) = (upper.as_chunks::<STEP>().0, lower.as_chunks::<STEP>().0);
+                        let footprints = footprints.as_chunks::<STEP>().0;
                         let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
                         for n in 0..BLOCK / STEP {
                             let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
-                            $steps(&upper[n], &lower[n], &u[n], &v[n], outs);
+                            $steps(&footprints[n], &u[n], &v[n], outs);
                         }
                         true
                     }
                     _ => {
-                        let _ = (upper, lower, u, v, channels);
+                        let _ = (footprints, u, v, channels);
                         false
                     }
                 }
@@ -168,8 +168,7 @@ mod x86 {
     #[target_feature(enable = "avx2")]
     #[inline]
     fn step_256(
-        upper: &[[u32; 2]; STEP],
-        lower: &[[u32; 2]; STEP],
+        footprints: &[Footprint; STEP],
         u: &[i32; STEP],
         v: &[i32; STEP],
         [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
@@ -180,27 +179,32 @@ mod x86 {
         // R and B, and G and A.
         let (mut even, mut odd) = ([_mm256_setzero_si256(); 2], [_mm256_setzero_si256(); 2]);
         for half in 0..2 {
-            // The left and the right texels of footprints in the order 0 1 4 5 2 3 6 7.
-            let columns = |texels: &[[u32; 2]; STEP]| {
-                let four = |n: usize| _mm256_castsi256_ps(load_256(texels.as_chunks::<4>().0[2 * half + n].map(pair)));
-                let (one, other) = (four(0), four(1));
-                let columns = [_mm256_shuffle_ps::<0x88>(one, other), _mm256_shuffle_ps::<0xdd>(one, other)];
-                columns.map(|column| _mm256_castps_si256(column))
+            // Four vectors of the texels at the same corner.
+            // The first four pixels fill the lower half.
+            let two = |n: usize| {
+                let [one, other] = [n, n + 4].map(|n| {
+                    let [left, right] = columns(footprints[8 * half + n]);
+                    _mm_set_epi64x(right, left)
+                });
+                _mm256_set_m128i(other, one)
             };
+            let pairs = [0, 1, 2, 3].map(two);
+            let left = [0, 2].map(|n| _mm256_unpacklo_epi32(pairs[n], pairs[n + 1]));
+            let right = [0, 2].map(|n| _mm256_unpackhi_epi32(pairs[n], pairs[n + 1]));
+            let (a, c) = (_mm256_unpacklo_epi64(left[0], left[1]), _mm256_unpackhi_epi64(left[0], left[1]));
+            let (b, d) = (_mm256_unpacklo_epi64(right[0], right[1]), _mm256_unpackhi_epi64(right[0], right[1]));
             // In 32,768ths.
             let weights = |of: &[i32; STEP]| {
-                let four = |n: usize| of.as_chunks::<2>().0[4 * half + n].map(|n| n as u32);
-                let of = load_256([0, 2, 1, 3].map(|n| pair(four(n))));
-                _mm256_srli_epi16::<1>(_mm256_shuffle_epi8(of, twice))
+                let two = |n: usize| pair(of.as_chunks::<2>().0[4 * half + n].map(|n| n as u32));
+                _mm256_srli_epi16::<1>(_mm256_shuffle_epi8(load_256([0, 1, 2, 3].map(two)), twice))
             };
-            let ([a, b], [c, d], along, down) = (columns(upper), columns(lower), weights(u), weights(v));
+            let (along, down) = (weights(u), weights(v));
             let filtered = |[a, b, c, d]: [__m256i; 4]| step(step(a, b, along), step(c, d, along), down);
             even[half] = filtered([a, b, c, d].map(|texels| _mm256_and_si256(texels, bytes)));
             odd[half] = filtered([a, b, c, d].map(|texels| _mm256_srli_epi16::<8>(texels)));
         }
-        // Packing leaves pairs in the order 0 2 4 6 1 3 5 7.
-        let order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
-        let pack = |[one, other]: [__m256i; 2]| _mm256_permutevar8x32_epi32(_mm256_packus_epi32(one, other), order);
+        // Packing leaves fours in the order 0 2 1 3.
+        let pack = |[one, other]: [__m256i; 2]| _mm256_permute4x64_epi64::<0xd8>(_mm256_packus_epi32(one, other));
         let low = |of: [__m256i; 2]| pack(of.map(|of| _mm256_and_si256(of, words)));
         let high = |of: [__m256i; 2]| pack(of.map(|of| _mm256_srli_epi32::<16>(of)));
         for (channel, out) in [low(even), low(odd), high(even), high(odd)].into_iter().zip([red, green, blue, alpha]) {
@@ -212,18 +216,25 @@ mod x86 {
     #[target_feature(enable = "avx512f,avx512bw")]
     #[inline]
     fn step_512(
-        upper: &[[u32; 2]; STEP],
-        lower: &[[u32; 2]; STEP],
+        footprints: &[Footprint; STEP],
         u: &[i32; STEP],
         v: &[i32; STEP],
         [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
     ) {
-        // Where the low and the high words of footprints are in the order of the columns.
+        // Unpacking leaves pixels in the order 0 4 8 12 1 5 9 13 2 ..., in which this finds their weights; then their low and their high words.
+        const PIXELS: [i64; 8] = {
+            let (mut pixels, mut n) = ([0; 8], 0);
+            while n < 16 {
+                pixels[n / 2] |= ((n / 4 + n % 4 * 4) as i64) << (32 * (n % 2));
+                n += 1;
+            }
+            pixels
+        };
         const WORDS: [i64; 8] = {
             let (mut words, mut n) = ([0; 8], 0);
             while n < 32 {
                 let pixel = n % 16;
-                let at = 2 * (4 * (pixel % 8 / 2) + pixel % 2 + 2 * (pixel / 8)) + n / 16;
+                let at = 2 * (pixel / 4 + pixel % 4 * 4) + n / 16;
                 words[n / 4] |= (at as i64) << (16 * (n % 4));
                 n += 1;
             }
@@ -232,20 +243,23 @@ mod x86 {
         let (bytes, words) = (_mm512_set1_epi32(0x00ff_00ff), load_512(WORDS));
         let twice = _mm512_broadcast_i32x4(load_128(TWICE));
         let step = |a, b, weight| _mm512_add_epi16(a, _mm512_mulhrs_epi16(_mm512_sub_epi16(b, a), weight));
-        // The left and the right texels of footprints in the order 0 1 8 9 2 3 10 11 4 5 12 13 6 7 14 15.
-        let columns = |texels: &[[u32; 2]; STEP]| {
-            let eight = |n: usize| _mm512_castsi512_ps(load_512(texels.as_chunks::<8>().0[n].map(pair)));
-            let (one, other) = (eight(0), eight(1));
-            let columns = [_mm512_shuffle_ps::<0x88>(one, other), _mm512_shuffle_ps::<0xdd>(one, other)];
-            columns.map(|column| _mm512_castps_si512(column))
+        // Four vectors of the texels at the same corner.
+        let four = |n: usize| {
+            let [[a, b], [c, d], [e, f], [g, h]] = footprints.as_chunks::<4>().0[n].map(columns);
+            load_512([a, b, c, d, e, f, g, h])
         };
+        let fours = [0, 1, 2, 3].map(four);
+        let left = [0, 2].map(|n| _mm512_unpacklo_epi32(fours[n], fours[n + 1]));
+        let right = [0, 2].map(|n| _mm512_unpackhi_epi32(fours[n], fours[n + 1]));
+        let (a, c) = (_mm512_unpacklo_epi64(left[0], left[1]), _mm512_unpackhi_epi64(left[0], left[1]));
+        let (b, d) = (_mm512_unpacklo_epi64(right[0], right[1]), _mm512_unpackhi_epi64(right[0], right[1]));
         // In 32,768ths.
         let weights = |of: &[i32; STEP]| {
             let two = |n: usize| pair(of.as_chunks::<2>().0[n].map(|n| n as u32));
-            let of = load_512([0, 4, 1, 5, 2, 6, 3, 7].map(two));
+            let of = _mm512_permutexvar_epi32(load_512(PIXELS), load_512([0, 1, 2, 3, 4, 5, 6, 7].map(two)));
             _mm512_srli_epi16::<1>(_mm512_shuffle_epi8(of, twice))
         };
-        let ([a, b], [c, d], along, down) = (columns(upper), columns(lower), weights(u), weights(v));
+        let (along, down) = (weights(u), weights(v));
         let filtered = |[a, b, c, d]: [__m512i; 4]| {
             _mm512_permutexvar_epi16(words, step(step(a, b, along), step(c, d, along), down))
         };
@@ -255,6 +269,11 @@ mod x86 {
             store(_mm512_castsi512_si256(channels), low);
             store(_mm512_extracti64x4_epi64::<1>(channels), high);
         }
+    }
+
+    /// Returns both columns of a footprint.
+    fn columns([a, c, b, d]: Footprint) -> [i64; 2] {
+        [pair([a, c]), pair([b, d])]
     }
 
     /// Joins two words, the first of which becomes the lower.
@@ -309,18 +328,17 @@ mod tests {
                 let chosen = (bits >> 40) as u32 & 0x0101_0101;
                 (bits as u32 & !(extreme * 255)) | ((extreme & chosen) * 255)
             };
-            let mut rows = || std::array::from_fn::<_, BLOCK, _>(|_| [texel(), texel()]);
-            let (upper, lower) = (rows(), rows());
+            let footprints = std::array::from_fn::<_, BLOCK, _>(|_| [texel(), texel(), texel(), texel()]);
             let u = std::array::from_fn(|n| n as i32 + 256 * (round - 1000));
             let v = std::array::from_fn(|n| (n as i32 + round) ^ 0x55);
             let out = [Vectors::Portable, Vectors::Avx2, Vectors::Avx512].map(|vectors| {
                 let mut out = [[0; BLOCK]; 4];
                 let [r, g, b, a] = &mut out;
-                filter::<4>(vectors, &upper, &lower, &u, &v, r, g, b, a);
+                filter::<4>(vectors, &footprints, &u, &v, r, g, b, a);
                 out
             });
             for n in 0..BLOCK {
-                let ([a, b], [c, d]) = (upper[n], lower[n]);
+                let [a, c, b, d] = footprints[n];
                 for channel in 0..4 {
                     let byte = |texel: u32| i32::from(texel.to_le_bytes()[channel]);
                     let wanted = bilinear([a, b, c, d].map(byte), u[n] & 255, v[n] & 255, |v| v) as i16;

@@ -92,23 +92,30 @@ impl Axis {
     }
 }
 
+/// A texel and the one below it, so that a footprint is two entries side by side: half the loads, and half the lines of the cache.
+pub(super) type Column = [u32; 2];
+
+/// Returns the columns of rows of so many texels. The last row only lies below.
+fn columns(rows: &[u32], wide: usize) -> Vec<Column> {
+    rows.iter().zip(rows.iter().skip(wide)).map(|(upper, lower)| [*upper, *lower]).collect()
+}
+
 /// Decoded texels: R, G, B, A from the lowest byte up. 128 is added to signed channels, so that they are filtered like unsigned ones.
 #[derive(Clone, Debug)]
 pub(super) enum Texels {
     /// Texels that are read one at a time.
     Single(Vec<u32>),
-    /// Texels for footprints: one more at the end of each row, and one more row at the end of each face, so that neighbours lie side by
-    /// side.
-    Footprints(Vec<u32>),
+    /// Texels for footprints, with one more at the end of each row.
+    Footprints(Vec<Column>),
     /// The footprints of the only channel that varies, by its number: each entry has a texel, its right neighbour, and the two below.
     One(usize, Vec<u32>),
     /// Footprints of every level. All rows are as long as the widest.
-    Levels(Vec<u32>),
+    Levels(Vec<Column>),
     /// Footprints of every level of 16-bit halves.
-    WideLevels(Vec<u32>),
+    WideLevels(Vec<Column>),
     /// Footprints of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. The flag tells whether the unit
     /// filters.
-    Wide(Vec<u32>, bool),
+    Wide(Vec<Column>, bool),
     /// Single depths, and the comparison with a reference.
     Depths(Vec<u32>, CompareFunction),
 }
@@ -278,13 +285,10 @@ impl Table {
     /// Returns the number of entries.
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
-            Texels::Single(all)
-            | Texels::Footprints(all)
-            | Texels::One(_, all)
-            | Texels::Levels(all)
-            | Texels::WideLevels(all)
-            | Texels::Wide(all, _)
-            | Texels::Depths(all, _) => all.len() as u64,
+            Texels::Single(all) | Texels::One(_, all) | Texels::Depths(all, _) => all.len() as u64,
+            Texels::Footprints(all) | Texels::Levels(all) | Texels::WideLevels(all) | Texels::Wide(all, _) => {
+                all.len() as u64
+            }
         }
     }
 
@@ -345,16 +349,17 @@ impl Table {
         let count = columns.count as usize * rows.count as usize;
         let (texels, pitch, face) = if mixes {
             let face = all.len() / images.len();
+            let all = self::columns(&all, wide);
             (if unit.is_wide() { Texels::WideLevels(all) } else { Texels::Levels(all) }, wide, face)
         } else if let Some(comparison) = comparison {
             (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
             let linear = unit.state.mag_filter == Filter::Linear;
-            (Texels::Wide(all, linear), wide, wide * high)
+            (Texels::Wide(self::columns(&all, wide), linear), wide, wide * high)
         } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
         } else if more {
-            (Texels::Footprints(all), wide, wide * high)
+            (Texels::Footprints(self::columns(&all, wide)), wide, wide * high)
         } else {
             let byte = |texel: u32| texel >> (8 * one) & 255;
             let footprints = all.chunks(wide * high).flat_map(|face| {
