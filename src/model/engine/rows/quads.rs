@@ -143,11 +143,11 @@ impl Spread {
                 let known = &known[quad..];
                 let (head, pairs) = out[..count].split_at_mut(odd.min(count));
                 head.fill(known[0]);
-                let mut pairs = pairs.chunks_exact_mut(2);
-                for (pair, known) in (&mut pairs).zip(&known[odd..]) {
-                    [pair[0], pair[1]] = [*known; 2];
+                let (pairs, rest) = pairs.as_chunks_mut::<2>();
+                for (pair, known) in pairs.iter_mut().zip(&known[odd..]) {
+                    *pair = [*known; 2];
                 }
-                pairs.into_remainder().fill(known[(count - 1 + odd) >> 1]);
+                rest.fill(known[(count - 1 + odd) >> 1]);
             }
             Spread::Rows => {
                 // Whole steps, of which the next row overwrites what is too much.
