@@ -9,7 +9,7 @@ use super::planes::Plane;
 use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::short::Losses;
-use super::{BLOCK, Reason, Sampler};
+use super::{Reason, Sampler};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::coordinates::{Coordinates, SampleCoordinates};
 use crate::texture::cube::Face;
@@ -355,9 +355,11 @@ impl Setup<'_> {
         if known.of != row || !follows {
             (known.of, known.columns) = (row, wanted.start..wanted.start);
         }
-        while known.columns.end < wanted.end {
-            let next = known.columns.end;
-            let count = ((wanted.end - next) as usize).min(BLOCK);
+        // Not a loop, before which compilers would compute all that does not change in it.
+        let next = known.columns.end;
+        if next < wanted.end {
+            // A block has no more, and one more where it begins with half a quad.
+            let count = (wanted.end - next) as usize;
             let [xs, ys] = &mut quads.origins;
             let lanes = whole_steps(count);
             let (first, last) = ((2 * next - i) as i32, count as i32 - 1);
@@ -368,7 +370,7 @@ impl Setup<'_> {
             let first = (next - known.columns.start) as usize;
             room(known, first + 2 * LANES);
             self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
-            known.columns.end += count as i64;
+            known.columns.end = wanted.end;
         }
         let quad = (wanted.start - known.columns.start) as usize;
         (quads.rows[0], quads.filled) = (QuadsOfRow { lane: 0, quad, odd: (i & 1) as usize }, 1);
