@@ -319,9 +319,8 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
     }
     block.used += block.coverage.count;
     if compiled.reads_surface {
-        for run in &block.runs[block.runs.len() - block.coverage.filled..] {
-            store::mark(&mut block.taken, run.at, run.count);
-        }
+        let first = block.runs.len() - block.coverage.filled;
+        store::mark(&mut block.taken, &block.runs[first..]);
     }
 }
 
@@ -515,7 +514,8 @@ impl Block {
         self.runs.push(Run { lane: self.used, at, count });
         self.used += count;
         if marks {
-            store::mark(&mut self.taken, at, count);
+            let last = self.runs.len() - 1;
+            store::mark(&mut self.taken, &self.runs[last..]);
         }
     }
 
@@ -567,9 +567,7 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
         store::read(draw, compiled, stored, rows);
     }
     if compiled.reads_surface {
-        for run in runs.iter() {
-            store::mark(taken, run.at, run.count);
-        }
+        store::mark(taken, runs);
     }
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);

@@ -143,11 +143,13 @@ fn bits(word: usize, at: usize, count: usize) -> u64 {
     if end < last { low & (u64::MAX >> (last - end)) } else { low }
 }
 
-/// Flips the bits of the given pixels.
+/// Flips the bits of the pixels of some runs.
 #[inline(always)]
-pub(super) fn mark(taken: &mut [u64], at: usize, count: usize) {
-    for word in words(at, count) {
-        taken[word] ^= bits(word, at, count);
+pub(super) fn mark(taken: &mut [u64], runs: &[Run]) {
+    for Run { at, count, .. } in runs.iter().copied() {
+        for word in words(at, count) {
+            taken[word] ^= bits(word, at, count);
+        }
     }
 }
 
