@@ -5,8 +5,7 @@ use super::Sampler;
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{
-    IOTA_REAL, Line, Positions, QuotientEstimate, Reciprocals, SLACK, any_negative, estimate_two, nearest, position,
-    prove, whole,
+    IOTA_REAL, Line, Positions, QuotientEstimate, Reciprocals, SLACK, any_negative, nearest, position, whole,
 };
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
 use super::short::{Losses, Short, floors};
@@ -214,7 +213,7 @@ impl Setup<'_> {
                 let face = if ROW && open { direction.face::<FMA>(local.columns) } else { *face };
                 match face {
                     Some(face) => {
-                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, numbers, faces)
+                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, short, numbers, faces)
                     }
                     None => direction.directions::<FMA, ROW>(batch, sampler, numbers, faces),
                 }
@@ -240,6 +239,7 @@ impl Setup<'_> {
         face: Face,
         direction: &CubeDirection,
         local: &BatchSetup,
+        short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
@@ -257,7 +257,7 @@ impl Setup<'_> {
         };
         let (along, down) = (line(s), line(t));
         faces[batch.lanes()].fill(face as u32);
-        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, numbers, faces)
+        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, short, numbers, faces)
     }
 
     /// TEX-15 of a batch for s, t and q: two quotients of numbers that lose something where weights fall short. `reach` bounds
@@ -296,7 +296,7 @@ impl Setup<'_> {
             }
             let margin = error * (1.0 + reach) * widest;
             if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
-                return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, numbers, faces);
+                return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, short, numbers, faces);
             }
             (margin, 0.0)
         };
@@ -364,6 +364,7 @@ impl Setup<'_> {
         widest: f64,
         margin: f64,
         local: &BatchSetup,
+        Short { reciprocals: divided, .. }: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
@@ -375,10 +376,11 @@ impl Setup<'_> {
             return false;
         };
         let [u, v] = numbers;
-        let close = estimate_two::<FMA, ROW>(batch.at, m, &[along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
+        divided.set::<FMA, ROW>(batch.at, m);
+        let close = divided.estimate::<FMA, ROW>([along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
         if close[0] | close[1] {
             for n in 0..batch.count {
-                match prove::<ROW>(batch.at, n, m, &[along, down]) {
+                match divided.prove::<ROW>(n, &[along, down]) {
                     Some([u, v]) => (numbers[0][batch.lane + n], numbers[1][batch.lane + n]) = (u, v),
                     None => self.defined_lane(batch, n, sampler, numbers, faces),
                 }

@@ -40,8 +40,6 @@ pub(super) struct Placing {
     levels: [PerLane<i32>; 2],
     /// Sign bits of lanes whose floors are not proved on some level.
     close: PerLane<i32>,
-    /// Reciprocals by which coordinates other than planes are divided.
-    reciprocals: Reciprocals,
 }
 
 impl Setup<'_> {
@@ -62,7 +60,7 @@ impl Setup<'_> {
         (sampler, planes): (&Sampler, &Planes),
         floors: Option<[&[i32]; 2]>,
         (local, reciprocals): (&BatchSetup, &Reciprocals),
-        short: &Short,
+        short: &mut Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
     ) {
@@ -126,7 +124,7 @@ impl Setup<'_> {
         base: &BaseLevel<'_>,
         floors: Option<[&[i32]; 2]>,
         (local, reciprocals): (&BatchSetup, &Reciprocals),
-        short: &Short,
+        short: &mut Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
     ) {
@@ -134,7 +132,7 @@ impl Setup<'_> {
         let unit = &self.context.draw.units[sampler.index];
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
-        let Placing { at, floors: [u, v], lods, levels, close, reciprocals: own } = placing;
+        let Placing { at, floors: [u, v], lods, levels, close } = placing;
         spread.hand_out(quads, &reads.known.each, batch.count, lods);
         let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
@@ -159,8 +157,8 @@ impl Setup<'_> {
                     let reciprocals = if base.planes.is_some() {
                         reciprocals
                     } else {
-                        own.set::<FMA, ROW>(batch.at, base.denominator);
-                        own
+                        short.reciprocals.set::<FMA, ROW>(batch.at, base.denominator);
+                        &short.reciprocals
                     };
                     quotients::<FMA, ROW>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
                 }

@@ -192,22 +192,6 @@ impl QuotientEstimate {
     }
 }
 
-/// Computes [`estimate_two`] for one lane. Returns `None` if it is not proved.
-pub(super) fn prove<const ROW: bool>(
-    at: Positions<'_>,
-    n: usize,
-    denominator: Line,
-    numerators: &[QuotientEstimate; 2],
-) -> Option<[i32; 2]> {
-    let (x, y) = position::<ROW>(n, f64::from(at.last), at.x, at.y, &IOTA_REAL);
-    let r = 1.0 / denominator.at::<false, ROW>(x, y);
-    let floor = |numerator: &QuotientEstimate| {
-        let (value, close) = numerator.at::<false, ROW>(x, y, r);
-        (close >= 0).then_some(value)
-    };
-    Some([floor(&numerators[0])?, floor(&numerators[1])?])
-}
-
 /// Rounds to the nearest integer, as a float.
 #[inline(always)]
 pub(super) fn whole(q: f64) -> f64 {
@@ -237,31 +221,6 @@ pub(super) fn floor_of_factor(v: f64) -> i32 {
 #[inline(always)]
 pub(super) fn nearest_32(q: f32) -> i32 {
     ((q + MAGIC_32).to_bits() as i32).wrapping_sub(MAGIC_32.to_bits() as i32)
-}
-
-/// Writes the floors of two quotients. Returns for each whether a lane is not proved.
-#[inline(always)]
-pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    denominator: Line,
-    numerators: &[QuotientEstimate; 2],
-    first: &mut [i32],
-    second: &mut [i32],
-) -> [bool; 2] {
-    let [one, other] = *numerators;
-    let mut close = [0_i32; 2];
-    let last = f64::from(at.last);
-    let lanes = first.len();
-    let (second, xs, ys, iota) = (&mut second[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
-        let ((a, a_close), (b, b_close)) = (one.at::<FMA, ROW>(x, y, r), other.at::<FMA, ROW>(x, y, r));
-        (first[n], second[n]) = (a, b);
-        close[0] |= a_close;
-        close[1] |= b_close;
-    }
-    [close[0] < 0, close[1] < 0]
 }
 
 /// Positions of a batch and the reciprocals of its denominators.
@@ -307,7 +266,7 @@ impl Reciprocals {
         [&self.x[..count], &self.y[..count], &self.r[..count]]
     }
 
-    /// Computes [`estimate_two`] from the reciprocals.
+    /// Writes the floors of two quotients. Returns for each whether a lane is not proved.
     #[inline(always)]
     pub(super) fn estimate<const FMA: bool, const ROW: bool>(
         &self,
@@ -326,6 +285,15 @@ impl Reciprocals {
             close[1] |= b_close;
         }
         [close[0] < 0, close[1] < 0]
+    }
+
+    /// Returns the floors of a lane, or `None` if one is not proved.
+    pub(super) fn prove<const ROW: bool>(&self, n: usize, numerators: &[QuotientEstimate; 2]) -> Option<[i32; 2]> {
+        let floor = |numerator: &QuotientEstimate| {
+            let (value, close) = numerator.at::<false, ROW>(self.x[n], self.y[n], self.r[n]);
+            (close >= 0).then_some(value)
+        };
+        Some([floor(&numerators[0])?, floor(&numerators[1])?])
     }
 }
 

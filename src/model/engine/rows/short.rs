@@ -5,7 +5,9 @@
 use super::BLOCK;
 use super::kernels::{LANES, PerLane};
 use super::planes::{Plane, edge_lines, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, any_negative, multiply_add, nearest, position, whole};
+use super::quotient::{
+    IOTA_REAL, Line, Positions, Reciprocals, SLACK, any_negative, multiply_add, nearest, position, whole,
+};
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
 use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant, shortfall};
 use crate::raster::setup::Triangle;
@@ -25,6 +27,8 @@ pub(super) struct Short {
     pub(super) close: PerLane<u64>,
     /// Scratch space for two quotients with their fractions.
     pub(super) at: [PerLane<f64>; 2],
+    /// Scratch space for the reciprocals of a divisor other than D.
+    pub(super) reciprocals: Reciprocals,
 }
 
 /// INT-3's dominance in a batch. Weights are classified by whether they are above a half, above a quarter, or neither, because the largest
