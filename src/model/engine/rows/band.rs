@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, batch, boxes, few, is_box, is_small};
+use super::boxes::{BoxCoverage, Entered, batch, boxes, common, few};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -14,7 +14,9 @@ use super::triangle::{Functions, Interpolators, Varying};
 use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
-use crate::raster::setup::Triangle;
+
+// Kernels stand here, wherever their text is.
+pub(super) use super::boxes::{cover, enter};
 
 /// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug, Default)]
@@ -322,61 +324,6 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
         let first = block.runs.len() - block.coverage.filled;
         store::mark(&mut block.taken, &block.runs[first..]);
     }
-}
-
-/// How a triangle is drawn.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) enum Entered {
-    #[default]
-    Nothing,
-    /// As one box: the pixels of the coverage.
-    Box,
-    /// As several boxes.
-    Boxes,
-    /// Row by row.
-    Large,
-}
-
-/// Returns the rows and columns that a window shares with the triangle's bounding box.
-#[inline(always)]
-pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
-    (
-        (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)),
-        (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1)),
-    )
-}
-
-/// Sets up a triangle that may cover pixels for the given rows and columns, and finds its coverage if it is a single box.
-#[inline(always)]
-pub(super) fn enter<const WIDE: bool>(
-    context: &mut TriangleContext<'_>,
-    number: usize,
-    window: Window,
-    coverage: &mut BoxCoverage,
-) -> Entered {
-    if !context.prepare(number) {
-        return Entered::Nothing;
-    }
-    let triangle = &context.triangle;
-    if !is_small(triangle) {
-        return Entered::Large;
-    }
-    let window = common(triangle, window);
-    let (rows, columns) = window;
-    if rows.0 >= rows.1 || columns.0 >= columns.1 {
-        return Entered::Nothing;
-    }
-    if !is_box(window) {
-        return Entered::Boxes;
-    }
-    coverage.cover(triangle, window);
-    if coverage.count > 0 { Entered::Box } else { Entered::Nothing }
-}
-
-/// Finds the covered pixels of one box of a triangle that is cut into boxes.
-#[inline(always)]
-pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
-    coverage.cover(triangle, window);
 }
 
 /// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if an attribute could not be

@@ -4,6 +4,7 @@
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch, whole_steps};
+use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
 
@@ -27,7 +28,7 @@ pub(super) fn is_small(triangle: &Triangle) -> bool {
 
 /// Returns whether these rows and columns fit into one box.
 #[inline(always)]
-pub(super) fn is_box((rows, columns): Window) -> bool {
+fn is_box((rows, columns): Window) -> bool {
     rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE
 }
 
@@ -90,6 +91,61 @@ impl BoxCoverage {
             self.y[self.count..][..STEP].fill(y);
         }
     }
+}
+
+/// How a triangle is drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum Entered {
+    #[default]
+    Nothing,
+    /// As one box: the pixels of the coverage.
+    Box,
+    /// As several boxes.
+    Boxes,
+    /// Row by row.
+    Large,
+}
+
+/// Returns the rows and columns that a window shares with the triangle's bounding box.
+#[inline(always)]
+pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
+    (
+        (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)),
+        (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1)),
+    )
+}
+
+/// Sets up a triangle that may cover pixels for the given rows and columns, and finds its coverage if it is a single box.
+#[inline(always)]
+pub(super) fn enter<const WIDE: bool>(
+    context: &mut TriangleContext<'_>,
+    number: usize,
+    window: Window,
+    coverage: &mut BoxCoverage,
+) -> Entered {
+    if !context.prepare(number) {
+        return Entered::Nothing;
+    }
+    let triangle = &context.triangle;
+    if !is_small(triangle) {
+        return Entered::Large;
+    }
+    let window = common(triangle, window);
+    let (rows, columns) = window;
+    if rows.0 >= rows.1 || columns.0 >= columns.1 {
+        return Entered::Nothing;
+    }
+    if !is_box(window) {
+        return Entered::Boxes;
+    }
+    coverage.cover(triangle, window);
+    if coverage.count > 0 { Entered::Box } else { Entered::Nothing }
+}
+
+/// Finds the covered pixels of one box of a triangle that is cut into boxes.
+#[inline(always)]
+pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
+    coverage.cover(triangle, window);
 }
 
 /// Returns the pixels of a box as a batch.

@@ -4,8 +4,7 @@
 //! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::band::common;
-use super::boxes::{BoxCoverage, batch, boxes, is_small};
+use super::boxes::{BoxCoverage, batch, boxes, common, is_small};
 use super::kernels::PerLane;
 use super::levels::MipFetches;
 use super::quads::Measure;

@@ -183,7 +183,7 @@ impl Setup<'_> {
 
 impl Curve {
     /// FOG-2 at the vertices: writes bytes, and numbers other than 0 for lanes that are not proved. Returns whether there are such lanes.
-    /// `lines` give the 4096ths, whose error is at most `off`.
+    /// `line` over D gives the 4096ths, whose error is at most `off`. `at` has columns, rows and the reciprocals of D.
     #[inline(always)]
     fn look_up<const FMA: bool, const ROW: bool>(
         &self,
@@ -221,7 +221,7 @@ impl Curve {
 }
 
 /// FOG-2: writes the bytes of the least possible factors, and numbers other than 0 for lanes that are not proved. Returns whether there are
-/// such lanes. `lines` give p1 d', whose error is at most `off`, plus what 24 bits lose.
+/// such lanes. `line` over D gives p1 d', whose error is at most `off`, plus what 24 bits lose.
 #[inline(always)]
 fn linear<const FMA: bool, const ROW: bool>(
     [xs, ys, rs]: [&[f64]; 3],
@@ -246,8 +246,8 @@ fn linear<const FMA: bool, const ROW: bool>(
     close != 0
 }
 
-/// FOG-4: writes indices into the table, and negative numbers for lanes that are not proved. Returns whether there are such lanes. `lines`
-/// give e in 4096ths, whose error is at most `off`. A tie may be one step lower (INT-4t); it is not proved, because `off` is not 0.
+/// FOG-4: writes indices into the table, and negative numbers for lanes that are not proved. Returns whether there are such lanes. `line`
+/// over D gives e in 4096ths, whose error is at most `off`. A tie may be one step lower (INT-4t); it is not proved, because `off` is not 0.
 #[inline(always)]
 fn steps<const FMA: bool, const ROW: bool>(
     [xs, ys, rs]: [&[f64]; 3],

@@ -1,7 +1,7 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
-use super::band::{self, Block, Entered};
-use super::boxes::BoxCoverage;
+use super::band::{self, Block};
+use super::boxes::{BoxCoverage, Entered};
 use super::compiled::{CompiledDraw, Job};
 use super::filter::Vectors;
 use super::setup::Covered;

@@ -87,7 +87,7 @@ use table::{Key, Table};
 /// Number of spare rows, for channels that nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
 
-/// Largest number of entries of all tables, each of four bytes.
+/// Largest number of entries of all tables, each of four bytes, or of eight where footprints are read.
 const MAX_ENTRIES: u64 = 1 << 25;
 
 /// A plan compiled to rows.

@@ -167,16 +167,12 @@ impl Spread {
     /// Calls a function for each of `count` lanes with its quad.
     #[inline(always)]
     pub(super) fn each(&self, quads: &Quads, count: usize, mut call: impl FnMut(usize, usize)) {
+        let Spread::Rows = self else { return (0..count).for_each(|lane| call(lane, 0)) };
         let rows = &quads.rows[..quads.filled];
-        let one = [QuadsOfRow { lane: 0, quad: 0, odd: 0 }];
-        let (rows, is_wide) = match self {
-            Spread::First => (&one[..], false),
-            Spread::Rows => (rows, true),
-        };
         for (n, row) in rows.iter().enumerate() {
             let end = rows.get(n + 1).map_or(count, |next| next.lane);
             for lane in row.lane..end {
-                call(lane, row.quad + if is_wide { (lane - row.lane + row.odd) >> 1 } else { 0 });
+                call(lane, row.quad + ((lane - row.lane + row.odd) >> 1));
             }
         }
     }
