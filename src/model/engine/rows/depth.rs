@@ -204,21 +204,21 @@ impl Depths<'_> {
         if is_plain_row && steps.reciprocals.area != area {
             steps.reciprocals = ReciprocalLine::new::<FMA>(area);
         }
-        let (mut first, count) = (0, if ROW { count } else { out.len() });
-        let (mut reference, mut until) = (0, 0);
-        while first < count {
-            if is_plain_row && steps.reciprocals.tells {
-                if first >= until {
-                    (reference, until) = same_reference(first, count, row);
+        let (mut first, mut end) = (0, if ROW { count } else { out.len() });
+        if is_plain_row && steps.reciprocals.tells {
+            let mut left = end..0;
+            while first < end {
+                let (reference, until) = same_reference(first, end, row);
+                if !self.floored::<FMA>(edges, reference, first..until, steps, out) {
+                    left = left.start.min(first)..until;
                 }
-                if self.floored::<FMA>(edges, reference, first..until, steps, out) {
-                    first = until;
-                    continue;
-                }
+                first = until;
             }
             // Whole steps of the batch, although some lanes may be done.
-            first -= first % STEP;
-            let pixels = (count - first).min(CHUNK);
+            (first, end) = (left.start - left.start % STEP, left.end);
+        }
+        while first < end {
+            let pixels = (end - first).min(CHUNK);
             let lanes = if ROW { first..first + whole_steps(pixels) } else { first..first + pixels };
             let out = &mut out[lanes.clone()];
             let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
