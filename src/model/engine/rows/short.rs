@@ -400,6 +400,16 @@ fn linear<const FMA: bool>(
 ) {
     let lanes = u.len();
     let (v, iota) = (&mut v[..lanes], &iota[..lanes]);
+    if denominator.x == 0.0 {
+        let r = 1.0 / denominator.c;
+        let divided = |line: Line| Line { c: multiply_add::<FMA>(line.c, r, plus), ..line.times(r) };
+        let (along, down) = (divided(along), divided(down));
+        for n in 0..lanes {
+            let x = if iota[n] < last { iota[n] } else { last };
+            (u[n], v[n]) = (along.at::<FMA, true>(x, 0.0), down.at::<FMA, true>(x, 0.0));
+        }
+        return;
+    }
     for n in 0..lanes {
         let x = if iota[n] < last { iota[n] } else { last };
         let r = 1.0 / denominator.at::<FMA, true>(x, 0.0);

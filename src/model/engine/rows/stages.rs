@@ -225,19 +225,27 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
 ) {
     let lanes = out.len();
     let ([xs, ys, rs], open) = (reciprocals.lanes(lanes), &mut open[..lanes]);
-    for n in 0..lanes {
+    let estimate = |n: usize| {
         let value = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
         if BYTE {
             let (low, high) = ((value - off) * 4096.0, (value + off) * 4096.0);
             let (low, high) = (factor(floor_of_factor(low)), factor(floor_of_factor(high)));
-            out[n] = low as f32;
             // NaN is left open too.
-            open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
+            (low as f32, (low != high) | value.is_nan() | off.is_nan())
         } else {
             let (low, high) = ((value - off) as f32, (value + off) as f32);
-            out[n] = low;
-            open[n] |= i32::from((low != high) | (low == 0.0));
+            (low, (low != high) | (low == 0.0))
         }
+    };
+    let mut any = false;
+    for n in 0..lanes {
+        let (number, is_open) = estimate(n);
+        out[n] = number;
+        any |= is_open;
+    }
+    // Few batches have such lanes.
+    for n in 0..if any { lanes } else { 0 } {
+        open[n] |= i32::from(estimate(n).1);
     }
 }
 
