@@ -326,16 +326,16 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
     }
 }
 
-/// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if an attribute could not be
-/// estimated; then nothing that was written counts.
+/// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if something is not proved; then
+/// nothing that was written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
     context: &mut TriangleContext<'_>,
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, rows, coverage, used, planes, .. } = block;
-    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows, planes)
+    let Block { varying, rows, coverage, used, .. } = block;
+    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows)
 }
 
 /// Interpolates all attributes in the block's box, for any draw.

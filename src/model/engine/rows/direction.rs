@@ -203,7 +203,7 @@ impl Setup<'_> {
             Planes::Plane(planes) => {
                 let [u, v] = &mut *numbers;
                 let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
-                self.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), (local, reciprocals), u, v, whole);
+                self.on_planes::<FMA, ROW>(batch, (sampler, planes), (local, reciprocals), u, v, whole);
                 true
             }
             Planes::Direction(planes, face) => {

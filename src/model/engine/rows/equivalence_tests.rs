@@ -301,7 +301,7 @@ fn compare_small<const FMA: bool>(
     varying: &mut Varying,
     rows: &mut [PerLane<i16>],
 ) -> bool {
-    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Default::default());
+    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows);
     super::depth::depths::<FMA, false>(context, batch, varying.depths());
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
@@ -434,6 +434,13 @@ fn rows_interpolate(seed: u64) {
         for vertex in &mut vertices {
             vertex.texture_coordinates.iter_mut().skip(2).for_each(|set| set[2] *= of_r);
             vertex.position[3] *= if w_buffer { of_w } else { 1.0 };
+        }
+        if random.below(4) == 0 {
+            let (axis, same) = (random.below(2) as usize, random.of(&[0.0, 0.5, -1.25, 0.3]));
+            for vertex in &mut vertices {
+                vertex.texture_coordinates[0][axis] = same;
+                vertex.texture_coordinates[3][axis] = same;
+            }
         }
         let anisotropy = random.of(&[1, 1, 2, 4, 8]);
         let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));

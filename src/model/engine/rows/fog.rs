@@ -144,7 +144,7 @@ impl Setup<'_> {
             Fog::Same(factor) => out.fill(*factor),
             Fog::Factor(plane) => {
                 let planes = [*plane, *plane];
-                let Some(estimates) = self.estimates::<ROW>(&planes, 0, local) else {
+                let Some(estimates) = self.estimates::<ROW>(&planes, (0, [0.0; 2]), local) else {
                     return self.defined_factors(batch, |_| true, out);
                 };
                 if reciprocals.estimate::<FMA, ROW>(estimates, values, spare)[0] {

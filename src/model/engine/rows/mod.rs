@@ -274,12 +274,17 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             }
             (TextureImage::Target { .. } | TextureImage::Depth { .. }, None) => None,
         };
+        let sides = unit.scale(&unit.levels[0]);
         let mut sampler = Sampler {
             index,
             unit: unit.index,
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
-            sides: unit.scale(&unit.levels[0]),
+            sides,
+            up: [0, 1].map(|axis| {
+                let same = draw.assembly.vertices.same_coordinate(unit.stage.coordinate_set, axis);
+                same.map_or(0.0, |at| 0.5 - (f64::from(at) * f64::from(256 * sides[axis])).rem_euclid(1.0))
+            }),
             signed: [0, 1, 2, 3].map(|n| crate::texture::chain::holds_double(unit, n)),
             mixes: unit.needs_lod(),
             key,

@@ -1,7 +1,7 @@
 //! The common parts of all interpolators: a triangle, a batch of its pixels, and quotients of planes by D.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::compiled::{Reason, Reasons};
+use super::compiled::{Reason, Reasons, Sampler};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::{Plane, RealPlane, exact_line};
 use super::quotient::{
@@ -185,39 +185,48 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Sets up two quotients less a bias. Returns `None` if one of them would prove nothing.
+    /// Sets up two quotients, to which `up` is added, less a bias. Returns `None` if one of them would prove nothing.
     #[inline(always)]
     pub(super) fn estimates<const ROW: bool>(
         &self,
         planes: &[Plane; 2],
-        bias: i32,
+        (bias, up): (i32, [f64; 2]),
         local: &BatchSetup,
     ) -> Option<[QuotientEstimate; 2]> {
         // Not a closure, because one that is called twice is not inlined.
-        Some([self.estimate_of::<ROW>(&planes[0], bias, local)?, self.estimate_of::<ROW>(&planes[1], bias, local)?])
+        Some([
+            self.estimate_of::<ROW>(&planes[0], (bias, up[0]), local)?,
+            self.estimate_of::<ROW>(&planes[1], (bias, up[1]), local)?,
+        ])
     }
 
     #[inline(always)]
-    fn estimate_of<const ROW: bool>(&self, plane: &Plane, bias: i32, local: &BatchSetup) -> Option<QuotientEstimate> {
+    fn estimate_of<const ROW: bool>(
+        &self,
+        plane: &Plane,
+        (bias, up): (i32, f64),
+        local: &BatchSetup,
+    ) -> Option<QuotientEstimate> {
         let margin = local.margin::<ROW>(&plane.real);
         let (extent, reciprocals) = ((local.columns, local.rows), (local.reciprocal, local.widest));
-        QuotientEstimate::new::<ROW>(plane.real.line(&local.real), local.denominator, extent, reciprocals, margin, bias)
+        let numerator = plane.real.line(&local.real).plus(local.denominator.times(up));
+        QuotientEstimate::new::<ROW>(numerator, local.denominator, extent, reciprocals, margin, bias)
     }
 
-    /// INT-4, INT-4t: computes coordinates less a bias.
+    /// INT-4, INT-4t: computes the coordinates of a sampler, less its bias.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn on_planes<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
-        planes: &[Plane; 2],
-        bias: i32,
+        (sampler, planes): (&Sampler, &[Plane; 2]),
         (local, reciprocals): (&BatchSetup, &Reciprocals),
         u: &mut [i32],
         v: &mut [i32],
         whole: &mut PerLane<i32>,
     ) {
-        let estimates = self.estimates::<ROW>(planes, bias, local);
+        let bias = sampler.bias();
+        let estimates = self.estimates::<ROW>(planes, (bias, sampler.up), local);
         if let Some(estimates) = estimates.filter(|_| !ROW || self.stays_near(&batch, planes, local)) {
             let close = reciprocals.estimate::<FMA, ROW>(estimates, u, v);
             if close[0] | close[1] {

@@ -2,14 +2,14 @@
 //! all quotients of a pixel share one reciprocal. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::CompiledDraw;
 use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
 use super::kernels::PerLane;
 use super::planes::{FOUR, inverse};
 use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
-use super::setup::{PixelBatch, Planes};
-use super::triangle::{Functions, Interpolators, Varying};
-use super::{CompiledDraw, Reasons};
+use super::setup::PixelBatch;
+use super::triangle::Varying;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
@@ -137,10 +137,8 @@ impl Estimates4 {
     }
 }
 
-/// Interpolates all attributes of the pixels of a small triangle, of which there is at least one. Returns `false` if an attribute could not
-/// be estimated; then nothing counts.
-///
-/// `planes` is scratch space.
+/// Interpolates all attributes of the pixels of a small triangle, of which there is at least one. Returns `false` if something is not proved;
+/// then nothing counts.
 #[inline(always)]
 pub(super) fn interpolate<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -148,7 +146,6 @@ pub(super) fn interpolate<const FMA: bool>(
     batch: PixelBatch<'_>,
     varying: &mut Varying,
     rows: &mut [PerLane<i16>],
-    planes: &mut Functions,
 ) -> bool {
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
     let mut count = 0;
@@ -167,7 +164,7 @@ pub(super) fn interpolate<const FMA: bool>(
         pairs[count] = Pair::Weights;
         count += 1;
     }
-    if count > 0 && !divide::<FMA>(context, compiled, batch, (&pairs, count), varying, planes) {
+    if count > 0 && !divide::<FMA>(context, compiled, batch, (&pairs, count), varying) {
         return false;
     }
     if weighted {
@@ -177,7 +174,7 @@ pub(super) fn interpolate<const FMA: bool>(
     true
 }
 
-/// Computes everything that is divided by D.
+/// Computes everything that is divided by D. Returns whether all of it is proved.
 #[inline(always)]
 fn divide<const FMA: bool>(
     context: &mut TriangleContext<'_>,
@@ -185,13 +182,10 @@ fn divide<const FMA: bool>(
     batch: PixelBatch<'_>,
     (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
     varying: &mut Varying,
-    planes: &mut Functions,
 ) -> bool {
     let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
-    // Kept apart from the results, because direction for unproved lanes among them would wait until they are stored.
-    let (mut close, mut corrects) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
-    let fours = pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0);
-    for (n, (pairs, close)) in fours.enumerate() {
+    let mut is_open = false;
+    for (n, pairs) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().enumerate() {
         let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
         for (half, pair) in pairs.iter().enumerate() {
             let (u, v) = (2 * half, 2 * half + 1);
@@ -202,8 +196,8 @@ fn divide<const FMA: bool>(
                     let (sets, [width, height]) = (context.sampled_coordinates(sampler.index), sampler.sides);
                     let (width, height) = (f64::from(256 * width), f64::from(256 * height));
                     for k in 0..3 {
-                        g[k][u] = f64::from(sets[k][0]) * width * edges.p[k];
-                        g[k][v] = f64::from(sets[k][1]) * height * edges.p[k];
+                        g[k][u] = (f64::from(sets[k][0]) * width + sampler.up[0]) * edges.p[k];
+                        g[k][v] = (f64::from(sets[k][1]) * height + sampler.up[1]) * edges.p[k];
                     }
                     (bias[u], bias[v]) = (sampler.bias(), sampler.bias());
                 }
@@ -219,65 +213,24 @@ fn divide<const FMA: bool>(
             varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
         }
         let Varying { coordinates, weights: [w0, w2], reciprocals, .. } = &mut *varying;
-        for (half, (pair, close)) in pairs.iter().zip(close).enumerate() {
+        for (half, pair) in pairs.iter().enumerate() {
             let (along, down) = (estimates.of(2 * half), estimates.of(2 * half + 1));
             let at = batch.lanes();
-            match *pair {
-                Pair::None => {}
+            let close = match *pair {
+                Pair::None => [false; 2],
                 Pair::Sampler(n) => {
                     let [u, v] = &mut coordinates[n];
-                    *close = reciprocals.estimate::<FMA, false>([along, down], &mut u[at.clone()], &mut v[at]);
+                    reciprocals.estimate::<FMA, false>([along, down], &mut u[at.clone()], &mut v[at])
                 }
                 Pair::Weights => {
                     let estimates = [along.not_negative(), down.not_negative()];
-                    *close = reciprocals.estimate::<FMA, false>(estimates, &mut w0[at.clone()], &mut w2[at]);
+                    reciprocals.estimate::<FMA, false>(estimates, &mut w0[at.clone()], &mut w2[at])
                 }
-            }
-            corrects |= close[0] | close[1];
+            };
+            is_open |= close[0] | close[1];
         }
     }
-    if corrects {
-        correct(context, compiled, batch, pairs, &close, varying, planes);
-    }
-    true
-}
-
-/// Corrects the pairs that have lanes that are not proved.
-#[inline(never)]
-fn correct(
-    context: &mut TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    batch: PixelBatch<'_>,
-    pairs: &[Pair],
-    close: &[[bool; 2]],
-    varying: &mut Varying,
-    planes: &mut Functions,
-) {
-    context.complete();
-    let e = context.triangle.edges(batch.first.0, batch.first.1);
-    let functions = Interpolators::new(context, compiled, std::mem::take(planes));
-    let setup = &functions.setup;
-    for (pair, close) in pairs.iter().zip(close).filter(|(_, close)| close[0] | close[1]) {
-        let Varying { coordinates, weights: [w0, w2], whole, .. } = &mut *varying;
-        match *pair {
-            Pair::None => {}
-            Pair::Sampler(n) => {
-                let ([u, v], bias) = (&mut coordinates[n], compiled.samplers[n].bias());
-                let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
-                if let Planes::Plane(planes) = &functions.samplers[n] {
-                    setup.correct_coordinates::<false>(batch, bias, planes, *close, &e, u, v, &mut whole[0]);
-                }
-            }
-            Pair::Weights => {
-                let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
-                if let Some(planes) = &functions.weights {
-                    setup.correct_weights::<false>(batch, planes, &e, w0, w2, whole);
-                }
-            }
-        }
-    }
-    // Corrected estimates do not count as computed by the definition.
-    *planes = functions.given_back(&mut Reasons::default());
+    !is_open
 }
 
 #[inline(always)]

@@ -21,7 +21,8 @@ use crate::texture::planned::PlannedUnit;
 pub(super) fn purpose(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
     if let Some(axis) = table::layers(unit) {
         let sides = [unit.layers; 2];
-        let counts = Sampler { sides, filters: false, table: None, third: Some(Third::Counts), ..sampler.clone() };
+        let (third, up) = (Some(Third::Counts), [0.0; 2]);
+        let counts = Sampler { sides, filters: false, table: None, third, up, ..sampler.clone() };
         return Some(Third::Layer(Box::new(counts), axis));
     }
     let format = unit.format.depth().unwrap_or(DepthFormat::Z16);

@@ -276,7 +276,7 @@ impl<'a> Interpolators<'a> {
                 let [u, v] = &mut coordinates[n];
                 let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
                 let local = (local, &*reciprocals);
-                setup.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), local, u, v, &mut whole[0]);
+                setup.on_planes::<FMA, ROW>(batch, (sampler, planes), local, u, v, &mut whole[0]);
             }
         }
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
@@ -317,7 +317,7 @@ impl<'a> Interpolators<'a> {
         {
             let Varying { weights: [w0, w2], whole, reciprocals, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
-            let close = if let Some(estimates) = setup.estimates::<ROW>(planes, 0, local) {
+            let close = if let Some(estimates) = setup.estimates::<ROW>(planes, (0, [0.0; 2]), local) {
                 let estimates = [estimates[0].not_negative(), estimates[1].not_negative()];
                 let close = reciprocals.estimate::<FMA, ROW>(estimates, w0, w2);
                 close[0] | close[1]
