@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, Entered, batch, boxes, common, few};
+use super::boxes::{BoxCoverage, Entered, batch, boxes, common};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -391,7 +391,7 @@ pub(super) fn row_attributes<const FMA: bool>(
 #[inline(always)]
 pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, false>(context, few(&block.coverage, block.used), shader);
+        block.workshop.attributes::<FMA, false>(context, batch(&block.coverage, block.used), shader);
     }
 }
 
@@ -519,7 +519,6 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);
     }
-    let is_long = runs.len() * LONG_RUN <= *used;
     if compiled.drops_late {
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
@@ -535,7 +534,7 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     }
     // Most blocks lose no fragment.
     let merges = compiled.merges && !(compiled.writes_whole && store::all(&alive[..*used]));
-    if !merges && is_long {
+    if !merges && runs.len() * LONG_RUN <= *used {
         for run in runs.iter() {
             store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
         }

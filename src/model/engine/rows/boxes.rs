@@ -157,18 +157,6 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs, covered: Covered(0, count) }
 }
 
-/// Number of lanes that [`few`] pixels take.
-const FEW: usize = STEP / 2;
-
-/// Returns the pixels of a box as a batch, with fewer lanes than a step if those suffice.
-#[inline(always)]
-pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
-    let all = batch(coverage, lane);
-    let Positions { x, y, last } = all.at;
-    let is_few = all.count <= FEW;
-    if is_few { PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], last }, ..all } } else { all }
-}
-
 /// A limit beyond all columns.
 const BEYOND: i32 = 1 << 23;
 

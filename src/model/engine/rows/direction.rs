@@ -295,9 +295,6 @@ impl Setup<'_> {
                 reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
             }
             let margin = error * (1.0 + reach) * widest;
-            if self.context.triangle.exact_reciprocal && !reaches_limit(reach, sampler.sides) {
-                return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, local, short, numbers, faces);
-            }
             (margin, 0.0)
         };
         let functions = (lines, self.losses_by_q(planes, [width, height]), proved);

@@ -80,19 +80,17 @@ const SHORT_RUN: usize = 16;
 pub(super) fn read_runs(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
     for run in runs {
         let (from, to) = (&words[run.at..], &mut out[run.lane..]);
-        // Not more than needed, because each line of a surface may have to come from far away.
-        let done = run.count <= SHORT_RUN / 2 && read_short::<{ SHORT_RUN / 2 }>(from, to)
-            || run.count <= SHORT_RUN && read_short::<SHORT_RUN>(from, to);
+        let done = run.count <= SHORT_RUN && read_short(from, to);
         if !done {
             to[..run.count].copy_from_slice(&from[..run.count]);
         }
     }
 }
 
-/// Copies the first words. Returns `false` if there are not so many.
+/// Copies the words of a short run and those after it. Returns `false` if there are not so many.
 #[inline(always)]
-fn read_short<const COUNT: usize>(from: &[u32], to: &mut [u32]) -> bool {
-    let (Some(from), Some(to)) = (from.first_chunk::<COUNT>(), to.first_chunk_mut::<COUNT>()) else { return false };
+fn read_short(from: &[u32], to: &mut [u32]) -> bool {
+    let (Some(from), Some(to)) = (from.first_chunk::<SHORT_RUN>(), to.first_chunk_mut()) else { return false };
     *to = *from;
     true
 }
