@@ -65,7 +65,7 @@ fn cost(assembly: &Assembly, number: usize, (width, height): (usize, usize)) -> 
     (rows, cost as i64)
 }
 
-/// The triangles of a draw, in order, for each band in which they may cover pixels.
+/// The triangles of a draw that can be seen, in order, for each band in which they may cover pixels.
 #[derive(Debug)]
 pub(super) struct Bins {
     /// Index of each band's first number, and the end of the last band's.
@@ -74,11 +74,11 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Sorts triangles into the bands between borders.
-    pub(super) fn new(assembly: &Assembly, borders: &[usize]) -> Bins {
-        let (count, bands) = (assembly.triangles.len(), borders.len() - 1);
+    /// Sorts those triangles into the bands between borders that are visible.
+    pub(super) fn new(assembly: &Assembly, borders: &[usize], is_visible: impl Fn(usize) -> bool) -> Bins {
+        let (visible, bands) = ((0..assembly.triangles.len()).filter(|number| is_visible(*number)), borders.len() - 1);
         let mut starts = vec![0; bands + 1];
-        for number in 0..count {
+        for number in visible.clone() {
             for band in met(assembly, number, borders) {
                 starts[band + 1] += 1;
             }
@@ -88,7 +88,7 @@ impl Bins {
         }
         let mut numbers = vec![0; starts[bands]];
         let mut ends = starts.clone();
-        for number in 0..count {
+        for number in visible {
             for band in met(assembly, number, borders) {
                 // A draw has 32-bit indices, and three make a triangle.
                 numbers[ends[band]] = number as u32;
@@ -168,15 +168,16 @@ mod tests {
         assert_eq!(balanced(std::iter::empty(), (64, 48), 3, 2), [0, 16, 32, 48]);
     }
 
-    /// Every triangle is in the bins of exactly those bands that one of its rows lies in.
+    /// Every visible triangle is in the bins of exactly those bands that one of its rows lies in.
     #[test]
     fn bins_hold_what_meets_their_rows() {
         let assembly = triangles(200);
         for borders in [equal(128, 16), equal(126, 6), equal(200, 200), vec![0, 2, 40, 150]] {
-            let bins = Bins::new(&assembly, &borders);
+            let bins = Bins::new(&assembly, &borders, |number| number % 5 != 0);
             for band in 0..borders.len() - 1 {
                 let rows = (borders[band] as i64, borders[band + 1] as i64);
                 let wanted: Vec<u32> = (0..200)
+                    .filter(|n| n % 5 != 0)
                     .filter(|n| {
                         let y = [0, 1, 2].map(|k| i64::from(assembly.corners[3 * *n as usize + k].position[1]));
                         let (top, bottom) = centres(y);

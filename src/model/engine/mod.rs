@@ -27,6 +27,7 @@ use crate::texture::planned::Image;
 use crate::threads::Team;
 use crate::trace::Silent;
 use bins::Bins;
+use pixel::TriangleContext;
 use rows::Rows;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -135,7 +136,7 @@ struct Group {
     draws: Range<usize>,
     /// First row of each band, and the end of the last.
     borders: Vec<usize>,
-    /// The sorted triangles of each draw, if the fast engine draws them in several bands.
+    /// The sorted triangles of each draw, if the fast engine draws them.
     bins: Vec<Bins>,
 }
 
@@ -152,10 +153,12 @@ impl<'a> Renderer<'a> {
         let group = |draws: Range<usize>| {
             let all = &plan.draws[draws.clone()];
             let borders = borders(plan, all, rows.is_some(), options.band, team.count());
-            let mut bins = Vec::new();
-            if rows.is_some() && borders.len() > 2 {
-                bins.extend(all.iter().map(|draw| Bins::new(&draw.assembly, &borders)));
-            }
+            let bins = |draw: &PlannedDraw| {
+                let rows = (0, plan.targets[draw.target].height.into());
+                let is_visible = |number| TriangleContext::may_cover(draw, number, rows);
+                Bins::new(&draw.assembly, &borders, is_visible)
+            };
+            let bins = if rows.is_some() { all.iter().map(bins).collect() } else { Vec::new() };
             Group { draws, borders, bins }
         };
         let groups = groups(plan).map(group).collect();
@@ -258,11 +261,11 @@ impl<'a> Renderer<'a> {
                     let pixels = match &compiled {
                         Some(compiled) => {
                             let compiled = &compiled[n];
-                            let triangles = bins.get(n).map(|bins| bins.of(number));
+                            let triangles = bins[n].of(number);
                             let compiled = compiled.as_ref();
                             let job =
                                 rows::Job { plan, draw, compiled, textures, triangles, vectors: Default::default() };
-                            if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
+                            if triangles.is_empty() { 0 } else { rows::isa::run(self.isa, job, band, block) }
                         }
                         None => walk::draw(plan, draw, textures, band, &mut Silent).0,
                     };

@@ -81,30 +81,11 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
     }
     let mut context = TriangleContext::vacant(plan, draw);
     for window in walk::windows(draw, band.rows()) {
-        shaded += draw_window::<T>(job, window, &mut context, band, block);
-    }
-    finish::<T>(job, block, band);
-    shaded
-}
-
-/// Draws the part of a draw that lies in some rows and columns of a band. Returns the number of covered pixels.
-#[inline(always)]
-fn draw_window<T: Kernels>(
-    job: &Job<'_>,
-    (rows, columns): Window,
-    context: &mut TriangleContext<'_>,
-    band: &mut Band<'_>,
-    block: &mut Block,
-) -> u64 {
-    let (draw, mut shaded) = (job.draw, 0);
-    let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
-    for n in 0..count {
-        let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
-        // Most others are culled.
-        if TriangleContext::may_cover(draw, number, rows) {
-            shaded += draw_triangle::<T>(job, number, (rows, columns), context, band, block);
+        for number in job.triangles {
+            shaded += draw_triangle::<T>(job, *number as usize, window, &mut context, band, block);
         }
     }
+    finish::<T>(job, block, band);
     shaded
 }
 

@@ -164,8 +164,8 @@ pub(crate) struct Job<'a> {
     pub(crate) draw: &'a PlannedDraw,
     pub(crate) compiled: &'a CompiledDraw,
     pub(crate) textures: &'a [Image<'a, i32>],
-    /// Numbers of the triangles to draw, in order; `None` for all.
-    pub(crate) triangles: Option<&'a [u32]>,
+    /// Numbers of the triangles that may cover pixels, in order.
+    pub(crate) triangles: &'a [u32],
     /// Vectors that the instruction set has.
     pub(crate) vectors: Vectors,
 }
