@@ -49,8 +49,7 @@ pub(crate) struct Sampler {
     pub(super) cube: bool,
     /// Sides of the image in texels; 1 if coordinates are given in texels.
     pub(super) sides: [u32; 2],
-    /// What is added to estimates of u and v, 1/256 texel: a coordinate that is the same at all vertices is put into the middle between two
-    /// floors, where it is proved. Nothing lowers it (INT-4t).
+    /// What is [added](super::planes::up) to estimates of u and v, 1/256 texel.
     pub(super) up: [f64; 2],
     pub(super) signed: [bool; 4],
     /// Whether it needs a level of detail.

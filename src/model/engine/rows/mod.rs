@@ -283,7 +283,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<
             sides,
             up: [0, 1].map(|axis| {
                 let same = draw.assembly.vertices.same_coordinate(unit.stage.coordinate_set, axis);
-                same.map_or(0.0, |at| 0.5 - (f64::from(at) * f64::from(256 * sides[axis])).rem_euclid(1.0))
+                planes::up(same, sides[axis])
             }),
             signed: [0, 1, 2, 3].map(|n| crate::texture::chain::holds_double(unit, n)),
             mixes: unit.needs_lod(),
