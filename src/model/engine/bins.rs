@@ -74,7 +74,7 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Sorts those triangles into the bands between borders that are visible.
+    /// Sorts the visible triangles into the bands between borders.
     pub(super) fn new(assembly: &Assembly, borders: &[usize], is_visible: impl Fn(usize) -> bool) -> Bins {
         let (visible, bands) = ((0..assembly.triangles.len()).filter(|number| is_visible(*number)), borders.len() - 1);
         let mut starts = vec![0; bands + 1];

@@ -311,7 +311,7 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
 /// nothing that was written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
-    context: &mut TriangleContext<'_>,
+    context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {

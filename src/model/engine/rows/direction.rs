@@ -294,8 +294,7 @@ impl Setup<'_> {
                 }
                 reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
             }
-            let margin = error * (1.0 + reach) * widest;
-            (margin, 0.0)
+            (error * (1.0 + reach) * widest, 0.0)
         };
         let functions = (lines, self.losses_by_q(planes, [width, height]), proved);
         self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)

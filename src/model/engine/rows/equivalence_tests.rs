@@ -295,7 +295,7 @@ pub(super) fn options(finite: bool) -> PlanOptions {
 
 /// Compares the units on planes and the weights of a small triangle, set up four at a time, with the definition.
 fn compare_small<const FMA: bool>(
-    context: &mut TriangleContext<'_>,
+    context: &TriangleContext<'_>,
     plain: &super::CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
@@ -473,11 +473,11 @@ fn rows_interpolate(seed: u64) {
                         continue;
                     }
                     let batch = batch(&coverage, 0);
-                    let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
+                    let alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
                     let four = if round.is_multiple_of(4) {
-                        compare_small::<true>(&mut alone, &plain, batch, &mut varying, &mut rows)
+                        compare_small::<true>(&alone, &plain, batch, &mut varying, &mut rows)
                     } else {
-                        compare_small::<false>(&mut alone, &plain, batch, &mut varying, &mut rows)
+                        compare_small::<false>(&alone, &plain, batch, &mut varying, &mut rows)
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {

@@ -113,7 +113,7 @@ text! {
         /// Calls [`band::cover`] with this instruction set.
         fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
         /// Calls [`band::plain`] with this instruction set.
-        fn plain(context: &mut TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        fn plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::coverage`] with this instruction set.
         fn coverage(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::in_box`] with this instruction set.

@@ -141,7 +141,7 @@ impl Estimates4 {
 /// then nothing counts.
 #[inline(always)]
 pub(super) fn interpolate<const FMA: bool>(
-    context: &mut TriangleContext<'_>,
+    context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
     batch: PixelBatch<'_>,
     varying: &mut Varying,
@@ -177,7 +177,7 @@ pub(super) fn interpolate<const FMA: bool>(
 /// Computes everything that is divided by D. Returns whether all of it is proved.
 #[inline(always)]
 fn divide<const FMA: bool>(
-    context: &mut TriangleContext<'_>,
+    context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
     batch: PixelBatch<'_>,
     (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
