@@ -64,17 +64,17 @@ impl Setup<'_> {
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut MipFetches,
     ) {
-        if !ROW && let Some(base) = self.base_level::<FMA, false>(batch, (sampler, planes), local) {
+        if let Some(base) = self.base_level::<FMA, ROW>(batch, (sampler, planes), local) {
             let local = (local, reciprocals);
-            self.levels_by::<FMA, false>(batch, sampler, &base, floors, local, short, (quads, placing), reads);
+            self.levels_by::<FMA, ROW>(batch, sampler, &base, floors, local, short, (quads, placing), reads);
             return;
         }
-        if !ROW && !matches!(planes, Planes::Direction(..)) {
+        let Planes::Direction(directions, _) = planes else {
             for n in 0..batch.count {
                 self.defined_reads(batch, n, sampler, reads);
             }
             return;
-        }
+        };
         let row = [(batch.first.1, batch.first.0, batch.count)];
         let (runs, mut lane) = (if ROW { &row } else { batch.runs }, batch.lane);
         for (j, i, count) in runs.iter().copied() {
@@ -91,9 +91,8 @@ impl Setup<'_> {
                         self.levels_by::<FMA, true>(part, sampler, &base, floors, local, short, work, reads);
                         break true;
                     }
-                    let Planes::Direction(planes, _) = planes else { break false };
                     let (last, odd_row) = (part.at.last.into(), (j & 1) as f64);
-                    let stretch = CubeDirection::new(planes, local).stretch::<FMA>(last, odd_row);
+                    let stretch = CubeDirection::new(directions, local).stretch::<FMA>(last, odd_row);
                     if stretch == part.count {
                         // The pixels of the first quad, of which another one can meet another face.
                         let odd = part.first.0 & 1;

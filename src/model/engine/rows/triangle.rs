@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::color::{colors, narrow, narrow_weights};
-use super::compiled::{CompiledDraw, Reason, Reasons};
+use super::compiled::{CompiledDraw, Reason, Reasons, Sampler};
 use super::dda::{DdaRow, break_dda_ties, widen};
 use super::depth::Steps;
 use super::direction::{only_face, positive};
@@ -30,6 +30,8 @@ pub(super) struct Interpolators<'a> {
     /// 256 b0 and 256 b2, if a colour varies.
     pub(super) weights: Option<[Plane; 2]>,
     pub(super) samplers: Vec<Planes>,
+    /// Whether a sampler without levels needs more than quotients by D.
+    is_general: bool,
     /// The functions of r of samplers, if any use it.
     pub(super) thirds: Vec<ThirdPlanes>,
     fog: Option<Box<Fog>>,
@@ -105,7 +107,14 @@ impl<'a> Interpolators<'a> {
             });
         }
         set_thirds(context, compiled, &inverse, &mut thirds);
+        let finite = triangle.loses_on_planes();
+        let is_general = |(sampler, planes): (&Sampler, &Planes)| match planes {
+            Planes::Shared => false,
+            Planes::Plane(_) => finite && !sampler.mixes,
+            _ => !sampler.mixes,
+        };
         Interpolators {
+            is_general: compiled.samplers.iter().zip(&samplers).any(is_general),
             setup: Setup::new(context, &inverse),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
@@ -279,7 +288,9 @@ impl<'a> Interpolators<'a> {
                 setup.on_planes::<FMA, ROW>(batch, (sampler, planes), local, u, v, &mut whole[0]);
             }
         }
-        for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
+        // As above: most draws do not need this loop.
+        let general = if self.is_general { self.samplers.len() } else { 0 };
+        for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..general]).enumerate() {
             let done = matches!(planes, Planes::Plane(_)) && !finite;
             if !(sampler.mixes || done || matches!(planes, Planes::Shared)) {
                 let Varying { coordinates, faces, whole, short, reciprocals, .. } = &mut *varying;
