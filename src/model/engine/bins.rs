@@ -76,10 +76,12 @@ pub(super) struct Bins {
 impl Bins {
     /// Sorts the visible triangles into the bands between borders.
     pub(super) fn new(assembly: &Assembly, borders: &[usize], is_visible: impl Fn(usize) -> bool) -> Bins {
-        let (visible, bands) = ((0..assembly.triangles.len()).filter(|number| is_visible(*number)), borders.len() - 1);
+        // A draw has 32-bit indices, and three make a triangle.
+        let visible: Vec<u32> = (0..assembly.triangles.len() as u32).filter(|n| is_visible(*n as usize)).collect();
+        let bands = borders.len() - 1;
         let mut starts = vec![0; bands + 1];
-        for number in visible.clone() {
-            for band in met(assembly, number, borders) {
+        for number in &visible {
+            for band in met(assembly, *number as usize, borders) {
                 starts[band + 1] += 1;
             }
         }
@@ -89,9 +91,8 @@ impl Bins {
         let mut numbers = vec![0; starts[bands]];
         let mut ends = starts.clone();
         for number in visible {
-            for band in met(assembly, number, borders) {
-                // A draw has 32-bit indices, and three make a triangle.
-                numbers[ends[band]] = number as u32;
+            for band in met(assembly, number as usize, borders) {
+                numbers[ends[band]] = number;
                 ends[band] += 1;
             }
         }

@@ -155,8 +155,8 @@ impl<'a> Renderer<'a> {
             let borders = borders(plan, all, rows.is_some(), options.band, team.count());
             let bins = |draw: &PlannedDraw| {
                 let rows = (0, plan.targets[draw.target].height.into());
-                let is_visible = |number| TriangleContext::may_cover(draw, number, rows);
-                Bins::new(&draw.assembly, &borders, is_visible)
+                let is_seen = draw.folded.invisible.is_none();
+                Bins::new(&draw.assembly, &borders, |n| is_seen && TriangleContext::may_cover(draw, n, rows))
             };
             let bins = if rows.is_some() { all.iter().map(bins).collect() } else { Vec::new() };
             Group { draws, borders, bins }

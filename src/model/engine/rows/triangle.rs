@@ -30,7 +30,7 @@ pub(super) struct Interpolators<'a> {
     /// 256 b0 and 256 b2, if a colour varies.
     pub(super) weights: Option<[Plane; 2]>,
     pub(super) samplers: Vec<Planes>,
-    /// Whether a sampler without levels needs more than quotients by D.
+    /// Whether [`is_general`] holds for a sampler.
     is_general: bool,
     /// The functions of r of samplers, if any use it.
     pub(super) thirds: Vec<ThirdPlanes>,
@@ -79,6 +79,13 @@ impl Varying {
     }
 }
 
+/// Returns whether a sampler without levels needs more than quotients by D. `finite` says that planes lose the finite amount (INT-4t).
+#[inline(always)]
+fn is_general(sampler: &Sampler, planes: &Planes, finite: bool) -> bool {
+    let is_done = matches!(planes, Planes::Plane(_)) && !finite;
+    !(sampler.mixes || is_done || matches!(planes, Planes::Shared))
+}
+
 impl<'a> Interpolators<'a> {
     /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns.
     #[inline(always)]
@@ -108,13 +115,9 @@ impl<'a> Interpolators<'a> {
         }
         set_thirds(context, compiled, &inverse, &mut thirds);
         let finite = triangle.loses_on_planes();
-        let is_general = |(sampler, planes): (&Sampler, &Planes)| match planes {
-            Planes::Shared => false,
-            Planes::Plane(_) => finite && !sampler.mixes,
-            _ => !sampler.mixes,
-        };
+        let mut pairs = compiled.samplers.iter().zip(&samplers);
         Interpolators {
-            is_general: compiled.samplers.iter().zip(&samplers).any(is_general),
+            is_general: pairs.any(|(sampler, planes)| is_general(sampler, planes, finite)),
             setup: Setup::new(context, &inverse),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
@@ -291,8 +294,7 @@ impl<'a> Interpolators<'a> {
         // As above: most draws do not need this loop.
         let general = if self.is_general { self.samplers.len() } else { 0 };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..general]).enumerate() {
-            let done = matches!(planes, Planes::Plane(_)) && !finite;
-            if !(sampler.mixes || done || matches!(planes, Planes::Shared)) {
+            if is_general(sampler, planes, finite) {
                 let Varying { coordinates, faces, whole, short, reciprocals, .. } = &mut *varying;
                 let (out, work) = ((&mut coordinates[n], &mut faces[n]), (&mut **short, &mut whole[0]));
                 setup.coordinates::<FMA, ROW>(batch, (sampler, planes), (local, reciprocals), out, work);
