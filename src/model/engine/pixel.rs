@@ -111,7 +111,7 @@ impl<'a> TriangleContext<'a> {
         if !context.set_up(number, rows) {
             return None;
         }
-        context.complete();
+        context.complete(true);
         Some(context)
     }
 
@@ -181,15 +181,16 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up texture coordinates and fog, unless they are set up.
+    /// Sets up texture coordinates and fog, unless they are set up. `numbers` says whether stages of a texture shader run by the definition.
     #[inline(always)]
-    pub(super) fn complete(&mut self) {
+    pub(super) fn complete(&mut self, numbers: bool) {
         if std::mem::replace(&mut self.complete, true) {
             return;
         }
         let draw = self.draw;
         if let Some(shader) = &draw.shader {
-            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
+            self.shader =
+                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), numbers)));
         } else {
             for unit in &draw.units {
                 let sets = self.coordinate_set(unit.stage.coordinate_set);

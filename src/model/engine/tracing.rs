@@ -277,7 +277,7 @@ impl<'a> Tracer<'a> {
             let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
                 let Some(e) = covered(&mut context, number, self.pixel) else { continue };
-                context.complete();
+                context.complete(true);
                 if !self.keeps(index) || passed_over > 0 {
                     passed_over -= u64::from(self.keeps(index));
                     pixel.shade(planned, &context, self.pixel, e, &textures, &mut Silent);

@@ -66,12 +66,13 @@ impl ShaderSetup {
         }
     }
 
-    /// Sets up every stage that runs.
+    /// Sets up every stage that runs; those that sample nothing only if their `numbers` are wanted.
     pub fn new(
         shader: &PlannedShader,
         units: &[PlannedUnit],
         triangle: &Triangle,
         vertices: TriangleVertices<'_>,
+        numbers: bool,
     ) -> Self {
         ShaderSetup(std::array::from_fn(|index| {
             let planned = &shader.stages[index];
@@ -91,8 +92,12 @@ impl ShaderSetup {
                     StageSetup::Places(Coordinates::Plane([plane(0), plane(1)]))
                 }
                 (operation, _)
-                    if operation.is_dot()
-                        || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }) =>
+                    if numbers
+                        && (operation.is_dot()
+                            || matches!(
+                                operation,
+                                ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }
+                            )) =>
                 {
                     StageSetup::Numbers([0, 1, 2, 3].map(|n| triangle.attribute(component(n))))
                 }

@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, Entered, batch, boxes, common};
+use super::boxes::{BoxCoverage, Entered, batch, boxes, columns_of_quads, common, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -102,7 +102,23 @@ fn draw_triangle<T: Kernels>(
     let (compiled, mut shaded) = (job.compiled, 0);
     match T::enter(context, number, (rows, columns), &mut block.coverage) {
         Entered::Nothing => {}
-        _ if compiled.completes_quads => shaded += draw_quads::<T>(job, (rows, columns), context, band, block),
+        entered if compiled.completes_quads => {
+            context.complete(job.compiled.shader.is_none());
+            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+            interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
+            let (rows, columns) = common(&context.triangle, (rows, columns));
+            let all = ((rows.0 & !1, rows.1), (columns.0 & !1, columns.1));
+            match entered {
+                Entered::Large => shaded += draw_quads::<T>(job, (rows, columns), context, &interpolators, band, block),
+                _ => {
+                    for ((top, end), (left, right)) in boxes(all) {
+                        let part = ((top.max(rows.0), end), (left.max(columns.0), right));
+                        shaded += draw_box_of_quads::<T>(job, part, context, &interpolators, band, block);
+                    }
+                }
+            }
+            block.planes = interpolators.given_back(&mut block.defined);
+        }
         Entered::Box => shaded += draw_box::<T>(job, context, band, block),
         Entered::Boxes if compiled.plain => {
             for window in boxes(common(&context.triangle, (rows, columns))) {
@@ -113,7 +129,7 @@ fn draw_triangle<T: Kernels>(
             }
         }
         Entered::Boxes => {
-            context.complete();
+            context.complete(job.compiled.shader.is_none());
             let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
             for window in boxes(common(&context.triangle, (rows, columns))) {
                 T::cover(&context.triangle, window, &mut block.coverage);
@@ -128,7 +144,7 @@ fn draw_triangle<T: Kernels>(
             block.planes = interpolators.given_back(&mut block.defined);
         }
         Entered::Large => {
-            context.complete();
+            context.complete(job.compiled.shader.is_none());
             let triangle = &context.triangle;
             let (rows, columns) = common(triangle, (rows, columns));
             let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
@@ -176,24 +192,15 @@ fn draw_triangle<T: Kernels>(
 fn draw_quads<T: Kernels>(
     job: &Job<'_>,
     window: Window,
-    context: &mut TriangleContext<'_>,
+    context: &TriangleContext<'_>,
+    interpolators: &Interpolators<'_>,
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let compiled = job.compiled;
-    context.complete();
-    let triangle = &context.triangle;
-    let (rows, columns) = common(triangle, window);
-    let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
-    interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
-    let mut shaded = 0;
-    for top in (rows.0 & !1..rows.1).step_by(2) {
-        let row = |j: i64| if (rows.0..rows.1).contains(&j) { triangle.span(j, columns) } else { (0, 0) };
-        let spans = [row(top), row(top + 1)];
-        let (mut low, mut high) = (i64::MAX, i64::MIN);
-        for (first, end) in spans.into_iter().filter(|(first, end)| first < end) {
-            (low, high) = (low.min(first & !1), high.max((end + 1) & !1));
-        }
+    let (compiled, mut shaded) = (job.compiled, 0);
+    for top in (window.0.0 & !1..window.0.1).step_by(2) {
+        let spans = spans_of_quads(&context.triangle, top, window);
+        let (mut low, high) = columns_of_quads(spans);
         while low < high {
             // Two rows fill a block at most.
             let columns = (high - low).min(BLOCK as i64 / 2);
@@ -221,10 +228,10 @@ fn draw_quads<T: Kernels>(
                 };
                 // Where D is not positive, the definition knows no level of detail, and quotients mean nothing.
                 let is_known = interpolators.setup.is_positive(&whole);
-                let batch = &if is_known { whole } else { whole.inside() };
+                let batch = &if is_known { whole } else { whole.inside::<true>() };
                 if batch.count > 0 {
                     let PixelBatch { first, count, lane, covered, .. } = *batch;
-                    T::row(first, count, lane, covered, &interpolators, job, block);
+                    T::row(first, count, lane, covered, interpolators, job, block);
                     T::row_attributes(first, count, lane, covered, context, job, block);
                 }
                 if !is_known {
@@ -243,8 +250,39 @@ fn draw_quads<T: Kernels>(
             low += columns;
         }
     }
-    block.planes = interpolators.given_back(&mut block.defined);
     shaded
+}
+
+/// Draws the part of a small triangle in a box that begins at an even row and column, with all pixels of the quads that it meets. Returns the
+/// number of covered pixels.
+#[inline(always)]
+fn draw_box_of_quads<T: Kernels>(
+    job: &Job<'_>,
+    window: Window,
+    context: &TriangleContext<'_>,
+    interpolators: &Interpolators<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    block.coverage.complete(&context.triangle, window);
+    if block.coverage.count == 0 {
+        return 0;
+    }
+    if !interpolators.setup.is_positive_around(&batch(&block.coverage, 0)) {
+        return draw_quads::<T>(job, window, context, interpolators, band, block);
+    }
+    if begin_box::<T>(job, context, band, block) {
+        T::in_box(interpolators, job, block);
+        let mut upper = block.used;
+        for [(top, low, columns), _] in block.coverage.runs[..block.coverage.filled].as_chunks::<2>().0 {
+            let (pixel, count) = ((*low, *top), columns / 2);
+            let quads = PixelQuads { upper, lower: upper + columns, count, pixel, triangle: context.number };
+            block.workshop.quads.add(quads);
+            upper += 2 * columns;
+        }
+        append_box::<T>(job, context, block);
+    }
+    block.coverage.covered as u64
 }
 
 /// Computes a block and stores it.
@@ -266,7 +304,7 @@ fn draw_box<T: Kernels>(
 ) -> u64 {
     if begin_box::<T>(job, context, band, block) {
         if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
-            context.complete();
+            context.complete(job.compiled.shader.is_none());
             T::coverage(context, job, block);
         }
         append_box::<T>(job, context, block);
@@ -281,14 +319,20 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
-    let mut lane = block.used;
-    for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
-        block.runs.push(Run { lane, at: index(band, (i, j)), count });
-        lane += count;
+    let (first, used) = (block.runs.len(), block.used);
+    if block.coverage.covered == block.coverage.count {
+        let mut lane = used;
+        for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
+            block.runs.push(Run { lane, at: index(band, (i, j)), count });
+            lane += count;
+        }
+    } else {
+        let run = |(lane, pixel, count)| Run { lane: used + lane, at: index(band, pixel), count };
+        block.runs.extend(block.coverage.drawn().map(run));
     }
-    let is_visible = job.draw.depth_test.is_none() || T::box_depths(context, job, block, band);
+    let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {
-        block.runs.truncate(block.runs.len() - block.coverage.filled);
+        block.runs.truncate(first);
     }
     is_visible
 }
@@ -302,7 +346,7 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
     }
     block.used += block.coverage.count;
     if compiled.reads_surface {
-        let first = block.runs.len() - block.coverage.filled;
+        let first = block.runs.len() - block.coverage.drawn().count();
         store::mark(&mut block.taken, &block.runs[first..]);
     }
 }
@@ -400,18 +444,20 @@ pub(super) fn row_depths<const FMA: bool>(
     }
 }
 
-/// Computes the depths in the block's box, whose runs are the last ones, and tests them if nothing else drops fragments. Returns `false` if
-/// the test drops all its pixels.
+/// Computes the depths in the block's box, whose runs are those from the given one on, and tests them if nothing else drops fragments. Returns
+/// `false` if the test drops all its pixels.
 #[inline(always)]
 pub(super) fn box_depths<const FMA: bool>(
+    first: usize,
     context: &TriangleContext<'_>,
     job: &Job<'_>,
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
     let Block { varying, alive, coverage, used, runs, depth, defined, .. } = block;
-    defined[Reason::Depths as usize] += depths::<FMA, false>(context, batch(coverage, *used), varying.depths());
-    let (incoming, runs, depth) = (&varying.depth, &runs[runs.len() - coverage.filled..], depth.block_mut());
+    let covered = batch(coverage, *used).inside::<false>();
+    defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
+    let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if !job.compiled.drops_late {
         let lanes = *used..*used + coverage.count;
         store::read_runs(band.depth, runs, depth);
@@ -456,8 +502,7 @@ impl Block {
 
     #[inline(always)]
     fn is_box_taken(&self, band: &Band<'_>) -> bool {
-        let runs = &self.coverage.runs[..self.coverage.filled];
-        runs.iter().any(|(j, i, count)| self.is_taken(band, (*i, *j), *count))
+        self.coverage.drawn().any(|(_, pixel, count)| self.is_taken(band, pixel, count))
     }
 }
 

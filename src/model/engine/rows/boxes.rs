@@ -44,7 +44,7 @@ pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
 /// The pixels of a small triangle that lie in a box.
 #[derive(Debug, Default)]
 pub(super) struct BoxCoverage {
-    /// Column and row of the first covered pixel.
+    /// Column and row of the first pixel.
     pub(super) first: (i64, i64),
     /// Columns and rows of the pixels relative to the first. Lanes past the end repeat the last pixel.
     pub(super) x: PerLane<i32>,
@@ -53,6 +53,13 @@ pub(super) struct BoxCoverage {
     /// For each row: its number, the first column and the number of pixels.
     pub(super) runs: [(i64, i64, usize); SIDE as usize],
     pub(super) filled: usize,
+    /// Number of pixels that the triangle covers: all but those that [complete](Self::complete) quads.
+    pub(super) covered: usize,
+    /// If there are others: the covered part of each row, and columns and rows of all pixels, but for those of covered ones in their place.
+    parts: [Covered; SIDE as usize],
+    inside: [PerLane<i32>; 2],
+    /// The largest distance of a pixel from the first, in columns and in rows.
+    extent: (i32, i32),
 }
 
 impl BoxCoverage {
@@ -85,12 +92,82 @@ impl BoxCoverage {
             self.filled += 1;
             self.count += count;
         }
+        (self.covered, self.extent) = (self.count, (SIDE as i32, SIDE as i32));
         if let Some(last) = self.count.checked_sub(1) {
             let (x, y) = (self.x[last], self.y[last]);
             self.x[self.count..][..STEP].fill(x);
             self.y[self.count..][..STEP].fill(y);
         }
     }
+
+    /// Finds all pixels of the quads that a triangle meets in a box, two rows at a time. The box begins at an even row and column, but for what
+    /// is not drawn.
+    pub(super) fn complete(&mut self, triangle: &Triangle, (rows, columns): Window) {
+        (self.count, self.filled, self.covered, self.extent) = (0, 0, 0, (0, 0));
+        for top in (rows.0 & !1..rows.1).step_by(2) {
+            let spans = spans_of_quads(triangle, top, (rows, columns));
+            let (low, high) = columns_of_quads(spans);
+            if low >= high {
+                continue;
+            }
+            if self.count == 0 {
+                self.first = (low, top);
+            }
+            let count = (high - low) as usize;
+            for (n, (start, end)) in spans.into_iter().enumerate() {
+                let other = if start < end { n } else { 1 - n };
+                let (x, y) = ((low - self.first.0) as i32, (top - self.first.1) as i32);
+                let (least, most) = ((spans[other].0 - low) as i32, (spans[other].1 - 1 - low) as i32);
+                let lanes = self.count..self.count + count;
+                let [inside_x, inside_y] = &mut self.inside;
+                inside_y[lanes.clone()].fill(y + other as i32);
+                self.y[lanes.clone()].fill(y + n as i32);
+                for (k, (at, inside)) in (0..).zip(self.x[lanes.clone()].iter_mut().zip(&mut inside_x[lanes])) {
+                    (*at, *inside) = (x + k, x + k.clamp(least, most));
+                }
+                let covered = (end - start) as usize;
+                self.parts[self.filled] = Covered(if covered > 0 { (start - low) as usize } else { 0 }, covered);
+                self.runs[self.filled] = (top + n as i64, low, count);
+                self.filled += 1;
+                self.count += count;
+                self.covered += covered;
+                self.extent = (self.extent.0.max(x.abs()).max((x + count as i32 - 1).abs()), y + 1);
+            }
+        }
+        if let Some(last) = self.count.checked_sub(1) {
+            let [inside_x, inside_y] = &mut self.inside;
+            for all in [&mut self.x, &mut self.y, inside_x, inside_y] {
+                let value = all[last];
+                all[self.count..][..STEP].fill(value);
+            }
+        }
+    }
+
+    /// Returns the covered pixels: the first lane, column and row of the first pixel, and the number of pixels of each row that has any.
+    #[inline(always)]
+    pub(super) fn drawn(&self) -> impl Iterator<Item = (usize, (i64, i64), usize)> {
+        let mut next = 0;
+        self.runs[..self.filled].iter().enumerate().filter_map(move |(n, (j, i, count))| {
+            let Covered(first, covered) = if self.covered == self.count { Covered(0, *count) } else { self.parts[n] };
+            let lane = next + first;
+            next += count;
+            (covered > 0).then_some((lane, (i + first as i64, *j), covered))
+        })
+    }
+}
+
+/// Returns the columns that a triangle covers in a row and the next, where they are drawn.
+pub(super) fn spans_of_quads(triangle: &Triangle, top: i64, (rows, columns): Window) -> [(i64, i64); 2] {
+    [top, top + 1].map(|j| if (rows.0..rows.1).contains(&j) { triangle.span(j, columns) } else { (0, 0) })
+}
+
+/// Returns the columns of all quads that spans meet.
+pub(super) fn columns_of_quads(spans: [(i64, i64); 2]) -> (i64, i64) {
+    let (mut low, mut high) = (i64::MAX, i64::MIN);
+    for (first, end) in spans.into_iter().filter(|(first, end)| first < end) {
+        (low, high) = (low.min(first & !1), high.max((end + 1) & !1));
+    }
+    (low, high)
 }
 
 /// How a triangle is drawn.
@@ -153,8 +230,19 @@ pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, cover
 pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let lanes = whole_steps(coverage.count);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
-    let (first, count, runs) = (coverage.first, coverage.count, &coverage.runs[..coverage.filled]);
-    PixelBatch { first, at, count, lane, extent: (SIDE as i32, SIDE as i32), runs, covered: Covered(0, count) }
+    let [x, y] = &coverage.inside;
+    let inside = [&x[..lanes], &y[..lanes]];
+    let BoxCoverage { first, count, extent, covered, .. } = *coverage;
+    PixelBatch {
+        first,
+        at,
+        count,
+        lane,
+        extent,
+        runs: &coverage.runs[..coverage.filled],
+        covered: Covered(0, covered),
+        inside,
+    }
 }
 
 /// A limit beyond all columns.

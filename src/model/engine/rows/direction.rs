@@ -5,9 +5,9 @@ use super::Sampler;
 use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quotient::{
-    IOTA_REAL, Line, Positions, QuotientEstimate, Reciprocals, SLACK, any_negative, nearest, position, whole,
+    IOTA_REAL, Line, Positions, QuotientEstimate, Reciprocals, SLACK, any_negative, larger, nearest, position, whole,
 };
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::{Losses, Short, floors};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
@@ -32,7 +32,7 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
 /// TEX-12: returns the coordinate of a component that is the same multiple of the major one at all vertices, and so everywhere. Such ties
 /// lose nothing either (INT-4t). Returns `None` if the coordinate varies.
 #[inline(always)]
-fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option<f64> {
+pub(super) fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option<f64> {
     let ([s, s1, s2], [m, m1, m2]) = (planes[of.axis].g, planes[major.axis].g);
     // 28 bits each.
     if m == 0 || s * m1 != s1 * m || s * m2 != s2 * m {
@@ -209,8 +209,11 @@ impl Setup<'_> {
             Planes::Direction(planes, face) => {
                 let direction = CubeDirection::new(planes, local);
                 // Pixels beyond the triangle may meet another face than its vertices.
-                let open = face.is_none() || batch.reaches_beyond();
-                let face = if ROW && open { direction.face::<FMA>(local.columns) } else { *face };
+                let face = match *face {
+                    Some(face) if !batch.reaches_beyond() => Some(face),
+                    _ if ROW => direction.face::<FMA>(local.columns),
+                    face => face.filter(|face| direction.stays(*face, |line| line.least(local.columns, local.rows))),
+                };
                 match face {
                     Some(face) => {
                         self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, short, numbers, faces)
@@ -245,7 +248,7 @@ impl Setup<'_> {
     ) -> bool {
         let [s, t, major] = face.components();
         let m = direction.component(major);
-        let least = self.least::<FMA, ROW>(m, &planes[major.axis], local);
+        let least = self.least::<FMA, ROW>(batch, m, &planes[major.axis], local);
         let widest = 1.0 / least;
         let size = f64::from(sampler.sides[0]) * 128.0;
         // The error of both components, again for what is subtracted, and twice that.
@@ -286,13 +289,13 @@ impl Setup<'_> {
             // The largest s or t in place of those at the vertices. Losses take less than 2^-20 of the divisor.
             (BY_ANY_SIGN, smallest_divisor(2.0 * error, 2.0 * error * direction.error / SLACK))
         } else {
-            let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], local);
+            let widest = 1.0 / self.least::<FMA, ROW>(batch, q, &planes[2], local);
             let mut reach = reach;
-            if ROW && batch.reaches_beyond() {
+            if batch.reaches_beyond() {
                 if widest <= 0.0 {
                     return false;
                 }
-                reach *= planes[2].real.terms(&local.real, local.columns, 0.0) * widest;
+                reach *= planes[2].real.terms(&local.real, local.columns, local.rows) * widest;
             }
             (error * (1.0 + reach) * widest, 0.0)
         };
@@ -338,10 +341,19 @@ impl Setup<'_> {
 
     /// Returns a lower bound in the batch of a linear function that is positive at all vertices.
     #[inline(always)]
-    pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, local: &BatchSetup) -> f64 {
+    pub(super) fn least<const FMA: bool, const ROW: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        line: Line,
+        plane: &Plane,
+        local: &BatchSetup,
+    ) -> f64 {
         if ROW {
             let end = line.at::<FMA, true>(local.columns, 0.0);
             return if line.c < end { line.c } else { end };
+        }
+        if batch.reaches_beyond() {
+            return line.least(local.columns, local.rows);
         }
         let g = &plane.g;
         let least = g[0].unsigned_abs().min(g[1].unsigned_abs()).min(g[2].unsigned_abs());

@@ -437,9 +437,11 @@ fn rows_interpolate(seed: u64) {
         }
         if random.below(4) == 0 {
             let (axis, same) = (random.below(2) as usize, random.of(&[0.0, 0.5, -1.25, 0.3]));
-            for vertex in &mut vertices {
+            for (n, vertex) in vertices.iter_mut().enumerate() {
                 vertex.texture_coordinates[0][axis] = same;
                 vertex.texture_coordinates[3][axis] = same;
+                // Directions that differ in length only.
+                vertex.texture_coordinates[1] = [same, 0.75, 2.0, 1.0].map(|component| component * (1 + n % 3) as f32);
             }
         }
         let anisotropy = random.of(&[1, 1, 2, 4, 8]);

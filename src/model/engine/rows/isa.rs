@@ -127,7 +127,7 @@ text! {
         /// Calls [`band::row_depths`] with this instruction set.
         fn row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::box_depths`] with this instruction set.
-        fn box_depths(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn box_depths(first: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         /// Calls [`band::shade`] with this instruction set.
         fn shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }

@@ -6,7 +6,7 @@ use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quads::{BaseLevel, Known, Quads, floor, parted};
 use super::quotient::{Line, Reciprocals, nearest, whole};
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
+use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
 use super::{Reason, Sampler};
@@ -40,6 +40,7 @@ pub(super) struct Placing {
     levels: [PerLane<i32>; 2],
     /// Sign bits of lanes whose floors are not proved on some level.
     close: PerLane<i32>,
+    whole: PerLane<i32>,
 }
 
 impl Setup<'_> {
@@ -79,6 +80,8 @@ impl Setup<'_> {
         let (runs, mut lane) = (if ROW { &row } else { batch.runs }, batch.lane);
         for (j, i, count) in runs.iter().copied() {
             let row = if ROW { batch } else { PixelBatch::row((i, j), count, lane) };
+            let covered = if batch.reaches_beyond() && !ROW { Covered(0, 0) } else { row.covered };
+            let row = PixelBatch { covered, ..row };
             let mut done = 0;
             while done < count {
                 let mut part = row.part(done, count - done);
@@ -130,8 +133,9 @@ impl Setup<'_> {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
         let lanes = batch.at.x.len();
+        let triangle = &self.context.triangle;
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
-        let Placing { at, floors: [u, v], lods, levels, close } = placing;
+        let Placing { at, floors: [u, v], lods, levels, close, whole } = placing;
         spread.hand_out(quads, &reads.known.each, batch.count, lods);
         let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
         let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
@@ -141,6 +145,10 @@ impl Setup<'_> {
             let (last, mut settled) = (shifts(ranges[1][1]), [(0.0, 0.0); 2]);
             for axis in 0..2 {
                 let (gap, shared) = base.gaps[axis];
+                // Beyond the triangle, where weights are negative, any tie may be lowered.
+                let lowers = |planes: &[Plane; 2]| batch.reaches_beyond() || planes[axis].lowers(triangle);
+                let lowers = gap > 0.0 && !triangle.exact_reciprocal && base.planes.is_some_and(lowers);
+                let gap = if lowers { 0.0 } else { gap };
                 // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
                 let floors = if last[axis] > shared { base.floors * f64::from(1 << last[axis]) } else { 0.0 };
                 settled[axis] = parted(gap, base.off + floors);
@@ -163,7 +171,15 @@ impl Setup<'_> {
                 }
             }
         }
-        let any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
+        let mut any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
+        if let Some(planes) = base.planes
+            && any_close
+            && base.losses.is_none()
+            && self.shift_with(sampler, planes)
+        {
+            self.correct_coordinates::<ROW>(batch, 0, planes, [true; 2], &local.e, u, v, whole);
+            any_close = false;
+        }
         let [u, v] = floors.unwrap_or([u, v]);
         reads.place_all((unit, table, base.face as u32), batch.lanes(), ranges, lods, levels, u, v);
         let filters = Taken::of_unit(unit);

@@ -1,7 +1,8 @@
 //! Linear functions across a triangle, as estimates in double precision and as integers modulo 2^64.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::quotient::{Exact, Line};
+use super::quotient::{Exact, Line, larger};
+
 use crate::raster::setup::Triangle;
 
 /// The function sum G_k E_k.
@@ -63,11 +64,11 @@ impl Plane {
         !triangle.exact_reciprocal && (falls(0) || falls(2))
     }
 
-    /// Returns the number of which all quotients by D are multiples, if no tie is lowered and the P_k are the same power of two, and the
-    /// power of two that divides the G_k. Returns 0 if there is no such number.
+    /// Returns the number of which all quotients by D are multiples, if the P_k are the same power of two, and the power of two that divides the
+    /// G_k. Returns 0 if there is no such number.
     pub(super) fn gap(&self, triangle: &Triangle) -> (f64, u32) {
         let p = triangle.p[0] as u64;
-        if !triangle.exact_reciprocal || !p.is_power_of_two() {
+        if triangle.p != [triangle.p[0]; 3] || !p.is_power_of_two() {
             return (0.0, 0);
         }
         let shared = (self.g[0] | self.g[1] | self.g[2]).trailing_zeros().min(62);
@@ -213,21 +214,29 @@ impl FourPlanes {
     /// Sets up planes of numbers at the vertices.
     #[inline(always)]
     pub(super) fn set(&mut self, triangle: &Triangle, inverse: &[f64; 3], values: &[[f32; FOUR]; 3]) {
-        // In place, because a copy of what has just been written in parts has to wait for all of them.
-        let FourPlanes { g, slopes: [x, y], sizes: [size_x, size_y], reach, lost } = self;
-        (*x, *y, *size_x, *size_y, *reach, *lost) = ([0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4]);
+        let FourPlanes { g, slopes, sizes, reach, lost } = self;
+        let [p, a, b] = [triangle.p, triangle.a, triangle.b].map(|of| of.map(|n| n as f64));
         for k in 0..3 {
-            let (p, a, b) = (triangle.p[k] as f64, triangle.a[k] as f64, triangle.b[k] as f64);
             for n in 0..FOUR {
                 // Exact, because 28 bits are multiplied by 24.
-                let product = f64::from(values[k][n]) * p;
-                g[k][n] = product;
-                (x[n], y[n]) = (x[n] + product * a, y[n] + product * b);
-                (size_x[n], size_y[n]) = (size_x[n] + (product * a).abs(), size_y[n] + (product * b).abs());
-                let quotient = product.abs() * inverse[k];
-                reach[n] = if quotient > reach[n] { quotient } else { reach[n] };
-                lost[n] = if product.abs() * KEPT > lost[n] { product.abs() * KEPT } else { lost[n] };
+                g[k][n] = f64::from(values[k][n]) * p[k];
             }
+        }
+        // One result after the other, because compilers do not make vectors of all at once.
+        for ((slopes, sizes), along) in slopes.iter_mut().zip(sizes).zip([a, b]) {
+            for n in 0..FOUR {
+                slopes[n] = g[0][n] * along[0] + g[1][n] * along[1] + g[2][n] * along[2];
+            }
+            for n in 0..FOUR {
+                sizes[n] = (g[0][n] * along[0]).abs() + (g[1][n] * along[1]).abs() + (g[2][n] * along[2]).abs();
+            }
+        }
+        for n in 0..FOUR {
+            let [first, second, third] = [0, 1, 2].map(|k| g[k][n].abs() * inverse[k]);
+            reach[n] = larger(larger(first, second), third);
+        }
+        for n in 0..FOUR {
+            lost[n] = larger(larger(g[0][n].abs(), g[1][n].abs()), g[2][n].abs()) * KEPT;
         }
     }
 

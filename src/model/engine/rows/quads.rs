@@ -3,7 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::boxes::SIDE;
-use super::direction::{CubeDirection, reaches_limit};
+use super::direction::{CubeDirection, constant, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::Plane;
 use super::quotient::{Line, SLACK, any_negative, whole};
@@ -12,7 +12,7 @@ use super::short::Losses;
 use super::{Reason, Sampler};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::coordinates::{Coordinates, SampleCoordinates};
-use crate::texture::cube::Face;
+use crate::texture::cube::{Face, Signed};
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
 use std::ops::Range;
@@ -184,6 +184,9 @@ const MAX_COORDINATE: f64 = (1_u64 << 36) as f64;
 /// Largest error of an estimated coordinate that is accepted, in its own steps.
 const COARSEST: f64 = 0.125;
 
+/// Half a step of the coordinates of quads.
+const HALF_STEP: f64 = 0.5;
+
 /// Coordinates of level 0 around a batch, as two quotients.
 pub(super) struct BaseLevel<'p> {
     pub(super) along: Line,
@@ -192,6 +195,8 @@ pub(super) struct BaseLevel<'p> {
     /// The least denominator of a quad's pixel, and how many columns and rows lie between a quad and the first pixel at most.
     pub(super) lowest: f64,
     pub(super) reach: [f64; 2],
+    /// What was added to u and v because they are [constant](super::planes::up), 1/65536 texel.
+    up: [f64; 2],
     /// Upper bound of the error of an estimate, 1/256 texel.
     pub(super) off: f64,
     /// Upper bound of the change of a smaller level's coordinates by the floors of its numerators (INT-4).
@@ -203,8 +208,7 @@ pub(super) struct BaseLevel<'p> {
     pub(super) planes: Option<&'p [Plane; 2]>,
     /// Losses of the three functions where weights fall short (TEX-15, INT-4t).
     pub(super) losses: Option<[Losses; 3]>,
-    /// For planes on which no tie is lowered: the numbers of which all values of u and of v are multiples, and the powers of two that
-    /// divide the G_k.
+    /// For planes: the numbers of which all values of u and of v are multiples, and the powers of two that divide the G_k.
     pub(super) gaps: [(f64, u32); 2],
 }
 
@@ -231,6 +235,7 @@ impl Setup<'_> {
             denominator,
             lowest: least(denominator),
             reach,
+            up: [0.0; 2],
             off,
             floors: 0.0,
             face,
@@ -251,19 +256,24 @@ impl Setup<'_> {
                 let (one, other) = (most(&planes[0]), most(&planes[1]));
                 let range = (if one > other { one } else { other }) * (1.0 + ratio);
                 let p = &self.context.triangle.p;
+                let losses = self.context.triangle.loses_on_planes().then(|| self.losses_on_planes(planes));
+                // Also between two steps of the coordinates of quads.
+                let up = sampler.up.map(|up| if up > 0.0 && losses.is_none() { 256.0 * up + HALF_STEP } else { 0.0 });
+                let line = |n: usize| planes[n].real.line(&local.real).plus(local.denominator.times(up[n] / 256.0));
                 let base = BaseLevel {
-                    along: planes[0].real.line(&local.real),
-                    down: planes[1].real.line(&local.real),
+                    along: line(0),
+                    down: line(1),
                     denominator: local.denominator,
                     lowest,
                     reach,
+                    up,
                     off: range * SLACK,
                     // The magnitudes of weights add up to `ratio` at most.
                     floors: 1.25 * ratio / p[0].min(p[1]).min(p[2]) as f64,
                     face: Face::PositiveX,
                     behind: false,
                     planes: Some(planes),
-                    losses: self.context.triangle.loses_on_planes().then(|| self.losses_on_planes(planes)),
+                    losses,
                     gaps: [planes[0].gap(&self.context.triangle), planes[1].gap(&self.context.triangle)],
                 };
                 (base, range)
@@ -296,8 +306,8 @@ impl Setup<'_> {
                     Some(face) => *face,
                     None => direction.look::<FMA>(0.0)?,
                 };
-                let [s, t, m] = face.components();
-                let m = direction.component(m);
+                let [s, t, major] = face.components();
+                let m = direction.component(major);
                 // The first pixel of a quad could meet another face.
                 let (odd_column, odd_row) = ((batch.first.0 & 1) as f64, (batch.first.1 & 1) as f64);
                 let meets =
@@ -307,7 +317,11 @@ impl Setup<'_> {
                 }
                 let size = 128.0 * f64::from(sampler.sides[0]);
                 let (off, range) = direction.off(1.0 / least(m), size);
-                let lines = [direction.component(s), direction.component(t)].map(|line| line.plus(m).times(size));
+                let line = |of: Signed| match constant(planes, of, major, sampler.sides[0]) {
+                    Some(floor) => m.times(floor + (128.0 + HALF_STEP) / 256.0),
+                    None => direction.component(of).plus(m).times(size),
+                };
+                let lines = [line(s), line(t)];
                 (divided(lines, m, off, face), range)
             }
             Planes::Other | Planes::Shared => return None,
@@ -443,8 +457,9 @@ impl Setup<'_> {
                 for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
                     let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
                     let bottom = self.denominator.exact(e).at(x, y);
-                    for (plane, at) in planes.iter().zip(at) {
-                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, at[n] as i64).0 as f64;
+                    for ((plane, up), at) in planes.iter().zip(base.up).zip(at) {
+                        let value = at[n] as i64 - up as i64;
+                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, value).0 as f64;
                     }
                 }
             }

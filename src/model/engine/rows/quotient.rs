@@ -192,6 +192,11 @@ impl QuotientEstimate {
     }
 }
 
+#[inline(always)]
+pub(super) fn larger<T: Copy + PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
 /// Rounds to the nearest integer, as a float.
 #[inline(always)]
 pub(super) fn whole(q: f64) -> f64 {

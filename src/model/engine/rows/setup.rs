@@ -5,7 +5,7 @@ use super::compiled::{Reason, Reasons, Sampler};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::{Plane, RealPlane, exact_line};
 use super::quotient::{
-    IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, correct_exactly,
+    IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, correct_exactly, larger,
 };
 use super::short::{Parts, lower_by_lane};
 use crate::engine::pixel::TriangleContext;
@@ -45,12 +45,14 @@ pub(super) struct PixelBatch<'a> {
     pub(super) extent: (i32, i32),
     /// For a box: row, first column and number of pixels of each of its rows.
     pub(super) runs: &'a [(i64, i64, usize)],
-    /// The pixels that the triangle covers. In a row that completes quads, there are others before and after them.
+    /// The pixels that the triangle covers; of a box, only their number. In a row that completes quads, there are others before and after them.
     pub(super) covered: Covered,
+    /// For a box: columns and rows of covered pixels, which stand in for those that are not.
+    pub(super) inside: [&'a [i32]; 2],
 }
 
 /// First and number of pixels of a batch that the triangle covers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Covered(pub(super) usize, pub(super) usize);
 
 static ZEROS: [i32; LANES] = [0; LANES];
@@ -61,7 +63,8 @@ impl PixelBatch<'_> {
     pub(super) fn row(first: (i64, i64), count: usize, lane: usize) -> PixelBatch<'static> {
         let (lanes, last) = (whole_steps(count), count as i32 - 1);
         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
-        PixelBatch { first, at, count, lane, extent: (last, 0), runs: &[], covered: Covered(0, count) }
+        let covered = Covered(0, count);
+        PixelBatch { first, at, count, lane, extent: (last, 0), runs: &[], covered, inside: [&[]; 2] }
     }
 
     /// Returns whether it has pixels that the triangle does not cover.
@@ -79,11 +82,18 @@ impl PixelBatch<'_> {
         PixelBatch { covered: if first < end { Covered(first - from, end - first) } else { Covered(0, 0) }, ..part }
     }
 
-    /// Returns the covered pixels of a row.
+    /// Returns the covered pixels of a row, or a box with covered pixels only.
     #[inline(always)]
-    pub(super) fn inside(&self) -> PixelBatch<'static> {
+    pub(super) fn inside<const ROW: bool>(&self) -> Self {
         let Covered(first, count) = self.covered;
-        PixelBatch::row((self.first.0 + first as i64, self.first.1), count, self.lane + first)
+        if !self.reaches_beyond() {
+            return *self;
+        }
+        if ROW {
+            return PixelBatch::row((self.first.0 + first as i64, self.first.1), count, self.lane + first);
+        }
+        let [x, y] = self.inside;
+        PixelBatch { at: Positions { x, y, ..self.at }, covered: Covered(0, self.count), ..*self }
     }
 
     /// Returns column and row of a pixel.
@@ -161,6 +171,12 @@ impl<'a> Setup<'a> {
         batch.sample(n, &self.context.triangle)
     }
 
+    /// Returns whether D is positive, and rounding errors do not change that, all around a box.
+    pub(super) fn is_positive_around(&self, batch: &PixelBatch<'_>) -> bool {
+        let BatchSetup { real, denominator, columns, rows, .. } = self.local::<false, false>(*batch, false);
+        denominator.least(columns, rows) > self.denominator.real.terms(&real, columns, rows) * SLACK
+    }
+
     /// Returns whether D is positive at all pixels of a row.
     pub(super) fn is_positive(&self, row: &PixelBatch<'_>) -> bool {
         let d = self.denominator.exact(&self.context.triangle.edges(row.first.0, row.first.1));
@@ -227,7 +243,7 @@ impl<'a> Setup<'a> {
     ) {
         let bias = sampler.bias();
         let estimates = self.estimates::<ROW>(planes, (bias, sampler.up), local);
-        if let Some(estimates) = estimates.filter(|_| !ROW || self.stays_near(&batch, planes, local)) {
+        if let Some(estimates) = estimates.filter(|_| self.stays_near(&batch, planes, local)) {
             let close = reciprocals.estimate::<FMA, ROW>(estimates, u, v);
             if close[0] | close[1] {
                 self.correct_coordinates::<ROW>(batch, bias, planes, close, &local.e, u, v, whole);
@@ -293,7 +309,7 @@ impl<'a> Setup<'a> {
         values: &mut [i32],
         whole: &mut [i32],
     ) {
-        if !ROW {
+        if !ROW && !batch.reaches_beyond() {
             let of = |g: &[i64; 3]| exact_line(&self.context.triangle, e, g, plane.shared);
             if let (Some(top), Some(bottom)) = (of(&plane.g), of(&self.denominator.g)) {
                 let top = top.less(f64::from(bias), bottom);
@@ -369,11 +385,6 @@ impl<'a> Setup<'a> {
     }
 }
 
-#[inline(always)]
-pub(super) fn larger<T: Copy + PartialOrd>(a: T, b: T) -> T {
-    if a > b { a } else { b }
-}
-
 /// INT-4 of a plane, less a bias, by the definition.
 fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
     sample.coordinate(&plane.g).value as i32 - bias
@@ -441,9 +452,9 @@ impl BatchSetup {
             };
             (largest, 1.0 / low)
         } else {
-            // The box may reach beyond the triangle, but no sample does.
+            // The box may reach beyond the triangle, but no sample does, unless quads are completed.
             let here = 1.0 / line.least(columns, rows);
-            let widest = if here > 0.0 && here < widest { here } else { widest };
+            let widest = if batch.reaches_beyond() || here > 0.0 && here < widest { here } else { widest };
             (denominator.terms(&real, columns, rows), widest)
         };
         BatchSetup { ratio: largest * widest, reciprocal: 1.0 / line.c, widest, ..undivided }

@@ -7,7 +7,7 @@ use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
 use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, nearest, position};
-use super::setup::{BatchSetup, PixelBatch, Planes, Setup, larger};
+use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table;
 use crate::engine::pixel::TriangleContext;
@@ -163,7 +163,7 @@ impl Setup<'_> {
         local: &BatchSetup,
         out: &mut [u32],
     ) -> bool {
-        let (at, beyond) = (batch.at, ROW && batch.reaches_beyond());
+        let (at, beyond) = (batch.at, batch.reaches_beyond());
         let (lines, errors) = match reference {
             Reference::Same(word) => {
                 out.fill(*word);
@@ -183,7 +183,9 @@ impl Setup<'_> {
                 if beyond {
                     // There, edge functions may be negative.
                     let size = |e: [f64; 3]| e[0].abs() + e[1].abs() + e[2].abs();
-                    area = larger(size(local.real), size(local.at_end(&self.context.triangle)));
+                    let triangle = &self.context.triangle;
+                    let [along, down] = [triangle.a, triangle.b].map(|slopes| size(slopes.map(|slope| slope as f64)));
+                    area = size(local.real) + along * local.columns + down * local.rows;
                 }
                 // The error of a line, and twice that for the quotient; and what is lost at the vertices.
                 let error = |n: usize| 8.0 * SLACK * terms[n] + planes.lost[n] * area;

@@ -220,8 +220,7 @@ impl<'a> Interpolators<'a> {
         if !(ROW && varying.dda.complete) {
             self.estimated::<FMA, ROW>(batch, compiled, varying, rows);
         }
-        let covered = if ROW && batch.reaches_beyond() { batch.inside() } else { batch };
-        colors(self.setup.context, compiled, covered, &varying.narrow, rows);
+        colors(self.setup.context, compiled, batch.inside::<ROW>(), &varying.narrow, rows);
         if compiled.samples_pixels {
             self.setup.pixel_by_pixel(batch, compiled, textures, &mut varying.alive, rows);
         }
@@ -314,8 +313,8 @@ impl<'a> Interpolators<'a> {
         }
         // What stages of a texture shader do not read is computed for covered pixels only.
         let inside;
-        let (batch, local) = if ROW && batch.reaches_beyond() {
-            let covered = batch.inside();
+        let (batch, local) = if batch.reaches_beyond() {
+            let covered = batch.inside::<ROW>();
             if covered.count == 0 {
                 return;
             }
