@@ -41,6 +41,8 @@ pub struct TriangleContext<'a> {
     pub fog: Option<FogPlane>,
     /// Depths of the vertices, if there is a depth test.
     pub depth: DepthPlane,
+    /// Whether stages of a texture shader run by this context.
+    defines: bool,
     /// Whether coordinates and fog are set up for this triangle.
     complete: bool,
 }
@@ -107,16 +109,17 @@ pub struct Stored<L> {
 impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`. Returns `None` if it is culled, empty, or outside `rows`.
     pub fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
-        let mut context = TriangleContext::vacant(plan, draw);
+        let mut context = TriangleContext::vacant(plan, draw, true);
         if !context.set_up(number, rows) {
             return None;
         }
-        context.complete(true);
+        context.complete();
         Some(context)
     }
 
-    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up).
-    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw) -> Self {
+    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up). `defines` says whether stages of a texture
+    /// shader run by it.
+    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw, defines: bool) -> Self {
         TriangleContext {
             plan,
             draw,
@@ -128,6 +131,7 @@ impl<'a> TriangleContext<'a> {
             shader: None,
             fog: None,
             depth: DepthPlane::default(),
+            defines,
             complete: false,
         }
     }
@@ -181,16 +185,16 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up texture coordinates and fog, unless they are set up. `numbers` says whether stages of a texture shader run by the definition.
+    /// Sets up texture coordinates and fog, unless they are set up.
     #[inline(always)]
-    pub(super) fn complete(&mut self, numbers: bool) {
+    pub(super) fn complete(&mut self) {
         if std::mem::replace(&mut self.complete, true) {
             return;
         }
         let draw = self.draw;
         if let Some(shader) = &draw.shader {
             self.shader =
-                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), numbers)));
+                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), self.defines)));
         } else {
             for unit in &draw.units {
                 let sets = self.coordinate_set(unit.stage.coordinate_set);

@@ -81,7 +81,10 @@ impl ShaderSetup {
             }
             let set = vertices.coordinates(planned.state.coordinate_set);
             let component = |n: usize| set.map(|v| v[n]);
-            match (planned.state.operation, planned.unit) {
+            let operation = planned.state.operation;
+            let of_numbers = operation.is_dot()
+                || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. });
+            match (operation, planned.unit) {
                 (ShaderOperation::Sample, Some(unit)) => {
                     StageSetup::Places(Coordinates::new(triangle, set, &units[unit]))
                 }
@@ -91,14 +94,7 @@ impl ShaderSetup {
                     let plane = |n: usize| triangle.coordinate(component(n), sides[n]);
                     StageSetup::Places(Coordinates::Plane([plane(0), plane(1)]))
                 }
-                (operation, _)
-                    if numbers
-                        && (operation.is_dot()
-                            || matches!(
-                                operation,
-                                ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }
-                            )) =>
-                {
+                _ if numbers && of_numbers => {
                     StageSetup::Numbers([0, 1, 2, 3].map(|n| triangle.attribute(component(n))))
                 }
                 _ => StageSetup::Nothing,

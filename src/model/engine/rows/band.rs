@@ -79,7 +79,7 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
     if compiled.reads_surface {
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
-    let mut context = TriangleContext::vacant(plan, draw);
+    let mut context = TriangleContext::vacant(plan, draw, compiled.shader.is_none());
     for window in walk::windows(draw, band.rows()) {
         for number in job.triangles {
             shaded += draw_triangle::<T>(job, *number as usize, window, &mut context, band, block);
@@ -103,7 +103,7 @@ fn draw_triangle<T: Kernels>(
     match T::enter(context, number, (rows, columns), &mut block.coverage) {
         Entered::Nothing => {}
         entered if compiled.completes_quads => {
-            context.complete(job.compiled.shader.is_none());
+            context.complete();
             let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
             interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
             let (rows, columns) = common(&context.triangle, (rows, columns));
@@ -129,7 +129,7 @@ fn draw_triangle<T: Kernels>(
             }
         }
         Entered::Boxes => {
-            context.complete(job.compiled.shader.is_none());
+            context.complete();
             let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
             for window in boxes(common(&context.triangle, (rows, columns))) {
                 T::cover(&context.triangle, window, &mut block.coverage);
@@ -144,7 +144,7 @@ fn draw_triangle<T: Kernels>(
             block.planes = interpolators.given_back(&mut block.defined);
         }
         Entered::Large => {
-            context.complete(job.compiled.shader.is_none());
+            context.complete();
             let triangle = &context.triangle;
             let (rows, columns) = common(triangle, (rows, columns));
             let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
@@ -304,7 +304,7 @@ fn draw_box<T: Kernels>(
 ) -> u64 {
     if begin_box::<T>(job, context, band, block) {
         if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
-            context.complete(job.compiled.shader.is_none());
+            context.complete();
             T::coverage(context, job, block);
         }
         append_box::<T>(job, context, block);
@@ -312,7 +312,7 @@ fn draw_box<T: Kernels>(
     block.coverage.count as u64
 }
 
-/// Computes the block if it has no room for the pixels of its coverage, adds their runs, and computes their depths. Returns `false` if the
+/// Computes the block if it has no room for the pixels of its coverage, adds and marks their runs, and computes their depths. Returns `false` if the
 /// depth test drops all of them, so that nothing else has to be computed; then there are no runs of them.
 #[inline(always)]
 fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
@@ -320,6 +320,7 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
         finish::<T>(job, block, band);
     }
     let (first, used) = (block.runs.len(), block.used);
+    // Most boxes have covered pixels only, and choices in each row would cost a small triangle some per cent.
     if block.coverage.covered == block.coverage.count {
         let mut lane = used;
         for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
@@ -333,6 +334,8 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {
         block.runs.truncate(first);
+    } else if job.compiled.reads_surface {
+        store::mark(&mut block.taken, &block.runs[first..]);
     }
     is_visible
 }
@@ -340,15 +343,10 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
 /// Adds the pixels of the block's coverage, whose runs it has.
 #[inline(always)]
 fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block) {
-    let compiled = job.compiled;
-    if compiled.shader.is_some() {
+    if job.compiled.shader.is_some() {
         T::box_attributes(context, job, block);
     }
     block.used += block.coverage.count;
-    if compiled.reads_surface {
-        let first = block.runs.len() - block.coverage.drawn().count();
-        store::mark(&mut block.taken, &block.runs[first..]);
-    }
 }
 
 /// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if something is not proved; then

@@ -114,9 +114,9 @@ impl BoxCoverage {
                 self.first = (low, top);
             }
             let count = (high - low) as usize;
+            let (x, y) = ((low - self.first.0) as i32, (top - self.first.1) as i32);
             for (n, (start, end)) in spans.into_iter().enumerate() {
                 let other = if start < end { n } else { 1 - n };
-                let (x, y) = ((low - self.first.0) as i32, (top - self.first.1) as i32);
                 let (least, most) = ((spans[other].0 - low) as i32, (spans[other].1 - 1 - low) as i32);
                 let lanes = self.count..self.count + count;
                 let [inside_x, inside_y] = &mut self.inside;

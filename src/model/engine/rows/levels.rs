@@ -79,9 +79,9 @@ impl Setup<'_> {
         let row = [(batch.first.1, batch.first.0, batch.count)];
         let (runs, mut lane) = (if ROW { &row } else { batch.runs }, batch.lane);
         for (j, i, count) in runs.iter().copied() {
-            let row = if ROW { batch } else { PixelBatch::row((i, j), count, lane) };
-            let covered = if batch.reaches_beyond() && !ROW { Covered(0, 0) } else { row.covered };
-            let row = PixelBatch { covered, ..row };
+            // A box does not say which of them are covered.
+            let covered = Covered(0, if batch.reaches_beyond() { 0 } else { count });
+            let row = if ROW { batch } else { PixelBatch { covered, ..PixelBatch::row((i, j), count, lane) } };
             let mut done = 0;
             while done < count {
                 let mut part = row.part(done, count - done);
@@ -133,7 +133,6 @@ impl Setup<'_> {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
         let lanes = batch.at.x.len();
-        let triangle = &self.context.triangle;
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
         let Placing { at, floors: [u, v], lods, levels, close, whole } = placing;
         spread.hand_out(quads, &reads.known.each, batch.count, lods);
@@ -145,10 +144,8 @@ impl Setup<'_> {
             let (last, mut settled) = (shifts(ranges[1][1]), [(0.0, 0.0); 2]);
             for axis in 0..2 {
                 let (gap, shared) = base.gaps[axis];
-                // Beyond the triangle, where weights are negative, any tie may be lowered.
-                let lowers = |planes: &[Plane; 2]| batch.reaches_beyond() || planes[axis].lowers(triangle);
-                let lowers = gap > 0.0 && !triangle.exact_reciprocal && base.planes.is_some_and(lowers);
-                let gap = if lowers { 0.0 } else { gap };
+                let lowers = |planes: &[Plane; 2]| self.may_lower(&batch, &planes[axis]);
+                let gap = if gap > 0.0 && base.planes.is_some_and(lowers) { 0.0 } else { gap };
                 // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
                 let floors = if last[axis] > shared { base.floors * f64::from(1 << last[axis]) } else { 0.0 };
                 settled[axis] = parted(gap, base.off + floors);

@@ -2,7 +2,6 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::quotient::{Exact, Line, larger};
-
 use crate::raster::setup::Triangle;
 
 /// The function sum G_k E_k.

@@ -320,6 +320,13 @@ impl<'a> Setup<'a> {
         correct::<ROW>(batch.at, plane.exact(e).less(i64::from(bias), bottom), bottom, values, whole);
     }
 
+    /// Returns whether INT-4t can lower ties of a batch. Beyond the triangle, weights may be negative.
+    #[inline(always)]
+    pub(super) fn may_lower(&self, batch: &PixelBatch<'_>, plane: &Plane) -> bool {
+        let triangle = &self.context.triangle;
+        !triangle.exact_reciprocal && (batch.reaches_beyond() || plane.lowers(triangle))
+    }
+
     /// INT-4t: lowers those of the coordinates that are whole. A row is divided into parts in which the same weights fall short: there, what
     /// a numerator loses is a linear function.
     #[inline(never)]
@@ -331,8 +338,7 @@ impl<'a> Setup<'a> {
         values: &mut [i32],
     ) {
         let triangle = &self.context.triangle;
-        // Beyond the triangle, weights may be negative.
-        if triangle.exact_reciprocal || !(plane.lowers(triangle) || batch.reaches_beyond()) {
+        if !self.may_lower(&batch, plane) {
             return;
         }
         if (!ROW || batch.reaches_beyond()) && lower_by_lane(triangle, batch, &plane.g, whole, values) {
@@ -421,7 +427,7 @@ impl BatchSetup {
 
     /// Returns the edge functions at the last pixel of a row.
     #[inline(always)]
-    pub(super) fn at_end(&self, triangle: &Triangle) -> [f64; 3] {
+    fn at_end(&self, triangle: &Triangle) -> [f64; 3] {
         let mut e = self.real;
         for k in 0..3 {
             e[k] += triangle.a[k] as f64 * self.columns;
