@@ -8,12 +8,14 @@
 use crate::repository::at;
 use crate::scene_files;
 use crate::settings::number;
+use ninebit_test_support::changed_scene::change;
 use ninebit_test_support::random_scene;
 
 use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, cleared, render, trace};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
 use ninebit::state::{Named, POLICIES, Policies, Scene};
 use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
@@ -214,6 +216,33 @@ fn engines_agree_on_random_scenes() {
 #[test]
 fn engines_agree_on_wider_random_scenes() {
     agree(&random_scene::wide::scene(), number("NINEBIT_ENGINE_MATRIX", 12));
+}
+
+/// Scenes of the repository, changed at random: each once, or as often as `NINEBIT_ENGINE_CHANGES` says.
+#[test]
+fn engines_agree_on_changed_scenes() {
+    let (changes, seed) = (number("NINEBIT_ENGINE_CHANGES", 1_u64), number("NINEBIT_ENGINE_SEED", 5_u64));
+    let (mut drawn, mut refused, mut complaints) = (0, 0, Vec::new());
+    for path in scene_files::below(&at("vectors/scenes")) {
+        let original = scene::load(&path, &Limits::default()).unwrap().scene;
+        for number in 0..changes {
+            let mut scene = original.clone();
+            change(&mut scene, &mut Random::new(seed + number, &path.file_name().unwrap().to_string_lossy()));
+            let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else {
+                refused += 1;
+                continue;
+            };
+            drawn += 1;
+            let isa = Isa::ALL[number as usize % Isa::ALL.len()];
+            let other = fast(if isa.is_available() { isa } else { Isa::Baseline }, 2);
+            if let Err(difference) = compare(&plan, &[fast(Isa::best(), 1), other]) {
+                complaints.push(format!("{} with seed {}: {difference}", path.display(), seed + number));
+            }
+        }
+    }
+    println!("{drawn} changed scenes, {refused} refused");
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(refused < drawn);
 }
 
 /// Shrinks a value as long as it still fails.

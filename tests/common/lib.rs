@@ -12,6 +12,7 @@
 )]
 
 pub mod blocks;
+pub mod changed_scene;
 pub mod random_program;
 pub mod random_scene;
 pub mod random_vertex_program;

@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{BoxCoverage, Entered, batch, boxes, columns_of_quads, common, spans_of_quads};
+use super::boxes::{Entered, batch, boxes, columns_of_quads, common, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -8,10 +8,11 @@ use super::isa::Kernels;
 use super::kernels::{self, PerLane};
 use super::levels::MipFetches;
 use super::setup::{Covered, PixelBatch, Run, whole_steps};
+use super::small::{Boxes, GROUP};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
 use super::triangle::{Functions, Interpolators, Varying};
-use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, small, store};
+use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 
@@ -25,7 +26,7 @@ pub(crate) struct Block {
     pub(super) varying: Varying,
     pub(super) work: Workspace,
     pub(super) workshop: Workshop,
-    coverage: BoxCoverage,
+    boxes: Boxes,
     planes: Functions,
     pub(super) runs: Vec<Run>,
     /// Number of lanes in use.
@@ -79,75 +80,71 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
     if compiled.reads_surface {
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
-    let mut context = TriangleContext::vacant(plan, draw, compiled.shader.is_none());
+    let vacant = |_| TriangleContext::vacant(plan, draw, compiled.shader.is_none());
+    let mut contexts: [_; GROUP] = std::array::from_fn(vacant);
     for window in walk::windows(draw, band.rows()) {
         for number in job.triangles {
-            shaded += draw_triangle::<T>(job, *number as usize, window, &mut context, band, block);
+            shaded += draw_triangle::<T>(job, *number as usize, window, &mut contexts, band, block);
         }
     }
+    shaded += draw_boxes::<T>(job, &mut contexts, band, block);
     finish::<T>(job, block, band);
     shaded
 }
 
-/// Draws the part of a triangle that lies in some rows and columns of a band. Returns the number of covered pixels.
+/// Draws the part of a triangle that lies in some rows and columns of a band, or adds its boxes to those that are drawn later. Returns the number
+/// of covered pixels that are drawn.
 #[inline(always)]
 fn draw_triangle<T: Kernels>(
     job: &Job<'_>,
     number: usize,
     (rows, columns): Window,
-    context: &mut TriangleContext<'_>,
+    contexts: &mut [TriangleContext<'_>; GROUP],
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded) = (job.compiled, 0);
-    match T::enter(context, number, (rows, columns), &mut block.coverage) {
+    let at = block.boxes.vacant();
+    let entered = T::enter(&mut contexts[at], number, (rows, columns));
+    match entered {
+        Entered::Nothing => return 0,
+        Entered::Small if compiled.plain && !compiled.completes_quads => {
+            let mut at = at;
+            for window in boxes(common(&contexts[at].triangle, (rows, columns))) {
+                block.boxes.add(window, at);
+                if block.boxes.count == GROUP {
+                    shaded += draw_boxes::<T>(job, contexts, band, block);
+                    contexts.swap(0, at);
+                    at = 0;
+                }
+            }
+            return shaded;
+        }
+        _ => shaded += draw_boxes::<T>(job, contexts, band, block),
+    }
+    let context = &mut contexts[at];
+    if matches!(entered, Entered::Small) && !compiled.completes_quads {
+        return shaded + draw_in_boxes::<T>(job, (rows, columns), context, band, block);
+    }
+    context.complete();
+    let triangle = &context.triangle;
+    let (rows, columns) = common(triangle, (rows, columns));
+    let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+    match entered {
         Entered::Nothing => {}
-        entered if compiled.completes_quads => {
-            context.complete();
-            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
+        Entered::Large if compiled.completes_quads => {
             interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
-            let (rows, columns) = common(&context.triangle, (rows, columns));
+            shaded += draw_quads::<T>(job, (rows, columns), context, &interpolators, band, block);
+        }
+        Entered::Small => {
+            interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
             let all = ((rows.0 & !1, rows.1), (columns.0 & !1, columns.1));
-            match entered {
-                Entered::Large => shaded += draw_quads::<T>(job, (rows, columns), context, &interpolators, band, block),
-                _ => {
-                    for ((top, end), (left, right)) in boxes(all) {
-                        let part = ((top.max(rows.0), end), (left.max(columns.0), right));
-                        shaded += draw_box_of_quads::<T>(job, part, context, &interpolators, band, block);
-                    }
-                }
+            for ((top, end), (left, right)) in boxes(all) {
+                let part = ((top.max(rows.0), end), (left.max(columns.0), right));
+                shaded += draw_box_of_quads::<T>(job, part, context, &interpolators, band, block);
             }
-            block.planes = interpolators.given_back(&mut block.defined);
-        }
-        Entered::Box => shaded += draw_box::<T>(job, context, band, block),
-        Entered::Boxes if compiled.plain => {
-            for window in boxes(common(&context.triangle, (rows, columns))) {
-                T::cover(&context.triangle, window, &mut block.coverage);
-                if block.coverage.count > 0 {
-                    shaded += draw_box::<T>(job, context, band, block);
-                }
-            }
-        }
-        Entered::Boxes => {
-            context.complete();
-            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
-            for window in boxes(common(&context.triangle, (rows, columns))) {
-                T::cover(&context.triangle, window, &mut block.coverage);
-                if block.coverage.count > 0 {
-                    if begin_box::<T>(job, context, band, block) {
-                        T::in_box(&interpolators, job, block);
-                        append_box::<T>(job, context, block);
-                    }
-                    shaded += block.coverage.count as u64;
-                }
-            }
-            block.planes = interpolators.given_back(&mut block.defined);
         }
         Entered::Large => {
-            context.complete();
-            let triangle = &context.triangle;
-            let (rows, columns) = common(triangle, (rows, columns));
-            let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);
                 if i == end {
@@ -181,9 +178,9 @@ fn draw_triangle<T: Kernels>(
                     i += count as i64;
                 }
             }
-            block.planes = interpolators.given_back(&mut block.defined);
         }
     }
+    block.planes = interpolators.given_back(&mut block.defined);
     shaded
 }
 
@@ -264,17 +261,18 @@ fn draw_box_of_quads<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    block.coverage.complete(&context.triangle, window);
-    if block.coverage.count == 0 {
+    block.boxes.coverage_mut().complete(&context.triangle, window);
+    if block.boxes.coverage().count == 0 {
         return 0;
     }
-    if !interpolators.setup.is_positive_around(&batch(&block.coverage, 0)) {
+    if !interpolators.setup.is_positive_around(&batch(block.boxes.coverage(), 0)) {
         return draw_quads::<T>(job, window, context, interpolators, band, block);
     }
     if begin_box::<T>(job, context, band, block) {
         T::in_box(interpolators, job, block);
         let mut upper = block.used;
-        for [(top, low, columns), _] in block.coverage.runs[..block.coverage.filled].as_chunks::<2>().0 {
+        for [(top, low, columns), _] in block.boxes.coverage().runs[..block.boxes.coverage().filled].as_chunks::<2>().0
+        {
             let (pixel, count) = ((*low, *top), columns / 2);
             let quads = PixelQuads { upper, lower: upper + columns, count, pixel, triangle: context.number };
             block.workshop.quads.add(quads);
@@ -282,7 +280,7 @@ fn draw_box_of_quads<T: Kernels>(
         }
         append_box::<T>(job, context, block);
     }
-    block.coverage.covered as u64
+    block.boxes.coverage().covered as u64
 }
 
 /// Computes a block and stores it.
@@ -294,42 +292,89 @@ fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the pixels of the block's coverage, of which there is at least one. Returns their number.
+/// Draws the block's boxes, for a plain draw. Returns the number of covered pixels.
 #[inline(always)]
-fn draw_box<T: Kernels>(
+fn draw_boxes<T: Kernels>(
     job: &Job<'_>,
+    contexts: &mut [TriangleContext<'_>; GROUP],
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let (count, mut shaded) = (std::mem::take(&mut block.boxes.count), 0);
+    if count > 0 {
+        T::set_up(contexts, job.compiled, count, &mut block.boxes);
+    }
+    for n in 0..count {
+        block.boxes.current = n;
+        let context = &mut contexts[block.boxes.all[n].1];
+        shaded += block.boxes.coverage().count as u64;
+        if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
+            continue;
+        }
+        if !T::plain(context, job.compiled, block) {
+            context.complete();
+            let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
+            T::in_box(&interpolators, job, block);
+            block.planes = interpolators.given_back(&mut block.defined);
+        }
+        append_box::<T>(job, context, block);
+    }
+    block.boxes.current = 0;
+    shaded
+}
+
+/// Draws the part of a small triangle in some rows and columns, for any draw. Returns the number of covered pixels.
+#[inline(always)]
+fn draw_in_boxes<T: Kernels>(
+    job: &Job<'_>,
+    window: Window,
     context: &mut TriangleContext<'_>,
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    if begin_box::<T>(job, context, band, block) {
-        if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
-            context.complete();
-            T::coverage(context, job, block);
+    let (mut windows, mut shaded) = (boxes(common(&context.triangle, window)), 0);
+    let mut next = |context: &TriangleContext<'_>, block: &mut Block| {
+        windows.any(|window| {
+            T::cover(&context.triangle, window, block.boxes.coverage_mut());
+            let count = block.boxes.coverage().count;
+            shaded += count as u64;
+            count > 0 && begin_box::<T>(job, context, band, block)
+        })
+    };
+    // Nothing else is computed of triangles that the depth test drops.
+    if next(context, block) {
+        context.complete();
+        let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
+        loop {
+            T::in_box(&interpolators, job, block);
+            append_box::<T>(job, context, block);
+            if !next(context, block) {
+                break;
+            }
         }
-        append_box::<T>(job, context, block);
+        block.planes = interpolators.given_back(&mut block.defined);
     }
-    block.coverage.count as u64
+    shaded
 }
 
 /// Computes the block if it has no room for the pixels of its coverage, adds and marks their runs, and computes their depths. Returns `false` if the
 /// depth test drops all of them, so that nothing else has to be computed; then there are no runs of them.
 #[inline(always)]
 fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> bool {
-    if block.coverage.count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
+    if block.boxes.coverage().count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
     let (first, used) = (block.runs.len(), block.used);
     // Most boxes have covered pixels only, and choices in each row would cost a small triangle some per cent.
-    if block.coverage.covered == block.coverage.count {
+    if block.boxes.coverage().covered == block.boxes.coverage().count {
         let mut lane = used;
-        for (j, i, count) in block.coverage.runs[..block.coverage.filled].iter().copied() {
+        for (j, i, count) in block.boxes.coverage().runs[..block.boxes.coverage().filled].iter().copied() {
             block.runs.push(Run { lane, at: index(band, (i, j)), count });
             lane += count;
         }
     } else {
         let run = |(lane, pixel, count)| Run { lane: used + lane, at: index(band, pixel), count };
-        block.runs.extend(block.coverage.drawn().map(run));
+        block.runs.extend(block.boxes.coverage().drawn().map(run));
     }
     let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {
@@ -346,34 +391,37 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
     if job.compiled.shader.is_some() {
         T::box_attributes(context, job, block);
     }
-    block.used += block.coverage.count;
+    block.used += block.boxes.coverage().count;
 }
 
-/// Interpolates all attributes of the small triangle in the block's box, for a plain draw. Returns `false` if something is not proved; then
-/// nothing that was written counts.
+/// Finds the pixels of the first boxes, and sets up all functions.
+#[inline(always)]
+pub(super) fn set_up<const FMA: bool>(
+    contexts: &[TriangleContext<'_>],
+    compiled: &CompiledDraw,
+    count: usize,
+    boxes: &mut Boxes,
+) {
+    boxes.set_up::<FMA>(contexts, compiled, count);
+}
+
+/// Interpolates all attributes in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing that was
+/// written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
     context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, rows, coverage, used, .. } = block;
-    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows)
-}
-
-/// Interpolates all attributes in the block's box, for any draw.
-#[inline(always)]
-pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
-    let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
-    in_box::<FMA>(&interpolators, job, block);
-    block.planes = interpolators.given_back(&mut block.defined);
+    let Block { varying, rows, boxes, used, .. } = block;
+    boxes.interpolate::<FMA>(context, compiled, batch(boxes.coverage(), *used), varying, rows)
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.
 #[inline(always)]
 pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block) {
-    let Block { varying, rows, coverage, used, .. } = block;
-    interpolators.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
+    let Block { varying, rows, boxes, used, .. } = block;
+    interpolators.interpolate::<FMA, false>(batch(boxes.coverage(), *used), job.compiled, job.textures, varying, rows);
 }
 
 /// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just
@@ -414,7 +462,7 @@ pub(super) fn row_attributes<const FMA: bool>(
 #[inline(always)]
 pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, false>(context, batch(&block.coverage, block.used), shader);
+        block.workshop.attributes::<FMA, false>(context, batch(block.boxes.coverage(), block.used), shader);
     }
 }
 
@@ -452,7 +500,8 @@ pub(super) fn box_depths<const FMA: bool>(
     block: &mut Block,
     band: &mut Band<'_>,
 ) -> bool {
-    let Block { varying, alive, coverage, used, runs, depth, defined, .. } = block;
+    let Block { varying, alive, boxes, used, runs, depth, defined, .. } = block;
+    let coverage = boxes.coverage();
     let covered = batch(coverage, *used).inside::<false>();
     defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
     let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
@@ -500,7 +549,7 @@ impl Block {
 
     #[inline(always)]
     fn is_box_taken(&self, band: &Band<'_>) -> bool {
-        self.coverage.drawn().any(|(_, pixel, count)| self.is_taken(band, pixel, count))
+        self.boxes.coverage().drawn().any(|(_, pixel, count)| self.is_taken(band, pixel, count))
     }
 }
 
@@ -532,8 +581,7 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
         found = fetch::sample_unit(job, n, found, varying, work, rows);
         fetch::drop_keyed(sampler, work, alive);
     }
-    let blends = compiled.destination.iter().any(Option::is_some);
-    if blends {
+    if compiled.destination.iter().any(Option::is_some) {
         store::read_runs(band.words, runs, stored);
         store::read(draw, compiled, stored, rows);
     }
@@ -565,12 +613,10 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     } else {
         store::pack(draw, compiled, rows, 0, words);
         if merges {
-            if !blends {
-                store::read_runs(band.words, runs, stored);
-            }
-            store::merge(draw.write_mask, alive, stored, words);
+            store::merge_runs(draw.write_mask, alive, words, stored, runs, band.words);
+        } else {
+            store::write_runs(words, runs, band.words);
         }
-        store::write_runs(words, runs, band.words);
     }
     if draw.depth_test.is_some() {
         alive.fill(true);

@@ -26,12 +26,6 @@ pub(super) fn is_small(triangle: &Triangle) -> bool {
     triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
 }
 
-/// Returns whether these rows and columns fit into one box.
-#[inline(always)]
-fn is_box((rows, columns): Window) -> bool {
-    rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE
-}
-
 /// Cuts rows and columns into boxes, from left to right, then from top to bottom.
 #[inline(always)]
 pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
@@ -44,9 +38,9 @@ pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
 /// The pixels of a small triangle that lie in a box.
 #[derive(Debug, Default)]
 pub(super) struct BoxCoverage {
-    /// Column and row of the first pixel.
+    /// A column and a row at or near the triangle's.
     pub(super) first: (i64, i64),
-    /// Columns and rows of the pixels relative to the first. Lanes past the end repeat the last pixel.
+    /// Columns and rows of the pixels relative to that one. Lanes past the end repeat the last pixel.
     pub(super) x: PerLane<i32>,
     pub(super) y: PerLane<i32>,
     pub(super) count: usize,
@@ -63,35 +57,30 @@ pub(super) struct BoxCoverage {
 }
 
 impl BoxCoverage {
-    /// RAS-3: finds the covered pixels of a [box](is_box) of a [small](is_small) triangle, all rows at once.
+    /// RAS-3: finds the covered pixels of one of the [boxes] of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, (rows, columns): Window) {
-        (self.count, self.filled) = (0, 0);
-        let left = columns.0;
+        let (left, top) = (columns.0, rows.0);
         let (mut low, mut high) = ([0; SIDE as usize], [(columns.1 - left) as i32; SIDE as usize]);
-        let e = triangle.edges(left, rows.0);
+        let e = triangle.edges(left, top);
         for k in 0..3 {
             // Not negative inside the triangle. On an edge that belongs to the other triangle, the value is one less.
             let owed = i64::from(!triangle.owns[k]);
             limit((e[k] - owed) as i32, triangle.a[k] as i32, triangle.b[k] as i32, &mut low, &mut high);
         }
-        for ((j, low), high) in (rows.0..rows.1).zip(low).zip(high) {
-            if low >= high {
-                continue;
+        let (mut used, mut filled) = (0, 0);
+        // What a row without pixels writes, the next one overwrites.
+        for ((y, low), high) in (0..(rows.1 - top) as i32).zip(low).zip(high) {
+            let count = (high - low).max(0) as usize;
+            let lanes = used..used + STEP;
+            for (n, (to_x, to_y)) in (0..).zip(self.x[lanes.clone()].iter_mut().zip(&mut self.y[lanes])) {
+                (*to_x, *to_y) = (low + n, y);
             }
-            let (start, count) = (left + i64::from(low), (high - low) as usize);
-            if self.count == 0 {
-                self.first = (start, j);
-            }
-            let (x, y) = ((start - self.first.0) as i32, (j - self.first.1) as i32);
-            let lanes = self.count..self.count + STEP;
-            for (n, (to_x, to_y)) in self.x[lanes.clone()].iter_mut().zip(&mut self.y[lanes]).enumerate() {
-                (*to_x, *to_y) = (x + n as i32, y);
-            }
-            self.runs[self.filled] = (j, start, count);
-            self.filled += 1;
-            self.count += count;
+            self.runs[filled] = (top + i64::from(y), left + i64::from(low), count);
+            filled += usize::from(count > 0);
+            used += count;
         }
+        (self.first, self.count, self.filled) = ((left, top), used, filled);
         (self.covered, self.extent) = (self.count, (SIDE as i32, SIDE as i32));
         if let Some(last) = self.count.checked_sub(1) {
             let (x, y) = (self.x[last], self.y[last]);
@@ -175,10 +164,8 @@ pub(super) fn columns_of_quads(spans: [(i64, i64); 2]) -> (i64, i64) {
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// As one box: the pixels of the coverage.
-    Box,
-    /// As several boxes.
-    Boxes,
+    /// As boxes.
+    Small,
     /// Row by row.
     Large,
 }
@@ -192,34 +179,23 @@ pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     )
 }
 
-/// Sets up a triangle that may cover pixels for the given rows and columns, and finds its coverage if it is a single box.
+/// Sets up a triangle that may cover pixels in the given rows and columns.
 #[inline(always)]
-pub(super) fn enter<const WIDE: bool>(
-    context: &mut TriangleContext<'_>,
-    number: usize,
-    window: Window,
-    coverage: &mut BoxCoverage,
-) -> Entered {
+pub(super) fn enter<const WIDE: bool>(context: &mut TriangleContext<'_>, number: usize, window: Window) -> Entered {
     if !context.prepare(number) {
         return Entered::Nothing;
     }
-    let triangle = &context.triangle;
-    if !is_small(triangle) {
-        return Entered::Large;
-    }
-    let window = common(triangle, window);
-    let (rows, columns) = window;
+    let (rows, columns) = common(&context.triangle, window);
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
-        return Entered::Nothing;
+        Entered::Nothing
+    } else if is_small(&context.triangle) {
+        Entered::Small
+    } else {
+        Entered::Large
     }
-    if !is_box(window) {
-        return Entered::Boxes;
-    }
-    coverage.cover(triangle, window);
-    if coverage.count > 0 { Entered::Box } else { Entered::Nothing }
 }
 
-/// Finds the covered pixels of one box of a triangle that is cut into boxes.
+/// Finds the covered pixels of one box of a triangle.
 #[inline(always)]
 pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
     coverage.cover(triangle, window);
@@ -299,7 +275,7 @@ mod tests {
             }
             drawn += 1;
             for (rows, columns) in boxes((triangle.rows, triangle.columns)) {
-                assert!(is_box((rows, columns)));
+                assert!(rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE);
                 coverage.cover(&triangle, (rows, columns));
                 let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, columns)));
                 let wanted: Vec<_> =

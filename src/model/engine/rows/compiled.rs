@@ -121,7 +121,7 @@ pub(crate) struct CompiledDraw {
     pub(super) samples_pixels: bool,
     /// Whether quads are drawn with all of their pixels: a dependent read has levels, which follow from the results of all.
     pub(super) completes_quads: bool,
-    /// Whether the surface is read: for blending, because some bits are not written, or because fragments can be dropped.
+    /// Whether the surface or its depths are read when a block is computed: for blending, or for tests that are late.
     pub(super) reads_surface: bool,
     /// Whether something other than the depth test can drop fragments. If nothing else can, depths are tested before anything else.
     pub(super) drops_late: bool,

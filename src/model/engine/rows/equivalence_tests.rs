@@ -9,11 +9,13 @@ use super::kernels::PerLane;
 use super::levels::MipFetches;
 use super::quads::Measure;
 use super::setup::PixelBatch;
+use super::small::Boxes;
 use super::taps::{Footprints, Pair, PairsOfQuad};
 use super::triangle::{Interpolators, Varying};
 use super::{BLOCK, Reasons, Rows};
 use crate::engine::TextureWords;
 use crate::engine::pixel::TriangleContext;
+use crate::engine::walk::Window;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -293,15 +295,19 @@ pub(super) fn options(finite: bool) -> PlanOptions {
     options
 }
 
-/// Compares the units on planes and the weights of a small triangle, set up four at a time, with the definition.
+/// Compares the units on planes and the weights of a box of a small triangle with the definition.
 fn compare_small<const FMA: bool>(
     context: &TriangleContext<'_>,
     plain: &super::CompiledDraw,
-    batch: PixelBatch<'_>,
+    window: Window,
+    small: &mut Boxes,
     varying: &mut Varying,
     rows: &mut [PerLane<i16>],
 ) -> bool {
-    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows);
+    (small.all[0], small.current) = ((window, 0), 0);
+    small.set_up::<FMA>(std::slice::from_ref(context), plain, 1);
+    let batch = batch(small.coverage(), 0);
+    let done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
     super::depth::depths::<FMA, false>(context, batch, varying.depths());
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
@@ -411,8 +417,8 @@ fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
     let mut random = Random::seeded(seed);
-    let (mut pixels, mut drawn, mut fours, mut round) = (0, 0, 0, 0_u64);
-    let (mut coverage, mut reasons) = (BoxCoverage::default(), Reasons::default());
+    let (mut pixels, mut drawn, mut proved, mut round) = (0, 0, 0, 0_u64);
+    let (mut coverage, mut small_boxes, mut reasons) = (BoxCoverage::default(), Boxes::default(), Reasons::default());
     while pixels < wanted || drawn < least_drawn {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
@@ -476,12 +482,12 @@ fn rows_interpolate(seed: u64) {
                     }
                     let batch = batch(&coverage, 0);
                     let alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
-                    let four = if round.is_multiple_of(4) {
-                        compare_small::<true>(&alone, &plain, batch, &mut varying, &mut rows)
+                    let done = if round.is_multiple_of(4) {
+                        compare_small::<true>(&alone, &plain, window, &mut small_boxes, &mut varying, &mut rows)
                     } else {
-                        compare_small::<false>(&alone, &plain, batch, &mut varying, &mut rows)
+                        compare_small::<false>(&alone, &plain, window, &mut small_boxes, &mut varying, &mut rows)
                     };
-                    fours += u64::from(four);
+                    proved += u64::from(done);
                     if round.is_multiple_of(4) {
                         compare::<true, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
                     } else {
@@ -515,8 +521,8 @@ fn rows_interpolate(seed: u64) {
             planes = interpolators.given_back(&mut reasons);
         }
     }
-    assert!(fours > drawn / 2);
+    assert!(proved > drawn / 2);
     println!(
-        "{pixels} pixels, {drawn} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
+        "{pixels} pixels, {drawn} boxes of small triangles, {proved} of them proved at once; definition: {reasons:?}"
     );
 }

@@ -5,6 +5,7 @@ use super::boxes::{BoxCoverage, Entered};
 use super::compiled::{CompiledDraw, Job};
 use super::filter::Vectors;
 use super::setup::Covered;
+use super::small::Boxes;
 use super::triangle::Interpolators;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{Band, Window};
@@ -109,13 +110,13 @@ text! {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
-        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
+        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window) -> Entered;
+        /// Calls [`band::set_up`] with this instruction set.
+        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
         /// Calls [`band::cover`] with this instruction set.
         fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
         /// Calls [`band::plain`] with this instruction set.
         fn plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// Calls [`band::coverage`] with this instruction set.
-        fn coverage(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::in_box`] with this instruction set.
         fn in_box(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::row`] with this instruction set.

@@ -86,7 +86,7 @@ impl Setup<'_> {
             while done < count {
                 let mut part = row.part(done, count - done);
                 let proved = loop {
-                    let own = (part.count < batch.count).then(|| self.local::<FMA, true>(part, true));
+                    let own = (!ROW || part.count < batch.count).then(|| self.local::<FMA, true>(part, true));
                     let local = own.as_ref().unwrap_or(local);
                     if let Some(base) = self.base_level::<FMA, true>(part, (sampler, planes), local) {
                         let work = (&mut *quads, &mut *placing);

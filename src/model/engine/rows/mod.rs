@@ -11,7 +11,7 @@
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
 //! | `third.rs` | layers of volumes, depths to compare with |
-//! | `small.rs` | the same for small triangles, four functions at a time |
+//! | `small.rs` | the same for boxes of small triangles, eight at a time |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
@@ -213,12 +213,10 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     }
     let kills = draw.kills();
     compiled.drops_late = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some();
-    let drops = compiled.drops_late || draw.depth_test.is_some();
-    let whole = surface::write_mask(draw.surface, [true; 4]);
-    let reads = compiled.destination.iter().any(Option::is_some);
-    compiled.writes_whole = draw.write_mask == whole;
-    compiled.merges = drops || !compiled.writes_whole;
-    compiled.reads_surface = reads || compiled.merges;
+    let tests_late = compiled.drops_late && (draw.depth_test.is_some() || draw.stencil_test.is_some());
+    compiled.writes_whole = draw.write_mask == surface::write_mask(draw.surface, [true; 4]);
+    compiled.merges = compiled.drops_late || draw.depth_test.is_some() || !compiled.writes_whole;
+    compiled.reads_surface = tests_late || compiled.destination.iter().any(Option::is_some);
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());

@@ -128,18 +128,24 @@ pub(super) fn edge_lines(triangle: &Triangle, e: &[i64; 3]) -> [Line; 3] {
     ]
 }
 
-/// Returns the function sum g_k E_k, with g_k divided by a power of two that divides them all, if doubles hold all its terms and sums exactly
-/// in the triangle.
+/// Returns the function sum g_k E_k, with g_k divided by a power of two that divides them all, if all its terms and sums stay below a number so
+/// many columns and rows around a pixel. Doubles hold them exactly, up to 2^53.
 #[inline(always)]
-pub(super) fn exact_line(triangle: &Triangle, e: &[i64; 3], g: &[i64; 3], shared: u32) -> Option<Line> {
-    let g = [(g[0] >> shared) as f64, (g[1] >> shared) as f64, (g[2] >> shared) as f64];
-    // No edge function is larger than the area. A sum has three terms along each of two axes, and may be multiplied by a bias of half a texel.
-    let most = (g[0].abs() + g[1].abs() + g[2].abs()) * triangle.doubled_area as f64;
-    if most * 8.0 * 128.0 >= (1_u64 << 53) as f64 {
-        return None;
+pub(super) fn exact_line(
+    triangle: &Triangle,
+    e: &[i64; 3],
+    (g, shared): (&[i64; 3], u32),
+    (columns, rows): (i32, i32),
+    most: f64,
+) -> Option<Line> {
+    let (mut line, mut size) = (Line::default(), 0.0);
+    for k in 0..3 {
+        let g = (g[k] >> shared) as f64;
+        let (c, x, y) = (g * e[k] as f64, g * triangle.a[k] as f64, g * triangle.b[k] as f64);
+        line = line.plus(Line { c, x, y });
+        size += c.abs() + x.abs() * f64::from(columns) + y.abs() * f64::from(rows);
     }
-    let sum = |of: &[i64; 3]| g[0] * of[0] as f64 + g[1] * of[1] as f64 + g[2] * of[2] as f64;
-    Some(Line { c: sum(e), x: sum(&triangle.a), y: sum(&triangle.b) })
+    (size < most).then_some(line)
 }
 
 /// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.

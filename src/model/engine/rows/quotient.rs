@@ -275,21 +275,34 @@ impl Reciprocals {
     #[inline(always)]
     pub(super) fn estimate<const FMA: bool, const ROW: bool>(
         &self,
-        [one, other]: [QuotientEstimate; 2],
+        quotients: [QuotientEstimate; 2],
         first: &mut [i32],
         second: &mut [i32],
     ) -> [bool; 2] {
+        let close = self.floors::<FMA, ROW, i32>(quotients, first, second, |floor| floor);
+        [close[0] < 0, close[1] < 0]
+    }
+
+    /// Writes the floors of two quotients, as another type. Returns for each a number that is negative if a lane is not proved.
+    #[inline(always)]
+    pub(super) fn floors<const FMA: bool, const ROW: bool, T>(
+        &self,
+        [one, other]: [QuotientEstimate; 2],
+        first: &mut [T],
+        second: &mut [T],
+        to: impl Fn(i32) -> T,
+    ) -> [i32; 2] {
         let lanes = first.len();
         let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         let mut close = [0_i32; 2];
         for n in 0..lanes {
             let (x, y, r) = (xs[n], ys[n], rs[n]);
             let ((a, a_close), (b, b_close)) = (one.at::<FMA, ROW>(x, y, r), other.at::<FMA, ROW>(x, y, r));
-            (first[n], second[n]) = (a, b);
+            (first[n], second[n]) = (to(a), to(b));
             close[0] |= a_close;
             close[1] |= b_close;
         }
-        [close[0] < 0, close[1] < 0]
+        close
     }
 
     /// Returns the floors of a lane, or `None` if one is not proved.

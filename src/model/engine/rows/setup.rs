@@ -310,8 +310,10 @@ impl<'a> Setup<'a> {
         whole: &mut [i32],
     ) {
         if !ROW && !batch.reaches_beyond() {
-            let of = |g: &[i64; 3]| exact_line(&self.context.triangle, e, g, plane.shared);
-            if let (Some(top), Some(bottom)) = (of(&plane.g), of(&self.denominator.g)) {
+            let of = |g, most| exact_line(&self.context.triangle, e, (g, plane.shared), batch.extent, most);
+            // From a numerator, up to 128 denominators are taken, and then about a whole of it.
+            let most = (1_u64 << 51) as f64;
+            if let (Some(top), Some(bottom)) = (of(&plane.g, most), of(&self.denominator.g, most / 128.0)) {
                 let top = top.less(f64::from(bias), bottom);
                 return correct_exactly(batch.at, top, bottom, values, whole);
             }

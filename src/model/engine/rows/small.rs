@@ -1,236 +1,292 @@
-//! INT-1 to INT-4t for small triangles whose units are sampled on planes. Four functions are set up at a time, in floating point only, and
-//! all quotients of a pixel share one reciprocal. `docs/exactness.md` has the argument.
+//! INT-1 to INT-4t for small triangles whose units are sampled on planes. The functions of several boxes are set up at a time, in floating
+//! point only, and all quotients of a pixel share one reciprocal. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
-use super::boxes::SIDE;
-use super::color::{colors, narrow_weights};
+use super::boxes::{BoxCoverage, SIDE};
+use super::color::colors;
+use super::compiled::Sampler;
 use super::kernels::PerLane;
-use super::planes::{FOUR, inverse};
 use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
 use super::setup::PixelBatch;
 use super::triangle::Varying;
 use crate::engine::pixel::TriangleContext;
-use crate::raster::setup::Triangle;
+use crate::engine::walk::Window;
 use crate::state::TEXTURE_UNITS;
 
-/// Two quotients that belong together.
-#[derive(Clone, Copy, Debug)]
-enum Pair {
-    None,
-    /// u and v of a sampler.
-    Sampler(usize),
+/// Largest number of boxes that are set up at a time.
+pub(super) const GROUP: usize = 8;
+
+/// A number of each box.
+type Each<T> = [T; GROUP];
+
+/// Boxes of small triangles that are set up at a time.
+#[derive(Debug, Default)]
+pub(super) struct Boxes {
+    /// Rows and columns of each, and the index of the triangle among the contexts, in the order in which they are drawn.
+    pub(super) all: Each<(Window, usize)>,
+    pub(super) count: usize,
+    /// Their pixels.
+    coverages: Each<BoxCoverage>,
+    /// Index of the current box.
+    pub(super) current: usize,
+    denominator: Lines,
+    /// u and v of the samplers.
+    coordinates: [[Estimates; 2]; TEXTURE_UNITS],
     /// Weights 0 and 2.
-    Weights,
+    weights: [Estimates; 2],
+    /// Whether all estimates can prove something.
+    proves: Each<bool>,
 }
 
-/// The set-up that all functions of a triangle share.
-struct EdgeSetup {
-    /// Edge functions at the first pixel, and their slopes.
-    e: [f64; 3],
-    a: [f64; 3],
-    b: [f64; 3],
-    /// Upper bound of each |E_k| in the box, with all terms that are added to it.
-    terms: [f64; 3],
-    p: [f64; 3],
-    /// 1 / P_k of the vertices.
-    inverse: [f64; 3],
-    denominator: Line,
-    /// Reciprocal of the first pixel's D.
-    reciprocal: f64,
-    /// Reciprocal of a lower bound of D.
-    widest: f64,
-    /// Upper bound of the quotient of any term of D by the least D.
-    ratio: f64,
-    /// Upper bound of the change of a quotient by the floors of its numerators at the vertices.
-    floors: f64,
-    /// If the values at the vertices are whole and no tie is lowered (INT-3), quotients are multiples of this number; otherwise 0.
-    gap: f64,
-}
-
-impl EdgeSetup {
+impl Boxes {
+    /// Adds a box, for which there is room.
     #[inline(always)]
-    fn new<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>) -> EdgeSetup {
-        let e = real(&triangle.edges(batch.first.0, batch.first.1));
-        let (a, b, p) = (real(&triangle.a), real(&triangle.b), real(&triangle.p));
-        let mut terms = [0.0; 3];
-        for k in 0..3 {
-            terms[k] = e[k] + (a[k].abs() + b[k].abs()) * SIDE as f64;
-        }
-        let denominator = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
-        let least = if p[0] < p[1] { p[0] } else { p[1] };
-        let least = if least < p[2] { least } else { p[2] };
-        let (least_here, least_of_all) =
-            (denominator.least(SIDE as f64, SIDE as f64), least * triangle.doubled_area as f64);
-        let widest = 1.0 / if least_here > least_of_all { least_here } else { least_of_all };
-        let ratio = sum::<FMA>(&p, &terms) * widest;
-        let reciprocal = 1.0 / denominator.c;
-        EdgeSetup {
-            e,
-            a,
-            b,
-            terms,
-            p,
-            inverse: inverse(triangle),
-            denominator,
-            reciprocal,
-            widest,
-            ratio,
-            floors: 1.25 / least,
-            gap: if triangle.exact_reciprocal && triangle.p[0].is_positive() && triangle.p[0].count_ones() == 1 {
-                1.0 / triangle.doubled_area as f64
-            } else {
-                0.0
-            },
-        }
+    pub(super) fn add(&mut self, window: Window, context: usize) {
+        self.all[self.count] = (window, context);
+        self.count += 1;
     }
 
-    /// Sets up four quotients. `g` has the numerators at the vertices, before they are floored.
+    /// Returns the index of the first context that no box uses.
     #[inline(always)]
-    fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Estimates4 {
-        let mut all = Estimates4::default();
-        let mut gaps = [0.0; FOUR];
-        if self.gap > 0.0 {
-            for n in 0..FOUR {
-                let is_whole = |k: usize| whole(g[k][n] * self.inverse[k]) == g[k][n] * self.inverse[k];
-                gaps[n] = if is_whole(0) && is_whole(1) && is_whole(2) { self.gap } else { 0.0 };
+    pub(super) fn vacant(&self) -> usize {
+        self.count.checked_sub(1).map_or(0, |last| self.all[last].1 + 1)
+    }
+
+    /// Returns the pixels of the current box.
+    #[inline(always)]
+    pub(super) fn coverage(&self) -> &BoxCoverage {
+        &self.coverages[self.current]
+    }
+
+    #[inline(always)]
+    pub(super) fn coverage_mut(&mut self) -> &mut BoxCoverage {
+        &mut self.coverages[self.current]
+    }
+
+    /// Finds the pixels of the first boxes, and sets up all functions.
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(
+        &mut self,
+        contexts: &[TriangleContext<'_>],
+        compiled: &CompiledDraw,
+        count: usize,
+    ) {
+        let all = &self.all[..count];
+        for ((window, context), coverage) in all.iter().zip(&mut self.coverages) {
+            coverage.cover(&contexts[*context].triangle, *window);
+        }
+        let edges = Edges::new::<FMA>(contexts, all);
+        let mut proves = [-1; GROUP];
+        for (n, sampler) in own(compiled) {
+            let (mut s, mut t) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3]);
+            for (n, (_, context)) in all.iter().enumerate() {
+                let context = &contexts[*context];
+                let sets = context.sampled_coordinates(sampler.index);
+                for k in 0..3 {
+                    (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
+                }
+                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3] && !context.triangle.loses_on_planes();
+                proves[n] &= -i32::from(is_plane);
+            }
+            let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
+            let [u, v] = &mut self.coordinates[n];
+            for (estimates, at, side, up) in [(u, s, width, up), (v, t, height, down)] {
+                let (side, mut g) = (f64::from(256 * side), [[0.0; GROUP]; 3]);
+                for k in 0..3 {
+                    for n in 0..GROUP {
+                        g[k][n] = (f64::from(at[k][n]) * side + up) * edges.p[k][n];
+                    }
+                }
+                *estimates = Estimates::new::<FMA>(&edges, &g, bias, &mut proves);
             }
         }
+        if all.iter().any(|(_, context)| compiled.varies(&contexts[*context])) {
+            for (k, estimates) in [0, 2].into_iter().zip(&mut self.weights) {
+                let mut g = [[0.0; GROUP]; 3];
+                g[k] = edges.p[k].map(|p| 256.0 * p);
+                *estimates = Estimates::new::<FMA>(&edges, &g, 0, &mut proves);
+            }
+        }
+        self.proves = proves.map(|proves| proves != 0);
+        self.denominator = edges.denominator;
+    }
+
+    /// Interpolates all attributes of the pixels of the current box, of which there is at least one. Returns `false` if something is not proved; then
+    /// nothing counts.
+    #[inline(always)]
+    pub(super) fn interpolate<const FMA: bool>(
+        &self,
+        context: &TriangleContext<'_>,
+        compiled: &CompiledDraw,
+        batch: PixelBatch<'_>,
+        varying: &mut Varying,
+        rows: &mut [PerLane<i16>],
+    ) -> bool {
+        let n = self.current;
+        if !self.proves[n] {
+            return false;
+        }
+        let weighted = compiled.varies(context);
+        let Varying { coordinates, narrow: [w0, w2], reciprocals, .. } = &mut *varying;
+        if weighted || !compiled.samplers.is_empty() {
+            reciprocals.set::<FMA, false>(batch.at, self.denominator.of(n));
+        }
+        let (at, mut open) = (|| batch.lanes(), 0);
+        for (sampler, _) in own(compiled) {
+            let ([along, down], [u, v]) = (&self.coordinates[sampler], &mut coordinates[sampler]);
+            let close =
+                reciprocals.floors::<FMA, false, _>([along.of(n), down.of(n)], &mut u[at()], &mut v[at()], |u| u);
+            open |= close[0] | close[1];
+        }
+        if weighted {
+            let [first, third] = [self.weights[0].of(n).not_negative(), self.weights[1].of(n).not_negative()];
+            let close = reciprocals.floors::<FMA, false, _>([first, third], &mut w0[at()], &mut w2[at()], |w| w as u16);
+            open |= close[0] | close[1];
+        }
+        if open < 0 {
+            return false;
+        }
+        colors(context, compiled, batch, &varying.narrow, rows);
+        true
+    }
+}
+
+/// Returns the samplers that have coordinates of their own, with their indices.
+#[inline(always)]
+fn own(compiled: &CompiledDraw) -> impl Iterator<Item = (usize, &Sampler)> {
+    compiled.samplers.iter().enumerate().filter(|(_, sampler)| sampler.shares.is_none() && !sampler.depends)
+}
+
+/// A linear function of each box.
+#[derive(Debug, Default)]
+struct Lines {
+    c: Each<f64>,
+    x: Each<f64>,
+    y: Each<f64>,
+}
+
+impl Lines {
+    #[inline(always)]
+    fn of(&self, n: usize) -> Line {
+        Line { c: self.c[n], x: self.x[n], y: self.y[n] }
+    }
+}
+
+/// The set-up that all functions of a box share.
+struct Edges {
+    /// Edge functions at the first pixel, and their slopes.
+    e: [Each<f64>; 3],
+    a: [Each<f64>; 3],
+    b: [Each<f64>; 3],
+    /// Upper bound of each |E_k| in the box, with all terms that are added to it.
+    terms: [Each<f64>; 3],
+    p: [Each<f64>; 3],
+    /// 1 / P_k of the vertices.
+    inverse: [Each<f64>; 3],
+    denominator: Lines,
+    /// Reciprocal of the first pixel's D.
+    reciprocal: Each<f64>,
+    /// Reciprocal of a lower bound of D.
+    widest: Each<f64>,
+    /// Upper bound of the quotient of any term of D by the least D.
+    ratio: Each<f64>,
+    /// Upper bound of the change of a quotient by the floors of its numerators at the vertices.
+    floors: Each<f64>,
+    /// If the values at the vertices are whole and no tie is lowered (INT-3), quotients are multiples of this number; otherwise 0.
+    gap: Each<f64>,
+}
+
+impl Edges {
+    #[inline(always)]
+    fn new<const FMA: bool>(contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)]) -> Edges {
+        // All numbers of a small triangle fit into 32 bits.
+        let [mut e, mut a, mut b, mut p] = [[[0; GROUP]; 3]; 4];
+        let (mut area, mut gap) = ([0.0; GROUP], [0.0; GROUP]);
+        for (n, ((rows, columns), context)) in boxes.iter().enumerate() {
+            let triangle = &contexts[*context].triangle;
+            let first = triangle.edges(columns.0, rows.0);
+            for k in 0..3 {
+                (e[k][n], a[k][n], b[k][n]) = (first[k] as i32, triangle.a[k] as i32, triangle.b[k] as i32);
+                p[k][n] = triangle.p[k] as i32;
+            }
+            area[n] = triangle.doubled_area as f64;
+            // All P are equal if the reciprocal is exact.
+            if triangle.exact_reciprocal && triangle.p[0].count_ones() == 1 {
+                gap[n] = 1.0 / area[n];
+            }
+        }
+        let [e, a, b, p] = [e, a, b, p].map(|of| of.map(|of| of.map(f64::from)));
+        let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
+        let [mut reciprocal, mut widest, mut ratio, mut floors] = [[0.0; GROUP]; 4];
+        // One loop, because compilers would make vectors across k of another.
+        for n in 0..GROUP {
+            let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
+            let (e, a, b, p) = (at(&e), at(&a), at(&b), at(&p));
+            let line = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
+            let bound = |k: usize| e[k].abs() + (a[k].abs() + b[k].abs()) * SIDE as f64;
+            let bounds = [bound(0), bound(1), bound(2)];
+            (terms[0][n], terms[1][n], terms[2][n]) = (bounds[0], bounds[1], bounds[2]);
+            (inverse[0][n], inverse[1][n], inverse[2][n]) = (1.0 / p[0], 1.0 / p[1], 1.0 / p[2]);
+            let least = smaller(smaller(p[0], p[1]), p[2]);
+            let (least_here, least_of_all) = (line.least(SIDE as f64, SIDE as f64), least * area[n]);
+            widest[n] = 1.0 / if least_here > least_of_all { least_here } else { least_of_all };
+            ratio[n] = sum::<FMA>(&p, &bounds) * widest[n];
+            reciprocal[n] = 1.0 / line.c;
+            floors[n] = 1.25 / least;
+            (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
+        }
+        Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap }
+    }
+}
+
+/// The [`QuotientEstimate`]s of a quotient in each box.
+#[derive(Debug, Default)]
+struct Estimates {
+    line: Lines,
+    base: Each<i32>,
+    shift: Each<u32>,
+    limit: Each<i32>,
+}
+
+impl Estimates {
+    /// Sets up a quotient in all boxes. `g` has the numerators at the vertices, before they are floored. Clears `proves` where the estimate can
+    /// prove nothing.
+    #[inline(always)]
+    fn new<const FMA: bool>(edges: &Edges, g: &[Each<f64>; 3], bias: i32, proves: &mut Each<i32>) -> Estimates {
+        let mut all = Estimates::default();
         // Not one struct for each quotient, because compilers do not vectorise such a loop.
-        for n in 0..FOUR {
-            let g = [g[0][n], g[1][n], g[2][n]];
-            let line = Line { c: sum::<FMA>(&g, &self.e), x: sum::<FMA>(&g, &self.a), y: sum::<FMA>(&g, &self.b) };
+        for n in 0..GROUP {
+            let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
+            let (g, inverse) = (at(g), at(&edges.inverse));
+            let line = Line {
+                c: sum::<FMA>(&g, &at(&edges.e)),
+                x: sum::<FMA>(&g, &at(&edges.a)),
+                y: sum::<FMA>(&g, &at(&edges.b)),
+            };
             let size = [g[0].abs(), g[1].abs(), g[2].abs()];
+            let is_whole = |k: usize| whole(g[k] * inverse[k]) == g[k] * inverse[k];
+            let gap = if is_whole(0) & is_whole(1) & is_whole(2) { edges.gap[n] } else { 0.0 };
             // Adds half a denominator, half a texel, and the rounding error of this number.
-            let most = sum::<FMA>(&size, &self.inverse) + 260.0;
-            let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK + self.floors;
-            let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
-            let off = (margin, gaps[n]);
+            let most = sum::<FMA>(&size, &inverse) + 260.0;
+            let terms = sum::<FMA>(&size, &at(&edges.terms));
+            let margin = (terms * edges.widest[n] + 2.0 * most * edges.ratio[n]) * SLACK + edges.floors[n];
+            let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (edges.reciprocal[n], edges.widest[n]));
+            let denominator = edges.denominator.of(n);
             let (one, is) =
-                QuotientEstimate::with_proof::<false>(line, self.denominator, extent, reciprocals, off, bias[n]);
-            (all.c[n], all.x[n], all.y[n]) = (one.line.c, one.line.x, one.line.y);
+                QuotientEstimate::with_proof::<false>(line, denominator, extent, reciprocals, (margin, gap), bias);
+            (all.line.c[n], all.line.x[n], all.line.y[n]) = (one.line.c, one.line.x, one.line.y);
             (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
-            all.proves[n] = i32::from(is);
+            proves[n] &= -i32::from(is);
         }
         all
     }
-}
 
-/// The [`QuotientEstimate`]s of four quotients.
-#[derive(Default)]
-struct Estimates4 {
-    c: [f64; FOUR],
-    x: [f64; FOUR],
-    y: [f64; FOUR],
-    base: [i32; FOUR],
-    shift: [u32; FOUR],
-    limit: [i32; FOUR],
-    /// 1 if the estimate can prove something.
-    proves: [i32; FOUR],
-}
-
-impl Estimates4 {
     #[inline(always)]
     fn of(&self, n: usize) -> QuotientEstimate {
-        let line = Line { c: self.c[n], x: self.x[n], y: self.y[n] };
-        QuotientEstimate { line, base: self.base[n], shift: self.shift[n], limit: self.limit[n], least: i32::MIN }
+        let (base, shift, limit) = (self.base[n], self.shift[n], self.limit[n]);
+        QuotientEstimate { line: self.line.of(n), base, shift, limit, least: i32::MIN }
     }
-}
-
-/// Interpolates all attributes of the pixels of a small triangle, of which there is at least one. Returns `false` if something is not proved;
-/// then nothing counts.
-#[inline(always)]
-pub(super) fn interpolate<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    batch: PixelBatch<'_>,
-    varying: &mut Varying,
-    rows: &mut [PerLane<i16>],
-) -> bool {
-    let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
-    let mut count = 0;
-    for (n, sampler) in compiled.samplers.iter().enumerate() {
-        if sampler.shares.is_none() && !sampler.depends {
-            let [a, b, c] = context.sampled_coordinates(sampler.index);
-            if [a[3], b[3], c[3]] != [1.0; 3] || context.triangle.loses_on_planes() {
-                return false;
-            }
-            pairs[count] = Pair::Sampler(n);
-            count += 1;
-        }
-    }
-    let weighted = compiled.varies(context);
-    if weighted {
-        pairs[count] = Pair::Weights;
-        count += 1;
-    }
-    if count > 0 && !divide::<FMA>(context, compiled, batch, (&pairs, count), varying) {
-        return false;
-    }
-    if weighted {
-        narrow_weights(batch, &varying.weights, &mut varying.narrow);
-    }
-    colors(context, compiled, batch, &varying.narrow, rows);
-    true
-}
-
-/// Computes everything that is divided by D. Returns whether all of it is proved.
-#[inline(always)]
-fn divide<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    batch: PixelBatch<'_>,
-    (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
-    varying: &mut Varying,
-) -> bool {
-    let edges = EdgeSetup::new::<FMA>(&context.triangle, batch);
-    let mut is_open = false;
-    for (n, pairs) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().enumerate() {
-        let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
-        for (half, pair) in pairs.iter().enumerate() {
-            let (u, v) = (2 * half, 2 * half + 1);
-            match *pair {
-                Pair::None => {}
-                Pair::Sampler(n) => {
-                    let sampler = &compiled.samplers[n];
-                    let (sets, [width, height]) = (context.sampled_coordinates(sampler.index), sampler.sides);
-                    let (width, height) = (f64::from(256 * width), f64::from(256 * height));
-                    for k in 0..3 {
-                        g[k][u] = (f64::from(sets[k][0]) * width + sampler.up[0]) * edges.p[k];
-                        g[k][v] = (f64::from(sets[k][1]) * height + sampler.up[1]) * edges.p[k];
-                    }
-                    (bias[u], bias[v]) = (sampler.bias(), sampler.bias());
-                }
-                Pair::Weights => (g[0][u], g[2][v]) = (256.0 * edges.p[0], 256.0 * edges.p[2]),
-            }
-        }
-        let estimates = edges.estimates::<FMA>(&g, &bias);
-        if estimates.proves != [1; FOUR] {
-            return false;
-        }
-        // Not earlier: the positions have just been stored in parts, and loading them waits for that.
-        if n == 0 {
-            varying.reciprocals.set::<FMA, false>(batch.at, edges.denominator);
-        }
-        let Varying { coordinates, weights: [w0, w2], reciprocals, .. } = &mut *varying;
-        for (half, pair) in pairs.iter().enumerate() {
-            let (along, down) = (estimates.of(2 * half), estimates.of(2 * half + 1));
-            let at = batch.lanes();
-            let close = match *pair {
-                Pair::None => [false; 2],
-                Pair::Sampler(n) => {
-                    let [u, v] = &mut coordinates[n];
-                    reciprocals.estimate::<FMA, false>([along, down], &mut u[at.clone()], &mut v[at])
-                }
-                Pair::Weights => {
-                    let estimates = [along.not_negative(), down.not_negative()];
-                    reciprocals.estimate::<FMA, false>(estimates, &mut w0[at.clone()], &mut w2[at])
-                }
-            };
-            is_open |= close[0] | close[1];
-        }
-    }
-    !is_open
 }
 
 #[inline(always)]
@@ -239,6 +295,6 @@ fn sum<const FMA: bool>(g: &[f64; 3], of: &[f64; 3]) -> f64 {
 }
 
 #[inline(always)]
-fn real(n: &[i64; 3]) -> [f64; 3] {
-    [n[0] as f64, n[1] as f64, n[2] as f64]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }

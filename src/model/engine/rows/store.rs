@@ -99,30 +99,55 @@ fn read_short(from: &[u32], to: &mut [u32]) -> bool {
 #[inline(always)]
 pub(super) fn write_runs(from: &[u32; BLOCK], runs: &[Run], words: &mut [u32]) {
     for Run { lane, at, count } in runs.iter().copied() {
-        write_run(&from[lane..][..count], &mut words[at..][..count]);
+        write_run::<false>(&from[lane..][..count], &from[lane..][..count], &mut words[at..][..count]);
     }
 }
 
-/// Writes a run to the surface or its depth buffer. Most runs are short. Two copies of their ends, which may overlap, need neither a call nor a
-/// branch for each pixel.
+/// ROP-6: does the same, but keeps the bits of the mask that are not set, and the words of dropped fragments.
 #[inline(always)]
-fn write_run(from: &[u32], to: &mut [u32]) {
+pub(super) fn merge_runs(
+    mask: u32,
+    alive: &[bool; BLOCK],
+    from: &mut [u32; BLOCK],
+    kept: &mut [u32; BLOCK],
+    runs: &[Run],
+    words: &mut [u32],
+) {
+    for ((from, kept), alive) in from.iter_mut().zip(&mut *kept).zip(alive) {
+        let mask = if *alive { mask } else { 0 };
+        (*from, *kept) = (*from & mask, !mask);
+    }
+    for Run { lane, at, count } in runs.iter().copied() {
+        write_run::<true>(&from[lane..][..count], &kept[lane..][..count], &mut words[at..][..count]);
+    }
+}
+
+/// Writes a run to the surface or its depth buffer; if it merges, it adds the bits that are kept. Most runs are short. Two copies of their ends,
+/// which may overlap, need neither a call nor a branch for each pixel.
+#[inline(always)]
+fn write_run<const MERGES: bool>(from: &[u32], kept: &[u32], to: &mut [u32]) {
     match from.len() {
-        1 => to[0] = from[0],
-        2..4 => write_ends::<2>(from, to),
-        4..8 => write_ends::<4>(from, to),
-        8..=SHORT_RUN => write_ends::<8>(from, to),
+        1 => write_ends::<MERGES, 1>(from, kept, to),
+        2..4 => write_ends::<MERGES, 2>(from, kept, to),
+        4..8 => write_ends::<MERGES, 4>(from, kept, to),
+        8..=SHORT_RUN => write_ends::<MERGES, 8>(from, kept, to),
+        _ if MERGES => {
+            for ((to, from), kept) in to.iter_mut().zip(from).zip(kept) {
+                *to = (*to & kept) | from;
+            }
+        }
         _ => to.copy_from_slice(from),
     }
 }
 
-/// Copies the first and the last `COUNT` words.
+/// Writes the first and the last `COUNT` words.
 #[inline(always)]
-fn write_ends<const COUNT: usize>(from: &[u32], to: &mut [u32]) {
-    if let (Some(first), Some(last)) = (from.first_chunk::<COUNT>(), from.last_chunk::<COUNT>()) {
-        to[..COUNT].copy_from_slice(first);
-        let start = to.len() - COUNT;
-        to[start..].copy_from_slice(last);
+fn write_ends<const MERGES: bool, const COUNT: usize>(from: &[u32], kept: &[u32], to: &mut [u32]) {
+    for start in [0, from.len() - COUNT] {
+        let (from, kept, to) = (&from[start..][..COUNT], &kept[start..][..COUNT], &mut to[start..][..COUNT]);
+        for n in 0..COUNT {
+            to[n] = if MERGES { (to[n] & kept[n]) | from[n] } else { from[n] };
+        }
     }
 }
 
@@ -161,15 +186,6 @@ pub(super) fn is_marked(taken: &[u64], at: usize, count: usize) -> bool {
 #[inline(always)]
 pub(super) fn all(alive: &[bool]) -> bool {
     alive.iter().fold(true, |all, alive| all & alive)
-}
-
-/// ROP-6: keeps the bits that are not written, and the words of dropped fragments.
-#[inline(always)]
-pub(super) fn merge(mask: u32, alive: &[bool; BLOCK], stored: &[u32; BLOCK], words: &mut [u32; BLOCK]) {
-    for ((word, stored), alive) in words.iter_mut().zip(stored).zip(alive) {
-        let mask = if *alive { mask } else { 0 };
-        *word = (*stored & !mask) | (*word & mask);
-    }
 }
 
 /// Runs a loop with a comparison that is constant in it, because compilers leave a choice of eight inside a loop.
