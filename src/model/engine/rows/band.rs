@@ -126,7 +126,7 @@ fn draw_triangle<T: Kernels>(
     if matches!(entered, Entered::Small) && !compiled.completes_quads {
         return shaded + draw_in_boxes::<T>(job, (rows, columns), context, band, block);
     }
-    context.complete();
+    T::complete(context);
     let triangle = &context.triangle;
     let (rows, columns) = common(triangle, (rows, columns));
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
@@ -312,7 +312,7 @@ fn draw_boxes<T: Kernels>(
             continue;
         }
         if !T::plain(context, job.compiled, block) {
-            context.complete();
+            T::complete(context);
             let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
             T::in_box(&interpolators, job, block);
             block.planes = interpolators.given_back(&mut block.defined);
@@ -343,7 +343,7 @@ fn draw_in_boxes<T: Kernels>(
     };
     // Nothing else is computed of triangles that the depth test drops.
     if next(context, block) {
-        context.complete();
+        T::complete(context);
         let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
         loop {
             T::in_box(&interpolators, job, block);
@@ -392,6 +392,12 @@ fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &
         T::box_attributes(context, job, block);
     }
     block.used += block.boxes.coverage().count;
+}
+
+/// Sets up coordinates and fog of a triangle.
+#[inline(always)]
+pub(super) fn complete<const WIDE: bool>(context: &mut TriangleContext<'_>) {
+    context.complete();
 }
 
 /// Finds the pixels of the first boxes, and sets up all functions.

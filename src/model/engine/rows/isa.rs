@@ -111,6 +111,8 @@ text! {
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window) -> Entered;
+        /// Calls [`band::complete`] with this instruction set.
+        fn complete(context: &mut TriangleContext<'_>);
         /// Calls [`band::set_up`] with this instruction set.
         fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
         /// Calls [`band::cover`] with this instruction set.

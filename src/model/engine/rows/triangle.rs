@@ -87,8 +87,9 @@ fn is_general(sampler: &Sampler, planes: &Planes, finite: bool) -> bool {
 }
 
 impl<'a> Interpolators<'a> {
-    /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns.
-    #[inline(always)]
+    /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns. Not inlined: copies for each instruction set
+    /// and caller would not be faster.
+    #[inline(never)]
     pub(super) fn new(
         context: &'a TriangleContext<'a>,
         compiled: &CompiledDraw,
