@@ -188,9 +188,22 @@ fn read<A: Algebra>(
     input(source(from, channel, registers, specials), from.invert, a)
 }
 
-/// Runs the final combiner. Returns its values, of which those that nothing needs are zero.
+/// Runs the final combiner. Returns the fragment.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
+    planned: &PlannedFinal,
+    profile: Profile,
+    policies: &Policies,
+    registers: &mut Registers<L>,
+    observer: &mut O,
+) -> [L; 4] {
+    // Other values are not kept.
+    values(planned, profile, policies, registers, observer).fragment
+}
+
+/// Does what [`run`] does, and returns all values, of which those that nothing needs are zero.
+#[inline(always)]
+pub fn values<L: Lane, O: Observer>(
     planned: &PlannedFinal,
     profile: Profile,
     policies: &Policies,

@@ -327,9 +327,22 @@ impl PlannedStage {
     }
 }
 
-/// CMB-1: runs a stage, which reads all inputs before it writes any output. Returns its needed values.
+/// CMB-1: runs a stage, which reads all inputs before it writes any output.
 #[inline]
 pub fn run<L: Lane, O: Observer>(
+    stage: &PlannedStage,
+    mux_select: MuxSelect,
+    policies: &Policies,
+    registers: &mut Registers<L>,
+    observer: &mut O,
+) {
+    // Values that nobody wants are not kept.
+    values(stage, mux_select, policies, registers, observer);
+}
+
+/// Does what [`run`] does, and returns the needed values.
+#[inline(always)]
+pub fn values<L: Lane, O: Observer>(
     stage: &PlannedStage,
     mux_select: MuxSelect,
     policies: &Policies,

@@ -25,22 +25,33 @@ pub fn expand_normal<R: Register>(x: R) -> R::Expanded {
 /// Applies any mapping under any policy to several channels.
 #[inline(always)]
 pub fn map<L: Lane, const N: usize>(x: [L; N], mapping: InputMapping, policies: &Policies) -> [L::Mapped; N] {
-    std::array::from_fn(|n| map_one(x[n], mapping, policies))
+    match mapping {
+        InputMapping::UnsignedIdentity => each(x, |x| unsigned_identity(x).factor()),
+        InputMapping::UnsignedInvert => each(x, |x| unsigned_invert(x).factor()),
+        InputMapping::ExpandNormal => each(x, |x| expand(x, policies)),
+        InputMapping::ExpandNegate => each(x, |x| L::negated(expand(x, policies))),
+        InputMapping::HalfBiasNormal => each(x, |x| half_bias(x.max0(), L::HALF, policies)),
+        InputMapping::HalfBiasNegate => each(x, |x| L::negated(half_bias(x.max0(), L::HALF, policies))),
+        InputMapping::SignedIdentity => each(x, L::factor),
+        InputMapping::SignedNegate => each(x, |x| L::negated(x.factor())),
+    }
+}
+
+/// Applies a function to several channels. A loop, because functions passed to those of arrays are not always inlined.
+#[inline(always)]
+fn each<L: Lane, const N: usize>(x: [L; N], map: impl Fn(L) -> L::Mapped) -> [L::Mapped; N] {
+    let mut all = [L::ZERO.factor(); N];
+    for n in 0..N {
+        all[n] = map(x[n]);
+    }
+    all
 }
 
 /// Applies any mapping under any policy to one channel.
 #[inline(always)]
 pub(crate) fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
-    match mapping {
-        InputMapping::UnsignedIdentity => unsigned_identity(x).factor(),
-        InputMapping::UnsignedInvert => unsigned_invert(x).factor(),
-        InputMapping::ExpandNormal => expand(x, policies),
-        InputMapping::ExpandNegate => L::negated(expand(x, policies)),
-        InputMapping::HalfBiasNormal => half_bias(x.max0(), L::HALF, policies),
-        InputMapping::HalfBiasNegate => L::negated(half_bias(x.max0(), L::HALF, policies)),
-        InputMapping::SignedIdentity => x.factor(),
-        InputMapping::SignedNegate => L::negated(x.factor()),
-    }
+    let [mapped] = map([x], mapping, policies);
+    mapped
 }
 
 /// CMB-3 with its alternative, in which 2x - 255 is (x - 128) + (x - 127).

@@ -60,7 +60,7 @@ impl Combiners {
             report::constants("final combiner", last.state.constants, observer);
         }
         registers.load_constants(constants(last.state.constants, None));
-        final_combiner::run(&last, profile, policies, registers, observer).fragment
+        final_combiner::run(&last, profile, policies, registers, observer)
     }
 
     /// Evaluates the program in an algebra. Returns R, G, B, A of the fragment.

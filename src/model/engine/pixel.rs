@@ -271,7 +271,7 @@ impl<'a> TriangleContext<'a> {
             }
         }
         let (profile, policies) = (self.plan.profile, &self.plan.policies);
-        let source = final_combiner::run(&draw.final_combiner, profile, policies, &mut registers, observer).fragment;
+        let source = final_combiner::run(&draw.final_combiner, profile, policies, &mut registers, observer);
         self.depth_stencil_test(&source, &sample, memory, observer)?;
         self.raster_operations(source, fragment, memory, destination, observer)
     }

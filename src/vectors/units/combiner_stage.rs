@@ -29,7 +29,7 @@ fn run<L: Lane>(
     observer: &mut impl Observer,
 ) -> StageOn<L> {
     let stage = PlannedStage::whole(0, &state::GeneralStage { rgb, alpha, constants: [[0; 4]; 2] });
-    general::run(&stage, mux_select, &conditions.policies, file, observer)
+    general::values(&stage, mux_select, &conditions.policies, file, observer)
 }
 
 /// Returns a portion that reads the four registers.
@@ -237,7 +237,7 @@ impl TwoStages {
         let stages = [first, second].map(|rgb| state::GeneralStage { rgb, ..state::GeneralStage::idle([[0; 4]; 2]) });
         let [before, after] = [0, 1].map(|index| {
             let stage = PlannedStage::whole(index, &stages[index]);
-            general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, observer).rgb
+            general::values(&stage, MuxSelect::Msb, &conditions.policies, &mut file, observer).rgb
         });
         let between = before.outputs[2][0].observe().0;
         ([between, halves::<L>(after.factors[0][0])], [after.outputs[2][0]])

@@ -118,7 +118,7 @@ impl ConfiguredFinal {
         Conditions { profile, policies }: &Conditions,
         observer: &mut impl Observer,
     ) -> [L; 4] {
-        final_combiner::run(&self.planned(), *profile, policies, &mut register_file(at), observer).fragment
+        final_combiner::run(&self.planned(), *profile, policies, &mut register_file(at), observer)
     }
 }
 

@@ -85,7 +85,7 @@ impl FinalCombiner {
             file.load(register, [at(CONFIGURATION + n); 4]);
         }
         file.write(Register::Spare1, 3, at(CONFIGURATION + REGISTERS.len()));
-        let values = final_combiner::run(&planned(inputs), *profile, policies, &mut file, observer);
+        let values = final_combiner::values(&planned(inputs), *profile, policies, &mut file, observer);
         let [sum, product] = [values.specials.sum, values.specials.product].map(|channels| channels[0]);
         let [a, b, c, d, ..] = values.inputs.map(|channels| channels[0]);
         let mid = [sum, product, a, b, c, d, values.raw[0]].map(|value| value.observe().0);
