@@ -1,6 +1,6 @@
 //! From triangles to batches of pixels, from batches to blocks, and from blocks to the surface.
 
-use super::boxes::{Entered, batch, boxes, columns_of_quads, common, spans_of_quads};
+use super::boxes::{Entered, batch, boxes, columns_of_quads, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::depth::depths;
 use super::fetch::{self, Workspace};
@@ -98,19 +98,19 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
 fn draw_triangle<T: Kernels>(
     job: &Job<'_>,
     number: usize,
-    (rows, columns): Window,
+    window: Window,
     contexts: &mut [TriangleContext<'_>; GROUP],
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded) = (job.compiled, 0);
     let at = block.boxes.vacant();
-    let entered = T::enter(&mut contexts[at], number, (rows, columns));
+    let entered = T::enter(&mut contexts[at], number, window);
     match entered {
         Entered::Nothing => return 0,
-        Entered::Small if compiled.plain && !compiled.completes_quads => {
+        Entered::Small(window) if compiled.plain && !compiled.completes_quads => {
             let mut at = at;
-            for window in boxes(common(&contexts[at].triangle, (rows, columns))) {
+            for window in boxes(window) {
                 block.boxes.add(window, at);
                 if block.boxes.count == GROUP {
                     shaded += draw_boxes::<T>(job, contexts, band, block);
@@ -123,20 +123,19 @@ fn draw_triangle<T: Kernels>(
         _ => shaded += draw_boxes::<T>(job, contexts, band, block),
     }
     let context = &mut contexts[at];
-    if matches!(entered, Entered::Small) && !compiled.completes_quads {
-        return shaded + draw_in_boxes::<T>(job, (rows, columns), context, band, block);
+    if let (Entered::Small(window), false) = (entered, compiled.completes_quads) {
+        return shaded + draw_in_boxes::<T>(job, window, context, band, block);
     }
     T::complete(context);
     let triangle = &context.triangle;
-    let (rows, columns) = common(triangle, (rows, columns));
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
     match entered {
         Entered::Nothing => {}
-        Entered::Large if compiled.completes_quads => {
+        Entered::Large((rows, columns)) if compiled.completes_quads => {
             interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
             shaded += draw_quads::<T>(job, (rows, columns), context, &interpolators, band, block);
         }
-        Entered::Small => {
+        Entered::Small((rows, columns)) => {
             interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
             let all = ((rows.0 & !1, rows.1), (columns.0 & !1, columns.1));
             for ((top, end), (left, right)) in boxes(all) {
@@ -144,7 +143,7 @@ fn draw_triangle<T: Kernels>(
                 shaded += draw_box_of_quads::<T>(job, part, context, &interpolators, band, block);
             }
         }
-        Entered::Large => {
+        Entered::Large((rows, columns)) => {
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);
                 if i == end {
@@ -332,7 +331,7 @@ fn draw_in_boxes<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let (mut windows, mut shaded) = (boxes(common(&context.triangle, window)), 0);
+    let (mut windows, mut shaded) = (boxes(window), 0);
     let mut next = |context: &TriangleContext<'_>, block: &mut Block| {
         windows.any(|window| {
             T::cover(&context.triangle, window, block.boxes.coverage_mut());
@@ -364,17 +363,18 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     if block.boxes.coverage().count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
-    let (first, used) = (block.runs.len(), block.used);
+    let (first, mut lane) = (block.runs.len(), block.used);
+    let coverage = block.boxes.coverage();
     // Most boxes have covered pixels only, and choices in each row would cost a small triangle some per cent.
-    if block.boxes.coverage().covered == block.boxes.coverage().count {
-        let mut lane = used;
-        for (j, i, count) in block.boxes.coverage().runs[..block.boxes.coverage().filled].iter().copied() {
-            block.runs.push(Run { lane, at: index(band, (i, j)), count });
+    if coverage.covered == coverage.count {
+        block.runs.extend(coverage.runs[..coverage.filled].iter().map(|(j, i, count)| {
+            let run = Run { lane, at: index(band, (*i, *j)), count: *count };
             lane += count;
-        }
+            run
+        }));
     } else {
-        let run = |(lane, pixel, count)| Run { lane: used + lane, at: index(band, pixel), count };
-        block.runs.extend(block.boxes.coverage().drawn().map(run));
+        let run = |(from, pixel, count)| Run { lane: lane + from, at: index(band, pixel), count };
+        block.runs.extend(coverage.drawn().map(run));
     }
     let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {

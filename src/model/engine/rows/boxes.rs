@@ -26,13 +26,14 @@ pub(super) fn is_small(triangle: &Triangle) -> bool {
     triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
 }
 
-/// Cuts rows and columns into boxes, from left to right, then from top to bottom.
+/// Cuts rows and columns, of which there are some, into boxes, from left to right, then from top to bottom.
 #[inline(always)]
 pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
-    let cut = |(first, end): (i64, i64)| {
-        (first..end).step_by(SIDE as usize).map(move |first| (first, (first + SIDE).min(end)))
-    };
-    cut(rows).flat_map(move |rows| cut(columns).map(move |columns| (rows, columns)))
+    let from = move |top: i64, left: i64| ((top, (top + SIDE).min(rows.1)), (left, (left + SIDE).min(columns.1)));
+    // Most triangles are one box.
+    std::iter::successors(Some(from(rows.0, columns.0)), move |((top, bottom), (_, right))| {
+        if *right < columns.1 { Some(from(*top, *right)) } else { (*bottom < rows.1).then(|| from(*bottom, columns.0)) }
+    })
 }
 
 /// The pixels of a small triangle that lie in a box.
@@ -73,8 +74,9 @@ impl BoxCoverage {
         for ((y, low), high) in (0..(rows.1 - top) as i32).zip(low).zip(high) {
             let count = (high - low).max(0) as usize;
             let lanes = used..used + STEP;
-            for (n, (to_x, to_y)) in (0..).zip(self.x[lanes.clone()].iter_mut().zip(&mut self.y[lanes])) {
-                (*to_x, *to_y) = (low + n, y);
+            self.y[lanes.clone()].fill(y);
+            for (n, to) in (0..).zip(&mut self.x[lanes]) {
+                *to = low + n;
             }
             self.runs[filled] = (top + i64::from(y), left + i64::from(low), count);
             filled += usize::from(count > 0);
@@ -164,10 +166,10 @@ pub(super) fn columns_of_quads(spans: [(i64, i64); 2]) -> (i64, i64) {
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// As boxes.
-    Small,
-    /// Row by row.
-    Large,
+    /// As boxes, in these rows and columns, of which there are some.
+    Small(Window),
+    /// Row by row, likewise.
+    Large(Window),
 }
 
 /// Returns the rows and columns that a window shares with the triangle's bounding box.
@@ -189,9 +191,9 @@ pub(super) fn enter<const WIDE: bool>(context: &mut TriangleContext<'_>, number:
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         Entered::Nothing
     } else if is_small(&context.triangle) {
-        Entered::Small
+        Entered::Small((rows, columns))
     } else {
-        Entered::Large
+        Entered::Large((rows, columns))
     }
 }
 
