@@ -103,13 +103,11 @@ fn draw_triangle<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let (compiled, mut shaded) = (job.compiled, 0);
-    let at = block.boxes.vacant();
+    let (compiled, mut shaded, mut at) = (job.compiled, 0, block.boxes.vacant());
     let entered = T::enter(&mut contexts[at], number, window);
     match entered {
         Entered::Nothing => return 0,
         Entered::Small(window) if compiled.plain && !compiled.completes_quads => {
-            let mut at = at;
             for window in boxes(window) {
                 block.boxes.add(window, at);
                 if block.boxes.count == GROUP {
@@ -120,66 +118,70 @@ fn draw_triangle<T: Kernels>(
             }
             return shaded;
         }
-        _ => shaded += draw_boxes::<T>(job, contexts, band, block),
+        Entered::Small(_) | Entered::Large(_) => shaded += draw_boxes::<T>(job, contexts, band, block),
     }
     let context = &mut contexts[at];
     if let (Entered::Small(window), false) = (entered, compiled.completes_quads) {
         return shaded + draw_in_boxes::<T>(job, window, context, band, block);
     }
     T::complete(context);
-    let triangle = &context.triangle;
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
-    match entered {
-        Entered::Nothing => {}
-        Entered::Large((rows, columns)) if compiled.completes_quads => {
-            interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
-            shaded += draw_quads::<T>(job, (rows, columns), context, &interpolators, band, block);
+    shaded += match entered {
+        Entered::Nothing => 0,
+        Entered::Small(window) => draw_boxes_of_quads::<T>(job, window, context, &interpolators, band, block),
+        Entered::Large(window) if compiled.completes_quads => {
+            draw_quads::<T>(job, window, context, &interpolators, band, block)
         }
-        Entered::Small((rows, columns)) => {
-            interpolators.begin_row((columns.0, rows.0), 0, compiled, &mut block.varying);
-            let all = ((rows.0 & !1, rows.1), (columns.0 & !1, columns.1));
-            for ((top, end), (left, right)) in boxes(all) {
-                let part = ((top.max(rows.0), end), (left.max(columns.0), right));
-                shaded += draw_box_of_quads::<T>(job, part, context, &interpolators, band, block);
-            }
+        Entered::Large(window) => draw_rows::<T>(job, window, context, &interpolators, band, block),
+    };
+    block.planes = interpolators.given_back(&mut block.defined);
+    shaded
+}
+
+/// Draws a triangle row by row. Returns the number of covered pixels.
+#[inline(always)]
+fn draw_rows<T: Kernels>(
+    job: &Job<'_>,
+    (rows, columns): Window,
+    context: &TriangleContext<'_>,
+    interpolators: &Interpolators<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let (compiled, mut shaded) = (job.compiled, 0);
+    for j in rows.0..rows.1 {
+        let (mut i, end) = context.triangle.span(j, columns);
+        if i == end {
+            continue;
         }
-        Entered::Large((rows, columns)) => {
-            for j in rows.0..rows.1 {
-                let (mut i, end) = triangle.span(j, columns);
-                if i == end {
-                    continue;
-                }
-                // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
-                block.used = whole_steps(block.used);
-                let mut has_begun = false;
-                while i < end {
-                    let wanted = ((end - i) as usize).min(BLOCK);
-                    if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                        finish::<T>(job, block, band);
-                    }
-                    let count = wanted.min(BLOCK - block.used);
-                    let (pixel, lane, all) = ((i, j), block.used, Covered(0, count));
-                    let is_visible =
-                        job.draw.depth_test.is_none() || T::row_depths(pixel, count, lane, context, job, block, band);
-                    if is_visible {
-                        // Quotients by steps go on from the batch before, if there is one.
-                        if !has_begun {
-                            interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
-                        }
-                        T::row(pixel, count, lane, all, &interpolators, job, block);
-                        if compiled.shader.is_some() {
-                            T::row_attributes(pixel, count, lane, all, context, job, block);
-                        }
-                        block.append(band, (i, j), count, compiled.reads_surface);
-                    }
-                    has_begun = is_visible;
-                    shaded += count as u64;
-                    i += count as i64;
-                }
+        // Begins at a multiple of a step, so that no step of lanes crosses a cache line.
+        block.used = whole_steps(block.used);
+        let mut has_begun = false;
+        while i < end {
+            let wanted = ((end - i) as usize).min(BLOCK);
+            if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
+                finish::<T>(job, block, band);
             }
+            let count = wanted.min(BLOCK - block.used);
+            let (pixel, lane, all) = ((i, j), block.used, Covered(0, count));
+            let is_visible =
+                job.draw.depth_test.is_none() || T::row_depths(pixel, count, lane, context, job, block, band);
+            if is_visible {
+                // Quotients by steps go on from the batch before, if there is one.
+                if !has_begun {
+                    interpolators.begin_row((i, j), end - i, compiled, &mut block.varying);
+                }
+                T::row(pixel, count, lane, all, interpolators, job, block);
+                if compiled.shader.is_some() {
+                    T::row_attributes(pixel, count, lane, all, context, job, block);
+                }
+                block.append(band, (i, j), count, compiled.reads_surface);
+            }
+            has_begun = is_visible;
+            shaded += count as u64;
+            i += count as i64;
         }
     }
-    block.planes = interpolators.given_back(&mut block.defined);
     shaded
 }
 
@@ -194,6 +196,7 @@ fn draw_quads<T: Kernels>(
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded) = (job.compiled, 0);
+    interpolators.begin_row((window.1.0, window.0.0), 0, compiled, &mut block.varying);
     for top in (window.0.0 & !1..window.0.1).step_by(2) {
         let spans = spans_of_quads(&context.triangle, top, window);
         let (mut low, high) = columns_of_quads(spans);
@@ -247,6 +250,21 @@ fn draw_quads<T: Kernels>(
         }
     }
     shaded
+}
+
+/// Draws a small triangle with all pixels of the quads that it meets. Returns the number of covered pixels.
+#[inline(always)]
+fn draw_boxes_of_quads<T: Kernels>(
+    job: &Job<'_>,
+    (rows, columns): Window,
+    context: &TriangleContext<'_>,
+    interpolators: &Interpolators<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let all = ((rows.0 & !1, rows.1), (columns.0 & !1, columns.1));
+    let parts = boxes(all).map(|((top, end), (left, right))| ((top.max(rows.0), end), (left.max(columns.0), right)));
+    parts.map(|part| draw_box_of_quads::<T>(job, part, context, interpolators, band, block)).sum()
 }
 
 /// Draws the part of a small triangle in a box that begins at an even row and column, with all pixels of the quads that it meets. Returns the
