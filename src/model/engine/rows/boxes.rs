@@ -46,8 +46,8 @@ pub(super) struct BoxCoverage {
     pub(super) y: PerLane<i32>,
     pub(super) count: usize,
     /// For each row: its number, the first column and the number of pixels.
-    pub(super) runs: [(i64, i64, usize); SIDE as usize],
-    pub(super) filled: usize,
+    runs: [(i64, i64, usize); SIDE as usize],
+    filled: usize,
     /// Number of pixels that the triangle covers: all but those that [complete](Self::complete) quads.
     pub(super) covered: usize,
     /// If there are others: the covered part of each row, and columns and rows of all pixels, but for those of covered ones in their place.
@@ -134,11 +134,17 @@ impl BoxCoverage {
         }
     }
 
+    /// Returns for each row that has pixels its number, the first column and the number of pixels.
+    #[inline(always)]
+    pub(super) fn runs(&self) -> &[(i64, i64, usize)] {
+        &self.runs[..self.filled]
+    }
+
     /// Returns the covered pixels: the first lane, column and row of the first pixel, and the number of pixels of each row that has any.
     #[inline(always)]
     pub(super) fn drawn(&self) -> impl Iterator<Item = (usize, (i64, i64), usize)> {
         let mut next = 0;
-        self.runs[..self.filled].iter().enumerate().filter_map(move |(n, (j, i, count))| {
+        self.runs().iter().enumerate().filter_map(move |(n, (j, i, count))| {
             let Covered(first, covered) = if self.covered == self.count { Covered(0, *count) } else { self.parts[n] };
             let lane = next + first;
             next += count;
@@ -211,16 +217,7 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let [x, y] = &coverage.inside;
     let inside = [&x[..lanes], &y[..lanes]];
     let BoxCoverage { first, count, extent, covered, .. } = *coverage;
-    PixelBatch {
-        first,
-        at,
-        count,
-        lane,
-        extent,
-        runs: &coverage.runs[..coverage.filled],
-        covered: Covered(0, covered),
-        inside,
-    }
+    PixelBatch { first, at, count, lane, extent, runs: coverage.runs(), covered: Covered(0, covered), inside }
 }
 
 /// A limit beyond all columns.
@@ -282,7 +279,7 @@ mod tests {
                 let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, columns)));
                 let wanted: Vec<_> =
                     spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
-                assert_eq!(coverage.runs[..coverage.filled], wanted, "{triangle:?} {rows:?} {columns:?}");
+                assert_eq!(coverage.runs(), wanted, "{triangle:?} {rows:?} {columns:?}");
                 let mut pixels =
                     wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
                 for n in 0..coverage.count {

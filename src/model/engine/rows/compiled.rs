@@ -115,7 +115,7 @@ pub(crate) struct CompiledDraw {
     /// Whether each pixel needs estimates besides coordinates: taps, layers or depths to compare with.
     pub(super) estimates: bool,
     /// Whether nothing is interpolated but colours, depth, inputs of the texture shader, and coordinates on planes of textures with one
-    /// level.
+    /// level; and no quads are completed.
     pub(super) plain: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,

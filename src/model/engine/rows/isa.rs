@@ -3,6 +3,7 @@
 use super::band::{self, Block};
 use super::boxes::{BoxCoverage, Entered};
 use super::compiled::{CompiledDraw, Job};
+use super::draw;
 use super::filter::Vectors;
 use super::setup::Covered;
 use super::small::Boxes;
@@ -90,7 +91,7 @@ macro_rules! text {
 
             #[multiversion(targets($target))]
             pub(super) fn run(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
-                match_target! { $target => Some(band::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
+                match_target! { $target => Some(draw::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
             }
 
             $(#[multiversion(targets($target))]
@@ -137,7 +138,7 @@ text! {
 }
 
 fn run_baseline(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    band::run::<Baseline>(job, band, block)
+    draw::run::<Baseline>(job, band, block)
 }
 
 /// Draws the part of a draw that lies in a band, with an instruction set of this machine. Returns the number of covered pixels.

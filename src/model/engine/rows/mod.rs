@@ -19,7 +19,7 @@
 //! | `moved.rs` | coordinates that bump stages move |
 //! | `dependent.rs` | levels of detail of dependent reads, from the lanes of quads |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
-//! | `boxes.rs`, `band.rs` | triangles to batches to blocks |
+//! | `boxes.rs`, `draw.rs`, `band.rs` | triangles to boxes and batches; batches to blocks; blocks to the surface |
 //! | `isa.rs` | the same text for several instruction sets |
 //!
 //! The bytes are the scalar engine's: a rule is the same text in both, and what is computed otherwise (quotients) is proved to be the same
@@ -36,6 +36,7 @@ mod dependent;
 mod depth;
 mod direction;
 mod dot;
+mod draw;
 #[cfg(test)]
 mod equivalence_tests;
 mod fetch;
@@ -221,7 +222,11 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
     let planes = compiled.samplers.iter().all(|sampler| sampler.depends || !(sampler.mixes || sampler.cube));
-    compiled.plain = planes && !compiled.estimates && compiled.fog.is_none() && !compiled.samples_pixels;
+    compiled.plain = planes
+        && !compiled.estimates
+        && compiled.fog.is_none()
+        && !compiled.samples_pixels
+        && !compiled.completes_quads;
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled
