@@ -473,7 +473,13 @@ fn nothing_is_adopted_by_halves() {
         refused(&["-o", "adopted"], 3);
     }
     asked.answer("NVIDIA Corporation", "GeForce 256", Policies::DEFAULT);
-    refused(&["-o", "pack/MANIFEST.json"], 7);
+    let device = asked.results().join("device.json");
+    for (version, exit) in [("4.6.0 NVIDIA 580.159.04", 3), ("2.1.2", 3), ("1.5.8 NVIDIA 96.43.23", 7), ("1.2", 7)] {
+        let mut changed: serde_json::Value = serde_json::from_str(&fs::read_to_string(&device).unwrap()).unwrap();
+        changed["version"] = version.into();
+        fs::write(&device, changed.to_string()).unwrap();
+        refused(&["-o", "pack/MANIFEST.json"], exit);
+    }
     changed(&asked.path("product"), |body| {
         let row = body.lines().nth(9).unwrap();
         body.replacen(row, &format!("{}\t-\terror", &row[..12]), 1)

@@ -49,7 +49,7 @@ pub(crate) enum Command {
     Compare(compare::Arguments),
     /// Record what a real card answered as truth, grade SILICON
     ///
-    /// Software renderers are refused. Exit status 0: recorded; 3: refused; 4: a file is missing.
+    /// Software renderers and cards with OpenGL 2 or later are refused. Exit status 0: recorded; 3: refused; 4: a file is missing.
     Adopt(adopt::Arguments),
 }
 

@@ -14,7 +14,7 @@ mod fixed;
 mod stages;
 pub mod write;
 
-use ninebit::state::{Combiners, Named, Profile, Scale, named};
+use ninebit::state::{Combiners, FinalRegister, Named, Profile, Scale, named};
 
 use super::column::Column;
 use super::table::Row;
@@ -32,6 +32,14 @@ pub struct Placement {
     pub draws: Vec<Draw>,
     /// The row's own bytes, by the name of their source.
     pub sources: Vec<(&'static str, Vec<u8>)>,
+}
+
+impl Placement {
+    /// Returns whether OpenGL refuses it: as A, NVIDIA's driver takes no sum of SPARE0 and the secondary colour (`GL_INVALID_OPERATION`).
+    fn is_refused(&self) -> bool {
+        let mut combiners = self.draws.iter().filter_map(|draw| draw.combiners.as_ref());
+        combiners.any(|all| all.final_combiner.inputs[0].register == FinalRegister::Spare0PlusSecondary)
+    }
 }
 
 /// One draw of a batch and its state.

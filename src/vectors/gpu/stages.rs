@@ -2,7 +2,7 @@
 
 use super::combiners::{Output, Program, input, load, one, rgb_stage, sign, stage};
 use super::{Case, Placement, Read, byte};
-use crate::units::final_combiner::OWN;
+use crate::units::final_combiner::{OWN, Source};
 use ninebit::state::*;
 
 const IDENTITY: InputMapping = InputMapping::UnsignedIdentity;
@@ -251,9 +251,8 @@ pub(super) fn final_combiner(case: &Case) -> Option<Placement> {
     let invert = |name: &str| case.number(&format!("cfg.invert_{name}")) != 0;
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];
     for (n, name) in ["a", "b", "c", "d", "e", "f"].into_iter().enumerate() {
-        // In the order of the column's names: the variable's own register, the colour sum, E F.
-        let source = if n < 4 { case.number(&format!("cfg.source_{name}")) } else { 0 };
-        let register = [OWN[n], FinalRegister::Spare0PlusSecondary, FinalRegister::ETimesF][source as usize % 3];
+        let source = if n < 4 { case.choice(&format!("cfg.source_{name}")) } else { Source::Own };
+        let register = source.register(OWN[n]);
         inputs[n] = FinalInput { register, component: Component::Rgb, invert: invert(name) };
     }
     let last = FinalCombiner {

@@ -84,11 +84,12 @@ impl<'w> Batches<'w> {
         Batches { writer, open: BTreeMap::new() }
     }
 
-    /// Adds a row, if the unit has a recipe for it.
+    /// Adds a row, if the unit has a recipe for it that OpenGL takes.
     pub(crate) fn take(&mut self, row: &Row) {
         let Contents { unit, profile, .. } = self.writer.contents();
         let case = Case { inputs: self.writer.inputs(), results: self.writer.results(), row, profile };
-        for placement in recipes(unit.name()).iter().filter_map(|recipe| recipe(&case)) {
+        let placements = recipes(unit.name()).iter().filter_map(|recipe| recipe(&case));
+        for placement in placements.filter(|placement| !placement.is_refused()) {
             let batches = self.open.entry(key(&placement)).or_default();
             if batches.last().is_none_or(|batch| batch.rows == ROWS) {
                 let sources = vec![Vec::new(); placement.sources.len()];

@@ -73,7 +73,7 @@ pub fn folder_name(renderer: &str) -> String {
 /// then renamed, so an error leaves nothing behind.
 ///
 /// # Errors
-/// Returns an error if a software renderer answered, draws failed, no row was drawn, the device has a record already, or the folder cannot be
+/// Returns an error if a software renderer or a card younger than NV2A answered, draws failed, no row was drawn, the device has a record already, or the folder cannot be
 /// written.
 pub fn adopt(
     folder: &Path,
@@ -89,6 +89,16 @@ pub fn adopt(
     if device.is_software() {
         let message = format!("`{:.80}` is a program, not silicon", device.renderer);
         return Err(refuse(message, "only what a card answers is adopted; `compare` tells how a driver differs"));
+    }
+    if device.is_younger() {
+        let message = format!(
+            "`{:.80}` has OpenGL {:.80}: its driver draws combiners by shaders",
+            device.renderer, device.version
+        );
+        return Err(refuse(
+            message,
+            "only a card with combiners of its own is adopted; `compare` tells how a driver differs",
+        ));
     }
     if let Some(unit) = comparison.units.iter().find(|unit| unit.errors > 0) {
         let message = format!("{} draws of `{}` failed", unit.errors, unit.unit);

@@ -64,6 +64,12 @@ impl Device {
         let renderer = format!("{} {}", self.vendor, self.renderer).to_lowercase();
         programs.split(',').any(|program| renderer.contains(program))
     }
+
+    /// Returns whether the card is younger than the chips of the model: their drivers end at OpenGL 1.5, those of later cards draw combiners by shaders.
+    fn is_younger(&self) -> bool {
+        let major = self.version.split(['.', ' ']).find_map(|word| word.parse::<u32>().ok());
+        major.is_some_and(|major| major >= 2)
+    }
 }
 
 /// An observed column.

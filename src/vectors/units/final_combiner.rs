@@ -9,13 +9,24 @@ use ninebit::trace::{Observer, Recorder, Silent};
 
 enumeration! {
     /// The source of an input A to D in these vectors.
-    enum Source {
+    pub(crate) enum Source {
         /// A register of its own.
         Own,
         /// SPARE0 + SECONDARY.
         Sum,
         /// E times F.
         Product,
+    }
+}
+
+impl Source {
+    /// Returns the register that an input reads; `own` is the one of its own.
+    pub(crate) const fn register(self, own: FinalRegister) -> FinalRegister {
+        match self {
+            Self::Own => own,
+            Self::Sum => FinalRegister::Spare0PlusSecondary,
+            Self::Product => FinalRegister::ETimesF,
+        }
     }
 }
 
@@ -52,11 +63,7 @@ fn planned(inputs: &[i64]) -> PlannedFinal {
     let flag = |n: usize| inputs[n] != 0;
     let mut sources: [FinalInput; 6] = [FinalInput::zero(Component::Rgb); 6];
     for (n, (own, source)) in OWN.into_iter().zip(&mut sources).enumerate() {
-        source.register = match inputs.get(n).filter(|_| n < 4).map(|chosen| named::<Source>(*chosen)) {
-            Some(Source::Sum) => FinalRegister::Spare0PlusSecondary,
-            Some(Source::Product) => FinalRegister::ETimesF,
-            Some(Source::Own) | None => own,
-        };
+        source.register = if n < 4 { named::<Source>(inputs[n]).register(own) } else { own };
         source.invert = flag(4 + n);
     }
     let state = state::FinalCombiner {

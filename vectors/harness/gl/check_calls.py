@@ -37,7 +37,7 @@ def empty(constants):
     """The combiners before a batch: nothing is read, nothing is written."""
     final = {constants[name]: (0, constants["UNSIGNED_IDENTITY_NV"], constants["RGB"]) for name in VARIABLES[:6]}
     final[constants["VARIABLE_G_NV"]] = (0, constants["UNSIGNED_IDENTITY_NV"], constants["ALPHA"])
-    return {"stages": 0, "portions": {}, "constants": {}, "final": final, "clamp": None}
+    return {"stages": 0, "portions": {}, "constants": {}, "fog": (0, 0, 0), "final": final, "clamp": None}
 
 
 def described(pack, unit, constants):
@@ -69,6 +69,8 @@ def described(pack, unit, constants):
             state["constants"][int(words[1]), int(words[2])] = tuple(map(int, words[3:]))
         elif words[0] == "constant":
             state["constants"][None, int(words[1])] = tuple(map(int, words[2:]))
+        elif words[0] == "fog_color":
+            state["fog"] = tuple(map(int, words[1:]))
         elif words[0] == "final":
             state["final"][value(words[1])] = tuple(value(word) for word in words[2:])
         elif words[0] == "color_sum_clamp":
@@ -100,6 +102,8 @@ def called(path, constants):
             state["constants"][int(words[0], 16) - stage0, int(words[1], 16) - color0] = whole(words[2:])
         elif name == "CombinerParameterfv":
             state["constants"][None, int(words[0], 16) - color0] = whole(words[1:])
+        elif name == "Fogfv" and int(words[0], 16) == constants["FOG_COLOR"]:
+            state["fog"] = tuple(round(255 * float(number)) for number in words[1:4])
         elif name == "CombinerParameteri" and int(words[0], 16) == constants["NUM_GENERAL_COMBINERS_NV"]:
             state["stages"] = int(words[1])
         elif name == "CombinerParameteri" and int(words[0], 16) == constants["COLOR_SUM_CLAMP_NV"]:
@@ -116,7 +120,7 @@ def comparable(state):
     runs = lambda key: key[0] is None or key[0] < state["stages"]
     constants = {key: color for key, color in state["constants"].items() if any(color) and runs(key)}
     portions = {key: portion for key, portion in state["portions"].items() if runs(key)}
-    return state["stages"], portions, constants, dict(state["final"]), state["clamp"]
+    return state["stages"], portions, constants, state["fog"], dict(state["final"]), state["clamp"]
 
 
 def main():

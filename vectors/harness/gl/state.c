@@ -138,11 +138,12 @@ static int has_stage_constants(const batch *from)
     return 0;
 }
 
-/* No input, no output, anywhere. */
+/* No input, no output, anywhere; no constant and no fog color, which the final combiner reads. */
 static void reset_combiners(int stage_constants)
 {
     static const GLfloat black[4] = { 0, 0, 0, 0 };
     int stages = drawing_max(GL_MAX_GENERAL_COMBINERS_NV), stage, n;
+    gl.Fogfv(GL_FOG_COLOR, black);
     for (n = 0; n < 2; n++) {
         gl.CombinerParameterfvNV(GL_CONSTANT_COLOR0_NV + (GLenum)n, black);
     }
