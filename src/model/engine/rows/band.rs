@@ -224,10 +224,9 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     if compiled.drops_late {
         *alive = *varying.alive.block();
     }
-    let mut found = None;
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
     for (n, sampler) in samplers.iter().enumerate() {
-        found = fetch::sample_unit(job, n, found, varying, work, rows);
+        fetch::sample_unit(job, n, varying, work, rows);
         fetch::drop_keyed(sampler, work, alive);
     }
     if compiled.destination.iter().any(Option::is_some) {

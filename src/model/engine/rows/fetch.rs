@@ -37,41 +37,32 @@ impl Default for Workspace {
     }
 }
 
-/// The sampler whose entries are in a workspace, and the pitch of its table.
-pub(super) type Found = Option<(usize, i32)>;
-
-/// Samples the unit of a sampler: its levels, its taps, or one texel or footprint of each pixel. Returns what is `found` in the workspace
-/// then.
+/// Samples the unit of a sampler: its levels, its taps, or one texel or footprint of each pixel.
 #[inline(always)]
 pub(super) fn sample_unit(
     job: &Job<'_>,
     n: usize,
-    found: Found,
     varying: &mut Varying,
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
-) -> Found {
+) {
     let sampler = &job.compiled.samplers[n];
-    let Some(table) = &sampler.table else { return found };
+    let Some(table) = &sampler.table else { return };
     let (signed, wanted) = (sampler.signed, job.compiled.textures[sampler.unit]);
     // Samplers that share coordinates also have the same axes.
     let at = sampler.shares.unwrap_or(n);
     if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
         let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
         sample_levels(job.vectors, table, reads, both, signed, wanted, work, rows);
-        return None;
+        return;
     }
     if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
         sample_taps(job.vectors, table, &varying.coordinates[n], &footprints.pairs, signed, wanted, work, rows);
-        return None;
+        return;
     }
-    let here = Some((at, table.pitch));
-    if found != here {
-        let faces = sampler.has_images().then_some(&varying.faces[n]);
-        locate(table, &mut varying.coordinates[at], faces, work);
-    }
+    let faces = sampler.has_images().then_some(&varying.faces[n]);
+    locate(table, &mut varying.coordinates[at], faces, work);
     sample(job.vectors, table, &varying.coordinates[at], &varying.references[n], signed, wanted, work, rows);
-    here
 }
 
 /// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
@@ -134,7 +125,6 @@ fn texels(
         return false;
     }
     let Workspace { entries, texels: found, footprints, .. } = work;
-    let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // Channels that are not wanted go to the spare rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else {
@@ -144,11 +134,7 @@ fn texels(
     match &table.texels {
         Texels::Single(texels) => {
             fetch(texels, entries, found);
-            match last {
-                0 => unpack::<1>(found, red, green, blue, alpha),
-                1 | 2 => unpack::<3>(found, red, green, blue, alpha),
-                _ => unpack::<4>(found, red, green, blue, alpha),
-            }
+            unpack(found, red, green, blue, alpha);
         }
         // Done above, and by `sample_levels`.
         Texels::Wide(..) | Texels::Levels(_) | Texels::WideLevels(_) => {}
@@ -175,11 +161,7 @@ fn texels(
         }
         Texels::Footprints(texels) => {
             fetch_footprints(texels, entries, footprints);
-            match last {
-                0 => filter::<1>(vectors, footprints, u, v, red, green, blue, alpha),
-                1 | 2 => filter::<3>(vectors, footprints, u, v, red, green, blue, alpha),
-                _ => filter::<4>(vectors, footprints, u, v, red, green, blue, alpha),
-            }
+            filter(vectors, footprints, u, v, red, green, blue, alpha);
         }
     }
     true
@@ -318,12 +300,12 @@ fn sample_levels(
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let (u, v) = reads.of_level(0, entries);
     fetch_footprints(texels, entries, footprints);
-    filter::<4>(vectors, footprints, u, v, red, green, blue, alpha);
+    filter(vectors, footprints, u, v, red, green, blue, alpha);
     if both {
         let (u, v) = reads.of_level(1, entries);
         fetch_footprints(texels, entries, footprints);
         let [next_red, next_green, next_blue, next_alpha] = next;
-        filter::<4>(vectors, footprints, u, v, next_red, next_green, next_blue, next_alpha);
+        filter(vectors, footprints, u, v, next_red, next_green, next_blue, next_alpha);
         for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
             if wanted.is_some() {
                 mix(channel, next, weights);
@@ -441,9 +423,9 @@ fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Optio
     }
 }
 
-/// Writes the first `COUNT` channels of texels.
+/// Writes the channels of texels.
 #[inline(always)]
-fn unpack<const COUNT: usize>(
+fn unpack(
     texels: &[u32; BLOCK],
     red: &mut [i16; BLOCK],
     green: &mut [i16; BLOCK],
@@ -452,13 +434,9 @@ fn unpack<const COUNT: usize>(
 ) {
     for n in 0..BLOCK {
         red[n] = (texels[n] & 255) as i16;
-        if COUNT > 1 {
-            green[n] = (texels[n] >> 8 & 255) as i16;
-            blue[n] = (texels[n] >> 16 & 255) as i16;
-            if COUNT > 3 {
-                alpha[n] = (texels[n] >> 24) as i16;
-            }
-        }
+        green[n] = (texels[n] >> 8 & 255) as i16;
+        blue[n] = (texels[n] >> 16 & 255) as i16;
+        alpha[n] = (texels[n] >> 24) as i16;
     }
 }
 

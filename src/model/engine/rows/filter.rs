@@ -19,10 +19,10 @@ pub(crate) enum Vectors {
     Avx512,
 }
 
-/// TEX-6 of the first `COUNT` channels. More may be written.
+/// TEX-6 of four channels.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-pub(super) fn filter<const COUNT: usize>(
+pub(super) fn filter(
     vectors: Vectors,
     footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
@@ -33,7 +33,7 @@ pub(super) fn filter<const COUNT: usize>(
     alpha: &mut [i16; BLOCK],
 ) {
     #[cfg(target_arch = "x86_64")]
-    if COUNT > 1 {
+    {
         let channels = [&mut *red, &mut *green, &mut *blue, &mut *alpha];
         let done = match vectors {
             Vectors::Portable => false,
@@ -46,13 +46,13 @@ pub(super) fn filter<const COUNT: usize>(
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = vectors;
-    two_at_a_time::<COUNT>(footprints, u, v, red, green, blue, alpha);
+    two_at_a_time(footprints, u, v, red, green, blue, alpha);
 }
 
-/// TEX-6 of the first `COUNT` channels, two channels at a time.
+/// TEX-6 of four channels, two at a time.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-fn two_at_a_time<const COUNT: usize>(
+fn two_at_a_time(
     footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
@@ -65,15 +65,9 @@ fn two_at_a_time<const COUNT: usize>(
         let [a, c, b, d] = footprints[n];
         let (along, down) = (weight(u[n]), weight(v[n]));
         let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
-        red[n] = (even.0 & 255) as i16;
-        if COUNT > 1 {
-            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along, down, |v| v);
-            green[n] = (odd.0 & 255) as i16;
-            blue[n] = (even.0 >> 16) as i16;
-            if COUNT > 3 {
-                alpha[n] = (odd.0 >> 16) as i16;
-            }
-        }
+        let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along, down, |v| v);
+        (red[n], blue[n]) = ((even.0 & 255) as i16, (even.0 >> 16) as i16);
+        (green[n], alpha[n]) = ((odd.0 & 255) as i16, (odd.0 >> 16) as i16);
     }
 }
 
@@ -334,7 +328,7 @@ mod tests {
             let out = [Vectors::Portable, Vectors::Avx2, Vectors::Avx512].map(|vectors| {
                 let mut out = [[0; BLOCK]; 4];
                 let [r, g, b, a] = &mut out;
-                filter::<4>(vectors, &footprints, &u, &v, r, g, b, a);
+                filter(vectors, &footprints, &u, &v, r, g, b, a);
                 out
             });
             for n in 0..BLOCK {

@@ -390,15 +390,14 @@ fn scattered(
         let axes = [columns.shifted(width, shifts[0]), rows.shifted(height, shifts[1])];
         let placed = Placed { axes, first: entries[n], pitch };
         (to_u[n], to_v[n], entries[n]) =
-            entry::<false>(&placed, filters, shifts.map(|shift| shift as u32), lods[n], [u[n], v[n]]);
+            entry(&placed, filters, shifts.map(|shift| shift as u32), lods[n], [u[n], v[n]]);
     }
 }
 
 /// Returns the coordinates for the weights of a lane on a level, and the entry: that of the texel, or of the upper left texel of the
-/// footprint. Coordinates are not reduced to the period yet. `SIMPLE` says that nothing but the minification filter's subtraction changes
-/// them.
+/// footprint. Coordinates are not reduced to the period yet.
 #[inline(always)]
-fn entry<const SIMPLE: bool>(
+fn entry(
     placed: &Placed,
     [mag, min]: [Taken; 2],
     [shift_u, shift_v]: [u32; 2],
@@ -406,13 +405,9 @@ fn entry<const SIMPLE: bool>(
     [u, v]: [i32; 2],
 ) -> (i32, i32, i32) {
     let [columns, rows] = &placed.axes;
-    let less = if !SIMPLE && lod <= 0 { mag.less } else { min.less };
-    let (mut u, mut v) = ((u >> shift_u).wrapping_sub(less), (v >> shift_v).wrapping_sub(less));
-    if !SIMPLE {
-        let kept = if lod <= 0 { mag.kept } else { min.kept };
-        u = (u & kept).max(columns.low).min(columns.high);
-        v = (v & kept).max(rows.low).min(rows.high);
-    }
+    let Taken { less, kept } = if lod <= 0 { mag } else { min };
+    let (u, v) = ((u >> shift_u).wrapping_sub(less) & kept, (v >> shift_v).wrapping_sub(less) & kept);
+    let (u, v) = (u.max(columns.low).min(columns.high), v.max(rows.low).min(rows.high));
     (u, v, rows.entry(v).wrapping_mul(placed.pitch).wrapping_add(columns.entry(u)).wrapping_add(placed.first))
 }
 
@@ -435,15 +430,8 @@ fn places(
     let lanes = lods.len();
     let (u, v) = (&u[..lanes], &v[..lanes]);
     let (to_u, to_v, entries) = (&mut to_u[..lanes], &mut to_v[..lanes], &mut entries[..lanes]);
-    let is_simple = filters == [Taken::by(Filter::Linear); 2] && columns.repeats() && rows.repeats();
-    if is_simple {
-        for n in 0..lanes {
-            (to_u[n], to_v[n], entries[n]) = entry::<true>(placed, filters, shifts, 0, [u[n], v[n]]);
-        }
-    } else {
-        for n in 0..lanes {
-            (to_u[n], to_v[n], entries[n]) = entry::<false>(placed, filters, shifts, lods[n], [u[n], v[n]]);
-        }
+    for n in 0..lanes {
+        (to_u[n], to_v[n], entries[n]) = entry(placed, filters, shifts, lods[n], [u[n], v[n]]);
     }
     if columns.period.is_some() || rows.period.is_some() {
         columns.reduce(to_u);

@@ -48,10 +48,8 @@ pub(super) struct Quads {
     coordinates: AtQuads,
     /// Doubles as bits, negative for quads whose coordinates are not known.
     unknown: PerLane<u64>,
-    /// Sign bits of quads whose estimated result is not proved; the numbers of such quads, and their origins.
+    /// Sign bits of quads whose estimated result is not proved.
     close: PerLane<i32>,
-    left: PerLane<u8>,
-    left_origins: [PerLane<f32>; 2],
     /// Number of quads of a box.
     count: usize,
     /// The rows of a batch.
@@ -354,7 +352,7 @@ impl Setup<'_> {
             return Spread::First;
         }
         if !ROW {
-            room(known, 2 * LANES);
+            room(known, LANES + STEP);
             known.of = None;
             self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, &mut known.each);
             return Spread::Rows;
@@ -378,7 +376,7 @@ impl Setup<'_> {
             }
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
-            room(known, first + 2 * LANES);
+            room(known, first + LANES + STEP);
             self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
             known.columns.end = wanted.end;
         }
@@ -387,7 +385,7 @@ impl Setup<'_> {
         Spread::Rows
     }
 
-    /// Computes the results of quads at the given [origins](Quads::origins). `out` has room for twice as many.
+    /// Computes the results of quads at the given [origins](Quads::origins). Those of all come from coordinates if one estimate is not proved.
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
@@ -399,34 +397,12 @@ impl Setup<'_> {
         out: &mut [T],
     ) {
         let rounded = whole_steps(count);
-        let Quads { origins: [xs, ys], coordinates, unknown, close, left, left_origins: [left_xs, left_ys], .. } =
-            quads;
-        let (xs, ys, close) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded]);
-        let (out, spare) = out.split_at_mut(rounded);
-        let scratch = (coordinates, unknown);
-        if !T::estimate::<FMA>(base, [xs, ys], out, close) {
-            self.measured_exactly::<FMA, T>(batch, (unit, base), e, [xs, ys], count, scratch, out);
-            return;
-        }
-        let open = |close: &i32| *close < 0;
+        let Quads { origins: [xs, ys], coordinates, unknown, close, .. } = quads;
+        let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
         // Without an early exit, which is slower.
-        if !close[..count].iter().fold(false, |any, close| any | open(close)) {
-            return;
-        }
-        let mut some = 0;
-        for n in 0..count {
-            (left[some], left_xs[some], left_ys[some]) = (n as u8, xs[n], ys[n]);
-            some += usize::from(open(&close[n]));
-        }
-        let rounded = whole_steps(some);
-        for origins in [&mut *left_xs, left_ys] {
-            let last = origins[some - 1];
-            origins[some..rounded].fill(last);
-        }
-        let (origins, spare) = ([&left_xs[..rounded], &left_ys[..rounded]], &mut spare[..rounded]);
-        self.measured_exactly::<FMA, T>(batch, (unit, base), e, origins, some, scratch, spare);
-        for (n, found) in left[..some].iter().zip(spare) {
-            out[usize::from(*n)] = *found;
+        let open = |close: &[i32]| close.iter().fold(false, |any, close| any | (*close < 0));
+        if !T::estimate::<FMA>(base, [xs, ys], out, close) || open(&close[..count]) {
+            self.measured_exactly::<FMA, T>(batch, (unit, base), e, [xs, ys], count, (coordinates, unknown), out);
         }
     }
 

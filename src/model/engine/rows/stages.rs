@@ -295,7 +295,7 @@ pub(super) fn run<const FMA: bool>(
             }
             ShaderOperation::Sample => {
                 let Some(at) = stage.sampler else { continue };
-                fetch::sample_unit(job, at, None, varying, work, rows);
+                fetch::sample_unit(job, at, varying, work, rows);
                 fetch::drop_keyed(&job.compiled.samplers[at], work, &mut varying.alive);
             }
             operation => {
@@ -374,7 +374,7 @@ pub(super) fn run<const FMA: bool>(
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
                     workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
                 }
-                fetch::sample_unit(job, at, None, varying, work, rows);
+                fetch::sample_unit(job, at, varying, work, rows);
                 fetch::drop_keyed(sampler, work, &mut varying.alive);
                 if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), earlier[0]) {
                     let [products, ..] = &mut workshop.dot.scratch;
