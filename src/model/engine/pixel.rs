@@ -43,7 +43,8 @@ pub struct TriangleContext<'a> {
     pub depth: DepthPlane,
     /// Whether stages of a texture shader run by this context.
     defines: bool,
-    /// Whether coordinates and fog are set up for this triangle.
+    /// Whether the triangle is set up, and whether coordinates and fog are.
+    placed: bool,
     complete: bool,
 }
 
@@ -56,7 +57,7 @@ fn corners(draw: &PlannedDraw, number: usize) -> [&Corner; 3] {
 
 /// Returns x and y of corners.
 #[inline(always)]
-fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
+pub(super) fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
     let [[ax, ay], [bx, by], [cx, cy]] = [a.position, b.position, c.position];
     ([ax.into(), bx.into(), cx.into()], [ay.into(), by.into(), cy.into()])
 }
@@ -132,6 +133,7 @@ impl<'a> TriangleContext<'a> {
             fog: None,
             depth: DepthPlane::default(),
             defines,
+            placed: false,
             complete: false,
         }
     }
@@ -140,7 +142,11 @@ impl<'a> TriangleContext<'a> {
     /// [`complete`](Self::complete) sets up texture coordinates and fog.
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
-        Self::may_cover(self.draw, number, rows) && self.prepare(number)
+        if !Self::may_cover(self.draw, number, rows) {
+            return false;
+        }
+        self.begin(number);
+        self.place()
     }
 
     /// Returns whether triangle `number` of a draw may cover pixels in `rows`: it is not culled, it has an area, and its bounding box holds centres
@@ -158,23 +164,34 @@ impl<'a> TriangleContext<'a> {
         (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !culled
     }
 
-    /// Sets up triangle `number`, which [may cover](Self::may_cover) pixels. Returns `false` if its depths drop it; then the context is not
-    /// valid.
+    /// Takes triangle `number`, which [may cover](Self::may_cover) pixels, and the colours of its corners.
     #[inline(always)]
-    pub(super) fn prepare(&mut self, number: usize) -> bool {
-        let (plan, draw) = (self.plan, self.draw);
-        let corners = corners(draw, number);
-        let (x, y) = positions(&corners);
-        self.triangle.place(x, y);
-        self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
-        self.triangle.lose(plan.policies.plane_loss);
-        (self.number, self.complete) = (number, false);
+    pub(super) fn begin(&mut self, number: usize) {
+        let draw = self.draw;
+        (self.number, self.placed, self.complete) = (number, false, false);
         let colored = match draw.shade_model {
-            ShadeModel::Smooth => corners,
+            ShadeModel::Smooth => corners(draw, number),
             ShadeModel::Flat => [&draw.assembly.corners[draw.assembly.triangles.provoking(number) as usize]; 3],
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
+    }
+
+    /// Returns the corners of the triangle.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [&'a Corner; 3] {
+        corners(self.draw, self.number)
+    }
+
+    /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.
+    #[inline(always)]
+    pub(super) fn place(&mut self) -> bool {
+        let (plan, draw, corners) = (self.plan, self.draw, self.corners());
+        let (x, y) = positions(&corners);
+        self.placed = true;
+        self.triangle.place(x, y);
+        self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
+        self.triangle.lose(plan.policies.plane_loss);
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
@@ -185,11 +202,14 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up texture coordinates and fog, unless they are set up.
+    /// Sets up the triangle, texture coordinates and fog, unless they are set up.
     #[inline(always)]
     pub(super) fn complete(&mut self) {
         if std::mem::replace(&mut self.complete, true) {
             return;
+        }
+        if !self.placed {
+            self.place();
         }
         let draw = self.draw;
         if let Some(shader) = &draw.shader {

@@ -3,6 +3,7 @@
 use super::GUARD;
 use crate::number::convert::{align, scaled, snap, split, w_16_bits};
 use crate::state::{PlaneLoss, Profile};
+use std::ops::{Add, Mul, Sub};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
 const PERSPECTIVE_BITS: i32 = 28;
@@ -73,36 +74,18 @@ impl Triangle {
     #[inline(always)]
     pub(crate) fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
-        let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
-        let area = clockwise_area(x, y);
-        for k in 0..3 {
-            let (s, t) = ((k + 1) % 3, (k + 2) % 3);
-            (a[k], b[k]) = (y[s] - y[t], x[t] - x[s]);
-            c[k] = -(a[k] * x[s] + b[k] * y[s]);
-        }
-        if area == 0 {
-            return false;
-        }
-        let sign = area.signum();
-        for k in 0..3 {
-            let (da, db, dc) = (a[k] * sign, b[k] * sign, c[k] * sign);
-            self.owns[k] = da > 0 || (da == 0 && db > 0);
-            // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
-            (self.a[k], self.b[k], self.c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
-        }
-        self.doubled_area = area.abs();
+        let edges = EdgeFunctions::new(x, y);
+        (self.a, self.b, self.c, self.owns) = (edges.a, edges.b, edges.c, edges.owns);
+        self.doubled_area = edges.area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
-        self.counter_clockwise = area < 0;
-        true
+        self.counter_clockwise = edges.area < 0;
+        edges.area != 0
     }
 
     /// Sets the fields that depend on the w of the vertices.
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
-        let w = significant(w, profile);
-        self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
-        let equal = w[0] == w[1] && w[1] == w[2];
-        self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
+        (self.p, self.exact_reciprocal) = weights(w, self.doubled_area, perspective, profile);
     }
 
     /// INT-4t: sets what coordinates on planes lose.
@@ -184,10 +167,58 @@ impl Triangle {
     }
 }
 
+/// Whole numbers that hold the products of coordinates: 64 bits anywhere, 32 near a small triangle.
+pub(crate) trait Whole:
+    Copy + Ord + From<i32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
+
+impl Whole for i32 {}
+impl Whole for i64 {}
+
+/// The edge functions of a triangle, as [`Triangle`] has them, and twice its signed area. Without branches, so that those of many triangles can be
+/// computed at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeFunctions<T> {
+    pub(crate) a: [T; 3],
+    pub(crate) b: [T; 3],
+    pub(crate) c: [T; 3],
+    pub(crate) owns: [bool; 3],
+    /// In 1/256 square pixel, positive if the triangle turns clockwise.
+    pub(crate) area: T,
+}
+
+impl<T: Whole> EdgeFunctions<T> {
+    /// Returns the edge functions between x and y after RAS-1, in 1/16 pixel.
+    #[inline(always)]
+    pub(crate) fn new(x: [T; 3], y: [T; 3]) -> EdgeFunctions<T> {
+        let [zero, eight, sixteen] = [T::from(0), T::from(8), T::from(16)];
+        let area = clockwise_area(x, y);
+        let sign = T::from(i32::from(area > zero) - i32::from(area < zero));
+        let edge = |s: usize, t: usize| {
+            let (a, b) = ((y[s] - y[t]) * sign, (x[t] - x[s]) * sign);
+            let owns = (a > zero) | ((a == zero) & (b > zero));
+            // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
+            (sixteen * a, sixteen * b, eight * (a + b) - (a * x[s] + b * y[s]), owns)
+        };
+        let [(a0, b0, c0, owns0), (a1, b1, c1, owns1), (a2, b2, c2, owns2)] = [edge(1, 2), edge(2, 0), edge(0, 1)];
+        EdgeFunctions { a: [a0, a1, a2], b: [b0, b1, b2], c: [c0, c1, c2], owns: [owns0, owns1, owns2], area }
+    }
+}
+
+/// Returns P_k, and whether the reciprocal of the weights' sum is exact (INT-3).
+#[inline(always)]
+pub(crate) fn weights(w: [f32; 3], doubled_area: i64, perspective: bool, profile: Profile) -> ([i64; 3], bool) {
+    let w = significant(w, profile);
+    let p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
+    let equal = (w[0] == w[1]) & (w[1] == w[2]);
+    (p, (doubled_area.count_ones() == 1) & (!perspective | equal))
+}
+
 /// Returns twice the area of a triangle in 1/256 square pixel. It is positive if the triangle turns clockwise for the viewer, because y points
 /// down.
 #[inline(always)]
-pub(crate) fn clockwise_area(x: [i64; 3], y: [i64; 3]) -> i64 {
+pub(crate) fn clockwise_area<T: Whole>(x: [T; 3], y: [T; 3]) -> T {
     (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
 }
 

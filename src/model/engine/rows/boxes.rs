@@ -4,9 +4,9 @@
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch, whole_steps};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::pixel::{TriangleContext, positions};
 use crate::engine::walk::Window;
-use crate::raster::setup::Triangle;
+use crate::raster::setup::{Triangle, centres};
 
 /// Largest number of columns and of rows of a box, whose pixels are found and interpolated together.
 pub(super) const SIDE: i64 = 16;
@@ -18,12 +18,11 @@ const WIDEST: i64 = 8 * SIDE;
 /// corrected.
 const WIDEST_FLAT: i64 = 2 * SIDE;
 
-/// Returns whether a triangle is drawn as boxes instead of row by row.
+/// Returns whether a triangle with this bounding box is drawn as boxes instead of row by row. `w` has that of its corners.
 #[inline(always)]
-pub(super) fn is_small(triangle: &Triangle) -> bool {
-    let p = &triangle.p;
-    let widest = if p[0] == p[1] && p[1] == p[2] { WIDEST_FLAT } else { WIDEST };
-    triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
+pub(super) fn is_small((rows, columns): Window, w: [f32; 3]) -> bool {
+    let widest = if w[0] == w[1] && w[1] == w[2] { WIDEST_FLAT } else { WIDEST };
+    rows.1 - rows.0 <= widest && columns.1 - columns.0 <= widest
 }
 
 /// Cuts rows and columns, of which there are some, into boxes, from left to right, then from top to bottom.
@@ -58,16 +57,15 @@ pub(super) struct BoxCoverage {
 }
 
 impl BoxCoverage {
-    /// RAS-3: finds the covered pixels of one of the [boxes] of a [small](is_small) triangle, all rows at once.
+    /// RAS-3: finds the covered pixels of one of the [boxes] of a [small](is_small) triangle, all rows at once. `edges` has the values of its edge
+    /// functions at the first pixel, and their slopes; `owed` is 1 for those that belong to the other triangle.
     #[inline(always)]
-    pub(super) fn cover(&mut self, triangle: &Triangle, (rows, columns): Window) {
+    pub(super) fn cover(&mut self, [e, a, b, owed]: [[i32; 3]; 4], inverse: [f32; 3], (rows, columns): Window) {
         let (left, top) = (columns.0, rows.0);
         let (mut low, mut high) = ([0; SIDE as usize], [(columns.1 - left) as i32; SIDE as usize]);
-        let e = triangle.edges(left, top);
         for k in 0..3 {
-            // Not negative inside the triangle. On an edge that belongs to the other triangle, the value is one less.
-            let owed = i64::from(!triangle.owns[k]);
-            limit((e[k] - owed) as i32, triangle.a[k] as i32, triangle.b[k] as i32, &mut low, &mut high);
+            // Not negative inside the triangle.
+            limit(e[k] - owed[k], (a[k], inverse[k]), b[k], &mut low, &mut high);
         }
         let (mut used, mut filled) = (0, 0);
         // What a row without pixels writes, the next one overwrites.
@@ -178,35 +176,44 @@ pub(super) enum Entered {
     Large(Window),
 }
 
-/// Returns the rows and columns that a window shares with the triangle's bounding box.
+/// Returns the rows and columns that a window shares with a bounding box.
 #[inline(always)]
-pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
-    (
-        (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)),
-        (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1)),
-    )
+pub(super) fn common((of_rows, of_columns): Window, (rows, columns): Window) -> Window {
+    ((of_rows.0.max(rows.0), of_rows.1.min(rows.1)), (of_columns.0.max(columns.0), of_columns.1.min(columns.1)))
 }
 
-/// Sets up a triangle that may cover pixels in the given rows and columns.
+/// Takes a triangle that may cover pixels in the given rows and columns, and sets it up, unless it is small and small ones are set up
+/// [together](super::small::Boxes).
 #[inline(always)]
-pub(super) fn enter<const WIDE: bool>(context: &mut TriangleContext<'_>, number: usize, window: Window) -> Entered {
-    if !context.prepare(number) {
+pub(super) fn enter<const WIDE: bool>(
+    context: &mut TriangleContext<'_>,
+    number: usize,
+    window: Window,
+    together: bool,
+) -> Entered {
+    context.begin(number);
+    let corners = context.corners();
+    let (x, y) = positions(&corners);
+    let bounds = (centres(y), centres(x));
+    let (rows, columns) = common(bounds, window);
+    if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return Entered::Nothing;
     }
-    let (rows, columns) = common(&context.triangle, window);
-    if rows.0 >= rows.1 || columns.0 >= columns.1 {
-        Entered::Nothing
-    } else if is_small(&context.triangle) {
-        Entered::Small((rows, columns))
-    } else {
-        Entered::Large((rows, columns))
+    let is_small = is_small(bounds, corners.map(|corner| corner.w));
+    let waits = is_small && together;
+    if !waits && !context.place() {
+        return Entered::Nothing;
     }
+    if is_small { Entered::Small((rows, columns)) } else { Entered::Large((rows, columns)) }
 }
 
 /// Finds the covered pixels of one box of a triangle.
 #[inline(always)]
 pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
-    coverage.cover(triangle, window);
+    let edges = [triangle.edges(window.1.0, window.0.0), triangle.a, triangle.b];
+    let [e, a, b] = edges.map(|of| of.map(|n| n as i32));
+    let owed = triangle.owns.map(|owns| i32::from(!owns));
+    coverage.cover([e, a, b, owed], a.map(inverse_slope), window);
 }
 
 /// Returns the pixels of a box as a batch.
@@ -220,6 +227,13 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     PixelBatch { first, at, count, lane, extent, runs: coverage.runs(), covered: Covered(0, covered), inside }
 }
 
+/// Returns the reciprocal of the magnitude of an edge's slope along x.
+#[inline(always)]
+pub(super) fn inverse_slope(a: i32) -> f32 {
+    // A horizontal edge covers all columns of a row or none. The chosen factor moves the limit out of the box.
+    if a == 0 { 40.0 } else { 1.0 / a.abs() as f32 }
+}
+
 /// A limit beyond all columns.
 const BEYOND: i32 = 1 << 23;
 
@@ -229,9 +243,7 @@ const BEYOND: i32 = 1 << 23;
 /// integer is at least half of 1/a. For quotients below 32 single precision is more exact than that, because a is below 2^15; larger
 /// quotients put the whole box on one side.
 #[inline(always)]
-fn limit(e: i32, a: i32, b: i32, low: &mut [i32; SIDE as usize], high: &mut [i32; SIDE as usize]) {
-    // A horizontal edge covers all columns of a row or none. The chosen factor moves the limit out of the box.
-    let inverse = if a == 0 { 40.0 } else { 1.0 / a.unsigned_abs() as f32 };
+fn limit(e: i32, (a, inverse): (i32, f32), b: i32, low: &mut [i32; SIDE as usize], high: &mut [i32; SIDE as usize]) {
     // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the
     // way, which avoids a branch.
     let (from, to) = if a > 0 { (0, BEYOND) } else { (-BEYOND, 0) };
@@ -268,14 +280,15 @@ mod tests {
             if !triangle.place(x, y) {
                 continue;
             }
-            triangle.weigh([1.0, 1.5, 2.0], true, Profile::Nv2a);
-            if !is_small(&triangle) {
+            let w = [1.0, 1.5, 2.0];
+            triangle.weigh(w, true, Profile::Nv2a);
+            if !is_small((triangle.rows, triangle.columns), w) {
                 continue;
             }
             drawn += 1;
             for (rows, columns) in boxes((triangle.rows, triangle.columns)) {
                 assert!(rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE);
-                coverage.cover(&triangle, (rows, columns));
+                cover::<false>(&triangle, (rows, columns), &mut coverage);
                 let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, columns)));
                 let wanted: Vec<_> =
                     spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
@@ -302,7 +315,7 @@ mod tests {
                     let e = e.clamp(-150_000, 150_000);
                     let b = (e & 255) * 16 - 2048;
                     let (mut low, mut high) = (whole(0), whole(SIDE as i32));
-                    limit(e, a, b, &mut low, &mut high);
+                    limit(e, (a, inverse_slope(a)), b, &mut low, &mut high);
                     for j in 0..SIDE as i32 {
                         let inside = |i: &i32| a * i + b * j + e >= 0;
                         let wanted = (0..SIDE as i32).filter(inside).count() as i32;

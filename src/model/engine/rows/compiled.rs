@@ -117,6 +117,8 @@ pub(crate) struct CompiledDraw {
     /// Whether nothing is interpolated but colours, depth, inputs of the texture shader, and coordinates on planes of textures with one
     /// level; and no quads are completed.
     pub(super) plain: bool,
+    /// Whether, besides, small triangles are set up together: nobody needs the set-up of one before all that have the same blocks.
+    pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,
     /// Whether quads are drawn with all of their pixels: a dependent read has levels, which follow from the results of all.

@@ -77,7 +77,7 @@ fn draw_triangle<T: Kernels>(
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded, mut at) = (job.compiled, 0, block.boxes.vacant());
-    let entered = T::enter(&mut contexts[at], number, window);
+    let entered = T::enter(&mut contexts[at], number, window, compiled.together);
     match entered {
         Entered::Nothing => return 0,
         Entered::Small(window) if compiled.plain => {

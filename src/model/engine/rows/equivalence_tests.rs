@@ -4,7 +4,7 @@
 //! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::boxes::{BoxCoverage, batch, boxes, common, is_small};
+use super::boxes::{BoxCoverage, batch, boxes, common, cover, is_small};
 use super::kernels::PerLane;
 use super::levels::MipFetches;
 use super::quads::Measure;
@@ -473,10 +473,11 @@ fn rows_interpolate(seed: u64) {
             let interpolators = Interpolators::new(&context, compiled, planes);
             let triangle = &interpolators.setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
-            if is_small(triangle) {
+            let bounds = (triangle.rows, triangle.columns);
+            if is_small(bounds, context.corners().map(|corner| corner.w)) {
                 let mut covered = 0;
-                for window in boxes(common(triangle, (whole, columns))) {
-                    coverage.cover(triangle, window);
+                for window in boxes(common(bounds, (whole, columns))) {
+                    cover::<false>(triangle, window, &mut coverage);
                     if coverage.count == 0 {
                         continue;
                     }

@@ -227,6 +227,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
+    compiled.together = compiled.plain && compiled.shader.is_none() && draw.depth_test.is_none();
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled

@@ -3,7 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
-use super::boxes::{BoxCoverage, SIDE};
+use super::boxes::{BoxCoverage, SIDE, inverse_slope};
 use super::color::colors;
 use super::compiled::Sampler;
 use super::kernels::PerLane;
@@ -12,7 +12,8 @@ use super::setup::PixelBatch;
 use super::triangle::Varying;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Window;
-use crate::state::TEXTURE_UNITS;
+use crate::raster::setup::{EdgeFunctions, weights};
+use crate::state::{PlaneLoss, TEXTURE_UNITS};
 
 /// Largest number of boxes that are set up at a time.
 pub(super) const GROUP: usize = 8;
@@ -73,10 +74,14 @@ impl Boxes {
         count: usize,
     ) {
         let all = &self.all[..count];
-        for ((window, context), coverage) in all.iter().zip(&mut self.coverages) {
-            coverage.cover(&contexts[*context].triangle, *window);
+        let shapes = Shapes::new(contexts, all);
+        for (n, ((window, _), coverage)) in all.iter().zip(&mut self.coverages).enumerate() {
+            let of = |edges: &[Each<i32>; 3]| [edges[0][n], edges[1][n], edges[2][n]];
+            let inverse = [shapes.inverse[0][n], shapes.inverse[1][n], shapes.inverse[2][n]];
+            coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
         }
-        let edges = Edges::new::<FMA>(contexts, all);
+        let edges = Edges::new::<FMA>(&shapes);
+        let loses = contexts[0].plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
         for (n, sampler) in own(compiled) {
             let (mut s, mut t) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3]);
@@ -86,7 +91,7 @@ impl Boxes {
                 for k in 0..3 {
                     (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
                 }
-                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3] && !context.triangle.loses_on_planes();
+                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3] && !(loses && shapes.exact[n] == 0);
                 proves[n] &= -i32::from(is_plane);
             }
             let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
@@ -173,6 +178,58 @@ impl Lines {
     }
 }
 
+/// RAS-1 to RAS-3 and INT-1 for the triangle of each box. All numbers of a small triangle fit into 32 bits.
+struct Shapes {
+    /// Edge functions at the first pixel, and their slopes.
+    e: [Each<i32>; 3],
+    a: [Each<i32>; 3],
+    b: [Each<i32>; 3],
+    /// Reciprocals of the magnitudes of the slopes along x.
+    inverse: [Each<f32>; 3],
+    /// 1 for edges that belong to the other triangle (RAS-3).
+    owed: [Each<i32>; 3],
+    p: [Each<i32>; 3],
+    doubled_area: Each<i32>,
+    /// -1 if the reciprocal of the weights' sum is exact (INT-3), otherwise 0.
+    exact: Each<i32>,
+}
+
+impl Shapes {
+    #[inline(always)]
+    fn new(contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)]) -> Shapes {
+        let (draw, profile) = (contexts[0].draw, contexts[0].plan.profile);
+        let [mut x, mut y] = [[[0; GROUP]; 3]; 2];
+        let mut w = [[1.0; GROUP]; 3];
+        for (n, ((rows, columns), context)) in boxes.iter().enumerate() {
+            // Measured from the first pixel, edge functions are their values there.
+            let (left, top) = (16 * columns.0 as i32, 16 * rows.0 as i32);
+            for (k, corner) in contexts[*context].corners().into_iter().enumerate() {
+                let [of_x, of_y] = corner.position;
+                (x[k][n], y[k][n], w[k][n]) = (of_x - left, of_y - top, corner.w);
+            }
+        }
+        let [mut e, mut a, mut b, mut owed, mut p] = [[[0; GROUP]; 3]; 5];
+        let ([mut doubled_area, mut exact], mut inverse) = ([[0; GROUP]; 2], [[0.0; GROUP]; 3]);
+        // One loop, because compilers would make vectors across k of another.
+        for n in 0..GROUP {
+            let at = |of: &[Each<i32>; 3]| [of[0][n], of[1][n], of[2][n]];
+            let edges = EdgeFunctions::new(at(&x), at(&y));
+            let area = edges.area.abs();
+            let (weights, is_exact) = weights([w[0][n], w[1][n], w[2][n]], area.into(), draw.perspective, profile);
+            [e[0][n], e[1][n], e[2][n]] = edges.c;
+            [a[0][n], a[1][n], a[2][n]] = edges.a;
+            [b[0][n], b[1][n], b[2][n]] = edges.b;
+            let [a0, a1, a2] = edges.a;
+            (inverse[0][n], inverse[1][n], inverse[2][n]) = (inverse_slope(a0), inverse_slope(a1), inverse_slope(a2));
+            let owes = |k: usize| i32::from(!edges.owns[k]);
+            (owed[0][n], owed[1][n], owed[2][n]) = (owes(0), owes(1), owes(2));
+            (p[0][n], p[1][n], p[2][n]) = (weights[0] as i32, weights[1] as i32, weights[2] as i32);
+            (doubled_area[n], exact[n]) = (area, -i32::from(is_exact));
+        }
+        Shapes { e, a, b, inverse, owed, p, doubled_area, exact }
+    }
+}
+
 /// The set-up that all functions of a box share.
 struct Edges {
     /// Edge functions at the first pixel, and their slopes.
@@ -199,26 +256,11 @@ struct Edges {
 
 impl Edges {
     #[inline(always)]
-    fn new<const FMA: bool>(contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)]) -> Edges {
-        // All numbers of a small triangle fit into 32 bits.
-        let [mut e, mut a, mut b, mut p] = [[[0; GROUP]; 3]; 4];
-        let (mut area, mut gap) = ([0.0; GROUP], [0.0; GROUP]);
-        for (n, ((rows, columns), context)) in boxes.iter().enumerate() {
-            let triangle = &contexts[*context].triangle;
-            let first = triangle.edges(columns.0, rows.0);
-            for k in 0..3 {
-                (e[k][n], a[k][n], b[k][n]) = (first[k] as i32, triangle.a[k] as i32, triangle.b[k] as i32);
-                p[k][n] = triangle.p[k] as i32;
-            }
-            area[n] = triangle.doubled_area as f64;
-            // All P are equal if the reciprocal is exact.
-            if triangle.exact_reciprocal && triangle.p[0].count_ones() == 1 {
-                gap[n] = 1.0 / area[n];
-            }
-        }
-        let [e, a, b, p] = [e, a, b, p].map(|of| of.map(|of| of.map(f64::from)));
+    fn new<const FMA: bool>(shapes: &Shapes) -> Edges {
+        let [e, a, b, p] = [shapes.e, shapes.a, shapes.b, shapes.p].map(|of| of.map(|of| of.map(f64::from)));
+        let area = shapes.doubled_area.map(f64::from);
         let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
-        let [mut reciprocal, mut widest, mut ratio, mut floors] = [[0.0; GROUP]; 4];
+        let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap] = [[0.0; GROUP]; 5];
         // One loop, because compilers would make vectors across k of another.
         for n in 0..GROUP {
             let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
@@ -234,6 +276,9 @@ impl Edges {
             ratio[n] = sum::<FMA>(&p, &bounds) * widest[n];
             reciprocal[n] = 1.0 / line.c;
             floors[n] = 1.25 / least;
+            // All P are equal if the reciprocal is exact.
+            let is_power = shapes.p[0][n].count_ones() == 1;
+            gap[n] = if is_power & (shapes.exact[n] != 0) { 1.0 / area[n] } else { 0.0 };
             (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
         }
         Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap }
