@@ -11,7 +11,7 @@ use crate::raster::depth::{self, DepthPlane};
 use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Floored, Sample};
-use crate::raster::setup::{Triangle, centres, clockwise_area};
+use crate::raster::setup::{Triangle, centres, clockwise_area, significant};
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
@@ -181,6 +181,13 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn corners(&self) -> [&'a Corner; 3] {
         corners(self.draw, self.number)
+    }
+
+    /// Returns whether the triangle has one w, so that all P_k are equal (INT-1).
+    #[inline(always)]
+    pub(super) fn is_flat(&self) -> bool {
+        let [a, b, c] = significant(self.corners().map(|corner| corner.w), self.plan.profile);
+        !self.draw.perspective | ((a == b) & (b == c))
     }
 
     /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.

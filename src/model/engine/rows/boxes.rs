@@ -18,10 +18,10 @@ const WIDEST: i64 = 8 * SIDE;
 /// corrected.
 const WIDEST_FLAT: i64 = 2 * SIDE;
 
-/// Returns whether a triangle with this bounding box is drawn as boxes instead of row by row. `w` has that of its corners.
+/// Returns whether a triangle with this bounding box is drawn as boxes instead of row by row. `is_flat` says whether it has a single w.
 #[inline(always)]
-pub(super) fn is_small((rows, columns): Window, w: [f32; 3]) -> bool {
-    let widest = if w[0] == w[1] && w[1] == w[2] { WIDEST_FLAT } else { WIDEST };
+pub(super) fn is_small((rows, columns): Window, is_flat: bool) -> bool {
+    let widest = if is_flat { WIDEST_FLAT } else { WIDEST };
     rows.1 - rows.0 <= widest && columns.1 - columns.0 <= widest
 }
 
@@ -192,14 +192,13 @@ pub(super) fn enter<const WIDE: bool>(
     together: bool,
 ) -> Entered {
     context.begin(number);
-    let corners = context.corners();
-    let (x, y) = positions(&corners);
+    let (x, y) = positions(&context.corners());
     let bounds = (centres(y), centres(x));
     let (rows, columns) = common(bounds, window);
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return Entered::Nothing;
     }
-    let is_small = is_small(bounds, corners.map(|corner| corner.w));
+    let is_small = is_small(bounds, context.is_flat());
     let waits = is_small && together;
     if !waits && !context.place() {
         return Entered::Nothing;
@@ -280,9 +279,8 @@ mod tests {
             if !triangle.place(x, y) {
                 continue;
             }
-            let w = [1.0, 1.5, 2.0];
-            triangle.weigh(w, true, Profile::Nv2a);
-            if !is_small((triangle.rows, triangle.columns), w) {
+            triangle.weigh([1.0, 1.5, 2.0], true, Profile::Nv2a);
+            if !is_small((triangle.rows, triangle.columns), false) {
                 continue;
             }
             drawn += 1;

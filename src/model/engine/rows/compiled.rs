@@ -117,7 +117,7 @@ pub(crate) struct CompiledDraw {
     /// Whether nothing is interpolated but colours, depth, inputs of the texture shader, and coordinates on planes of textures with one
     /// level; and no quads are completed.
     pub(super) plain: bool,
-    /// Whether, besides, small triangles are set up together: nobody needs the set-up of one before all that have the same blocks.
+    /// Whether small triangles are also placed and weighed together: neither depths nor a texture shader need the set-up of a single one.
     pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,

@@ -474,7 +474,7 @@ fn rows_interpolate(seed: u64) {
             let triangle = &interpolators.setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             let bounds = (triangle.rows, triangle.columns);
-            if is_small(bounds, context.corners().map(|corner| corner.w)) {
+            if is_small(bounds, context.is_flat()) {
                 let mut covered = 0;
                 for window in boxes(common(bounds, (whole, columns))) {
                     cover::<false>(triangle, window, &mut coverage);

@@ -65,7 +65,7 @@ impl Boxes {
         &mut self.coverages[self.current]
     }
 
-    /// Finds the pixels of the first boxes, and sets up all functions.
+    /// Finds the pixels of the first boxes, and sets up all functions. Contexts need not be [placed](TriangleContext::place).
     #[inline(always)]
     pub(super) fn set_up<const FMA: bool>(
         &mut self,
