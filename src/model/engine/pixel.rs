@@ -11,7 +11,7 @@ use crate::raster::depth::{self, DepthPlane};
 use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Floored, Sample};
-use crate::raster::setup::{Triangle, centres, clockwise_area, significant};
+use crate::raster::setup::{self, Triangle, centres, clockwise_area};
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
@@ -57,7 +57,7 @@ fn corners(draw: &PlannedDraw, number: usize) -> [&Corner; 3] {
 
 /// Returns x and y of corners.
 #[inline(always)]
-pub(super) fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
+fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
     let [[ax, ay], [bx, by], [cx, cy]] = [a.position, b.position, c.position];
     ([ax.into(), bx.into(), cx.into()], [ay.into(), by.into(), cy.into()])
 }
@@ -183,11 +183,17 @@ impl<'a> TriangleContext<'a> {
         corners(self.draw, self.number)
     }
 
-    /// Returns whether the triangle has one w, so that all P_k are equal (INT-1).
+    /// Returns the rows and columns of the triangle's bounding box that hold centres of pixels.
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> ((i64, i64), (i64, i64)) {
+        let (x, y) = positions(&self.corners());
+        (centres(y), centres(x))
+    }
+
+    /// Returns whether the triangle has a single w, so that all P_k are equal (INT-1).
     #[inline(always)]
     pub(super) fn is_flat(&self) -> bool {
-        let [a, b, c] = significant(self.corners().map(|corner| corner.w), self.plan.profile);
-        !self.draw.perspective | ((a == b) & (b == c))
+        setup::is_flat(self.corners().map(|corner| corner.w), self.draw.perspective, self.plan.profile)
     }
 
     /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.

@@ -209,10 +209,17 @@ impl<T: Whole> EdgeFunctions<T> {
 /// Returns P_k, and whether the reciprocal of the weights' sum is exact (INT-3).
 #[inline(always)]
 pub(crate) fn weights(w: [f32; 3], doubled_area: i64, perspective: bool, profile: Profile) -> ([i64; 3], bool) {
+    let taken = significant(w, profile);
+    let p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
+    (p, (doubled_area.count_ones() == 1) & is_flat(w, perspective, profile))
+}
+
+/// Returns whether a triangle has a single w, so that all P_k are equal.
+#[inline(always)]
+pub(crate) fn is_flat(w: [f32; 3], perspective: bool, profile: Profile) -> bool {
     let w = significant(w, profile);
-    let p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
     let equal = (w[0] == w[1]) & (w[1] == w[2]);
-    (p, (doubled_area.count_ones() == 1) & (!perspective | equal))
+    !perspective | equal
 }
 
 /// Returns twice the area of a triangle in 1/256 square pixel. It is positive if the triangle turns clockwise for the viewer, because y points

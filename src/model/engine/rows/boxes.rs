@@ -4,9 +4,9 @@
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch, whole_steps};
-use crate::engine::pixel::{TriangleContext, positions};
+use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Window;
-use crate::raster::setup::{Triangle, centres};
+use crate::raster::setup::Triangle;
 
 /// Largest number of columns and of rows of a box, whose pixels are found and interpolated together.
 pub(super) const SIDE: i64 = 16;
@@ -57,8 +57,9 @@ pub(super) struct BoxCoverage {
 }
 
 impl BoxCoverage {
-    /// RAS-3: finds the covered pixels of one of the [boxes] of a [small](is_small) triangle, all rows at once. `edges` has the values of its edge
-    /// functions at the first pixel, and their slopes; `owed` is 1 for those that belong to the other triangle.
+    /// RAS-3: finds the covered pixels of one of the [boxes] of a [small](is_small) triangle, all rows at once. `e` has the values of its edge
+    /// functions at the first pixel, `a` and `b` their slopes, `owed` 1 for those that belong to the other triangle, `inverse` the
+    /// [reciprocals](inverse_slope) of `a`.
     #[inline(always)]
     pub(super) fn cover(&mut self, [e, a, b, owed]: [[i32; 3]; 4], inverse: [f32; 3], (rows, columns): Window) {
         let (left, top) = (columns.0, rows.0);
@@ -192,8 +193,7 @@ pub(super) fn enter<const WIDE: bool>(
     together: bool,
 ) -> Entered {
     context.begin(number);
-    let (x, y) = positions(&context.corners());
-    let bounds = (centres(y), centres(x));
+    let bounds = context.bounds();
     let (rows, columns) = common(bounds, window);
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return Entered::Nothing;
