@@ -150,21 +150,27 @@ impl Triangle {
         })
     }
 
-    /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one
-    /// common exponent and 28 bits. They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
+    /// Returns the linear functions of three coordinates of which only ratios are used.
     #[inline(always)]
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let mut magnitudes = [(0, 0); 9];
-        for (n, magnitude) in magnitudes.iter_mut().enumerate() {
-            let (m, e) = split(x[n / 3][n % 3]);
-            *magnitude = (m.abs() * self.p[n % 3], e);
-        }
-        let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
-        for (n, g) in g.iter_mut().enumerate() {
-            *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
-        }
-        [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
+        direction(self.p, x)
     }
+}
+
+/// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one common exponent and 28 bits. They
+/// are truncated toward zero, so that opposite directions stay opposite (TEX-15).
+#[inline(always)]
+pub(crate) fn direction(p: [i64; 3], x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
+    let mut magnitudes = [(0, 0); 9];
+    for (n, magnitude) in magnitudes.iter_mut().enumerate() {
+        let (m, e) = split(x[n / 3][n % 3]);
+        *magnitude = (m.abs() * p[n % 3], e);
+    }
+    let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
+    for (n, g) in g.iter_mut().enumerate() {
+        *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
+    }
+    [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
 }
 
 /// Whole numbers that hold the products of coordinates: 64 bits anywhere, 32 near a small triangle.

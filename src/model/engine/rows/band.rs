@@ -1,9 +1,9 @@
 //! The parts of the engine that are compiled for each instruction set: batches of pixels to lanes of a block, and blocks to the surface.
 
-use super::boxes::batch;
+use super::boxes::{HALF_STEP, batch};
 use super::depth::depths;
 use super::fetch::{self, Workspace};
-use super::kernels::{self, PerLane};
+use super::kernels::{self, PerLane, STEP};
 use super::setup::{Covered, PixelBatch, Run};
 use super::small::Boxes;
 use super::stages::{self, Workshop};
@@ -63,14 +63,20 @@ pub(super) fn plain<const FMA: bool>(
     block: &mut Block,
 ) -> bool {
     let Block { varying, rows, boxes, used, .. } = block;
-    boxes.interpolate::<FMA>(context, compiled, batch(boxes.coverage(), *used), varying, rows)
+    boxes.interpolate::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.
 #[inline(always)]
 pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block) {
     let Block { varying, rows, boxes, used, .. } = block;
-    interpolators.interpolate::<FMA, false>(batch(boxes.coverage(), *used), job.compiled, job.textures, varying, rows);
+    interpolators.interpolate::<FMA, false>(
+        batch::<STEP>(boxes.coverage(), *used),
+        job.compiled,
+        job.textures,
+        varying,
+        rows,
+    );
 }
 
 /// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just
@@ -111,7 +117,11 @@ pub(super) fn row_attributes<const FMA: bool>(
 #[inline(always)]
 pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, false>(context, batch(block.boxes.coverage(), block.used), shader);
+        block.workshop.attributes::<FMA, false>(
+            context,
+            batch::<HALF_STEP>(block.boxes.coverage(), block.used),
+            shader,
+        );
     }
 }
 
@@ -151,8 +161,12 @@ pub(super) fn box_depths<const FMA: bool>(
 ) -> bool {
     let Block { varying, alive, boxes, used, runs, depth, defined, .. } = block;
     let coverage = boxes.coverage();
-    let covered = batch(coverage, *used).inside::<false>();
-    defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
+    let covered = batch::<HALF_STEP>(coverage, *used).inside::<false>();
+    if boxes.has_depths {
+        boxes.depths.write::<FMA>(boxes.current, covered, job.draw.depth_format, varying.depths());
+    } else {
+        defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
+    }
     let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if !job.compiled.drops_late {
         let lanes = *used..*used + coverage.count;

@@ -1,9 +1,10 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
+use super::compiled::CompiledDraw;
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
-use super::setup::{Covered, PixelBatch, whole_steps};
+use super::setup::{Covered, PixelBatch};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
@@ -171,7 +172,9 @@ pub(super) fn columns_of_quads(spans: [(i64, i64); 2]) -> (i64, i64) {
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// As boxes, in these rows and columns, of which there are some.
+    /// As boxes, in these rows and columns, of which there are some, later: [together](super::small::Boxes) with others.
+    Together(Window),
+    /// As boxes, likewise, but alone.
     Small(Window),
     /// Row by row, likewise.
     Large(Window),
@@ -183,14 +186,13 @@ pub(super) fn common((of_rows, of_columns): Window, (rows, columns): Window) -> 
     ((of_rows.0.max(rows.0), of_rows.1.min(rows.1)), (of_columns.0.max(columns.0), of_columns.1.min(columns.1)))
 }
 
-/// Takes a triangle that may cover pixels in the given rows and columns, and sets it up, unless it is small and small ones are set up
-/// [together](super::small::Boxes).
+/// Takes a triangle that may cover pixels in the given rows and columns, and sets it up, unless that is done together with others.
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
     number: usize,
     window: Window,
-    together: bool,
+    compiled: &CompiledDraw,
 ) -> Entered {
     context.begin(number);
     let bounds = context.bounds();
@@ -199,11 +201,17 @@ pub(super) fn enter<const WIDE: bool>(
         return Entered::Nothing;
     }
     let is_small = is_small(bounds, context.is_flat());
-    let waits = is_small && together;
-    if !waits && !context.place() {
+    // Functions that are not set up together are better set up once for all boxes of a triangle.
+    let is_one = rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE;
+    let waits = is_small && (compiled.plain || compiled.together && is_one);
+    if !(waits && compiled.together) && !context.place() {
         return Entered::Nothing;
     }
-    if is_small { Entered::Small((rows, columns)) } else { Entered::Large((rows, columns)) }
+    match (is_small, waits) {
+        (true, true) => Entered::Together((rows, columns)),
+        (true, false) => Entered::Small((rows, columns)),
+        _ => Entered::Large((rows, columns)),
+    }
 }
 
 /// Finds the covered pixels of one box of a triangle.
@@ -215,10 +223,13 @@ pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, cover
     coverage.cover([e, a, b, owed], a.map(inverse_slope), window);
 }
 
-/// Returns the pixels of a box as a batch.
+/// Steps of lanes for what is computed in double precision: small triangles have few pixels.
+pub(super) const HALF_STEP: usize = STEP / 2;
+
+/// Returns the pixels of a box as a batch, in whole steps of so many lanes.
 #[inline(always)]
-pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
-    let lanes = whole_steps(coverage.count);
+pub(super) fn batch<const STEP: usize>(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let lanes = coverage.count.next_multiple_of(STEP);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
     let [x, y] = &coverage.inside;
     let inside = [&x[..lanes], &y[..lanes]];

@@ -114,10 +114,10 @@ pub(crate) struct CompiledDraw {
     pub(super) shader: Option<Arc<Shader>>,
     /// Whether each pixel needs estimates besides coordinates: taps, layers or depths to compare with.
     pub(super) estimates: bool,
-    /// Whether nothing is interpolated but colours, depth, inputs of the texture shader, and coordinates on planes of textures with one
-    /// level; and no quads are completed.
+    /// Whether nothing is interpolated but colours, depths, inputs of the texture shader, and coordinates of textures with one level, neither cube
+    /// maps nor volumes; and no quads are completed.
     pub(super) plain: bool,
-    /// Whether small triangles are also placed and weighed together: neither depths nor a texture shader need the set-up of a single one.
+    /// Whether small triangles are set up together only: neither depths nor a texture shader need the set-up of a single one.
     pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,

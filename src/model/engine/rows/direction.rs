@@ -13,7 +13,7 @@ use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
 /// Largest error of an estimated coordinate with losses, 1/256 texel.
-const COARSEST: f64 = 0.125;
+pub(super) const COARSEST: f64 = 0.125;
 
 /// Returns the face that the directions of all three vertices meet, if none of them lies on an edge of it. Then all directions between them
 /// meet it too.

@@ -4,10 +4,10 @@ use super::band::{Block, index};
 use super::boxes::{Entered, batch, boxes, columns_of_quads, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::isa::Kernels;
-use super::kernels::PerLane;
+use super::kernels::{PerLane, STEP};
 use super::levels::MipFetches;
 use super::setup::{Covered, PixelBatch, Run, whole_steps};
-use super::small::GROUP;
+use super::shapes::GROUP;
 use super::taps::Footprints;
 use super::triangle::Interpolators;
 use super::{BLOCK, Job, store};
@@ -77,10 +77,10 @@ fn draw_triangle<T: Kernels>(
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded, mut at) = (job.compiled, 0, block.boxes.vacant());
-    let entered = T::enter(&mut contexts[at], number, window, compiled.together);
+    let entered = T::enter(&mut contexts[at], number, window, compiled);
     match entered {
         Entered::Nothing => return 0,
-        Entered::Small(window) if compiled.plain => {
+        Entered::Together(window) => {
             for window in boxes(window) {
                 block.boxes.add(window, at);
                 if block.boxes.count == GROUP {
@@ -101,7 +101,7 @@ fn draw_triangle<T: Kernels>(
     T::complete(context);
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
     shaded += match entered {
-        Entered::Nothing => 0,
+        Entered::Nothing | Entered::Together(_) => 0,
         Entered::Small(window) => draw_boxes_of_quads::<T>(job, window, &interpolators, band, block),
         Entered::Large(window) if compiled.completes_quads => draw_quads::<T>(job, window, &interpolators, band, block),
         Entered::Large(window) => draw_rows::<T>(job, window, &interpolators, band, block),
@@ -251,7 +251,7 @@ fn draw_box_of_quads<T: Kernels>(
     if block.boxes.coverage().count == 0 {
         return 0;
     }
-    if !interpolators.setup.is_positive_around(&batch(block.boxes.coverage(), 0)) {
+    if !interpolators.setup.is_positive_around(&batch::<STEP>(block.boxes.coverage(), 0)) {
         return draw_quads::<T>(job, window, interpolators, band, block);
     }
     if begin_box::<T>(job, context, band, block) {
@@ -277,7 +277,7 @@ fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the block's boxes, for a plain draw. Returns the number of covered pixels.
+/// Draws the block's boxes. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_boxes<T: Kernels>(
     job: &Job<'_>,
@@ -296,7 +296,7 @@ fn draw_boxes<T: Kernels>(
         if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
             continue;
         }
-        if !T::plain(context, job.compiled, block) {
+        if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
             T::complete(context);
             let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
             T::in_box(&interpolators, job, block);
@@ -304,7 +304,7 @@ fn draw_boxes<T: Kernels>(
         }
         append_box::<T>(job, context, block);
     }
-    block.boxes.current = 0;
+    (block.boxes.current, block.boxes.has_depths) = (0, false);
     shaded
 }
 

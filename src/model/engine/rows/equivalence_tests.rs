@@ -4,8 +4,8 @@
 //! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::boxes::{BoxCoverage, batch, boxes, common, cover, is_small};
-use super::kernels::PerLane;
+use super::boxes::{BoxCoverage, HALF_STEP, batch, boxes, common, cover, is_small};
+use super::kernels::{PerLane, STEP};
 use super::levels::MipFetches;
 use super::quads::Measure;
 use super::setup::PixelBatch;
@@ -306,9 +306,13 @@ fn compare_small<const FMA: bool>(
 ) -> bool {
     (small.all[0], small.current) = ((window, 0), 0);
     small.set_up::<FMA>(std::slice::from_ref(context), plain, 1);
-    let batch = batch(small.coverage(), 0);
+    let batch = batch::<HALF_STEP>(small.coverage(), 0);
     let done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
-    super::depth::depths::<FMA, false>(context, batch, varying.depths());
+    if small.has_depths {
+        small.depths.write::<FMA>(0, batch, context.draw.depth_format, varying.depths());
+    } else {
+        super::depth::depths::<FMA, false>(context, batch, varying.depths());
+    }
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
@@ -317,6 +321,11 @@ fn compare_small<const FMA: bool>(
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
+            if let Some(super::compiled::Third::Reference(format)) = sampler.third {
+                let (got, wanted) =
+                    (varying.references[index][lane], crate::raster::depth::word(format, place.reference()));
+                assert_eq!(got, wanted, "reference of unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
+            }
         }
         if plain.varies(context) {
             let weights = sample.weights().map(|w| w.value as u16);
@@ -417,7 +426,9 @@ fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
     let mut random = Random::seeded(seed);
-    let (mut pixels, mut drawn, mut proved, mut round) = (0, 0, 0, 0_u64);
+    let (mut pixels, mut drawn, mut with_depths, mut round) = (0, 0, 0, 0_u64);
+    // By the kind of coordinates: on planes, divided by q, and both with depths to compare with.
+    let mut proved = [0; 4];
     let (mut coverage, mut small_boxes, mut reasons) = (BoxCoverage::default(), Boxes::default(), Reasons::default());
     while pixels < wanted || drawn < least_drawn {
         round += 1;
@@ -428,7 +439,7 @@ fn rows_interpolate(seed: u64) {
         let small = pixels >= wanted;
         let mixes = [0; 2].map(|_| random.below(2) == 0);
         let mut vertices: Vec<Vertex> =
-            (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
+            (0..if small { 256 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
         let third = match random.below(6) {
             0 | 1 => Third::Layers(random.of(AddressMode::ALL)),
             2 | 3 => Third::Reference(random.of(DEPTHS)),
@@ -458,9 +469,21 @@ fn rows_interpolate(seed: u64) {
             panic!("one")
         };
         assert_eq!(compiled.samplers.len(), 4);
-        // The first sampler is put in every place that a sampler can have.
-        let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
-        let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
+        // Each sampler that small triangles are set up together for is put in every place that a sampler can have.
+        let together = |sampler: &&super::Sampler| {
+            let counts_layers = matches!(sampler.third, Some(super::compiled::Third::Layer(..)));
+            !(sampler.cube || sampler.mixes || sampler.pairs > 0 || counts_layers)
+        };
+        let kinds: Vec<_> = compiled
+            .samplers
+            .iter()
+            .filter(together)
+            .map(|sampler| {
+                let samplers = vec![super::Sampler { shares: None, ..sampler.clone() }; 1 + round as usize % 4];
+                let kind = 2 * usize::from(sampler.third.is_some()) + usize::from(sampler.index == 2);
+                (kind, super::CompiledDraw { samplers, fog: None, plain: true, ..compiled.clone().into_owned() })
+            })
+            .collect();
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![PerLane::from_value(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), MipFetches::default());
@@ -481,14 +504,17 @@ fn rows_interpolate(seed: u64) {
                     if coverage.count == 0 {
                         continue;
                     }
-                    let batch = batch(&coverage, 0);
+                    let batch = batch::<STEP>(&coverage, 0);
                     let alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
-                    let done = if round.is_multiple_of(4) {
-                        compare_small::<true>(&alone, &plain, window, &mut small_boxes, &mut varying, &mut rows)
-                    } else {
-                        compare_small::<false>(&alone, &plain, window, &mut small_boxes, &mut varying, &mut rows)
-                    };
-                    proved += u64::from(done);
+                    if let Some((kind, plain)) = kinds.get(number % kinds.len().max(1)) {
+                        let done = if round.is_multiple_of(4) {
+                            compare_small::<true>(&alone, plain, window, &mut small_boxes, &mut varying, &mut rows)
+                        } else {
+                            compare_small::<false>(&alone, plain, window, &mut small_boxes, &mut varying, &mut rows)
+                        };
+                        proved[*kind] += u64::from(done);
+                        with_depths += u64::from(done && small_boxes.has_depths);
+                    }
                     if round.is_multiple_of(4) {
                         compare::<true, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
                     } else {
@@ -522,8 +548,8 @@ fn rows_interpolate(seed: u64) {
             planes = interpolators.given_back(&mut reasons);
         }
     }
-    assert!(proved > drawn / 2);
     println!(
-        "{pixels} pixels, {drawn} boxes of small triangles, {proved} of them proved at once; definition: {reasons:?}"
+        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once, {with_depths} with depths; definition: {reasons:?}"
     );
+    assert!(proved.iter().all(|boxes| *boxes > drawn / 200) && with_depths > drawn / 20);
 }

@@ -11,7 +11,7 @@
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
 //! | `third.rs` | layers of volumes, depths to compare with |
-//! | `small.rs` | the same for boxes of small triangles, eight at a time |
+//! | `shapes.rs`, `small.rs`, `ratios.rs` | the same for boxes of small triangles, eight at a time |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
@@ -52,11 +52,13 @@ mod node;
 mod planes;
 mod quads;
 mod quotient;
+mod ratios;
 mod reciprocal;
 mod setup;
 mod shader;
 #[cfg(test)]
 mod shader_tests;
+mod shapes;
 #[cfg(test)]
 mod share_tests;
 mod short;
@@ -221,13 +223,15 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
-    let planes = compiled.samplers.iter().all(|sampler| sampler.depends || !(sampler.mixes || sampler.cube));
-    compiled.plain = planes
-        && !compiled.estimates
+    let is_plain = |sampler: &Sampler| {
+        let counts_layers = matches!(sampler.third, Some(compiled::Third::Layer(..)));
+        sampler.depends || !(sampler.mixes || sampler.cube || sampler.pairs > 0 || counts_layers)
+    };
+    compiled.plain = compiled.samplers.iter().all(is_plain)
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
-    compiled.together = compiled.plain && compiled.shader.is_none() && draw.depth_test.is_none();
+    compiled.together = compiled.shader.is_none() && !compiled.completes_quads && depth::are_floored(draw);
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled

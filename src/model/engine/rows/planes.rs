@@ -149,7 +149,7 @@ pub(super) fn exact_line(
 }
 
 /// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.
-const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
+pub(super) const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// The function sum g_k E_k in double precision.
 #[derive(Clone, Copy, Debug, Default)]

@@ -14,7 +14,7 @@ use crate::raster::setup::Triangle;
 use std::ops::Range;
 
 /// The missing part of a weight.
-const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
+pub(super) const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 
 /// Losses of a linear function for each unit of N_0 and of N_2, if those weights fall short.
 pub(super) type Losses = [f64; 2];
@@ -170,35 +170,42 @@ impl Dominance {
         batch: PixelBatch<'_>,
         local: &BatchSetup,
     ) {
-        let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
-            self.parts = Parts { count: usize::from(ROW), ..Parts::default() };
-            if !ROW {
-                self.first[..lanes].fill(0.0);
-                self.third[..lanes].fill(0.0);
+            if ROW {
+                self.parts = Parts { count: 1, ..Parts::default() };
+            } else {
+                self.set_none(batch.at);
             }
             return;
         }
         let (functions, error) = numerators(triangle, local);
         self.functions = [functions[0], functions[1]];
         self.parts = if ROW { Parts::of_row::<FMA>(triangle, batch, functions, error) } else { Parts::default() };
-        if self.parts.count == 0 {
-            self.lanes::<FMA, ROW>(triangle, batch, functions, error);
+        if self.parts.count == 0 && self.classify::<FMA, ROW>(batch.at, functions, error) {
+            self.correct(triangle, batch);
         }
     }
 
-    /// Sets the dominance of lanes, one by one. `error` is as in [`numerators`].
+    /// Declares that no weight falls short in a box.
     #[inline(always)]
-    fn lanes<const FMA: bool, const ROW: bool>(
+    pub(super) fn set_none(&mut self, at: Positions<'_>) {
+        self.parts = Parts::default();
+        self.first[..at.x.len()].fill(0.0);
+        self.third[..at.x.len()].fill(0.0);
+    }
+
+    /// Classifies lanes, one by one. `functions` and `error` are as in [`numerators`]. Returns whether some are too close to a border.
+    #[inline(always)]
+    pub(super) fn classify<const FMA: bool, const ROW: bool>(
         &mut self,
-        triangle: &Triangle,
-        batch: PixelBatch<'_>,
+        at: Positions<'_>,
         functions: [Line; 3],
         error: f64,
-    ) {
-        let lanes = batch.at.x.len();
-        let last = f64::from(batch.at.last);
-        let (xs, ys, iota) = (&batch.at.x[..lanes], &batch.at.y[..lanes], &IOTA_REAL[..lanes]);
+    ) -> bool {
+        self.parts = Parts::default();
+        let lanes = at.x.len();
+        let last = f64::from(at.last);
+        let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
         let (to_first, to_third) = (&mut self.first[..lanes], &mut self.third[..lanes]);
         let close = &mut self.close[..lanes];
         for n in 0..lanes {
@@ -208,9 +215,7 @@ impl Dominance {
             to_third[n] = if is_third { 0.0 } else { c };
             close[n] = is_close;
         }
-        if any_negative(close) {
-            self.correct(triangle, batch);
-        }
+        any_negative(close)
     }
 
     /// Decides the lanes that are too close to a border, by integers.

@@ -3,23 +3,19 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
-use super::boxes::{BoxCoverage, SIDE, inverse_slope};
+use super::boxes::{BoxCoverage, SIDE};
 use super::color::colors;
-use super::compiled::Sampler;
+use super::compiled::{Sampler, Third};
+use super::depth::BoxDepths;
 use super::kernels::PerLane;
-use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
+use super::quotient::{Line, QuotientEstimate, SLACK, whole};
+use super::ratios::{Ratios, References, Weights};
 use super::setup::PixelBatch;
+use super::shapes::{Each, Edges, GROUP, Lines, Shapes, sum};
 use super::triangle::Varying;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Window;
-use crate::raster::setup::{EdgeFunctions, weights};
 use crate::state::{PlaneLoss, TEXTURE_UNITS};
-
-/// Largest number of boxes that are set up at a time.
-pub(super) const GROUP: usize = 8;
-
-/// A number of each box.
-type Each<T> = [T; GROUP];
 
 /// Boxes of small triangles that are set up at a time.
 #[derive(Debug, Default)]
@@ -31,9 +27,20 @@ pub(super) struct Boxes {
     coverages: Each<BoxCoverage>,
     /// Index of the current box.
     pub(super) current: usize,
+    /// Their depths, if they are set up.
+    pub(super) depths: BoxDepths,
+    pub(super) has_depths: bool,
     denominator: Lines,
     /// u and v of the samplers.
     coordinates: [[Estimates; 2]; TEXTURE_UNITS],
+    /// The same for those samplers whose coordinates are divided by q.
+    ratios: [Ratios; TEXTURE_UNITS],
+    projects: [bool; TEXTURE_UNITS],
+    /// Whether there are any of them or of the following.
+    has_ratios: bool,
+    short: Weights,
+    /// Depths that samplers compare with.
+    references: [References; TEXTURE_UNITS],
     /// Weights 0 and 2.
     weights: [Estimates; 2],
     /// Whether all estimates can prove something.
@@ -65,7 +72,8 @@ impl Boxes {
         &mut self.coverages[self.current]
     }
 
-    /// Finds the pixels of the first boxes, and sets up all functions. Contexts need not be [placed](TriangleContext::place).
+    /// Finds the pixels of the first boxes, and sets up depths and, if the draw is plain, all functions. Contexts need not be
+    /// [placed](TriangleContext::place).
     #[inline(always)]
     pub(super) fn set_up<const FMA: bool>(
         &mut self,
@@ -80,19 +88,48 @@ impl Boxes {
             let inverse = [shapes.inverse[0][n], shapes.inverse[1][n], shapes.inverse[2][n]];
             coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
         }
-        let edges = Edges::new::<FMA>(&shapes);
+        self.has_depths = compiled.together && contexts[0].draw.depth_test.is_some();
+        if self.has_depths {
+            self.depths.set_up(contexts, all, &shapes);
+        }
+        self.proves = [compiled.plain; GROUP];
+        let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
+        if compiled.plain && (varies || !compiled.samplers.is_empty()) {
+            self.set_up_functions::<FMA>(contexts, compiled, count, &shapes, varies);
+        }
+    }
+
+    /// Sets up coordinates, and weights if they vary.
+    #[inline(always)]
+    fn set_up_functions<const FMA: bool>(
+        &mut self,
+        contexts: &[TriangleContext<'_>],
+        compiled: &CompiledDraw,
+        count: usize,
+        shapes: &Shapes,
+        varies: bool,
+    ) {
+        let all = &self.all[..count];
+        let edges = Edges::new::<FMA>(shapes);
         let loses = contexts[0].plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
+        self.projects = [false; TEXTURE_UNITS];
         for (n, sampler) in own(compiled) {
-            let (mut s, mut t) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3]);
+            let (mut s, mut t, mut planes) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3], [-1; GROUP]);
             for (n, (_, context)) in all.iter().enumerate() {
-                let context = &contexts[*context];
-                let sets = context.sampled_coordinates(sampler.index);
+                let sets = contexts[*context].sampled_coordinates(sampler.index);
                 for k in 0..3 {
                     (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
                 }
-                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3] && !(loses && shapes.exact[n] == 0);
-                proves[n] &= -i32::from(is_plane);
+                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3];
+                planes[n] = -i32::from(is_plane && !(loses && shapes.exact[n] == 0));
+            }
+            if planes[0] == 0 && !loses {
+                self.projects[n] = true;
+                continue;
+            }
+            for n in 0..GROUP {
+                proves[n] &= planes[n];
             }
             let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
             let [u, v] = &mut self.coordinates[n];
@@ -106,19 +143,57 @@ impl Boxes {
                 *estimates = Estimates::new::<FMA>(&edges, &g, bias, &mut proves);
             }
         }
-        if all.iter().any(|(_, context)| compiled.varies(&contexts[*context])) {
+        if varies {
             for (k, estimates) in [0, 2].into_iter().zip(&mut self.weights) {
                 let mut g = [[0.0; GROUP]; 3];
                 g[k] = edges.p[k].map(|p| 256.0 * p);
                 *estimates = Estimates::new::<FMA>(&edges, &g, 0, &mut proves);
             }
         }
+        self.has_ratios = compiled.estimates || self.projects.contains(&true);
+        if self.has_ratios {
+            self.set_up_ratios::<FMA>(contexts, compiled, count, (&edges, shapes), &mut proves);
+        }
         self.proves = proves.map(|proves| proves != 0);
         self.denominator = edges.denominator;
     }
 
-    /// Interpolates all attributes of the pixels of the current box, of which there is at least one. Returns `false` if something is not proved; then
-    /// nothing counts.
+    /// Sets up coordinates that are divided by q, and depths to compare with.
+    #[inline(always)]
+    fn set_up_ratios<const FMA: bool>(
+        &mut self,
+        contexts: &[TriangleContext<'_>],
+        compiled: &CompiledDraw,
+        count: usize,
+        (edges, shapes): (&Edges, &Shapes),
+        proves: &mut Each<i32>,
+    ) {
+        self.short.set_up::<FMA>(edges, shapes);
+        for (index, sampler) in compiled.samplers.iter().enumerate() {
+            let projects = self.projects[sampler.shares.unwrap_or(index)];
+            if !projects && sampler.third.is_none() {
+                continue;
+            }
+            let [mut s, mut t, mut r, mut q] = [[[0.0; GROUP]; 3]; 4];
+            for (n, (_, context)) in self.all[..count].iter().enumerate() {
+                let sets = contexts[*context].sampled_coordinates(sampler.index);
+                for k in 0..3 {
+                    [s[k][n], t[k][n], r[k][n], q[k][n]] = sets[k];
+                }
+                let divides = [q[0][n], q[1][n], q[2][n]] != [1.0; 3];
+                proves[n] &= -i32::from(divides == projects);
+            }
+            if let Some(Third::Reference(format)) = sampler.third {
+                self.references[index].set_up::<FMA>(edges, (&r, projects.then_some(&q)), format, proves);
+            }
+            if projects && sampler.shares.is_none() {
+                self.ratios[index].set_up::<FMA>((edges, shapes), [&s, &t, &q], sampler.sides, proves);
+            }
+        }
+    }
+
+    /// Interpolates all attributes of the pixels of the current box, of which there is at least one, for a plain draw. Returns `false` if something is
+    /// not proved; then nothing counts.
     #[inline(always)]
     pub(super) fn interpolate<const FMA: bool>(
         &self,
@@ -139,6 +214,9 @@ impl Boxes {
         }
         let (at, mut open) = (|| batch.lanes(), 0);
         for (sampler, _) in own(compiled) {
+            if self.projects[sampler] {
+                continue;
+            }
             let ([along, down], [u, v]) = (&self.coordinates[sampler], &mut coordinates[sampler]);
             let close =
                 reciprocals.floors::<FMA, false, _>([along.of(n), down.of(n)], &mut u[at()], &mut v[at()], |u| u);
@@ -149,11 +227,37 @@ impl Boxes {
             let close = reciprocals.floors::<FMA, false, _>([first, third], &mut w0[at()], &mut w2[at()], |w| w as u16);
             open |= close[0] | close[1];
         }
-        if open < 0 {
+        if open < 0 || self.has_ratios && !self.interpolate_ratios::<FMA>(compiled, batch, varying) {
             return false;
         }
         colors(context, compiled, batch, &varying.narrow, rows);
         true
+    }
+
+    /// Computes coordinates that are divided by q, and depths to compare with. Returns `false` if something is not proved.
+    #[inline(always)]
+    fn interpolate_ratios<const FMA: bool>(
+        &self,
+        compiled: &CompiledDraw,
+        batch: PixelBatch<'_>,
+        Varying { coordinates, references, short, .. }: &mut Varying,
+    ) -> bool {
+        let (n, lanes) = (self.current, || batch.lanes());
+        if self.projects.contains(&true) && self.short.classify::<FMA>(n, batch.at, &mut short.dominance) {
+            return false;
+        }
+        let mut open = false;
+        for (index, sampler) in compiled.samplers.iter().enumerate() {
+            if let Some(Third::Reference(format)) = sampler.third {
+                open |= self.references[index].words::<FMA>(n, batch.at, format, &mut references[index][lanes()]);
+            }
+            if self.projects[index] {
+                let [u, v] = &mut coordinates[index];
+                let out = [&mut u[lanes()], &mut v[lanes()]];
+                open |= self.ratios[index].floors::<FMA>(n, batch.at, sampler.bias(), short, out);
+            }
+        }
+        !open
     }
 }
 
@@ -161,128 +265,6 @@ impl Boxes {
 #[inline(always)]
 fn own(compiled: &CompiledDraw) -> impl Iterator<Item = (usize, &Sampler)> {
     compiled.samplers.iter().enumerate().filter(|(_, sampler)| sampler.shares.is_none() && !sampler.depends)
-}
-
-/// A linear function of each box.
-#[derive(Debug, Default)]
-struct Lines {
-    c: Each<f64>,
-    x: Each<f64>,
-    y: Each<f64>,
-}
-
-impl Lines {
-    #[inline(always)]
-    fn of(&self, n: usize) -> Line {
-        Line { c: self.c[n], x: self.x[n], y: self.y[n] }
-    }
-}
-
-/// RAS-1 to RAS-3 and INT-1 for the triangle of each box. All numbers of a small triangle fit into 32 bits.
-struct Shapes {
-    /// Edge functions at the first pixel, and their slopes.
-    e: [Each<i32>; 3],
-    a: [Each<i32>; 3],
-    b: [Each<i32>; 3],
-    /// Reciprocals of the magnitudes of the slopes along x.
-    inverse: [Each<f32>; 3],
-    /// 1 for edges that belong to the other triangle (RAS-3).
-    owed: [Each<i32>; 3],
-    p: [Each<i32>; 3],
-    doubled_area: Each<i32>,
-    /// -1 if the reciprocal of the weights' sum is exact (INT-3), otherwise 0.
-    exact: Each<i32>,
-}
-
-impl Shapes {
-    #[inline(always)]
-    fn new(contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)]) -> Shapes {
-        let (draw, profile) = (contexts[0].draw, contexts[0].plan.profile);
-        let [mut x, mut y] = [[[0; GROUP]; 3]; 2];
-        let mut w = [[1.0; GROUP]; 3];
-        for (n, ((rows, columns), context)) in boxes.iter().enumerate() {
-            // Measured from the first pixel, edge functions are their values there.
-            let (left, top) = (16 * columns.0 as i32, 16 * rows.0 as i32);
-            for (k, corner) in contexts[*context].corners().into_iter().enumerate() {
-                let [of_x, of_y] = corner.position;
-                (x[k][n], y[k][n], w[k][n]) = (of_x - left, of_y - top, corner.w);
-            }
-        }
-        let [mut e, mut a, mut b, mut owed, mut p] = [[[0; GROUP]; 3]; 5];
-        let ([mut doubled_area, mut exact], mut inverse) = ([[0; GROUP]; 2], [[0.0; GROUP]; 3]);
-        // One loop, because compilers would make vectors across k of another.
-        for n in 0..GROUP {
-            let at = |of: &[Each<i32>; 3]| [of[0][n], of[1][n], of[2][n]];
-            let edges = EdgeFunctions::new(at(&x), at(&y));
-            let area = edges.area.abs();
-            let (weights, is_exact) = weights([w[0][n], w[1][n], w[2][n]], area.into(), draw.perspective, profile);
-            [e[0][n], e[1][n], e[2][n]] = edges.c;
-            [a[0][n], a[1][n], a[2][n]] = edges.a;
-            [b[0][n], b[1][n], b[2][n]] = edges.b;
-            let [a0, a1, a2] = edges.a;
-            (inverse[0][n], inverse[1][n], inverse[2][n]) = (inverse_slope(a0), inverse_slope(a1), inverse_slope(a2));
-            let owes = |k: usize| i32::from(!edges.owns[k]);
-            (owed[0][n], owed[1][n], owed[2][n]) = (owes(0), owes(1), owes(2));
-            (p[0][n], p[1][n], p[2][n]) = (weights[0] as i32, weights[1] as i32, weights[2] as i32);
-            (doubled_area[n], exact[n]) = (area, -i32::from(is_exact));
-        }
-        Shapes { e, a, b, inverse, owed, p, doubled_area, exact }
-    }
-}
-
-/// The set-up that all functions of a box share.
-struct Edges {
-    /// Edge functions at the first pixel, and their slopes.
-    e: [Each<f64>; 3],
-    a: [Each<f64>; 3],
-    b: [Each<f64>; 3],
-    /// Upper bound of each |E_k| in the box, with all terms that are added to it.
-    terms: [Each<f64>; 3],
-    p: [Each<f64>; 3],
-    /// 1 / P_k of the vertices.
-    inverse: [Each<f64>; 3],
-    denominator: Lines,
-    /// Reciprocal of the first pixel's D.
-    reciprocal: Each<f64>,
-    /// Reciprocal of a lower bound of D.
-    widest: Each<f64>,
-    /// Upper bound of the quotient of any term of D by the least D.
-    ratio: Each<f64>,
-    /// Upper bound of the change of a quotient by the floors of its numerators at the vertices.
-    floors: Each<f64>,
-    /// If the values at the vertices are whole and no tie is lowered (INT-3), quotients are multiples of this number; otherwise 0.
-    gap: Each<f64>,
-}
-
-impl Edges {
-    #[inline(always)]
-    fn new<const FMA: bool>(shapes: &Shapes) -> Edges {
-        let [e, a, b, p] = [shapes.e, shapes.a, shapes.b, shapes.p].map(|of| of.map(|of| of.map(f64::from)));
-        let area = shapes.doubled_area.map(f64::from);
-        let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
-        let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap] = [[0.0; GROUP]; 5];
-        // One loop, because compilers would make vectors across k of another.
-        for n in 0..GROUP {
-            let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
-            let (e, a, b, p) = (at(&e), at(&a), at(&b), at(&p));
-            let line = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
-            let bound = |k: usize| e[k].abs() + (a[k].abs() + b[k].abs()) * SIDE as f64;
-            let bounds = [bound(0), bound(1), bound(2)];
-            (terms[0][n], terms[1][n], terms[2][n]) = (bounds[0], bounds[1], bounds[2]);
-            (inverse[0][n], inverse[1][n], inverse[2][n]) = (1.0 / p[0], 1.0 / p[1], 1.0 / p[2]);
-            let least = smaller(smaller(p[0], p[1]), p[2]);
-            let (least_here, least_of_all) = (line.least(SIDE as f64, SIDE as f64), least * area[n]);
-            widest[n] = 1.0 / if least_here > least_of_all { least_here } else { least_of_all };
-            ratio[n] = sum::<FMA>(&p, &bounds) * widest[n];
-            reciprocal[n] = 1.0 / line.c;
-            floors[n] = 1.25 / least;
-            // All P are equal if the reciprocal is exact.
-            let is_power = shapes.p[0][n].count_ones() == 1;
-            gap[n] = if is_power & (shapes.exact[n] != 0) { 1.0 / area[n] } else { 0.0 };
-            (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
-        }
-        Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap }
-    }
 }
 
 /// The [`QuotientEstimate`]s of a quotient in each box.
@@ -332,14 +314,4 @@ impl Estimates {
         let (base, shift, limit) = (self.base[n], self.shift[n], self.limit[n]);
         QuotientEstimate { line: self.line.of(n), base, shift, limit, least: i32::MIN }
     }
-}
-
-#[inline(always)]
-fn sum<const FMA: bool>(g: &[f64; 3], of: &[f64; 3]) -> f64 {
-    multiply_add::<FMA>(g[2], of[2], multiply_add::<FMA>(g[1], of[1], g[0] * of[0]))
-}
-
-#[inline(always)]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }

@@ -230,12 +230,12 @@ fn floored(full: f64, depth: f64) -> u32 {
 }
 
 /// An error of references that leaves few of them open.
-const SMALL_ERROR: f64 = 1.0 / 64.0;
+pub(super) const SMALL_ERROR: f64 = 1.0 / 64.0;
 
 /// DEP-3 of quotients x = r/q, whose error is less than `off` or, in an `EACH` of its own, than (`of_r` + `of_q` |x|) / |q| unless that of q
 /// is more than a quarter of it. Returns whether some are unknown. `FLOAT` says that the format has floats.
 #[inline(always)]
-fn words<const FMA: bool, const ROW: bool, const FLOAT: bool, const EACH: bool>(
+pub(super) fn words<const FMA: bool, const ROW: bool, const FLOAT: bool, const EACH: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
     [off, of_r, of_q]: [f64; 3],

@@ -1,0 +1,220 @@
+//! TEX-15, SHD-1 and INT-4t for boxes of small triangles, eight at a time: coordinates that are divided by q, and depths to compare with.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::direction::COARSEST;
+use super::planes::KEPT;
+use super::quotient::{Line, Positions, SLACK, any_negative, larger};
+use super::shapes::{Each, Edges, GROUP, Lines, Shapes, smaller};
+use super::short::{Dominance, SHORTFALL, Short, floors};
+use super::third::{SMALL_ERROR, words};
+use crate::raster::setup::direction;
+use crate::state::DepthFormat;
+
+/// A coordinate of the three vertices of each box.
+pub(super) type OfVertices = [Each<f32>; 3];
+
+/// The weights 0 and 2 of boxes, which may fall short.
+#[derive(Debug, Default)]
+pub(super) struct Weights {
+    /// N_0 and N_2.
+    functions: [Lines; 2],
+    denominator: Lines,
+    /// A bound of the error of four times a numerator less D.
+    error: Each<f64>,
+    /// Whether nothing falls short, because the reciprocal of the weights' sum is exact.
+    exact: Each<bool>,
+}
+
+impl Weights {
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(&mut self, edges: &Edges, shapes: &Shapes) {
+        for (k, line) in [0, 2].into_iter().zip(&mut self.functions) {
+            for n in 0..GROUP {
+                let p = edges.p[k][n];
+                (line.c[n], line.x[n], line.y[n]) = (p * edges.e[k][n], p * edges.a[k][n], p * edges.b[k][n]);
+            }
+        }
+        self.denominator = edges.denominator;
+        self.error = edges.function::<FMA>(&edges.p).1.map(|terms| 4.0 * SLACK * terms);
+        self.exact = shapes.exact.map(|exact| exact != 0);
+    }
+
+    /// Finds the weights that fall short in a box. Returns whether some are too close to a border.
+    #[inline(always)]
+    pub(super) fn classify<const FMA: bool>(&self, n: usize, at: Positions<'_>, dominance: &mut Dominance) -> bool {
+        if self.exact[n] {
+            dominance.set_none(at);
+            return false;
+        }
+        let [first, third] = &self.functions;
+        let functions = [first.of(n), third.of(n), self.denominator.of(n)];
+        dominance.classify::<FMA, false>(at, functions, self.error[n])
+    }
+}
+
+/// Coordinates of a sampler in boxes, where q is not 1.
+#[derive(Debug, Default)]
+pub(super) struct Ratios {
+    /// s and t in 1/256 texel, and q.
+    lines: [Lines; 3],
+    /// Their [losses](super::short::Losses).
+    losses: [[Each<f64>; 2]; 3],
+    /// The largest error of a coordinate.
+    margin: Each<f64>,
+}
+
+impl Ratios {
+    /// Sets up all boxes from s, t and q. Clears `proves` where nothing would be proved.
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(
+        &mut self,
+        (edges, shapes): (&Edges, &Shapes),
+        [s, t, q]: [&OfVertices; 3],
+        sides: [u32; 2],
+        proves: &mut Each<i32>,
+    ) {
+        let (mut g, mut reach, mut least) = ([[[0.0; GROUP]; 3]; 3], [0.0; GROUP], [0.0; GROUP]);
+        let [width, height] = [256.0 * f64::from(sides[0]), 256.0 * f64::from(sides[1])];
+        let most = larger(width, height);
+        for n in 0..GROUP {
+            let at = |of: &OfVertices| [of[0][n], of[1][n], of[2][n]];
+            let p = [shapes.p[0][n].into(), shapes.p[1][n].into(), shapes.p[2][n].into()];
+            let [s, t, q] = direction(p, [at(s), at(t), at(q)]);
+            let sign = if (q[0] < 0) & (q[1] < 0) & (q[2] < 0) { -1.0 } else { 1.0 };
+            let by = |factor: f64, g: [i64; 3]| [g[0] as f64 * factor, g[1] as f64 * factor, g[2] as f64 * factor];
+            let (s, t, q) = (by(sign * width, s), by(sign * height, t), by(sign, q));
+            (g[0][0][n], g[0][1][n], g[0][2][n]) = (s[0], s[1], s[2]);
+            (g[1][0][n], g[1][1][n], g[1][2][n]) = (t[0], t[1], t[2]);
+            (g[2][0][n], g[2][1][n], g[2][2][n]) = (q[0], q[1], q[2]);
+            let ratio = |k: usize| larger(s[k].abs(), t[k].abs()) / q[k];
+            reach[n] = larger(larger(ratio(0), ratio(1)), ratio(2));
+            least[n] = smaller(smaller(q[0], q[1]), q[2]);
+        }
+        let [(s, of_s), (t, of_t), (q, of_q)] =
+            [edges.function::<FMA>(&g[0]), edges.function::<FMA>(&g[1]), edges.function::<FMA>(&g[2])];
+        self.lines = [s, t, q];
+        for n in 0..GROUP {
+            // The error of s or t, that of q times the quotient, again for what is subtracted, and twice that.
+            let error = 8.0 * SLACK * (of_s[n] + of_t[n] + of_q[n] * (most + reach[n]));
+            self.margin[n] = error / (least[n] * edges.area[n]);
+            proves[n] &= -i32::from((least[n] > 0.0) & (self.margin[n] < COARSEST));
+        }
+        for (losses, g) in self.losses.iter_mut().zip(&g) {
+            for n in 0..GROUP {
+                let falls = if shapes.exact[n] != 0 { 0.0 } else { SHORTFALL };
+                let middle = g[1][n] * edges.inverse[1][n];
+                losses[0][n] = (g[0][n] * edges.inverse[0][n] - middle) * falls;
+                losses[1][n] = (g[2][n] * edges.inverse[2][n] - middle) * falls;
+            }
+        }
+    }
+
+    /// Computes the coordinates of a box, less a bias, whose weights are [classified](Weights::classify). Returns whether some are not proved.
+    #[inline(always)]
+    pub(super) fn floors<const FMA: bool>(
+        &self,
+        n: usize,
+        at: Positions<'_>,
+        bias: i32,
+        short: &mut Short,
+        [u, v]: [&mut [i32]; 2],
+    ) -> bool {
+        let lines = [self.lines[0].of(n), self.lines[1].of(n), self.lines[2].of(n)];
+        let of = |losses: &[Each<f64>; 2]| [losses[0][n], losses[1][n]];
+        short.keep::<FMA, false>(at, lines, [of(&self.losses[0]), of(&self.losses[1]), of(&self.losses[2])]);
+        let (lanes, Short { at, close, .. }) = (u.len(), short);
+        close[..lanes].fill(0);
+        floors(&at[0][..lanes], self.margin[n], bias, close, u);
+        floors(&at[1][..lanes], self.margin[n], bias, close, v);
+        any_negative(&close[..lanes])
+    }
+}
+
+/// Depths to compare with in boxes: r divided by D or by q.
+#[derive(Debug, Default)]
+pub(super) struct References {
+    lines: [Lines; 2],
+    /// The largest error.
+    off: Each<f64>,
+}
+
+impl References {
+    /// Sets up all boxes from r and, if that divides it, q. Clears `proves` where nothing would be proved.
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(
+        &mut self,
+        edges: &Edges,
+        (r, q): (&OfVertices, Option<&OfVertices>),
+        format: DepthFormat,
+        proves: &mut Each<i32>,
+    ) {
+        let full = f64::from(format.largest());
+        let (top, of_r) = Number::new::<FMA>(edges, r);
+        let Some(q) = q else {
+            self.lines = [top, edges.denominator];
+            for n in 0..GROUP {
+                let error = (of_r.terms[n] * edges.widest[n] + 2.0 * of_r.reach[n] * edges.ratio[n]) * SLACK;
+                self.off[n] = error + of_r.lost[n] * edges.floors[n];
+                proves[n] &= -i32::from(self.off[n] < full);
+            }
+            return;
+        };
+        let (bottom, of_q) = Number::new::<FMA>(edges, q);
+        self.lines = [top, bottom];
+        for n in 0..GROUP {
+            let error = |of: &Number| 8.0 * SLACK * of.terms[n] + of.lost[n] * edges.area[n];
+            let (of_terms, of_q, least) = (error(&of_r) + error(&of_q), error(&of_q), of_q.least[n] * edges.area[n]);
+            let least = least - 4.0 * of_q;
+            self.off[n] = (of_terms + of_q * (of_r.terms[n] / least)) / least;
+            proves[n] &= -i32::from((least > 0.0) & (self.off[n] < SMALL_ERROR));
+        }
+    }
+
+    /// Writes the words of a box. Returns whether some are unknown.
+    #[inline(always)]
+    pub(super) fn words<const FMA: bool>(
+        &self,
+        n: usize,
+        at: Positions<'_>,
+        format: DepthFormat,
+        out: &mut [u32],
+    ) -> bool {
+        let lines: (Line, Line) = (self.lines[0].of(n), self.lines[1].of(n));
+        let errors = [self.off[n], 0.0, 0.0];
+        if format.is_float() {
+            words::<FMA, false, true, false>(at, lines, errors, format, out)
+        } else {
+            words::<FMA, false, false, false>(at, lines, errors, format, out)
+        }
+    }
+}
+
+/// Bounds of a number's function in boxes.
+struct Number {
+    terms: Each<f64>,
+    /// The largest magnitude of a quotient by D.
+    reach: Each<f64>,
+    /// What each g_k may lose where the definition [keeps](crate::raster::attribute) no more bits of the products.
+    lost: Each<f64>,
+    /// The least magnitude of a g_k.
+    least: Each<f64>,
+}
+
+impl Number {
+    #[inline(always)]
+    fn new<const FMA: bool>(edges: &Edges, values: &OfVertices) -> (Lines, Number) {
+        let (mut g, [mut reach, mut lost, mut least]) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3]);
+        for n in 0..GROUP {
+            // Exact, because 28 bits are multiplied by 24.
+            let of = |k: usize| f64::from(values[k][n]) * edges.p[k][n];
+            let [a, b, c] = [of(0), of(1), of(2)];
+            (g[0][n], g[1][n], g[2][n]) = (a, b, c);
+            let [a, b, c] = [a.abs(), b.abs(), c.abs()];
+            (lost[n], least[n]) = (larger(larger(a, b), c) * KEPT, smaller(smaller(a, b), c));
+            let [a, b, c] = [a * edges.inverse[0][n], b * edges.inverse[1][n], c * edges.inverse[2][n]];
+            reach[n] = larger(larger(a, b), c);
+        }
+        let (line, terms) = edges.function::<FMA>(&g);
+        (line, Number { terms, reach, lost, least })
+    }
+}
