@@ -62,8 +62,14 @@ pub(super) fn plain<const FMA: bool>(
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, rows, boxes, used, .. } = block;
-    boxes.interpolate::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
+    let Block { varying, rows, boxes, used, workshop, .. } = block;
+    let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
+    let proves = boxes.interpolate::<FMA>(context, compiled, batch, varying, rows);
+    if let (true, Some(shader)) = (proves && compiled.together, &compiled.shader) {
+        let numbers = (boxes.numbers(), boxes.current);
+        workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);
+    }
+    proves
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.

@@ -117,7 +117,8 @@ pub(crate) struct CompiledDraw {
     /// Whether nothing is interpolated but colours, depths, inputs of the texture shader, and coordinates of textures with one level, neither cube
     /// maps nor volumes; and no quads are completed.
     pub(super) plain: bool,
-    /// Whether small triangles are set up together only: neither depths nor a texture shader need the set-up of a single one.
+    /// Whether small triangles are set up together only: neither depths nor a texture shader need the set-up of a single one. Coordinates that bump
+    /// stages move do.
     pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,

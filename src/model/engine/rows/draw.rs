@@ -263,7 +263,7 @@ fn draw_box_of_quads<T: Kernels>(
             block.workshop.quads.add(quads);
             upper += 2 * columns;
         }
-        append_box::<T>(job, context, block);
+        append_box::<T>(job, context, block, false);
     }
     block.boxes.coverage().covered as u64
 }
@@ -296,13 +296,14 @@ fn draw_boxes<T: Kernels>(
         if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
             continue;
         }
-        if !(job.compiled.plain && T::plain(context, job.compiled, block)) {
+        let proves = job.compiled.plain && T::plain(context, job.compiled, block);
+        if !proves {
             T::complete(context);
             let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
             T::in_box(&interpolators, job, block);
             block.planes = interpolators.given_back(&mut block.defined);
         }
-        append_box::<T>(job, context, block);
+        append_box::<T>(job, context, block, proves && job.compiled.together);
     }
     (block.boxes.current, block.boxes.has_depths) = (0, false);
     shaded
@@ -332,7 +333,7 @@ fn draw_in_boxes<T: Kernels>(
         let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
         loop {
             T::in_box(&interpolators, job, block);
-            append_box::<T>(job, context, block);
+            append_box::<T>(job, context, block, false);
             if !next(context, block) {
                 break;
             }
@@ -371,10 +372,10 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     is_visible
 }
 
-/// Adds the pixels of the block's coverage, whose runs it has.
+/// Adds the pixels of the block's coverage, whose runs it has. `has_attributes` says whether the inputs of the texture shader are interpolated.
 #[inline(always)]
-fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block) {
-    if job.compiled.shader.is_some() {
+fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block, has_attributes: bool) {
+    if job.compiled.shader.is_some() && !has_attributes {
         T::box_attributes(context, job, block);
     }
     block.used += block.boxes.coverage().count;

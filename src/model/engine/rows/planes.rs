@@ -270,11 +270,15 @@ impl FourPlanes {
 /// is then a power of two, as it is on squares that face the viewer.
 #[inline(always)]
 pub(super) fn fraction_bits(triangle: &Triangle, g: &[f64; 3]) -> Option<i32> {
-    let ([p, ..], area) = (triangle.p, triangle.doubled_area);
     // All P are equal if the reciprocal is exact.
-    if !triangle.exact_reciprocal || p.count_ones() != 1 {
-        return None;
-    }
+    let [p, ..] = triangle.p;
+    let divides_by_power = triangle.exact_reciprocal && p.count_ones() == 1;
+    if divides_by_power { fraction_bits_by_power(p, triangle.doubled_area, g) } else { None }
+}
+
+/// Does the same where all P_k are one power of two and the doubled area is another.
+#[inline(always)]
+pub(super) fn fraction_bits_by_power(p: i64, area: i64, g: &[f64; 3]) -> Option<i32> {
     let exponent = |n: f64| (n.to_bits() >> 52 & 0x7ff) as i32 - 1023;
     let lowest = |n: &f64| exponent(*n) - 52 + (n.to_bits() | 1 << 52).trailing_zeros() as i32;
     let largest = g[0].abs().max(g[1].abs()).max(g[2].abs());

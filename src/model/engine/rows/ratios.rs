@@ -1,8 +1,9 @@
-//! TEX-15, SHD-1 and INT-4t for boxes of small triangles, eight at a time: coordinates that are divided by q, and depths to compare with.
+//! TEX-15, SHD-1, INT-4t and TSH-4 for boxes of small triangles, eight at a time: coordinates that are divided by q, depths to compare with, and
+//! numbers that a texture shader reads.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::COARSEST;
-use super::planes::KEPT;
+use super::planes::{KEPT, fraction_bits_by_power};
 use super::quotient::{Line, Positions, SLACK, any_negative, larger};
 use super::shapes::{Each, Edges, GROUP, Lines, Shapes, smaller};
 use super::short::{Dominance, SHORTFALL, Short, floors};
@@ -149,20 +150,19 @@ impl References {
         proves: &mut Each<i32>,
     ) {
         let full = f64::from(format.largest());
-        let (top, of_r) = Number::new::<FMA>(edges, r);
+        let (top, _, of_r) = Bounds::new::<FMA>(edges, r);
         let Some(q) = q else {
             self.lines = [top, edges.denominator];
             for n in 0..GROUP {
-                let error = (of_r.terms[n] * edges.widest[n] + 2.0 * of_r.reach[n] * edges.ratio[n]) * SLACK;
-                self.off[n] = error + of_r.lost[n] * edges.floors[n];
+                self.off[n] = of_r.off(edges, n);
                 proves[n] &= -i32::from(self.off[n] < full);
             }
             return;
         };
-        let (bottom, of_q) = Number::new::<FMA>(edges, q);
+        let (bottom, _, of_q) = Bounds::new::<FMA>(edges, q);
         self.lines = [top, bottom];
         for n in 0..GROUP {
-            let error = |of: &Number| 8.0 * SLACK * of.terms[n] + of.lost[n] * edges.area[n];
+            let error = |of: &Bounds| 8.0 * SLACK * of.terms[n] + of.lost[n] * edges.area[n];
             let (of_terms, of_q, least) = (error(&of_r) + error(&of_q), error(&of_q), of_q.least[n] * edges.area[n]);
             let least = least - 4.0 * of_q;
             self.off[n] = (of_terms + of_q * (of_r.terms[n] / least)) / least;
@@ -189,8 +189,49 @@ impl References {
     }
 }
 
+/// A number that a texture shader reads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BoxNumber {
+    values: OfVertices,
+    line: Lines,
+    /// The largest error of a quotient by D.
+    off: Each<f64>,
+}
+
+impl BoxNumber {
+    /// Sets up all boxes from the values at the vertices.
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(&mut self, (edges, shapes): (&Edges, &Shapes), values: &OfVertices) {
+        let (line, g, bounds) = Bounds::new::<FMA>(edges, values);
+        (self.values, self.line) = (*values, line);
+        for n in 0..GROUP {
+            self.off[n] = bounds.off(edges, n);
+        }
+        // D is a power of two in few boxes.
+        for n in (0..GROUP).filter(|n| edges.gap[*n] > 0.0) {
+            let (p, area) = (shapes.p[0][n].into(), shapes.doubled_area[n].into());
+            if fraction_bits_by_power(p, area, &[g[0][n], g[1][n], g[2][n]]).is_some() {
+                self.off[n] = 0.0;
+            }
+        }
+    }
+
+    /// Returns the number in a box if it is the same at all vertices.
+    #[inline(always)]
+    pub(super) fn same(&self, n: usize) -> Option<f32> {
+        let [a, b, c] = [self.values[0][n], self.values[1][n], self.values[2][n]];
+        (a == b && a == c).then_some(a)
+    }
+
+    /// Returns its function in a box, and the largest error of its quotient by D.
+    #[inline(always)]
+    pub(super) fn of(&self, n: usize) -> (Line, f64) {
+        (self.line.of(n), self.off[n])
+    }
+}
+
 /// Bounds of a number's function in boxes.
-struct Number {
+struct Bounds {
     terms: Each<f64>,
     /// The largest magnitude of a quotient by D.
     reach: Each<f64>,
@@ -200,9 +241,10 @@ struct Number {
     least: Each<f64>,
 }
 
-impl Number {
+impl Bounds {
+    /// Returns the function of values at the vertices, its numbers at the vertices, and bounds.
     #[inline(always)]
-    fn new<const FMA: bool>(edges: &Edges, values: &OfVertices) -> (Lines, Number) {
+    fn new<const FMA: bool>(edges: &Edges, values: &OfVertices) -> (Lines, [Each<f64>; 3], Bounds) {
         let (mut g, [mut reach, mut lost, mut least]) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3]);
         for n in 0..GROUP {
             // Exact, because 28 bits are multiplied by 24.
@@ -215,6 +257,13 @@ impl Number {
             reach[n] = larger(larger(a, b), c);
         }
         let (line, terms) = edges.function::<FMA>(&g);
-        (line, Number { terms, reach, lost, least })
+        (line, g, Bounds { terms, reach, lost, least })
+    }
+
+    /// Returns the largest error of a quotient by D.
+    #[inline(always)]
+    fn off(&self, edges: &Edges, n: usize) -> f64 {
+        (self.terms[n] * edges.widest[n] + 2.0 * self.reach[n] * edges.ratio[n]) * SLACK
+            + self.lost[n] * edges.floors[n]
     }
 }

@@ -9,7 +9,7 @@ use super::compiled::{Sampler, Third};
 use super::depth::BoxDepths;
 use super::kernels::PerLane;
 use super::quotient::{Line, QuotientEstimate, SLACK, whole};
-use super::ratios::{Ratios, References, Weights};
+use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Each, Edges, GROUP, Lines, Shapes, sum};
 use super::triangle::Varying;
@@ -43,6 +43,8 @@ pub(super) struct Boxes {
     references: [References; TEXTURE_UNITS],
     /// Weights 0 and 2.
     weights: [Estimates; 2],
+    /// Numbers that the texture shader reads.
+    numbers: Vec<BoxNumber>,
     /// Whether all estimates can prove something.
     proves: Each<bool>,
 }
@@ -94,7 +96,7 @@ impl Boxes {
         }
         self.proves = [compiled.plain; GROUP];
         let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
-        if compiled.plain && (varies || !compiled.samplers.is_empty()) {
+        if compiled.plain && (varies || compiled.shader.is_some() || !compiled.samplers.is_empty()) {
             self.set_up_functions::<FMA>(contexts, compiled, count, &shapes, varies);
         }
     }
@@ -150,12 +152,28 @@ impl Boxes {
                 *estimates = Estimates::new::<FMA>(&edges, &g, 0, &mut proves);
             }
         }
+        if let (true, Some(shader)) = (compiled.together, &compiled.shader) {
+            self.numbers.resize(shader.varying.len(), BoxNumber::default());
+            for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
+                let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
+                for (n, (_, context)) in all.iter().enumerate() {
+                    let of = contexts[*context].vertices().coordinate(set, *component);
+                    (values[0][n], values[1][n], values[2][n]) = (of[0], of[1], of[2]);
+                }
+                number.set_up::<FMA>((&edges, shapes), &values);
+            }
+        }
         self.has_ratios = compiled.estimates || self.projects.contains(&true);
         if self.has_ratios {
             self.set_up_ratios::<FMA>(contexts, compiled, count, (&edges, shapes), &mut proves);
         }
         self.proves = proves.map(|proves| proves != 0);
         self.denominator = edges.denominator;
+    }
+
+    /// Returns the numbers that the texture shader reads, if small triangles are set up together.
+    pub(super) fn numbers(&self) -> &[BoxNumber] {
+        &self.numbers
     }
 
     /// Sets up coordinates that are divided by q, and depths to compare with.
@@ -209,7 +227,7 @@ impl Boxes {
         }
         let weighted = compiled.varies(context);
         let Varying { coordinates, narrow: [w0, w2], reciprocals, .. } = &mut *varying;
-        if weighted || !compiled.samplers.is_empty() {
+        if weighted || compiled.shader.is_some() || !compiled.samplers.is_empty() {
             reciprocals.set::<FMA, false>(batch.at, self.denominator.of(n));
         }
         let (at, mut open) = (|| batch.lanes(), 0);

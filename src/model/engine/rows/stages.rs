@@ -11,6 +11,7 @@ use super::kernels::PerLane;
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
+use super::ratios::BoxNumber;
 use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Dominance;
@@ -156,6 +157,29 @@ impl Workshop {
 }
 
 impl Workshop {
+    /// Interpolates the inputs of a texture shader, all of them numbers, for box `n` of those that are set up together. `reciprocals` has those of
+    /// the box.
+    #[inline(always)]
+    pub(super) fn attributes_together<const FMA: bool>(
+        &mut self,
+        triangle: usize,
+        (boxes, n): (&[BoxNumber], usize),
+        batch: PixelBatch<'_>,
+        reciprocals: &Reciprocals,
+        shader: &Shader,
+    ) {
+        self.triangles.push((batch.lane, triangle));
+        let open = &mut self.open[batch.lanes()];
+        open.fill(0);
+        for ((out, number), (_, _, purpose)) in self.numbers.iter_mut().zip(boxes).zip(&shader.varying) {
+            let out = &mut out[batch.lanes()];
+            match number.same(n) {
+                Some(value) => out.fill(constant(*purpose, value)),
+                None => number_of::<FMA, false>(*purpose, reciprocals, number.of(n), out, open),
+            }
+        }
+    }
+
     /// Interpolates the inputs of a texture shader for a batch.
     #[inline(always)]
     pub(super) fn attributes<const FMA: bool, const ROW: bool>(
@@ -184,19 +208,14 @@ impl Workshop {
                 let out = &mut out[batch.lanes()];
                 let value = values[0][n];
                 if value == values[1][n] && value == values[2][n] {
-                    out.fill(if *purpose == Purpose::Byte { byte_of(f64::from(value)) } else { value + 0.0 });
+                    out.fill(constant(*purpose, value));
                     continue;
                 }
                 let margin = local.margin_by::<ROW>(planes.reach[n], terms[n]);
                 // Hardly beyond the triangle no number has more bits.
                 let is_exact = is_exact[n] && (!batch.reaches_beyond() || local.ratio < 2.0);
                 let off = if is_exact { 0.0 } else { margin + floors[n] * local.ratio };
-                match purpose {
-                    Purpose::Float | Purpose::Sign => {
-                        rounded::<FMA, ROW, false>(reciprocals, lines[n], off, out, open);
-                    }
-                    Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, lines[n], off, out, open),
-                }
+                number_of::<FMA, ROW>(*purpose, reciprocals, (lines[n], off), out, open);
             }
         }
         if !attributes.moved.is_empty() {
@@ -210,6 +229,27 @@ impl Workshop {
                 open.fill(1);
             }
         }
+    }
+}
+
+/// Returns a number that is the same everywhere.
+#[inline(always)]
+fn constant(purpose: Purpose, value: f32) -> f32 {
+    if purpose == Purpose::Byte { byte_of(f64::from(value)) } else { value + 0.0 }
+}
+
+/// Computes quotients of a line, whose error is less than the number beside it, for a purpose.
+#[inline(always)]
+fn number_of<const FMA: bool, const ROW: bool>(
+    purpose: Purpose,
+    reciprocals: &Reciprocals,
+    (line, off): (Line, f64),
+    out: &mut [f32],
+    open: &mut [i32],
+) {
+    match purpose {
+        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(reciprocals, line, off, out, open),
+        Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, line, off, out, open),
     }
 }
 
