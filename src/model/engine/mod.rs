@@ -1,11 +1,12 @@
 //! The engines, which draw the frames of a plan or trace one of its pixels.
 //!
-//! The scalar engine is the definition: `pixel.rs` has the order in which the blocks process one pixel, generic over the lane and the observer, and
-//! `walk.rs` walks triangles and quads. `rows/` is the fast engine, which computes the same bytes for a block of pixels at a time. `bins.rs` cuts
+//! The scalar engine is the definition: `context.rs` sets up a triangle, `pixel.rs` has the order in which the blocks process one of its pixels, generic
+//! over the lane and the observer, and `walk.rs` walks triangles and quads. `rows/` is the fast engine, which computes the same bytes for a block of pixels at a time. `bins.rs` cuts
 //! rows into bands and sorts triangles by them. This module runs draws and bands on threads. A pixel's result is a pure function of the plan, whatever
 //! the engine, the bands and the threads.
 
 mod bins;
+pub mod context;
 mod counting;
 pub mod pixel;
 mod report;
@@ -27,7 +28,7 @@ use crate::texture::planned::Image;
 use crate::threads::Team;
 use crate::trace::Silent;
 use bins::Bins;
-use pixel::TriangleContext;
+use context::TriangleContext;
 use rows::Rows;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};

@@ -1,6 +1,7 @@
 //! Reports of a pixel to an observer, outside the blocks that report for themselves. No value here is used elsewhere.
 
-use super::pixel::{DepthStencil, TriangleContext};
+use super::context::TriangleContext;
+use super::pixel::DepthStencil;
 use crate::combiner::registers::{self, channel_name};
 use crate::combiner::report::constants;
 use crate::number::{Lane, convert, light};

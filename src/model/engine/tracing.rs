@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 use std::fmt;
 
-use super::pixel::{DepthStencil, Fragment, TriangleContext};
+use super::context::TriangleContext;
+use super::pixel::{DepthStencil, Fragment};
 use super::{TextureWords, cleared, cleared_colors, draw_defined};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};

@@ -1,6 +1,7 @@
 //! The walk: triangles in order, rows in pairs, 2x2 quads from left to right.
 
-use super::pixel::{DepthStencil, Fragment, TriangleContext};
+use super::context::TriangleContext;
+use super::pixel::{DepthStencil, Fragment};
 use crate::plan::{Plan, PlannedDraw};
 use crate::texture::planned::Image;
 use crate::trace::Observer;

@@ -3,7 +3,8 @@
 
 use super::meter::Counts;
 use super::*;
-use ninebit::engine::pixel::{DepthStencil, Fragment, Stored, TriangleContext};
+use ninebit::engine::context::TriangleContext;
+use ninebit::engine::pixel::{DepthStencil, Fragment, Stored};
 use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};

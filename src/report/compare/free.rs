@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 
 use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Log};
-use ninebit::engine::pixel::{Fragment, TriangleContext};
+use ninebit::engine::context::TriangleContext;
+use ninebit::engine::pixel::Fragment;
 use ninebit::engine::walk;
 use ninebit::number::{Ideal, Lane};
 use ninebit::plan::PlannedDraw;

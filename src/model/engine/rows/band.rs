@@ -9,7 +9,7 @@ use super::small::Boxes;
 use super::stages::{self, Workshop};
 use super::triangle::{Functions, Interpolators, Varying};
 use super::{CompiledDraw, Job, Reason, Reasons, store};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
 
 // Kernels stand here, wherever their text is.

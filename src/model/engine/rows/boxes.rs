@@ -5,7 +5,7 @@ use super::compiled::CompiledDraw;
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
 
@@ -204,7 +204,8 @@ pub(super) fn enter<const WIDE: bool>(
     // Functions that are not set up together are better set up once for all boxes of a triangle.
     let is_one = rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE;
     let waits = is_small && (compiled.plain || compiled.together && is_one);
-    if !(waits && compiled.together) && !context.place() {
+    let is_placed_later = waits && compiled.together;
+    if !is_placed_later && !context.place() {
         return Entered::Nothing;
     }
     match (is_small, waits) {

@@ -3,7 +3,7 @@
 use super::CompiledDraw;
 use super::kernels::PerLane;
 use super::setup::PixelBatch;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::raster::interpolate;
 
 /// Narrows weights to 16 bits.

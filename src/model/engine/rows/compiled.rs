@@ -6,7 +6,7 @@ use super::node::Node;
 use super::shader::Shader;
 use super::table::{Axis, Table};
 use crate::combiner::registers::Registers;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::{DepthFormat, Named, Register, TEXTURE_UNITS, named};
 use crate::texture::planned::Image;

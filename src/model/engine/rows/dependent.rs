@@ -10,7 +10,7 @@ use super::quotient::{larger, whole};
 use super::setup::whole_steps;
 use super::table::Table;
 use super::{BLOCK, Job};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
 use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::PlannedUnit;

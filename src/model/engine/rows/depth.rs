@@ -10,7 +10,7 @@ use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whol
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use super::shapes::{Each, GROUP, Lines, Shapes};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::number::convert::depth as fraction;
 use crate::plan::PlannedDraw;

@@ -11,7 +11,7 @@ use super::shapes::GROUP;
 use super::taps::Footprints;
 use super::triangle::Interpolators;
 use super::{BLOCK, Job, store};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels.

@@ -14,7 +14,7 @@ use super::taps::{Footprints, Pair, PairsOfQuad};
 use super::triangle::{Interpolators, Varying};
 use super::{BLOCK, Reasons, Rows};
 use crate::engine::TextureWords;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;

@@ -8,7 +8,7 @@ use super::kernels::PerLane;
 use super::planes::{Plane, inverse};
 use super::quotient::{Line, Reciprocals, SLACK, floor_of_factor, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch, Setup};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::number::convert::factor;
 use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;

@@ -8,7 +8,7 @@ use super::filter::Vectors;
 use super::setup::Covered;
 use super::small::Boxes;
 use super::triangle::Interpolators;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::{Band, Window};
 use crate::raster::setup::Triangle;
 use crate::state::{Named, named};

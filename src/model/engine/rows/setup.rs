@@ -8,7 +8,7 @@ use super::quotient::{
     IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, correct_exactly, larger,
 };
 use super::short::{Parts, lower_by_lane};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample, shortfall};
 use crate::raster::setup::Triangle;
 use crate::state::Named;

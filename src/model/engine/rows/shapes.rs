@@ -3,7 +3,7 @@
 
 use super::boxes::{SIDE, inverse_slope};
 use super::quotient::{Line, multiply_add};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::{EdgeFunctions, weights};
 

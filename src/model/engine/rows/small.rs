@@ -13,7 +13,7 @@ use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Each, Edges, GROUP, Lines, Shapes, sum};
 use super::triangle::Varying;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::state::{PlaneLoss, TEXTURE_UNITS};
 
@@ -113,25 +113,25 @@ impl Boxes {
     ) {
         let all = &self.all[..count];
         let edges = Edges::new::<FMA>(shapes);
-        let loses = contexts[0].plan.policies.plane_loss == PlaneLoss::Finite;
+        let may_lose = contexts[0].plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
         self.projects = [false; TEXTURE_UNITS];
         for (n, sampler) in own(compiled) {
-            let (mut s, mut t, mut planes) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3], [-1; GROUP]);
+            let (mut s, mut t, mut is_plane) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3], [true; GROUP]);
             for (n, (_, context)) in all.iter().enumerate() {
                 let sets = contexts[*context].sampled_coordinates(sampler.index);
                 for k in 0..3 {
                     (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
                 }
-                let is_plane = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3];
-                planes[n] = -i32::from(is_plane && !(loses && shapes.exact[n] == 0));
+                is_plane[n] = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3];
             }
-            if planes[0] == 0 && !loses {
-                self.projects[n] = true;
+            // Most draws divide all coordinates of a unit by q or none.
+            self.projects[n] = !is_plane[0];
+            if self.projects[n] {
                 continue;
             }
             for n in 0..GROUP {
-                proves[n] &= planes[n];
+                proves[n] &= -i32::from(is_plane[n] & !(may_lose & (shapes.exact[n] == 0)));
             }
             let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
             let [u, v] = &mut self.coordinates[n];

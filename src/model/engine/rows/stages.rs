@@ -18,7 +18,7 @@ use super::short::Dominance;
 use super::triangle::Varying;
 use super::{BLOCK, CompiledDraw, Job};
 use crate::combiner::registers::Registers;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
 use crate::number::convert::factor;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};

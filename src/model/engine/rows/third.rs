@@ -10,7 +10,7 @@ use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, nearest, p
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table;
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::raster::depth;
 use crate::raster::interpolate::Sample;
 use crate::state::DepthFormat;

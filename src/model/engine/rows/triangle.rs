@@ -16,7 +16,7 @@ use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::taps::Footprints;
 use super::third::{ThirdPlanes, set_thirds};
-use crate::engine::pixel::TriangleContext;
+use crate::engine::context::TriangleContext;
 use crate::state::TEXTURE_UNITS;
 use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::Image;

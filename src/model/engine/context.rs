@@ -1,0 +1,225 @@
+//! The set-up of one triangle of a draw. It goes in steps, because the fast engine takes only some of them for most triangles.
+
+use crate::plan::{Plan, PlannedDraw};
+use crate::raster::assemble::Corner;
+use crate::raster::depth::DepthPlane;
+use crate::raster::fog::FogPlane;
+use crate::raster::setup::{self, Triangle, centres, clockwise_area};
+use crate::state::*;
+use crate::texture::coordinates::{self, Coordinates};
+use crate::texture::stage::ShaderSetup;
+
+/// A triangle of a draw, set up.
+#[derive(Debug)]
+pub struct TriangleContext<'a> {
+    pub(super) plan: &'a Plan,
+    /// The draw of the triangle.
+    pub draw: &'a PlannedDraw,
+    /// Number of the triangle in the draw.
+    pub number: usize,
+    /// The set-up of the triangle.
+    pub triangle: Triangle,
+    pub(super) primary: [[u8; 4]; 3],
+    pub(super) secondary: [[u8; 4]; 3],
+    pub(super) coordinates: [Option<Coordinates>; 4],
+    /// Set-up of the texture shader, if there is one. Units have none of their own then.
+    pub(super) shader: Option<Box<ShaderSetup>>,
+    /// Fog of the vertices; `None` if fog is off or the fog register's alpha is not read.
+    pub fog: Option<FogPlane>,
+    /// Depths of the vertices, if there is a depth test.
+    pub depth: DepthPlane,
+    /// Whether stages of a texture shader run by this context.
+    defines: bool,
+    /// Whether the triangle is set up, and whether coordinates and fog are.
+    placed: bool,
+    complete: bool,
+}
+
+/// Returns the corners of a triangle of a draw.
+#[inline(always)]
+fn corners(draw: &PlannedDraw, number: usize) -> [&Corner; 3] {
+    let ([first, second, third], all) = (draw.assembly.triangles.vertices(number), &draw.assembly.corners);
+    [&all[first as usize], &all[second as usize], &all[third as usize]]
+}
+
+/// Returns x and y of corners.
+#[inline(always)]
+fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
+    let [[ax, ay], [bx, by], [cx, cy]] = [a.position, b.position, c.position];
+    ([ax.into(), bx.into(), cx.into()], [ay.into(), by.into(), cy.into()])
+}
+
+impl<'a> TriangleContext<'a> {
+    /// Sets up triangle `number`. Returns `None` if it is culled, empty, or outside `rows`.
+    pub fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
+        let mut context = TriangleContext::vacant(plan, draw, true);
+        if !context.set_up(number, rows) {
+            return None;
+        }
+        context.complete();
+        Some(context)
+    }
+
+    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up). `defines` says whether stages of a texture
+    /// shader run by it.
+    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw, defines: bool) -> Self {
+        TriangleContext {
+            plan,
+            draw,
+            number: 0,
+            triangle: Triangle::default(),
+            primary: [[0; 4]; 3],
+            secondary: [[0; 4]; 3],
+            coordinates: [None; 4],
+            shader: None,
+            fog: None,
+            depth: DepthPlane::default(),
+            defines,
+            placed: false,
+            complete: false,
+        }
+    }
+
+    /// Sets up triangle `number`. Returns `false` if it is culled, empty, or outside `rows`; then the context is not valid.
+    /// [`complete`](Self::complete) sets up texture coordinates and fog.
+    #[inline(always)]
+    pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
+        if !Self::may_cover(self.draw, number, rows) {
+            return false;
+        }
+        self.begin(number);
+        self.place()
+    }
+
+    /// Returns whether triangle `number` of a draw may cover pixels in `rows`: it is not culled, it has an area, and its bounding box holds centres
+    /// of pixels.
+    #[inline(always)]
+    pub(super) fn may_cover(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
+        let (x, y) = positions(&corners(draw, number));
+        let ((left, right), (top, bottom), area) = (centres(x), centres(y), clockwise_area(x, y));
+        let front = (area < 0) == (draw.front_face == FrontFace::CounterClockwise);
+        let culled = match draw.cull {
+            Cull::None => false,
+            Cull::Front => front,
+            Cull::Back => !front,
+        };
+        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !culled
+    }
+
+    /// Takes triangle `number`, which [may cover](Self::may_cover) pixels, and the colours of its corners.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, number: usize) {
+        let draw = self.draw;
+        (self.number, self.placed, self.complete) = (number, false, false);
+        let colored = match draw.shade_model {
+            ShadeModel::Smooth => corners(draw, number),
+            ShadeModel::Flat => [&draw.assembly.corners[draw.assembly.triangles.provoking(number) as usize]; 3],
+        };
+        self.primary = colored.map(|c| c.primary);
+        self.secondary = colored.map(|c| c.secondary);
+    }
+
+    /// Returns the corners of the triangle.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [&'a Corner; 3] {
+        corners(self.draw, self.number)
+    }
+
+    /// Returns the rows and columns of the triangle's bounding box that hold centres of pixels.
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> ((i64, i64), (i64, i64)) {
+        let (x, y) = positions(&self.corners());
+        (centres(y), centres(x))
+    }
+
+    /// Returns whether the triangle has a single w, so that all P_k are equal (INT-1).
+    #[inline(always)]
+    pub(super) fn is_flat(&self) -> bool {
+        setup::is_flat(self.corners().map(|corner| corner.w), self.draw.perspective, self.plan.profile)
+    }
+
+    /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.
+    #[inline(always)]
+    pub(super) fn place(&mut self) -> bool {
+        let (plan, draw, corners) = (self.plan, self.draw, self.corners());
+        let (x, y) = positions(&corners);
+        self.placed = true;
+        self.triangle.place(x, y);
+        self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
+        self.triangle.lose(plan.policies.plane_loss);
+        if let Some(test) = &draw.depth_test {
+            let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
+            match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
+                Some(plane) => self.depth = plane,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Sets up the triangle, texture coordinates and fog, unless they are set up.
+    #[inline(always)]
+    pub(super) fn complete(&mut self) {
+        if std::mem::replace(&mut self.complete, true) {
+            return;
+        }
+        if !self.placed {
+            self.place();
+        }
+        let draw = self.draw;
+        if let Some(shader) = &draw.shader {
+            self.shader =
+                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), self.defines)));
+        } else {
+            for unit in &draw.units {
+                let sets = self.coordinate_set(unit.stage.coordinate_set);
+                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+            }
+        }
+        if draw.fog.enabled && draw.fog_channels & 8 != 0 {
+            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
+        }
+    }
+
+    /// Returns the triangle's vertices.
+    #[inline(always)]
+    pub(crate) fn vertices(&self) -> TriangleVertices<'a> {
+        self.draw.assembly.triangle(self.number)
+    }
+
+    /// Returns s, t, r and q of its vertices.
+    #[inline(always)]
+    pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
+        self.vertices().coordinates(set)
+    }
+
+    /// Returns the coordinates at which a unit of the draw samples, by the unit's index in the draw (CYL-1).
+    #[inline(always)]
+    pub(super) fn sampled_coordinates(&self, unit: usize) -> [[f32; 4]; 3] {
+        let unit = &self.draw.units[unit];
+        coordinates::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
+    }
+
+    /// Returns a colour of vertex `corner` as it was given: its own, or the provoking vertex's.
+    pub(super) fn source(&self, register: Register, corner: usize) -> VertexColor {
+        let assembly = &self.draw.assembly;
+        let vertex = match self.draw.shade_model {
+            ShadeModel::Smooth => assembly.triangles.vertices(self.number)[corner],
+            ShadeModel::Flat => assembly.triangles.provoking(self.number),
+        };
+        if register == Register::PrimaryColor {
+            assembly.vertices.diffuse(vertex as usize)
+        } else {
+            assembly.vertices.specular(vertex as usize)
+        }
+    }
+
+    /// Returns the coordinates of a unit before any stage moves them, or `None` if it has none of its own.
+    #[inline]
+    pub(super) fn coordinates_of(&self, unit: usize) -> Option<&Coordinates> {
+        match &self.shader {
+            None => self.coordinates[unit].as_ref(),
+            Some(shader) => shader.coordinates(unit),
+        }
+    }
+}
