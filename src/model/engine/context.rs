@@ -6,7 +6,7 @@ use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
 use crate::raster::setup::{self, Triangle, centres, clockwise_area};
 use crate::state::*;
-use crate::texture::coordinates::{self, Coordinates};
+use crate::texture::coordinates::Coordinates;
 use crate::texture::stage::ShaderSetup;
 
 /// A triangle of a draw, set up.
@@ -191,13 +191,6 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
         self.vertices().coordinates(set)
-    }
-
-    /// Returns the coordinates at which a unit of the draw samples, by the unit's index in the draw (CYL-1).
-    #[inline(always)]
-    pub(super) fn sampled_coordinates(&self, unit: usize) -> [[f32; 4]; 3] {
-        let unit = &self.draw.units[unit];
-        coordinates::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
     }
 
     /// Returns a colour of vertex `corner` as it was given: its own, or the provoking vertex's.

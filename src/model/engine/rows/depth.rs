@@ -11,12 +11,11 @@ use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use super::shapes::{Each, GROUP, Lines, Shapes};
 use crate::engine::context::TriangleContext;
-use crate::engine::walk::Window;
 use crate::number::convert::depth as fraction;
 use crate::plan::PlannedDraw;
 use crate::raster::depth::{difference, largest_edge, w_ratio};
 use crate::raster::interpolate::most_dominant;
-use crate::state::{DepthFormat, DepthRange, PolygonOffset, VertexDepths};
+use crate::state::{DepthFormat, DepthRange, PolygonOffset, TriangleVertices, VertexDepths};
 use std::ops::Range;
 
 /// Bits of a double below its first 24.
@@ -178,11 +177,11 @@ pub(super) struct BoxDepths {
 impl BoxDepths {
     /// Sets up all boxes.
     #[inline(always)]
-    pub(super) fn set_up(&mut self, contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)], shapes: &Shapes) {
-        let bits = contexts[0].draw.depth_format.bits();
-        let mut unit = [0.0; GROUP];
-        for (n, (_, context)) in boxes.iter().enumerate() {
-            let (z, area) = (contexts[*context].vertices().position(2), i64::from(shapes.doubled_area[n]));
+    pub(super) fn set_up(&mut self, vertices: &Each<TriangleVertices<'_>>, format: DepthFormat, shapes: &Shapes) {
+        let (bits, mut unit) = (format.bits(), [0.0; GROUP]);
+        for (n, vertices) in vertices.iter().enumerate() {
+            // There is no area past the last box.
+            let (z, area) = (vertices.position(2), i64::from(shapes.doubled_area[n]).max(1));
             for k in 0..3 {
                 self.z[k][n] = fraction(z[k], bits) as f64;
             }

@@ -15,7 +15,8 @@ use super::shapes::{Each, Edges, GROUP, Lines, Shapes, sum};
 use super::triangle::Varying;
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
-use crate::state::{PlaneLoss, TEXTURE_UNITS};
+use crate::state::{PlaneLoss, TEXTURE_UNITS, TriangleVertices};
+use crate::texture::coordinates::wrapped;
 
 /// Boxes of small triangles that are set up at a time.
 #[derive(Debug, Default)]
@@ -91,13 +92,15 @@ impl Boxes {
             coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
         }
         self.has_depths = compiled.together && contexts[0].draw.depth_test.is_some();
+        // Those past the last box repeat it.
+        let vertices = std::array::from_fn(|n| contexts[all[n.min(count - 1)].1].vertices());
         if self.has_depths {
-            self.depths.set_up(contexts, all, &shapes);
+            self.depths.set_up(&vertices, contexts[0].draw.depth_format, &shapes);
         }
         self.proves = [compiled.plain; GROUP];
         let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
         if compiled.plain && (varies || compiled.shader.is_some() || !compiled.samplers.is_empty()) {
-            self.set_up_functions::<FMA>(contexts, compiled, count, &shapes, varies);
+            self.set_up_functions::<FMA>(&vertices, (&contexts[0], compiled), &shapes, varies);
         }
     }
 
@@ -105,21 +108,20 @@ impl Boxes {
     #[inline(always)]
     fn set_up_functions<const FMA: bool>(
         &mut self,
-        contexts: &[TriangleContext<'_>],
-        compiled: &CompiledDraw,
-        count: usize,
+        vertices: &Each<TriangleVertices<'_>>,
+        (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
         shapes: &Shapes,
         varies: bool,
     ) {
-        let all = &self.all[..count];
         let edges = Edges::new::<FMA>(shapes);
-        let may_lose = contexts[0].plan.policies.plane_loss == PlaneLoss::Finite;
+        let may_lose = context.plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
         self.projects = [false; TEXTURE_UNITS];
         for (n, sampler) in own(compiled) {
             let (mut s, mut t, mut is_plane) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3], [true; GROUP]);
-            for (n, (_, context)) in all.iter().enumerate() {
-                let sets = contexts[*context].sampled_coordinates(sampler.index);
+            let unit = &context.draw.units[sampler.index];
+            for n in 0..GROUP {
+                let sets = wrapped(unit, vertices[n].coordinates(unit.stage.coordinate_set));
                 for k in 0..3 {
                     (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
                 }
@@ -156,8 +158,8 @@ impl Boxes {
             self.numbers.resize(shader.varying.len(), BoxNumber::default());
             for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
                 let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
-                for (n, (_, context)) in all.iter().enumerate() {
-                    let of = contexts[*context].vertices().coordinate(set, *component);
+                for n in 0..GROUP {
+                    let of = vertices[n].coordinate(set, *component);
                     (values[0][n], values[1][n], values[2][n]) = (of[0], of[1], of[2]);
                 }
                 number.set_up::<FMA>((&edges, shapes), &values);
@@ -165,7 +167,7 @@ impl Boxes {
         }
         self.has_ratios = compiled.estimates || self.projects.contains(&true);
         if self.has_ratios {
-            self.set_up_ratios::<FMA>(contexts, compiled, count, (&edges, shapes), &mut proves);
+            self.set_up_ratios::<FMA>(vertices, (context, compiled), (&edges, shapes), &mut proves);
         }
         self.proves = proves.map(|proves| proves != 0);
         self.denominator = edges.denominator;
@@ -180,9 +182,8 @@ impl Boxes {
     #[inline(always)]
     fn set_up_ratios<const FMA: bool>(
         &mut self,
-        contexts: &[TriangleContext<'_>],
-        compiled: &CompiledDraw,
-        count: usize,
+        vertices: &Each<TriangleVertices<'_>>,
+        (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
         (edges, shapes): (&Edges, &Shapes),
         proves: &mut Each<i32>,
     ) {
@@ -193,8 +194,9 @@ impl Boxes {
                 continue;
             }
             let [mut s, mut t, mut r, mut q] = [[[0.0; GROUP]; 3]; 4];
-            for (n, (_, context)) in self.all[..count].iter().enumerate() {
-                let sets = contexts[*context].sampled_coordinates(sampler.index);
+            let unit = &context.draw.units[sampler.index];
+            for n in 0..GROUP {
+                let sets = wrapped(unit, vertices[n].coordinates(unit.stage.coordinate_set));
                 for k in 0..3 {
                     [s[k][n], t[k][n], r[k][n], q[k][n]] = sets[k];
                 }
