@@ -65,7 +65,7 @@ pub(super) fn plain<const FMA: bool>(
     let Block { varying, rows, boxes, used, workshop, .. } = block;
     let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
     let proves = boxes.interpolate::<FMA>(context, compiled, batch, varying, rows);
-    if let (true, Some(shader)) = (proves && compiled.together, &compiled.shader) {
+    if let (true, Some(shader)) = (proves, compiled.of_numbers()) {
         let numbers = (boxes.numbers(), boxes.current);
         workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);
     }
@@ -168,11 +168,7 @@ pub(super) fn box_depths<const FMA: bool>(
     let Block { varying, alive, boxes, used, runs, depth, defined, .. } = block;
     let coverage = boxes.coverage();
     let covered = batch::<HALF_STEP>(coverage, *used).inside::<false>();
-    if boxes.has_depths {
-        boxes.depths.write::<FMA>(boxes.current, covered, job.draw.depth_format, varying.depths());
-    } else {
-        defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
-    }
+    defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
     let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if !job.compiled.drops_late {
         let lanes = *used..*used + coverage.count;

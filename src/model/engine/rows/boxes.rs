@@ -1,7 +1,6 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
-use super::compiled::CompiledDraw;
 use super::kernels::{PerLane, STEP};
 use super::quotient::{Positions, nearest_32};
 use super::setup::{Covered, PixelBatch};
@@ -172,9 +171,7 @@ pub(super) fn columns_of_quads(spans: [(i64, i64); 2]) -> (i64, i64) {
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// As boxes, in these rows and columns, of which there are some, later: [together](super::small::Boxes) with others.
-    Together(Window),
-    /// As boxes, likewise, but alone.
+    /// As boxes, in these rows and columns, of which there are some.
     Small(Window),
     /// Row by row, likewise.
     Large(Window),
@@ -186,13 +183,14 @@ pub(super) fn common((of_rows, of_columns): Window, (rows, columns): Window) -> 
     ((of_rows.0.max(rows.0), of_rows.1.min(rows.1)), (of_columns.0.max(columns.0), of_columns.1.min(columns.1)))
 }
 
-/// Takes a triangle that may cover pixels in the given rows and columns, and sets it up, unless that is done together with others.
+/// Takes a triangle that may cover pixels in the given rows and columns, and sets it up, unless it is small and small ones are set up
+/// [together](super::small::Boxes).
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
     number: usize,
     window: Window,
-    compiled: &CompiledDraw,
+    together: bool,
 ) -> Entered {
     context.begin(number);
     let bounds = context.bounds();
@@ -201,18 +199,11 @@ pub(super) fn enter<const WIDE: bool>(
         return Entered::Nothing;
     }
     let is_small = is_small(bounds, context.is_flat());
-    // Functions that are not set up together are better set up once for all boxes of a triangle.
-    let is_one = rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE;
-    let waits = is_small && (compiled.plain || compiled.together && is_one);
-    let is_placed_later = waits && compiled.together;
-    if !is_placed_later && !context.place() {
+    let waits = is_small && together;
+    if !waits && !context.place() {
         return Entered::Nothing;
     }
-    match (is_small, waits) {
-        (true, true) => Entered::Together((rows, columns)),
-        (true, false) => Entered::Small((rows, columns)),
-        _ => Entered::Large((rows, columns)),
-    }
+    if is_small { Entered::Small((rows, columns)) } else { Entered::Large((rows, columns)) }
 }
 
 /// Finds the covered pixels of one box of a triangle.

@@ -117,8 +117,7 @@ pub(crate) struct CompiledDraw {
     /// Whether nothing is interpolated but colours, depths, inputs of the texture shader, and coordinates of textures with one level, neither cube
     /// maps nor volumes; and no quads are completed.
     pub(super) plain: bool,
-    /// Whether small triangles are set up together only: neither depths nor a texture shader need the set-up of a single one. Coordinates that bump
-    /// stages move do.
+    /// Whether small triangles are also placed and weighed together: neither depths nor bump stages need the set-up of a single one.
     pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,
@@ -143,6 +142,12 @@ impl CompiledDraw {
             (a ^ b) | (b ^ c)
         });
         (primary & self.read[0]) | (secondary & self.read[1]) != 0
+    }
+
+    /// Returns the texture shader if all of its inputs are numbers.
+    #[inline(always)]
+    pub(super) fn of_numbers(&self) -> Option<&Shader> {
+        self.shader.as_deref().filter(|shader| shader.moved.is_empty())
     }
 
     /// Puts the texture registers of a pixel into the rows that read them.

@@ -77,10 +77,10 @@ fn draw_triangle<T: Kernels>(
     block: &mut Block,
 ) -> u64 {
     let (compiled, mut shaded, mut at) = (job.compiled, 0, block.boxes.vacant());
-    let entered = T::enter(&mut contexts[at], number, window, compiled);
+    let entered = T::enter(&mut contexts[at], number, window, compiled.together);
     match entered {
         Entered::Nothing => return 0,
-        Entered::Together(window) => {
+        Entered::Small(window) if compiled.plain => {
             for window in boxes(window) {
                 block.boxes.add(window, at);
                 if block.boxes.count == GROUP {
@@ -101,7 +101,7 @@ fn draw_triangle<T: Kernels>(
     T::complete(context);
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
     shaded += match entered {
-        Entered::Nothing | Entered::Together(_) => 0,
+        Entered::Nothing => 0,
         Entered::Small(window) => draw_boxes_of_quads::<T>(job, window, &interpolators, band, block),
         Entered::Large(window) if compiled.completes_quads => draw_quads::<T>(job, window, &interpolators, band, block),
         Entered::Large(window) => draw_rows::<T>(job, window, &interpolators, band, block),
@@ -277,7 +277,7 @@ fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the block's boxes. Returns the number of covered pixels.
+/// Draws the block's boxes, for a plain draw. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_boxes<T: Kernels>(
     job: &Job<'_>,
@@ -296,16 +296,16 @@ fn draw_boxes<T: Kernels>(
         if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
             continue;
         }
-        let proves = job.compiled.plain && T::plain(context, job.compiled, block);
+        let proves = T::plain(context, job.compiled, block);
         if !proves {
             T::complete(context);
             let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
             T::in_box(&interpolators, job, block);
             block.planes = interpolators.given_back(&mut block.defined);
         }
-        append_box::<T>(job, context, block, proves && job.compiled.together);
+        append_box::<T>(job, context, block, proves);
     }
-    (block.boxes.current, block.boxes.has_depths) = (0, false);
+    block.boxes.current = 0;
     shaded
 }
 
@@ -372,10 +372,11 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     is_visible
 }
 
-/// Adds the pixels of the block's coverage, whose runs it has. `has_attributes` says whether the inputs of the texture shader are interpolated.
+/// Adds the pixels of the block's coverage, whose runs it has. `has_numbers` says whether it has the numbers of the texture shader, if it has one.
 #[inline(always)]
-fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block, has_attributes: bool) {
-    if job.compiled.shader.is_some() && !has_attributes {
+fn append_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, block: &mut Block, has_numbers: bool) {
+    let reads_numbers_only = job.compiled.of_numbers().is_some();
+    if job.compiled.shader.is_some() && !(has_numbers && reads_numbers_only) {
         T::box_attributes(context, job, block);
     }
     block.used += block.boxes.coverage().count;

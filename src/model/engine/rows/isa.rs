@@ -111,7 +111,7 @@ text! {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
-        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, compiled: &CompiledDraw) -> Entered;
+        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, together: bool) -> Entered;
         /// Calls [`band::complete`] with this instruction set.
         fn complete(context: &mut TriangleContext<'_>);
         /// Calls [`band::set_up`] with this instruction set.

@@ -231,8 +231,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
-    let has_numbers_only = compiled.shader.as_ref().is_none_or(|shader| shader.moved.is_empty());
-    compiled.together = has_numbers_only && !compiled.completes_quads && depth::are_floored(draw);
+    let is_set_up_together = compiled.shader.is_none() || compiled.of_numbers().is_some();
+    compiled.together = compiled.plain && is_set_up_together && draw.depth_test.is_none();
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled

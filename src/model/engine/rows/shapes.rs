@@ -78,12 +78,6 @@ impl Shapes {
         }
         Shapes { e, a, b, inverse, owed, p, doubled_area, exact }
     }
-
-    /// Returns edge function k of each box.
-    #[inline(always)]
-    pub(super) fn lines(&self, k: usize) -> Lines {
-        Lines { c: self.e[k].map(f64::from), x: self.a[k].map(f64::from), y: self.b[k].map(f64::from) }
-    }
 }
 
 /// The set-up that all functions of a box share.

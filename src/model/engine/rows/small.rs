@@ -6,7 +6,6 @@ use super::CompiledDraw;
 use super::boxes::{BoxCoverage, SIDE};
 use super::color::colors;
 use super::compiled::{Sampler, Third};
-use super::depth::BoxDepths;
 use super::kernels::PerLane;
 use super::quotient::{Line, QuotientEstimate, SLACK, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
@@ -28,9 +27,6 @@ pub(super) struct Boxes {
     coverages: Each<BoxCoverage>,
     /// Index of the current box.
     pub(super) current: usize,
-    /// Their depths, if they are set up.
-    pub(super) depths: BoxDepths,
-    pub(super) has_depths: bool,
     denominator: Lines,
     /// u and v of the samplers.
     coordinates: [[Estimates; 2]; TEXTURE_UNITS],
@@ -75,8 +71,7 @@ impl Boxes {
         &mut self.coverages[self.current]
     }
 
-    /// Finds the pixels of the first boxes, and sets up depths and, if the draw is plain, all functions. Contexts need not be
-    /// [placed](TriangleContext::place).
+    /// Finds the pixels of the first boxes, and sets up all functions. Contexts need not be [placed](TriangleContext::place).
     #[inline(always)]
     pub(super) fn set_up<const FMA: bool>(
         &mut self,
@@ -91,15 +86,11 @@ impl Boxes {
             let inverse = [shapes.inverse[0][n], shapes.inverse[1][n], shapes.inverse[2][n]];
             coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
         }
-        self.has_depths = compiled.together && contexts[0].draw.depth_test.is_some();
         // Those past the last box repeat it.
         let vertices = std::array::from_fn(|n| contexts[all[n.min(count - 1)].1].vertices());
-        if self.has_depths {
-            self.depths.set_up(&vertices, contexts[0].draw.depth_format, &shapes);
-        }
-        self.proves = [compiled.plain; GROUP];
+        self.proves = [true; GROUP];
         let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
-        if compiled.plain && (varies || compiled.shader.is_some() || !compiled.samplers.is_empty()) {
+        if varies || compiled.shader.is_some() || !compiled.samplers.is_empty() {
             self.set_up_functions::<FMA>(&vertices, (&contexts[0], compiled), &shapes, varies);
         }
     }
@@ -154,7 +145,7 @@ impl Boxes {
                 *estimates = Estimates::new::<FMA>(&edges, &g, 0, &mut proves);
             }
         }
-        if let (true, Some(shader)) = (compiled.together, &compiled.shader) {
+        if let Some(shader) = compiled.of_numbers() {
             self.numbers.resize(shader.varying.len(), BoxNumber::default());
             for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
                 let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
@@ -173,7 +164,7 @@ impl Boxes {
         self.denominator = edges.denominator;
     }
 
-    /// Returns the numbers that the texture shader reads, if small triangles are set up together.
+    /// Returns the numbers that the texture shader reads, if it reads [nothing else](CompiledDraw::of_numbers).
     pub(super) fn numbers(&self) -> &[BoxNumber] {
         &self.numbers
     }
