@@ -54,7 +54,18 @@ pub(super) fn set_up<const FMA: bool>(
     boxes.set_up::<FMA>(contexts, compiled, count);
 }
 
-/// Interpolates all attributes in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing that was
+/// Sets up what is computed by [`ratios`].
+#[inline(always)]
+pub(super) fn set_up_ratios<const FMA: bool>(
+    contexts: &[TriangleContext<'_>],
+    compiled: &CompiledDraw,
+    count: usize,
+    boxes: &mut Boxes,
+) {
+    boxes.set_up_ratios::<FMA>(contexts, compiled, count);
+}
+
+/// Interpolates all attributes but [`ratios`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing that was
 /// written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
@@ -62,9 +73,21 @@ pub(super) fn plain<const FMA: bool>(
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, rows, boxes, used, workshop, .. } = block;
+    let Block { varying, rows, boxes, used, .. } = block;
+    boxes.interpolate::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
+}
+
+/// Computes coordinates that are divided by q, depths to compare with and numbers of the texture shader in the block's current box, whose other
+/// attributes are interpolated. Returns `false` if something is not proved; then nothing that was written counts.
+#[inline(always)]
+pub(super) fn ratios<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    compiled: &CompiledDraw,
+    block: &mut Block,
+) -> bool {
+    let Block { varying, boxes, used, workshop, .. } = block;
     let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
-    let proves = boxes.interpolate::<FMA>(context, compiled, batch, varying, rows);
+    let proves = boxes.interpolate_ratios::<FMA>(compiled, batch, varying);
     if let (true, Some(shader)) = (proves, compiled.of_numbers()) {
         let numbers = (boxes.numbers(), boxes.current);
         workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);

@@ -288,6 +288,9 @@ fn draw_boxes<T: Kernels>(
     let (count, mut shaded) = (std::mem::take(&mut block.boxes.count), 0);
     if count > 0 {
         T::set_up(contexts, job.compiled, count, &mut block.boxes);
+        if block.boxes.has_ratios {
+            T::set_up_ratios(contexts, job.compiled, count, &mut block.boxes);
+        }
     }
     for n in 0..count {
         block.boxes.current = n;
@@ -296,7 +299,8 @@ fn draw_boxes<T: Kernels>(
         if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
             continue;
         }
-        let proves = T::plain(context, job.compiled, block);
+        let proves = T::plain(context, job.compiled, block)
+            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block));
         if !proves {
             T::complete(context);
             let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));

@@ -306,8 +306,12 @@ fn compare_small<const FMA: bool>(
 ) -> bool {
     (small.all[0], small.current) = ((window, 0), 0);
     small.set_up::<FMA>(std::slice::from_ref(context), plain, 1);
+    if small.has_ratios {
+        small.set_up_ratios::<FMA>(std::slice::from_ref(context), plain, 1);
+    }
     let batch = batch::<HALF_STEP>(small.coverage(), 0);
-    let done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
+    let mut done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
+    done &= !small.has_ratios || small.interpolate_ratios::<FMA>(plain, batch, varying);
     super::depth::depths::<FMA, false>(context, batch, varying.depths());
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);

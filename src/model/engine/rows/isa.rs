@@ -118,6 +118,10 @@ text! {
         fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
         /// Calls [`band::cover`] with this instruction set.
         fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
+        /// Calls [`band::set_up_ratios`] with this instruction set.
+        fn set_up_ratios(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
+        /// Calls [`band::ratios`] with this instruction set.
+        fn ratios(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::plain`] with this instruction set.
         fn plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::in_box`] with this instruction set.

@@ -29,6 +29,7 @@ impl Lines {
 }
 
 /// RAS-1 to RAS-3 and INT-1 for the triangle of each box. All numbers of a small triangle fit into 32 bits.
+#[derive(Debug, Default)]
 pub(super) struct Shapes {
     /// Edge functions at the first pixel, and their slopes.
     pub(super) e: [Each<i32>; 3],
@@ -81,6 +82,7 @@ impl Shapes {
 }
 
 /// The set-up that all functions of a box share.
+#[derive(Debug, Default)]
 pub(super) struct Edges {
     /// Edge functions at the first pixel, and their slopes.
     pub(super) e: [Each<f64>; 3],

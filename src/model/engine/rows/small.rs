@@ -27,14 +27,16 @@ pub(super) struct Boxes {
     coverages: Each<BoxCoverage>,
     /// Index of the current box.
     pub(super) current: usize,
-    denominator: Lines,
+    shapes: Shapes,
+    /// Set up if anything is divided.
+    edges: Edges,
     /// u and v of the samplers.
     coordinates: [[Estimates; 2]; TEXTURE_UNITS],
     /// The same for those samplers whose coordinates are divided by q.
     ratios: [Ratios; TEXTURE_UNITS],
     projects: [bool; TEXTURE_UNITS],
-    /// Whether there are any of them or of the following.
-    has_ratios: bool,
+    /// Whether there are any of them, of the following, or numbers.
+    pub(super) has_ratios: bool,
     short: Weights,
     /// Depths that samplers compare with.
     references: [References; TEXTURE_UNITS],
@@ -80,18 +82,18 @@ impl Boxes {
         count: usize,
     ) {
         let all = &self.all[..count];
-        let shapes = Shapes::new(contexts, all);
+        self.shapes = Shapes::new(contexts, all);
+        let shapes = &self.shapes;
         for (n, ((window, _), coverage)) in all.iter().zip(&mut self.coverages).enumerate() {
             let of = |edges: &[Each<i32>; 3]| [edges[0][n], edges[1][n], edges[2][n]];
             let inverse = [shapes.inverse[0][n], shapes.inverse[1][n], shapes.inverse[2][n]];
             coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
         }
-        // Those past the last box repeat it.
-        let vertices = std::array::from_fn(|n| contexts[all[n.min(count - 1)].1].vertices());
         self.proves = [true; GROUP];
+        self.has_ratios = false;
         let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
         if varies || compiled.shader.is_some() || !compiled.samplers.is_empty() {
-            self.set_up_functions::<FMA>(&vertices, (&contexts[0], compiled), &shapes, varies);
+            self.set_up_functions::<FMA>(&vertices_of(contexts, all), (&contexts[0], compiled), varies);
         }
     }
 
@@ -101,10 +103,10 @@ impl Boxes {
         &mut self,
         vertices: &Each<TriangleVertices<'_>>,
         (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
-        shapes: &Shapes,
         varies: bool,
     ) {
-        let edges = Edges::new::<FMA>(shapes);
+        self.edges = Edges::new::<FMA>(&self.shapes);
+        let (shapes, edges) = (&self.shapes, &self.edges);
         let may_lose = context.plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
         self.projects = [false; TEXTURE_UNITS];
@@ -135,57 +137,41 @@ impl Boxes {
                         g[k][n] = (f64::from(at[k][n]) * side + up) * edges.p[k][n];
                     }
                 }
-                *estimates = Estimates::new::<FMA>(&edges, &g, bias, &mut proves);
+                *estimates = Estimates::new::<FMA>(edges, &g, bias, &mut proves);
             }
         }
         if varies {
             for (k, estimates) in [0, 2].into_iter().zip(&mut self.weights) {
                 let mut g = [[0.0; GROUP]; 3];
                 g[k] = edges.p[k].map(|p| 256.0 * p);
-                *estimates = Estimates::new::<FMA>(&edges, &g, 0, &mut proves);
+                *estimates = Estimates::new::<FMA>(edges, &g, 0, &mut proves);
             }
-        }
-        if let Some(shader) = compiled.of_numbers() {
-            self.numbers.resize(shader.varying.len(), BoxNumber::default());
-            for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
-                let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
-                for n in 0..GROUP {
-                    let of = vertices[n].coordinate(set, *component);
-                    (values[0][n], values[1][n], values[2][n]) = (of[0], of[1], of[2]);
-                }
-                number.set_up::<FMA>((&edges, shapes), &values);
-            }
-        }
-        self.has_ratios = compiled.estimates || self.projects.contains(&true);
-        if self.has_ratios {
-            self.set_up_ratios::<FMA>(vertices, (context, compiled), (&edges, shapes), &mut proves);
         }
         self.proves = proves.map(|proves| proves != 0);
-        self.denominator = edges.denominator;
+        self.has_ratios = compiled.estimates || compiled.of_numbers().is_some() || self.projects.contains(&true);
     }
 
-    /// Returns the numbers that the texture shader reads, if it reads [nothing else](CompiledDraw::of_numbers).
-    pub(super) fn numbers(&self) -> &[BoxNumber] {
-        &self.numbers
-    }
-
-    /// Sets up coordinates that are divided by q, and depths to compare with.
+    /// Sets up coordinates that are divided by q, depths to compare with, and numbers of a texture shader, if there are [any](Self::has_ratios).
     #[inline(always)]
-    fn set_up_ratios<const FMA: bool>(
+    pub(super) fn set_up_ratios<const FMA: bool>(
         &mut self,
-        vertices: &Each<TriangleVertices<'_>>,
-        (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
-        (edges, shapes): (&Edges, &Shapes),
-        proves: &mut Each<i32>,
+        contexts: &[TriangleContext<'_>],
+        compiled: &CompiledDraw,
+        count: usize,
     ) {
-        self.short.set_up::<FMA>(edges, shapes);
+        let vertices = vertices_of(contexts, &self.all[..count]);
+        let (shapes, edges) = (&self.shapes, &self.edges);
+        let mut proves = [-1; GROUP];
+        if self.projects.contains(&true) {
+            self.short.set_up::<FMA>(edges, shapes);
+        }
         for (index, sampler) in compiled.samplers.iter().enumerate() {
             let projects = self.projects[sampler.shares.unwrap_or(index)];
             if !projects && sampler.third.is_none() {
                 continue;
             }
             let [mut s, mut t, mut r, mut q] = [[[0.0; GROUP]; 3]; 4];
-            let unit = &context.draw.units[sampler.index];
+            let unit = &contexts[0].draw.units[sampler.index];
             for n in 0..GROUP {
                 let sets = wrapped(unit, vertices[n].coordinates(unit.stage.coordinate_set));
                 for k in 0..3 {
@@ -195,12 +181,30 @@ impl Boxes {
                 proves[n] &= -i32::from(divides == projects);
             }
             if let Some(Third::Reference(format)) = sampler.third {
-                self.references[index].set_up::<FMA>(edges, (&r, projects.then_some(&q)), format, proves);
+                self.references[index].set_up::<FMA>(edges, (&r, projects.then_some(&q)), format, &mut proves);
             }
             if projects && sampler.shares.is_none() {
-                self.ratios[index].set_up::<FMA>((edges, shapes), [&s, &t, &q], sampler.sides, proves);
+                self.ratios[index].set_up::<FMA>((edges, shapes), [&s, &t, &q], sampler.sides, &mut proves);
             }
         }
+        for n in 0..GROUP {
+            self.proves[n] &= proves[n] != 0;
+        }
+        let Some(shader) = compiled.of_numbers() else { return };
+        self.numbers.resize(shader.varying.len(), BoxNumber::default());
+        for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
+            let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
+            for n in 0..GROUP {
+                let of = vertices[n].coordinate(set, *component);
+                (values[0][n], values[1][n], values[2][n]) = (of[0], of[1], of[2]);
+            }
+            number.set_up::<FMA>((edges, shapes), &values);
+        }
+    }
+
+    /// Returns the numbers that the texture shader reads, if it reads [nothing else](CompiledDraw::of_numbers).
+    pub(super) fn numbers(&self) -> &[BoxNumber] {
+        &self.numbers
     }
 
     /// Interpolates all attributes of the pixels of the current box, of which there is at least one, for a plain draw. Returns `false` if something is
@@ -221,7 +225,7 @@ impl Boxes {
         let weighted = compiled.varies(context);
         let Varying { coordinates, narrow: [w0, w2], reciprocals, .. } = &mut *varying;
         if weighted || compiled.shader.is_some() || !compiled.samplers.is_empty() {
-            reciprocals.set::<FMA, false>(batch.at, self.denominator.of(n));
+            reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         }
         let (at, mut open) = (|| batch.lanes(), 0);
         for (sampler, _) in own(compiled) {
@@ -238,16 +242,17 @@ impl Boxes {
             let close = reciprocals.floors::<FMA, false, _>([first, third], &mut w0[at()], &mut w2[at()], |w| w as u16);
             open |= close[0] | close[1];
         }
-        if open < 0 || self.has_ratios && !self.interpolate_ratios::<FMA>(compiled, batch, varying) {
+        if open < 0 {
             return false;
         }
         colors(context, compiled, batch, &varying.narrow, rows);
         true
     }
 
-    /// Computes coordinates that are divided by q, and depths to compare with. Returns `false` if something is not proved.
+    /// Computes coordinates that are divided by q, and depths to compare with, of the pixels of the current box, whose other attributes are proved.
+    /// Returns `false` if something is not.
     #[inline(always)]
-    fn interpolate_ratios<const FMA: bool>(
+    pub(super) fn interpolate_ratios<const FMA: bool>(
         &self,
         compiled: &CompiledDraw,
         batch: PixelBatch<'_>,
@@ -270,6 +275,12 @@ impl Boxes {
         }
         !open
     }
+}
+
+/// Returns the vertices of boxes. Those past the last one repeat it.
+#[inline(always)]
+fn vertices_of<'a>(contexts: &[TriangleContext<'a>], boxes: &[(Window, usize)]) -> Each<TriangleVertices<'a>> {
+    std::array::from_fn(|n| contexts[boxes[n.min(boxes.len() - 1)].1].vertices())
 }
 
 /// Returns the samplers that have coordinates of their own, with their indices.
