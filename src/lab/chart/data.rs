@@ -99,7 +99,7 @@ impl Measured {
         fixed.iter().map(|cells| row(cells)).chain(columns).collect()
     }
 
-    /// Returns all measurements of the page as one JSON document.
+    /// Returns all measurements of the page as one JSON document, with at most nine significant digits.
     pub(super) fn document(&self, lights: &[Light<'_>]) -> Value {
         let technique = |technique: &Technique| {
             let mut value = accuracy_value(&technique.accuracy);
@@ -111,7 +111,7 @@ impl Measured {
             value["nanoseconds_per_pixel"] = json!(technique.time);
             value
         };
-        json!({
+        let mut document = json!({
             "format": "ninebit-chart-2",
             "version": env!("CARGO_PKG_VERSION"),
             "isa": Isa::best().name(),
@@ -121,7 +121,22 @@ impl Measured {
             "surfaces": self.surfaces,
             "curves": self.curves,
             "failed": self.failed,
-        })
+        });
+        shorten(&mut document);
+        document
+    }
+}
+
+/// Rounds all numbers that are not whole to nine significant digits: more than any measurement has, and half as long.
+fn shorten(value: &mut Value) {
+    match value {
+        Value::Array(values) => values.iter_mut().for_each(shorten),
+        Value::Object(values) => values.values_mut().for_each(shorten),
+        Value::Number(number) if number.is_f64() => {
+            let rounded = number.as_f64().and_then(|number| format!("{number:.8e}").parse::<f64>().ok());
+            *value = json!(rounded);
+        }
+        _ => {}
     }
 }
 

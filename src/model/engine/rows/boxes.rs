@@ -220,8 +220,8 @@ pub(super) const HALF_STEP: usize = STEP / 2;
 
 /// Returns the pixels of a box as a batch, in whole steps of so many lanes.
 #[inline(always)]
-pub(super) fn batch<const STEP: usize>(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
-    let lanes = coverage.count.next_multiple_of(STEP);
+pub(super) fn batch<const LANES: usize>(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let lanes = coverage.count.next_multiple_of(LANES);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
     let [x, y] = &coverage.inside;
     let inside = [&x[..lanes], &y[..lanes]];

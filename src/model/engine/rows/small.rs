@@ -1,5 +1,6 @@
-//! INT-1 to INT-4t for small triangles whose units are sampled on planes. The functions of several boxes are set up at a time, in floating
-//! point only, and all quotients of a pixel share one reciprocal. `docs/exactness.md` has the argument.
+//! INT-1 to INT-4t for small triangles of plain draws. The functions of several boxes are set up at a time, in floating point only, and all quotients
+//! by D of a pixel share one reciprocal. What is not on planes goes by kernels of its own, which would make those of planes slower (`ratios.rs`).
+//! `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
