@@ -370,12 +370,14 @@ fn address<const LIMITS: bool>(
 /// Not inlined. A loop of its own keeps its addresses in registers, and texels need no wide vectors.
 #[inline(never)]
 fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
-    for (entry, found) in entries.iter().zip(found) {
-        *found = texels[*entry as usize];
+    for (entries, found) in entries.as_chunks::<GROUP>().0.iter().zip(found.as_chunks_mut::<GROUP>().0) {
+        for n in 0..GROUP {
+            found[n] = texels[entries[n] as usize];
+        }
     }
 }
 
-/// Number of footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
+/// Number of texels or footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
 const GROUP: usize = 4;
 
 /// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
