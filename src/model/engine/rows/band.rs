@@ -65,8 +65,8 @@ pub(super) fn set_up_ratios<const FMA: bool>(
     boxes.set_up_ratios::<FMA>(contexts, compiled, count);
 }
 
-/// Interpolates all attributes but [`ratios`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing that was
-/// written counts.
+/// Interpolates all attributes but [`ratios`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing
+/// that was written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
     context: &TriangleContext<'_>,

@@ -74,6 +74,11 @@ impl Sampler {
         if self.filters && !self.mixes { 128 } else { 0 }
     }
 
+    /// Returns whether it needs nothing for each pixel but two coordinates, on one level, and perhaps a depth to compare with.
+    pub(super) fn is_plain(&self) -> bool {
+        !(self.mixes || self.pairs > 0 || self.has_images())
+    }
+
     /// Returns whether it has faces or layers.
     pub(super) fn has_images(&self) -> bool {
         self.cube || matches!(self.third, Some(Third::Layer(..)))

@@ -470,14 +470,10 @@ fn rows_interpolate(seed: u64) {
         };
         assert_eq!(compiled.samplers.len(), 4);
         // Each sampler that small triangles are set up together for is put in every place that a sampler can have.
-        let together = |sampler: &&super::Sampler| {
-            let counts_layers = matches!(sampler.third, Some(super::compiled::Third::Layer(..)));
-            !(sampler.cube || sampler.mixes || sampler.pairs > 0 || counts_layers)
-        };
         let kinds: Vec<_> = compiled
             .samplers
             .iter()
-            .filter(together)
+            .filter(|sampler| sampler.is_plain())
             .map(|sampler| {
                 let samplers = vec![super::Sampler { shares: None, ..sampler.clone() }; 1 + round as usize % 4];
                 let kind = 2 * usize::from(sampler.third.is_some()) + usize::from(sampler.index == 2);

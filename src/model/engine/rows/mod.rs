@@ -223,11 +223,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
-    let is_plain = |sampler: &Sampler| {
-        let counts_layers = matches!(sampler.third, Some(compiled::Third::Layer(..)));
-        sampler.depends || !(sampler.mixes || sampler.cube || sampler.pairs > 0 || counts_layers)
-    };
-    compiled.plain = compiled.samplers.iter().all(is_plain)
+    compiled.plain = compiled.samplers.iter().all(|sampler| sampler.depends || sampler.is_plain())
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;

@@ -19,36 +19,37 @@ pub(super) type OfVertices = [Each<f32>; 3];
 pub(super) struct Weights {
     /// N_0 and N_2.
     functions: [Lines; 2],
-    denominator: Lines,
     /// A bound of the error of four times a numerator less D.
     error: Each<f64>,
-    /// Whether nothing falls short, because the reciprocal of the weights' sum is exact.
-    exact: Each<bool>,
 }
 
 impl Weights {
     #[inline(always)]
-    pub(super) fn set_up<const FMA: bool>(&mut self, edges: &Edges, shapes: &Shapes) {
+    pub(super) fn set_up<const FMA: bool>(&mut self, edges: &Edges) {
         for (k, line) in [0, 2].into_iter().zip(&mut self.functions) {
             for n in 0..GROUP {
                 let p = edges.p[k][n];
                 (line.c[n], line.x[n], line.y[n]) = (p * edges.e[k][n], p * edges.a[k][n], p * edges.b[k][n]);
             }
         }
-        self.denominator = edges.denominator;
         self.error = edges.function::<FMA>(&edges.p).1.map(|terms| 4.0 * SLACK * terms);
-        self.exact = shapes.exact.map(|exact| exact != 0);
     }
 
     /// Finds the weights that fall short in a box. Returns whether some are too close to a border.
     #[inline(always)]
-    pub(super) fn classify<const FMA: bool>(&self, n: usize, at: Positions<'_>, dominance: &mut Dominance) -> bool {
-        if self.exact[n] {
+    pub(super) fn classify<const FMA: bool>(
+        &self,
+        (edges, shapes): (&Edges, &Shapes),
+        n: usize,
+        at: Positions<'_>,
+        dominance: &mut Dominance,
+    ) -> bool {
+        if shapes.exact[n] != 0 {
             dominance.set_none(at);
             return false;
         }
         let [first, third] = &self.functions;
-        let functions = [first.of(n), third.of(n), self.denominator.of(n)];
+        let functions = [first.of(n), third.of(n), edges.denominator.of(n)];
         dominance.classify::<FMA, false>(at, functions, self.error[n])
     }
 }
@@ -179,7 +180,7 @@ impl References {
         format: DepthFormat,
         out: &mut [u32],
     ) -> bool {
-        let lines: (Line, Line) = (self.lines[0].of(n), self.lines[1].of(n));
+        let lines = (self.lines[0].of(n), self.lines[1].of(n));
         let errors = [self.off[n], 0.0, 0.0];
         if format.is_float() {
             words::<FMA, false, true, false>(at, lines, errors, format, out)

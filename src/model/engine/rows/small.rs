@@ -164,7 +164,7 @@ impl Boxes {
         let (shapes, edges) = (&self.shapes, &self.edges);
         let mut proves = [-1; GROUP];
         if self.projects.contains(&true) {
-            self.short.set_up::<FMA>(edges, shapes);
+            self.short.set_up::<FMA>(edges);
         }
         for (index, sampler) in compiled.samplers.iter().enumerate() {
             let projects = self.projects[sampler.shares.unwrap_or(index)];
@@ -260,7 +260,8 @@ impl Boxes {
         Varying { coordinates, references, short, .. }: &mut Varying,
     ) -> bool {
         let (n, lanes) = (self.current, || batch.lanes());
-        if self.projects.contains(&true) && self.short.classify::<FMA>(n, batch.at, &mut short.dominance) {
+        let of = (&self.edges, &self.shapes);
+        if self.projects.contains(&true) && self.short.classify::<FMA>(of, n, batch.at, &mut short.dominance) {
             return false;
         }
         let mut open = false;
