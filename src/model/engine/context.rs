@@ -4,7 +4,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Corner;
 use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
-use crate::raster::setup::{self, Triangle, centres, clockwise_area};
+use crate::raster::setup::{Triangle, centres, clockwise_area};
 use crate::state::*;
 use crate::texture::coordinates::Coordinates;
 use crate::texture::stage::ShaderSetup;
@@ -123,19 +123,6 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn corners(&self) -> [&'a Corner; 3] {
         corners(self.draw, self.number)
-    }
-
-    /// Returns the rows and columns of the triangle's bounding box that hold centres of pixels.
-    #[inline(always)]
-    pub(super) fn bounds(&self) -> ((i64, i64), (i64, i64)) {
-        let (x, y) = positions(&self.corners());
-        (centres(y), centres(x))
-    }
-
-    /// Returns whether the triangle has a single w, so that all P_k are equal (INT-1).
-    #[inline(always)]
-    pub(super) fn is_flat(&self) -> bool {
-        setup::is_flat(self.corners().map(|corner| corner.w), self.draw.perspective, self.plan.profile)
     }
 
     /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.

@@ -3,7 +3,7 @@
 use super::GUARD;
 use crate::number::convert::{align, scaled, snap, split, w_16_bits};
 use crate::state::{PlaneLoss, Profile};
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Shr, Sub};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
 const PERSPECTIVE_BITS: i32 = 28;
@@ -175,7 +175,7 @@ pub(crate) fn direction(p: [i64; 3], x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
 
 /// Whole numbers that hold the products of coordinates: 64 bits anywhere, 32 near a small triangle.
 pub(crate) trait Whole:
-    Copy + Ord + From<i32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+    Copy + Ord + From<i32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Shr<u32, Output = Self>
 {
 }
 
@@ -244,9 +244,10 @@ pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
 /// Returns the half-open range of pixels whose centres lie between three positions in 1/16 pixel. Centres are at 16 n +
 /// 8.
 #[inline(always)]
-pub(crate) fn centres(n: [i64; 3]) -> (i64, i64) {
+pub(crate) fn centres<T: Whole>(n: [T; 3]) -> (T, T) {
     let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
-    ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1)
+    let eight = T::from(8);
+    ((low - eight) >> 4, ((high - eight) >> 4) + T::from(1))
 }
 
 /// Returns P_k: the exact products of the other two w, floored to one common exponent, each at least 1.

@@ -40,24 +40,28 @@ impl Coordinates {
     }
 }
 
-/// CYL-1: moves the coordinates of a triangle's vertices by whole repeats to within half a repeat of those of the first
-/// vertex.
+/// CYL-1: moves a coordinate, s or t, of a triangle's vertices by whole repeats to within half a repeat of that of the
+/// first vertex.
 #[allow(clippy::float_arithmetic, reason = "CYL-1: repeats are counted and taken off in binary32")]
 #[inline]
-pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3] {
-    if unit.state.cylindrical_wrap == [false; 2] {
-        return vertices;
-    }
-    for (axis, mode) in unit.modes().into_iter().enumerate() {
-        if !unit.state.cylindrical_wrap[axis] || mode == AddressMode::Mirror {
-            continue;
-        }
-        let first = vertices[0][axis];
-        for vertex in &mut vertices[1..] {
-            let ahead = vertex[axis] - first;
+pub(crate) fn wrapped_axis(unit: &PlannedUnit, axis: usize, [first, mut second, mut third]: [f32; 3]) -> [f32; 3] {
+    if unit.state.cylindrical_wrap[axis] && unit.modes()[axis] != AddressMode::Mirror {
+        for value in [&mut second, &mut third] {
+            let ahead = *value - first;
             // A distance of exactly half a repeat is kept.
-            vertex[axis] -= if ahead > 0.0 { (ahead - 0.5).ceil().max(0.0) } else { (ahead + 0.5).floor().min(0.0) };
+            *value -= if ahead > 0.0 { (ahead - 0.5).ceil().max(0.0) } else { (ahead + 0.5).floor().min(0.0) };
         }
+    }
+    [first, second, third]
+}
+
+/// CYL-1 for both s and t of a triangle's vertices, of which s, t, r and q are given.
+#[inline]
+pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3] {
+    for axis in [0, 1] {
+        let [a, b, c] = vertices;
+        let [a, b, c] = wrapped_axis(unit, axis, [a[axis], b[axis], c[axis]]);
+        (vertices[0][axis], vertices[1][axis], vertices[2][axis]) = (a, b, c);
     }
     vertices
 }

@@ -13,7 +13,7 @@ use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
 
 // Kernels stand here, wherever their text is.
-pub(super) use super::boxes::{cover, enter};
+pub(super) use super::boxes::enter;
 
 /// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug, Default)]
@@ -43,26 +43,20 @@ pub(super) fn complete<const WIDE: bool>(context: &mut TriangleContext<'_>) {
     context.complete();
 }
 
-/// Finds the pixels of the first boxes, and sets up all functions.
+/// Finds the pixels of boxes, and sets up what is set up together.
 #[inline(always)]
-pub(super) fn set_up<const FMA: bool>(
-    contexts: &[TriangleContext<'_>],
-    compiled: &CompiledDraw,
-    count: usize,
-    boxes: &mut Boxes,
-) {
-    boxes.set_up::<FMA>(contexts, compiled, count);
+pub(super) fn set_up<const FMA: bool>(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes) {
+    boxes.set_up::<FMA>(contexts, compiled);
 }
 
 /// Sets up what is computed by [`ratios`].
 #[inline(always)]
 pub(super) fn set_up_ratios<const FMA: bool>(
-    contexts: &[TriangleContext<'_>],
+    context: &TriangleContext<'_>,
     compiled: &CompiledDraw,
-    count: usize,
     boxes: &mut Boxes,
 ) {
-    boxes.set_up_ratios::<FMA>(contexts, compiled, count);
+    boxes.set_up_ratios::<FMA>(context, compiled);
 }
 
 /// Interpolates all attributes but [`ratios`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing
@@ -191,7 +185,11 @@ pub(super) fn box_depths<const FMA: bool>(
     let Block { varying, alive, boxes, used, runs, depth, defined, .. } = block;
     let coverage = boxes.coverage();
     let covered = batch::<HALF_STEP>(coverage, *used).inside::<false>();
-    defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
+    if job.compiled.depths_together {
+        boxes.depths.write::<FMA>(boxes.current, covered, job.draw.depth_format, varying.depths());
+    } else {
+        defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
+    }
     let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
     if !job.compiled.drops_late {
         let lanes = *used..*used + coverage.count;

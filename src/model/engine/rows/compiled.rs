@@ -122,7 +122,9 @@ pub(crate) struct CompiledDraw {
     /// Whether nothing is interpolated but colours, depths, inputs of the texture shader, and coordinates of textures with one level, neither cube
     /// maps nor volumes; and no quads are completed.
     pub(super) plain: bool,
-    /// Whether small triangles are also placed and weighed together: neither depths nor bump stages need the set-up of a single one.
+    /// Whether there are depths, and those of small triangles are set up together.
+    pub(super) depths_together: bool,
+    /// Whether small triangles need not be placed and weighed one by one, unless something is not proved: neither for depths nor for bump stages.
     pub(super) together: bool,
     /// Whether the definition samples the texture units, pixel by pixel.
     pub(super) samples_pixels: bool,

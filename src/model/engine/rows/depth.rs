@@ -9,10 +9,13 @@ use super::planes::edge_lines;
 use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whole};
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
+use super::shapes::{Each, GROUP, Lines, Shapes};
 use crate::engine::context::TriangleContext;
+use crate::number::convert::depth as fraction;
+use crate::plan::PlannedDraw;
 use crate::raster::depth::{difference, largest_edge, w_ratio};
 use crate::raster::interpolate::most_dominant;
-use crate::state::{DepthFormat, DepthRange, VertexDepths};
+use crate::state::{DepthFormat, DepthRange, PolygonOffset, VertexDepths};
 use std::ops::Range;
 
 /// Bits of a double below its first 24.
@@ -107,8 +110,7 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let range = test.range.as_ref();
     let z = plane.w.unwrap_or(plane.z);
     let between = |a: usize, b: usize| f64::from(difference(z[a], z[b]));
-    let (first, second, third) = (between(1, 0), between(2, 0), between(2, 1));
-    let differences = [[first, second], [-first, third], [-second, -third]];
+    let differences = all_differences(between(1, 0), between(2, 0), between(2, 1));
     let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
     let edges = edge_lines(triangle, &e);
     // The lanes after those of a row are not in use yet, so they may be overwritten.
@@ -150,6 +152,84 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
         }
     }
     defined
+}
+
+/// Returns whether depths of a draw, if it has any, are fractions of whole steps that are floored and nothing else.
+pub(super) fn are_floored(draw: &PlannedDraw) -> bool {
+    draw.depth_test.as_ref().is_none_or(|test| {
+        test.vertex_depths == VertexDepths::Fractions
+            && test.offset == PolygonOffset { bias: 0.0, factor: 0.0 }
+            && test.range.is_none()
+            && !(test.w_buffer || draw.depth_format.is_float())
+    })
+}
+
+/// Depths in boxes of small triangles, for a draw for which [`are_floored`] holds.
+#[derive(Debug, Default)]
+pub(super) struct BoxDepths {
+    edges: [Lines; 3],
+    z: [Each<f64>; 3],
+    /// Differences of the depths of vertices 1 and 0, 2 and 0, 2 and 1, times the [unit](unit_of_weights).
+    differences: [Each<f64>; 3],
+    reciprocal: Each<f64>,
+}
+
+impl BoxDepths {
+    /// Sets up all boxes, from z at the vertices.
+    #[inline(always)]
+    pub(super) fn set_up(&mut self, z: &[Each<f32>; 3], format: DepthFormat, shapes: &Shapes) {
+        let (bits, mut unit) = (format.bits(), [0.0; GROUP]);
+        for n in 0..GROUP {
+            // There is no area past the last box.
+            let area = i64::from(shapes.doubled_area[n]).max(1);
+            for k in 0..3 {
+                self.z[k][n] = fraction(z[k][n], bits) as f64;
+            }
+            (self.reciprocal[n], unit[n]) = (bits_of_reciprocal(area), unit_of_weights(area));
+        }
+        self.edges = [shapes.lines(0), shapes.lines(1), shapes.lines(2)];
+        // Exact in binary32, too, because depths are whole numbers of at most 24 bits.
+        for (differences, (a, b)) in self.differences.iter_mut().zip([(1, 0), (2, 0), (2, 1)]) {
+            for n in 0..GROUP {
+                differences[n] = (self.z[a][n] - self.z[b][n]) * unit[n];
+            }
+        }
+    }
+
+    /// Writes the depths of one box.
+    #[inline(always)]
+    pub(super) fn write<const FMA: bool>(
+        &self,
+        n: usize,
+        batch: PixelBatch<'_>,
+        format: DepthFormat,
+        (out, steps): (&mut PerLane<u32>, &mut Steps),
+    ) {
+        let differences = all_differences(self.differences[0][n], self.differences[1][n], self.differences[2][n]);
+        let edges = [self.edges[0].of(n), self.edges[1].of(n), self.edges[2].of(n)];
+        let depths = Depths {
+            z: [self.z[0][n], self.z[1][n], self.z[2][n]],
+            differences,
+            ratios: [1.0; 3],
+            full: f64::from(format.largest()),
+            offset: [0.0; 2],
+            range: None,
+            format,
+        };
+        let PixelBatch { at: Positions { x, y, .. }, .. } = batch;
+        let chunks = x.chunks(CHUNK).zip(y.chunks(CHUNK)).zip(out[batch.lanes()].chunks_mut(CHUNK));
+        for ((x, y), out) in chunks {
+            let positions = (x, y, &IOTA_REAL[..x.len()]);
+            depths.uncut_terms::<FMA, false>(0.0, positions, edges, (self.reciprocal[n], differences), steps);
+            depths.words::<FMA, false>(steps, out);
+        }
+    }
+}
+
+/// Returns the differences of the depths of the [two other vertices](OTHERS) from each vertex.
+#[inline(always)]
+fn all_differences(first: f64, second: f64, third: f64) -> [[f64; 2]; 3] {
+    [[first, second], [-first, third], [-second, -third]]
 }
 
 /// Returns the reference of a pixel of a row, and up to which of `count` pixels all have it. The third argument has the row's edge functions
@@ -227,7 +307,9 @@ impl Depths<'_> {
                 self.sums::<FMA, ROW, W>(last, positions, edges, steps);
                 self.terms::<FMA, W>(out.len(), steps)
             } else {
-                self.uncut_terms::<FMA, ROW>(last, positions, edges, area, steps);
+                let unit = unit_of_weights(area);
+                let scaled = self.differences.map(|[a, b]| [a * unit, b * unit]);
+                self.uncut_terms::<FMA, ROW>(last, positions, edges, (bits_of_reciprocal(area), scaled), steps);
                 false
             };
             self.words::<FMA, GENERAL>(steps, out);
@@ -300,7 +382,7 @@ impl Depths<'_> {
     fn sums<const FMA: bool, const ROW: bool, const W: bool>(
         &self,
         last: f64,
-        (xs, ys, iota): (&[i32], &[i32], &[f64]),
+        (xs, ys, iota): (&[i16], &[i16], &[f64]),
         edges: [Line; 3],
         steps: &mut Steps,
     ) {
@@ -338,19 +420,17 @@ impl Depths<'_> {
     }
 
     /// Does the same as [`sums`](Self::sums) and [`terms`](Self::terms) in a triangle whose doubled area is at most 2^24, as that of a small one.
-    /// Nothing is cut off its edge functions, so all its pixels have the same reciprocal.
+    /// Nothing is cut off its edge functions, so all its pixels have the same reciprocal. `differences` are multiplied by the
+    /// [unit](unit_of_weights).
     #[inline(always)]
     fn uncut_terms<const FMA: bool, const ROW: bool>(
         &self,
         last: f64,
-        (xs, ys, iota): (&[i32], &[i32], &[f64]),
+        (xs, ys, iota): (&[i16], &[i16], &[f64]),
         edges: [Line; 3],
-        area: i64,
+        (reciprocal, differences): (f64, [[f64; 2]; 3]),
         steps: &mut Steps,
     ) {
-        let reciprocal = bits_of_reciprocal(area);
-        let unit = power_of_two(area.leading_zeros() as i32 - 64 - 28);
-        let differences = self.differences.map(|[a, b]| [a * unit, b * unit]);
         let lanes = xs.len();
         let Steps { references, terms: [one, other], .. } = steps;
         let (ys, iota, references) = (&ys[..lanes], &iota[..lanes], &mut references[..lanes]);
@@ -454,6 +534,12 @@ impl Depths<'_> {
         let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
         word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
+}
+
+/// Returns the factor that turns edge numbers times the reciprocal of a doubled area of at most 2^24 into weights.
+#[inline(always)]
+fn unit_of_weights(area: i64) -> f64 {
+    power_of_two(area.leading_zeros() as i32 - 64 - 28)
 }
 
 /// DEP-1: returns the edge numbers of the two vertices that are not the reference, the differences of their depths from its depth, and its

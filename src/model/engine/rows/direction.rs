@@ -413,7 +413,7 @@ fn directions<const FMA: bool, const ROW: bool>(
     let lanes = u.len();
     let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
     for n in 0..lanes {
-        let (column, row) = (f64::from(columns[n].min(at.last)), f64::from(rows[n]));
+        let (column, row) = (f64::from(i32::from(columns[n]).min(at.last)), f64::from(rows[n]));
         let x = lines[0].at::<FMA, ROW>(column, row);
         let y = lines[1].at::<FMA, ROW>(column, row);
         let z = lines[2].at::<FMA, ROW>(column, row);

@@ -13,6 +13,7 @@ use super::triangle::Interpolators;
 use super::{BLOCK, Job, store};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
+use std::ops::Range;
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
 #[inline(always)]
@@ -56,37 +57,36 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
     let vacant = |_| TriangleContext::vacant(plan, draw, compiled.shader.is_none());
     let mut contexts: [_; GROUP] = std::array::from_fn(vacant);
     for window in walk::windows(draw, band.rows()) {
-        for number in job.triangles {
-            shaded += draw_triangle::<T>(job, *number as usize, window, &mut contexts, band, block);
+        for numbers in job.triangles.chunks(GROUP) {
+            let entered = T::enter(&mut contexts, numbers, window, compiled.together, &mut block.boxes.corners);
+            for (at, entered) in entered[..numbers.len()].iter().enumerate() {
+                shaded += draw_triangle::<T>(job, at, *entered, &mut contexts, band, block);
+            }
+            shaded += draw_boxes::<T>(job, &mut contexts, band, block);
         }
     }
-    shaded += draw_boxes::<T>(job, &mut contexts, band, block);
     finish::<T>(job, block, band);
     shaded
 }
 
-/// Draws the part of a triangle that lies in some rows and columns of a band, or adds its boxes to those that are drawn later. Returns the number
-/// of covered pixels that are drawn.
+/// Draws a triangle of a context, or adds its boxes to those that are drawn later. Returns the number of covered pixels that are drawn.
 #[inline(always)]
 fn draw_triangle<T: Kernels>(
     job: &Job<'_>,
-    number: usize,
-    window: Window,
+    at: usize,
+    entered: Entered,
     contexts: &mut [TriangleContext<'_>; GROUP],
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let (compiled, mut shaded, mut at) = (job.compiled, 0, block.boxes.vacant());
-    let entered = T::enter(&mut contexts[at], number, window, compiled.together);
+    let (compiled, mut shaded) = (job.compiled, 0);
     match entered {
         Entered::Nothing => return 0,
-        Entered::Small(window) if compiled.plain => {
+        Entered::Small(window) if !compiled.completes_quads => {
             for window in boxes(window) {
                 block.boxes.add(window, at);
                 if block.boxes.count == GROUP {
                     shaded += draw_boxes::<T>(job, contexts, band, block);
-                    contexts.swap(0, at);
-                    at = 0;
                 }
             }
             return shaded;
@@ -94,9 +94,6 @@ fn draw_triangle<T: Kernels>(
         Entered::Small(_) | Entered::Large(_) => shaded += draw_boxes::<T>(job, contexts, band, block),
     }
     let context = &mut contexts[at];
-    if let (Entered::Small(window), false) = (entered, compiled.completes_quads) {
-        return shaded + draw_in_boxes::<T>(job, window, context, band, block);
-    }
     // Written out where it is needed: a function that draws by a closure is not inlined, so that rows are not compiled for the instruction set.
     T::complete(context);
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
@@ -277,7 +274,7 @@ fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the block's boxes, for a plain draw. Returns the number of covered pixels.
+/// Draws the block's boxes. Returns the number of covered pixels.
 #[inline(always)]
 fn draw_boxes<T: Kernels>(
     job: &Job<'_>,
@@ -285,66 +282,75 @@ fn draw_boxes<T: Kernels>(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let (count, mut shaded) = (std::mem::take(&mut block.boxes.count), 0);
-    if count > 0 {
-        T::set_up(contexts, job.compiled, count, &mut block.boxes);
+    let (mut next, mut shaded) = (0, 0);
+    if block.boxes.count > 0 {
+        T::set_up(contexts, job.compiled, &mut block.boxes);
         if block.boxes.has_ratios {
-            T::set_up_ratios(contexts, job.compiled, count, &mut block.boxes);
+            T::set_up_ratios(&contexts[0], job.compiled, &mut block.boxes);
         }
     }
-    for n in 0..count {
-        block.boxes.current = n;
-        let context = &mut contexts[block.boxes.all[n].1];
-        shaded += block.boxes.coverage().count as u64;
-        if block.boxes.coverage().count == 0 || !begin_box::<T>(job, context, band, block) {
-            continue;
-        }
-        let proves = T::plain(context, job.compiled, block)
-            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block));
-        if !proves {
-            T::complete(context);
-            let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
-            T::in_box(&interpolators, job, block);
-            block.planes = interpolators.given_back(&mut block.defined);
-        }
-        append_box::<T>(job, context, block, proves);
+    let count = std::mem::take(&mut block.boxes.count);
+    while next < count {
+        let at = block.boxes.all[next].1;
+        let parts = block.boxes.all[next..count].iter().take_while(|(_, other)| *other == at).count();
+        shaded += draw_parts::<T>(job, next..next + parts, &mut contexts[at], band, block);
+        next += parts;
     }
-    block.boxes.current = 0;
     shaded
 }
 
-/// Draws the part of a small triangle in some rows and columns, for any draw. Returns the number of covered pixels.
+/// Draws some of the block's boxes, which are parts of one triangle. Returns the number of covered pixels.
 #[inline(always)]
-fn draw_in_boxes<T: Kernels>(
+fn draw_parts<T: Kernels>(
     job: &Job<'_>,
-    window: Window,
+    mut parts: Range<usize>,
     context: &mut TriangleContext<'_>,
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let (mut windows, mut shaded) = (boxes(window), 0);
-    let mut next = |context: &TriangleContext<'_>, block: &mut Block| {
-        windows.any(|window| {
-            T::cover(&context.triangle, window, block.boxes.coverage_mut());
-            let count = block.boxes.coverage().count;
-            shaded += count as u64;
-            count > 0 && begin_box::<T>(job, context, band, block)
-        })
-    };
+    let mut shaded = 0;
     // Nothing else is computed of triangles that the depth test drops.
-    if next(context, block) {
+    if begin_part::<T>(job, &mut parts, &mut shaded, context, band, block) {
         T::complete(context);
         let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
         loop {
             T::in_box(&interpolators, job, block);
             append_box::<T>(job, context, block, false);
-            if !next(context, block) {
+            if !begin_part::<T>(job, &mut parts, &mut shaded, context, band, block) {
                 break;
             }
         }
         block.planes = interpolators.given_back(&mut block.defined);
     }
     shaded
+}
+
+/// Draws parts of a triangle up to the first one of which something is visible and not interpolated yet, which is begun. Returns whether there is one.
+#[inline(always)]
+fn begin_part<T: Kernels>(
+    job: &Job<'_>,
+    parts: &mut Range<usize>,
+    shaded: &mut u64,
+    context: &TriangleContext<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> bool {
+    for n in parts {
+        block.boxes.current = n;
+        let count = block.boxes.coverage().count;
+        *shaded += count as u64;
+        if count == 0 || !begin_box::<T>(job, context, band, block) {
+            continue;
+        }
+        let proves = job.compiled.plain
+            && T::plain(context, job.compiled, block)
+            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block));
+        if !proves {
+            return true;
+        }
+        append_box::<T>(job, context, block, true);
+    }
+    false
 }
 
 /// Computes the block if it has no room for the pixels of its coverage, adds and marks their runs, and computes their depths. Returns `false` if the

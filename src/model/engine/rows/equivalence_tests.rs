@@ -4,7 +4,7 @@
 //! weights. Without the variable a small part of them is compared.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::boxes::{BoxCoverage, HALF_STEP, batch, boxes, common, cover, is_small};
+use super::boxes::{HALF_STEP, batch, boxes, is_small};
 use super::kernels::{PerLane, STEP};
 use super::levels::MipFetches;
 use super::quads::Measure;
@@ -18,6 +18,7 @@ use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
+use crate::raster::setup::is_flat;
 use crate::state::*;
 use crate::texture::address::address;
 use crate::texture::coordinates::SampleCoordinates;
@@ -304,15 +305,20 @@ fn compare_small<const FMA: bool>(
     varying: &mut Varying,
     rows: &mut [PerLane<i16>],
 ) -> bool {
-    (small.all[0], small.current) = ((window, 0), 0);
-    small.set_up::<FMA>(std::slice::from_ref(context), plain, 1);
+    (small.all[0], small.count, small.current) = ((window, 0), 1, 0);
+    small.corners.set(0, context);
+    small.set_up::<FMA>(std::slice::from_ref(context), plain);
     if small.has_ratios {
-        small.set_up_ratios::<FMA>(std::slice::from_ref(context), plain, 1);
+        small.set_up_ratios::<FMA>(context, plain);
     }
     let batch = batch::<HALF_STEP>(small.coverage(), 0);
     let mut done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
     done &= !small.has_ratios || small.interpolate_ratios::<FMA>(plain, batch, varying);
-    super::depth::depths::<FMA, false>(context, batch, varying.depths());
+    if plain.depths_together {
+        small.depths.write::<FMA>(0, batch, context.draw.depth_format, varying.depths());
+    } else {
+        super::depth::depths::<FMA, false>(context, batch, varying.depths());
+    }
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
@@ -426,10 +432,10 @@ fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
     let mut random = Random::seeded(seed);
-    let (mut pixels, mut drawn, mut round) = (0, 0, 0_u64);
+    let (mut pixels, mut drawn, mut with_depths, mut round) = (0, 0, 0, 0_u64);
     // By the kind of coordinates: on planes, divided by q, and both with depths to compare with.
     let mut proved = [0; 4];
-    let (mut coverage, mut small_boxes, mut reasons) = (BoxCoverage::default(), Boxes::default(), Reasons::default());
+    let (mut covers, mut small_boxes, mut reasons) = (Boxes::default(), Boxes::default(), Reasons::default());
     while pixels < wanted || drawn < least_drawn {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
@@ -492,23 +498,28 @@ fn rows_interpolate(seed: u64) {
             let interpolators = Interpolators::new(&context, compiled, planes);
             let triangle = &interpolators.setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
-            let bounds = (triangle.rows, triangle.columns);
-            if is_small(bounds, context.is_flat()) {
-                let mut covered = 0;
-                for window in boxes(common(bounds, (whole, columns))) {
-                    cover::<false>(triangle, window, &mut coverage);
+            let sides = [triangle.rows, triangle.columns].map(|(first, end)| (end - first) as i32);
+            let is_flat = is_flat(context.corners().map(|corner| corner.w), draw.perspective, plan.profile);
+            if is_small(sides.into(), is_flat) {
+                let (mut covered, (first, end)) = (0, triangle.columns);
+                covers.corners.set(0, &context);
+                for part in boxes((window, (first.max(columns.0), end.min(columns.1)))) {
+                    (covers.all[0], covers.count) = ((part, 0), 1);
+                    covers.cover();
+                    let coverage = covers.coverage();
                     if coverage.count == 0 {
                         continue;
                     }
-                    let batch = batch::<STEP>(&coverage, 0);
+                    let batch = batch::<STEP>(coverage, 0);
                     let alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
                     if let Some((kind, plain)) = kinds.get(number % kinds.len().max(1)) {
                         let done = if round.is_multiple_of(4) {
-                            compare_small::<true>(&alone, plain, window, &mut small_boxes, &mut varying, &mut rows)
+                            compare_small::<true>(&alone, plain, part, &mut small_boxes, &mut varying, &mut rows)
                         } else {
-                            compare_small::<false>(&alone, plain, window, &mut small_boxes, &mut varying, &mut rows)
+                            compare_small::<false>(&alone, plain, part, &mut small_boxes, &mut varying, &mut rows)
                         };
                         proved[*kind] += u64::from(done);
+                        with_depths += u64::from(done && plain.depths_together);
                     }
                     if round.is_multiple_of(4) {
                         compare::<true, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
@@ -544,7 +555,7 @@ fn rows_interpolate(seed: u64) {
         }
     }
     println!(
-        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once; definition: {reasons:?}"
+        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once, {with_depths} with depths; definition: {reasons:?}"
     );
-    assert!(proved.iter().all(|boxes| *boxes > drawn / 200));
+    assert!(proved.iter().all(|boxes| *boxes > drawn / 200) && with_depths > drawn / 20);
 }

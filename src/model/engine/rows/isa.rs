@@ -1,16 +1,16 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
 use super::band::{self, Block};
-use super::boxes::{BoxCoverage, Entered};
+use super::boxes::Entered;
 use super::compiled::{CompiledDraw, Job};
 use super::draw;
 use super::filter::Vectors;
 use super::setup::Covered;
+use super::shapes::{Corners, Each, GROUP};
 use super::small::Boxes;
 use super::triangle::Interpolators;
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::{Band, Window};
-use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::multiversion;
 use multiversion::target::match_target;
@@ -111,15 +111,13 @@ text! {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
-        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, together: bool) -> Entered;
+        fn enter(contexts: &mut [TriangleContext<'_>; GROUP], numbers: &[u32], window: Window, together: bool, corners: &mut Corners) -> Each<Entered>;
         /// Calls [`band::complete`] with this instruction set.
         fn complete(context: &mut TriangleContext<'_>);
         /// Calls [`band::set_up`] with this instruction set.
-        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
-        /// Calls [`band::cover`] with this instruction set.
-        fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
+        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes);
         /// Calls [`band::set_up_ratios`] with this instruction set.
-        fn set_up_ratios(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, count: usize, boxes: &mut Boxes);
+        fn set_up_ratios(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
         /// Calls [`band::ratios`] with this instruction set.
         fn ratios(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::plain`] with this instruction set.

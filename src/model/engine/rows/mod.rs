@@ -227,8 +227,9 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
-    let is_set_up_together = compiled.shader.is_none() || compiled.of_numbers().is_some();
-    compiled.together = compiled.plain && is_set_up_together && draw.depth_test.is_none();
+    let are_floored = depth::are_floored(draw) && !compiled.completes_quads;
+    compiled.depths_together = draw.depth_test.is_some() && are_floored;
+    compiled.together = are_floored && (compiled.shader.is_none() || compiled.of_numbers().is_some());
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled

@@ -2,12 +2,12 @@
 //! footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::boxes::SIDE;
 use super::direction::{CubeDirection, constant, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
 use super::planes::Plane;
 use super::quotient::{Line, SLACK, any_negative, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
+use super::shapes::SIDE;
 use super::short::Losses;
 use super::{Reason, Sampler};
 use crate::raster::interpolate::COORDINATE_LIMIT;

@@ -18,11 +18,11 @@ const MAGIC_32: f32 = 12_582_912.0;
 const FRACTION: i32 = 20;
 
 /// Lane numbers as integers.
-pub(super) static IOTA: PerLane<i32> = {
+pub(super) static IOTA: PerLane<i16> = {
     let mut all = [0; LANES];
     let mut n = 0;
     while n < LANES {
-        all[n] = n as i32;
+        all[n] = n as i16;
         n += 1;
     }
     PerLane(all)
@@ -43,9 +43,9 @@ pub(super) static IOTA_REAL: PerLane<f64> = {
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
     /// Columns of the pixels.
-    pub(super) x: &'a [i32],
+    pub(super) x: &'a [i16],
     /// Rows; unused if all pixels are on one row.
-    pub(super) y: &'a [i32],
+    pub(super) y: &'a [i16],
     /// The largest column, which lanes past the end repeat.
     pub(super) last: i32,
 }
@@ -317,7 +317,7 @@ impl Reciprocals {
 
 /// Returns the position of a lane.
 #[inline(always)]
-pub(super) fn position<const ROW: bool>(n: usize, last: f64, xs: &[i32], ys: &[i32], iota: &[f64]) -> (f64, f64) {
+pub(super) fn position<const ROW: bool>(n: usize, last: f64, xs: &[i16], ys: &[i16], iota: &[f64]) -> (f64, f64) {
     if ROW { (if iota[n] < last { iota[n] } else { last }, 0.0) } else { (f64::from(xs[n]), f64::from(ys[n])) }
 }
 
@@ -365,7 +365,7 @@ pub(super) fn correct<const ROW: bool>(
     whole: &mut [i32],
 ) {
     for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
-        let (x, y) = (i64::from((*x).min(at.last)), i64::from(*y));
+        let (x, y) = (i64::from(i32::from(*x).min(at.last)), i64::from(*y));
         let mut n = numerator.c.wrapping_add(numerator.x.wrapping_mul(x));
         let mut d = denominator.c.wrapping_add(denominator.x.wrapping_mul(x));
         if !ROW {

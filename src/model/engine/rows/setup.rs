@@ -48,14 +48,14 @@ pub(super) struct PixelBatch<'a> {
     /// The pixels that the triangle covers; of a box, only their number. In a row that completes quads, there are others before and after them.
     pub(super) covered: Covered,
     /// For a box: columns and rows of covered pixels, which stand in for those that are not.
-    pub(super) inside: [&'a [i32]; 2],
+    pub(super) inside: [&'a [i16]; 2],
 }
 
 /// First and number of pixels of a batch that the triangle covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Covered(pub(super) usize, pub(super) usize);
 
-static ZEROS: [i32; LANES] = [0; LANES];
+static ZEROS: [i16; LANES] = [0; LANES];
 
 impl PixelBatch<'_> {
     /// Returns covered pixels that lie side by side, from `first` on.

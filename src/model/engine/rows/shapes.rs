@@ -1,14 +1,20 @@
 //! The shapes of eight small triangles at a time: RAS-1 to RAS-3, INT-1, and what all functions across them share.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::boxes::{SIDE, inverse_slope};
-use super::quotient::{Line, multiply_add};
+use super::quotient::{Line, multiply_add, nearest_32};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::{EdgeFunctions, weights};
+use crate::state::Profile;
 
 /// Largest number of boxes that are set up at a time.
 pub(super) const GROUP: usize = 8;
+
+/// Largest number of columns and of rows of a box, whose pixels are found and interpolated together.
+pub(super) const SIDE: i64 = 16;
+
+/// The same as a number of rows.
+pub(super) const ROWS: usize = SIDE as usize;
 
 /// A number of each box.
 pub(super) type Each<T> = [T; GROUP];
@@ -28,6 +34,29 @@ impl Lines {
     }
 }
 
+/// The corners of triangles that boxes are parts of.
+#[derive(Debug, Default)]
+pub(super) struct Corners {
+    /// Indices of the vertices.
+    pub(super) vertices: Each<[u32; 3]>,
+    /// Positions in 1/16 pixel.
+    pub(super) x: [Each<i32>; 3],
+    pub(super) y: [Each<i32>; 3],
+    pub(super) w: [Each<f32>; 3],
+}
+
+impl Corners {
+    /// Takes the corners of a triangle.
+    #[inline(always)]
+    pub(super) fn set(&mut self, n: usize, context: &TriangleContext<'_>) {
+        self.vertices[n] = context.draw.assembly.triangles.vertices(context.number);
+        for (k, corner) in context.corners().into_iter().enumerate() {
+            [self.x[k][n], self.y[k][n]] = corner.position;
+            self.w[k][n] = corner.w;
+        }
+    }
+}
+
 /// RAS-1 to RAS-3 and INT-1 for the triangle of each box. All numbers of a small triangle fit into 32 bits.
 #[derive(Debug, Default)]
 pub(super) struct Shapes {
@@ -35,49 +64,115 @@ pub(super) struct Shapes {
     pub(super) e: [Each<i32>; 3],
     pub(super) a: [Each<i32>; 3],
     pub(super) b: [Each<i32>; 3],
-    /// Reciprocals of the magnitudes of the slopes along x.
-    pub(super) inverse: [Each<f32>; 3],
     /// 1 for edges that belong to the other triangle (RAS-3).
-    pub(super) owed: [Each<i32>; 3],
-    pub(super) p: [Each<i32>; 3],
+    owed: [Each<i32>; 3],
     pub(super) doubled_area: Each<i32>,
+    pub(super) p: [Each<i32>; 3],
     /// -1 if the reciprocal of the weights' sum is exact (INT-3), otherwise 0.
     pub(super) exact: Each<i32>,
 }
 
+/// The first column of each row of each box, counted from the box's first, and the number of columns, which is 0 if the triangle covers none.
+pub(super) type Spans = ([Each<i32>; ROWS], [Each<i32>; ROWS]);
+
+/// A limit beyond all columns.
+const BEYOND: i32 = 1 << 23;
+
 impl Shapes {
+    /// RAS-1 to RAS-3: sets the edge functions of boxes, each with the index of its triangle.
     #[inline(always)]
-    pub(super) fn new(contexts: &[TriangleContext<'_>], boxes: &[(Window, usize)]) -> Shapes {
-        let (draw, profile) = (contexts[0].draw, contexts[0].plan.profile);
+    pub(super) fn place(&mut self, corners: &Corners, boxes: &[(Window, usize)]) {
         let [mut x, mut y] = [[[0; GROUP]; 3]; 2];
-        let mut w = [[1.0; GROUP]; 3];
-        for (n, ((rows, columns), context)) in boxes.iter().enumerate() {
+        for (n, ((rows, columns), triangle)) in boxes.iter().enumerate() {
             // Measured from the first pixel, edge functions are their values there.
             let (left, top) = (16 * columns.0 as i32, 16 * rows.0 as i32);
-            for (k, corner) in contexts[*context].corners().into_iter().enumerate() {
-                let [of_x, of_y] = corner.position;
-                (x[k][n], y[k][n], w[k][n]) = (of_x - left, of_y - top, corner.w);
+            for k in 0..3 {
+                (x[k][n], y[k][n]) = (corners.x[k][*triangle] - left, corners.y[k][*triangle] - top);
             }
         }
-        let [mut e, mut a, mut b, mut owed, mut p] = [[[0; GROUP]; 3]; 5];
-        let ([mut doubled_area, mut exact], mut inverse) = ([[0; GROUP]; 2], [[0.0; GROUP]; 3]);
+        let Shapes { e, a, b, owed, doubled_area, .. } = self;
         // One loop, because compilers would make vectors across k of another.
         for n in 0..GROUP {
             let at = |of: &[Each<i32>; 3]| [of[0][n], of[1][n], of[2][n]];
             let edges = EdgeFunctions::new(at(&x), at(&y));
-            let area = edges.area.abs();
-            let (weights, is_exact) = weights([w[0][n], w[1][n], w[2][n]], area.into(), draw.perspective, profile);
             [e[0][n], e[1][n], e[2][n]] = edges.c;
             [a[0][n], a[1][n], a[2][n]] = edges.a;
             [b[0][n], b[1][n], b[2][n]] = edges.b;
-            let [a0, a1, a2] = edges.a;
-            (inverse[0][n], inverse[1][n], inverse[2][n]) = (inverse_slope(a0), inverse_slope(a1), inverse_slope(a2));
             let owes = |k: usize| i32::from(!edges.owns[k]);
             (owed[0][n], owed[1][n], owed[2][n]) = (owes(0), owes(1), owes(2));
-            (p[0][n], p[1][n], p[2][n]) = (weights[0] as i32, weights[1] as i32, weights[2] as i32);
-            (doubled_area[n], exact[n]) = (area, -i32::from(is_exact));
+            doubled_area[n] = edges.area.abs();
         }
-        Shapes { e, a, b, inverse, owed, p, doubled_area, exact }
+    }
+
+    /// Returns an edge function of each box.
+    #[inline(always)]
+    pub(super) fn lines(&self, k: usize) -> Lines {
+        Lines { c: self.e[k].map(f64::from), x: self.a[k].map(f64::from), y: self.b[k].map(f64::from) }
+    }
+
+    /// INT-1: sets the weights of the vertices of [placed](Self::place) boxes.
+    #[inline(always)]
+    pub(super) fn weigh(
+        &mut self,
+        corners: &Corners,
+        boxes: &[(Window, usize)],
+        (perspective, profile): (bool, Profile),
+    ) {
+        let mut w = [[1.0; GROUP]; 3];
+        for (n, (_, triangle)) in boxes.iter().enumerate() {
+            for k in 0..3 {
+                w[k][n] = corners.w[k][*triangle];
+            }
+        }
+        let Shapes { doubled_area, p, exact, .. } = self;
+        for n in 0..GROUP {
+            let of = [w[0][n], w[1][n], w[2][n]];
+            let (weights, is_exact) = weights(of, doubled_area[n].into(), perspective, profile);
+            (p[0][n], p[1][n], p[2][n]) = (weights[0] as i32, weights[1] as i32, weights[2] as i32);
+            exact[n] = -i32::from(is_exact);
+        }
+    }
+
+    /// RAS-3: finds the columns in which no edge function is negative inside the triangle, in all rows of [placed](Self::place) boxes.
+    ///
+    /// Where i a + r is not negative are the columns from -floor(r / a) on, or up to floor(r / -a), with r = j b + e below 2^22. The distance of
+    /// (r + 1/2) / a from an integer is at least half of 1/a. For quotients below 32 single precision is more exact than that, because a is
+    /// below 2^15; larger quotients put the whole box on one side.
+    #[inline(always)]
+    pub(super) fn spans(&self, boxes: &[(Window, usize)]) -> Spans {
+        let (mut height, mut width) = (0, [0; GROUP]);
+        for (n, ((rows, columns), _)) in boxes.iter().enumerate() {
+            height = height.max((rows.1 - rows.0) as usize);
+            width[n] = (columns.1 - columns.0) as i32;
+        }
+        // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the
+        // way, which avoids a branch.
+        let [mut from, mut to] = [[[0; GROUP]; 3]; 2];
+        let [mut r, mut step, mut inverse] = [[[0.0; GROUP]; 3]; 3];
+        for n in 0..GROUP {
+            for k in 0..3 {
+                let a = self.a[k][n];
+                (from[k][n], to[k][n]) = if a > 0 { (0, BEYOND) } else { (-BEYOND, 0) };
+                // A horizontal edge covers all columns of a row or none. The chosen factor moves the limit out of the box.
+                inverse[k][n] = if a == 0 { 40.0 } else { 1.0 / a.abs() as f32 };
+                (r[k][n], step[k][n]) = ((self.e[k][n] - self.owed[k][n]) as f32 + 0.5, self.b[k][n] as f32);
+            }
+        }
+        let [mut first, mut count] = [[[0; GROUP]; ROWS]; 2];
+        for j in 0..height.min(ROWS) {
+            for n in 0..GROUP {
+                let (mut low, mut high) = (0, width[n]);
+                for k in 0..3 {
+                    let floor = nearest_32(r[k][n] * inverse[k][n] - 0.5);
+                    r[k][n] += step[k][n];
+                    // Rows below a box, which nobody reads, may wrap.
+                    low = low.max(from[k][n].wrapping_sub(floor));
+                    high = high.min(to[k][n].wrapping_add(floor.wrapping_add(1)));
+                }
+                (first[j][n], count[j][n]) = (low, high.wrapping_sub(low).max(0));
+            }
+        }
+        (first, count)
     }
 }
 
@@ -162,4 +257,44 @@ pub(super) fn sum<const FMA: bool>(g: &[f64; 3], of: &[f64; 3]) -> f64 {
 #[inline(always)]
 pub(super) fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every slope and many values, those around a whole number of columns above all.
+    #[test]
+    fn spans_are_floors() {
+        let (mut shapes, all) = (Shapes::default(), [(((0, SIDE), (0, SIDE)), 0); GROUP]);
+        let slopes: Vec<i32> = (-4352..=4352_i32).step_by(16).collect();
+        for slopes in slopes.chunks(GROUP) {
+            for n in -40..=40_i32 {
+                for value in 0..4 {
+                    let edge = |a: i32| {
+                        let size = n * a.abs();
+                        let e = [size - 1, size, size + 1, n * 6007][value].clamp(-150_000, 150_000);
+                        (e, a, (e & 255) * 16 - 2048)
+                    };
+                    // The edge stands at each of the three in turn; the others limit nothing.
+                    let k = (n + 40) as usize % 3;
+                    (shapes.a, shapes.b, shapes.e) = Default::default();
+                    for (n, a) in slopes.iter().enumerate() {
+                        (shapes.e[k][n], shapes.a[k][n], shapes.b[k][n]) = edge(*a);
+                    }
+                    let (first, count) = shapes.spans(&all);
+                    for (n, a) in slopes.iter().enumerate() {
+                        let (e, _, b) = edge(*a);
+                        for j in 0..ROWS {
+                            let inside = |i: &i32| a * i + b * j as i32 + e >= 0;
+                            let wanted = (0..SIDE as i32).filter(inside).count() as i32;
+                            let (low, count) = (first[j][n], count[j][n]);
+                            assert_eq!(count, wanted, "{a} {b} {e} {j}");
+                            assert!((low..low + count).all(|i| inside(&i)), "{a} {b} {e} {j}");
+                        }
+                    }
+                }
+            }
+        }
+    }
 }

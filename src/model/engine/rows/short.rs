@@ -374,7 +374,7 @@ fn near(n: f64, d: f64, error: f64) -> u64 {
 #[inline(always)]
 fn quotients<const FMA: bool, const ROW: bool>(
     (last, plus): (f64, f64),
-    (xs, ys, iota): (&[i32], &[i32], &[f64]),
+    (xs, ys, iota): (&[i16], &[i16], &[f64]),
     [along, down, denominator]: [Line; 3],
     [loss_along, loss_down, loss_denominator]: [Losses; 3],
     (first, third): (&[f64], &[f64]),

@@ -4,23 +4,27 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
-use super::boxes::{BoxCoverage, SIDE};
+use super::boxes::BoxCoverage;
 use super::color::colors;
 use super::compiled::{Sampler, Third};
+use super::depth::BoxDepths;
 use super::kernels::PerLane;
 use super::quotient::{Line, QuotientEstimate, SLACK, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
-use super::shapes::{Each, Edges, GROUP, Lines, Shapes, sum};
+use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
 use super::triangle::Varying;
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
-use crate::state::{PlaneLoss, TEXTURE_UNITS, TriangleVertices};
-use crate::texture::coordinates::wrapped;
+use crate::state::{PlaneLoss, TEXTURE_UNITS, Vertices};
+use crate::texture::coordinates::wrapped_axis;
+use crate::texture::planned::PlannedUnit;
 
 /// Boxes of small triangles that are set up at a time.
 #[derive(Debug, Default)]
 pub(super) struct Boxes {
+    /// Corners of triangles.
+    pub(super) corners: Corners,
     /// Rows and columns of each, and the index of the triangle among the contexts, in the order in which they are drawn.
     pub(super) all: Each<(Window, usize)>,
     pub(super) count: usize,
@@ -29,6 +33,8 @@ pub(super) struct Boxes {
     /// Index of the current box.
     pub(super) current: usize,
     shapes: Shapes,
+    /// Set up if they are the draw's.
+    pub(super) depths: BoxDepths,
     /// Set up if anything is divided.
     edges: Edges,
     /// u and v of the samplers.
@@ -57,12 +63,6 @@ impl Boxes {
         self.count += 1;
     }
 
-    /// Returns the index of the first context that no box uses.
-    #[inline(always)]
-    pub(super) fn vacant(&self) -> usize {
-        self.count.checked_sub(1).map_or(0, |last| self.all[last].1 + 1)
-    }
-
     /// Returns the pixels of the current box.
     #[inline(always)]
     pub(super) fn coverage(&self) -> &BoxCoverage {
@@ -74,35 +74,53 @@ impl Boxes {
         &mut self.coverages[self.current]
     }
 
-    /// Finds the pixels of the first boxes, and sets up all functions. Contexts need not be [placed](TriangleContext::place).
+    /// Finds the pixels of the boxes.
     #[inline(always)]
-    pub(super) fn set_up<const FMA: bool>(
-        &mut self,
-        contexts: &[TriangleContext<'_>],
-        compiled: &CompiledDraw,
-        count: usize,
-    ) {
-        let all = &self.all[..count];
-        self.shapes = Shapes::new(contexts, all);
-        let shapes = &self.shapes;
+    pub(super) fn cover(&mut self) {
+        let all = &self.all[..self.count];
+        self.shapes.place(&self.corners, all);
+        let spans = self.shapes.spans(all);
         for (n, ((window, _), coverage)) in all.iter().zip(&mut self.coverages).enumerate() {
-            let of = |edges: &[Each<i32>; 3]| [edges[0][n], edges[1][n], edges[2][n]];
-            let inverse = [shapes.inverse[0][n], shapes.inverse[1][n], shapes.inverse[2][n]];
-            coverage.cover([of(&shapes.e), of(&shapes.a), of(&shapes.b), of(&shapes.owed)], inverse, *window);
+            coverage.cover(&spans, n, *window);
         }
-        self.proves = [true; GROUP];
-        self.has_ratios = false;
-        let varies = all.iter().any(|(_, context)| compiled.varies(&contexts[*context]));
+    }
+
+    /// Finds the pixels of the boxes, and sets up their depths and, for a plain draw, all other functions. Contexts need not be
+    /// [placed](TriangleContext::place).
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(&mut self, contexts: &[TriangleContext<'_>], compiled: &CompiledDraw) {
+        self.cover();
+        let (all, context, vertices) = (&self.all[..self.count], &contexts[0], self.vertices());
+        if compiled.depths_together {
+            let z = context.draw.assembly.vertices.gather_positions(2, &vertices);
+            self.depths.set_up(&z, context.draw.depth_format, &self.shapes);
+        }
+        (self.proves, self.has_ratios) = ([true; GROUP], false);
+        if !compiled.plain {
+            return;
+        }
+        let varies = all.iter().any(|(_, triangle)| compiled.varies(&contexts[*triangle]));
         if varies || compiled.shader.is_some() || !compiled.samplers.is_empty() {
-            self.set_up_functions::<FMA>(&vertices_of(contexts, all), (&contexts[0], compiled), varies);
+            self.shapes.weigh(&self.corners, all, (context.draw.perspective, context.plan.profile));
+            self.set_up_functions::<FMA>(&vertices, (context, compiled), varies);
         }
+    }
+
+    /// Returns the vertices of all boxes. Those past the last one repeat the first.
+    #[inline(always)]
+    fn vertices(&self) -> Each<[u32; 3]> {
+        let mut vertices = [self.corners.vertices[self.all[0].1]; GROUP];
+        for (vertices, (_, triangle)) in vertices.iter_mut().zip(&self.all[..self.count]) {
+            *vertices = self.corners.vertices[*triangle];
+        }
+        vertices
     }
 
     /// Sets up coordinates, and weights if they vary.
     #[inline(always)]
     fn set_up_functions<const FMA: bool>(
         &mut self,
-        vertices: &Each<TriangleVertices<'_>>,
+        vertices: &Each<[u32; 3]>,
         (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
         varies: bool,
     ) {
@@ -112,14 +130,12 @@ impl Boxes {
         let mut proves = [-1; GROUP];
         self.projects = [false; TEXTURE_UNITS];
         for (n, sampler) in own(compiled) {
-            let (mut s, mut t, mut is_plane) = ([[0.0_f32; GROUP]; 3], [[0.0_f32; GROUP]; 3], [true; GROUP]);
             let unit = &context.draw.units[sampler.index];
+            let (of, set) = (&context.draw.assembly.vertices, unit.stage.coordinate_set);
+            let ([s, t], q) = (repeated(unit, of, vertices), of.gather(set, 3, vertices));
+            let mut is_plane = [true; GROUP];
             for n in 0..GROUP {
-                let sets = wrapped(unit, vertices[n].coordinates(unit.stage.coordinate_set));
-                for k in 0..3 {
-                    (s[k][n], t[k][n]) = (sets[k][0], sets[k][1]);
-                }
-                is_plane[n] = [sets[0][3], sets[1][3], sets[2][3]] == [1.0; 3];
+                is_plane[n] = [q[0][n], q[1][n], q[2][n]] == [1.0; 3];
             }
             // Most draws divide all coordinates of a unit by q or none.
             self.projects[n] = !is_plane[0];
@@ -154,13 +170,8 @@ impl Boxes {
 
     /// Sets up coordinates that are divided by q, depths to compare with, and numbers of a texture shader, if there are [any](Self::has_ratios).
     #[inline(always)]
-    pub(super) fn set_up_ratios<const FMA: bool>(
-        &mut self,
-        contexts: &[TriangleContext<'_>],
-        compiled: &CompiledDraw,
-        count: usize,
-    ) {
-        let vertices = vertices_of(contexts, &self.all[..count]);
+    pub(super) fn set_up_ratios<const FMA: bool>(&mut self, context: &TriangleContext<'_>, compiled: &CompiledDraw) {
+        let (of, vertices) = (&context.draw.assembly.vertices, &self.vertices());
         let (shapes, edges) = (&self.shapes, &self.edges);
         let mut proves = [-1; GROUP];
         if self.projects.contains(&true) {
@@ -171,13 +182,10 @@ impl Boxes {
             if !projects && sampler.third.is_none() {
                 continue;
             }
-            let [mut s, mut t, mut r, mut q] = [[[0.0; GROUP]; 3]; 4];
-            let unit = &contexts[0].draw.units[sampler.index];
+            let unit = &context.draw.units[sampler.index];
+            let [s, t] = repeated(unit, of, vertices);
+            let [r, q] = [2, 3].map(|component| of.gather(unit.stage.coordinate_set, component, vertices));
             for n in 0..GROUP {
-                let sets = wrapped(unit, vertices[n].coordinates(unit.stage.coordinate_set));
-                for k in 0..3 {
-                    [s[k][n], t[k][n], r[k][n], q[k][n]] = sets[k];
-                }
                 let divides = [q[0][n], q[1][n], q[2][n]] != [1.0; 3];
                 proves[n] &= -i32::from(divides == projects);
             }
@@ -194,11 +202,7 @@ impl Boxes {
         let Some(shader) = compiled.of_numbers() else { return };
         self.numbers.resize(shader.varying.len(), BoxNumber::default());
         for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
-            let (set, mut values) = (shader.stages[*stage].state.coordinate_set, [[0.0; GROUP]; 3]);
-            for n in 0..GROUP {
-                let of = vertices[n].coordinate(set, *component);
-                (values[0][n], values[1][n], values[2][n]) = (of[0], of[1], of[2]);
-            }
+            let values = of.gather(shader.stages[*stage].state.coordinate_set, *component, vertices);
             number.set_up::<FMA>((edges, shapes), &values);
         }
     }
@@ -279,10 +283,20 @@ impl Boxes {
     }
 }
 
-/// Returns the vertices of boxes. Those past the last one repeat it.
+/// Returns s and t of a unit at vertices of triangles, repeated as CYL-1 says.
 #[inline(always)]
-fn vertices_of<'a>(contexts: &[TriangleContext<'a>], boxes: &[(Window, usize)]) -> Each<TriangleVertices<'a>> {
-    std::array::from_fn(|n| contexts[boxes[n.min(boxes.len() - 1)].1].vertices())
+fn repeated(unit: &PlannedUnit, of: &Vertices, vertices: &Each<[u32; 3]>) -> [[Each<f32>; 3]; 2] {
+    let set = unit.stage.coordinate_set;
+    let mut both = [of.gather(set, 0, vertices), of.gather(set, 1, vertices)];
+    if unit.state.cylindrical_wrap != [false; 2] {
+        for (axis, values) in both.iter_mut().enumerate() {
+            for n in 0..GROUP {
+                [values[0][n], values[1][n], values[2][n]] =
+                    wrapped_axis(unit, axis, [values[0][n], values[1][n], values[2][n]]);
+            }
+        }
+    }
+    both
 }
 
 /// Returns the samplers that have coordinates of their own, with their indices.
