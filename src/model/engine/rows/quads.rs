@@ -48,8 +48,10 @@ pub(super) struct Quads {
     coordinates: AtQuads,
     /// Doubles as bits, negative for quads whose coordinates are not known.
     unknown: PerLane<u64>,
-    /// Sign bits of quads whose estimated result is not proved.
+    /// Sign bits of quads whose estimated result is not proved, the indices of these quads, and their origins.
     close: PerLane<i32>,
+    open: PerLane<u16>,
+    open_origins: [PerLane<f32>; 2],
     /// Number of quads of a box.
     count: usize,
     /// The rows of a batch.
@@ -104,11 +106,13 @@ pub(super) struct Known<T> {
     columns: Range<i64>,
     /// Result of each quad, from the first column on.
     pub(super) each: Vec<T>,
+    /// Results of quads whose estimates are not proved.
+    open: Vec<T>,
 }
 
 impl<T> Default for Known<T> {
     fn default() -> Self {
-        Known { of: None, columns: 0..0, each: Vec::new() }
+        Known { of: None, columns: 0..0, each: Vec::new(), open: Vec::new() }
     }
 }
 
@@ -345,7 +349,10 @@ impl Setup<'_> {
     ) -> Spread {
         let (i, j) = batch.first;
         let above = ((j & !1) - j) as f32;
-        let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind(unit));
+        let room = |known: &mut Known<T>, count: usize| {
+            known.each.resize(known.each.len().max(count), T::behind(unit));
+            known.open.resize(LANES, T::behind(unit));
+        };
         if base.behind {
             room(known, 1);
             (known.of, known.each[0]) = (None, T::behind(unit));
@@ -354,7 +361,7 @@ impl Setup<'_> {
         if !ROW {
             room(known, LANES + STEP);
             known.of = None;
-            self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, &mut known.each);
+            self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, (&mut known.each, &mut known.open));
             return Spread::Rows;
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
@@ -377,7 +384,8 @@ impl Setup<'_> {
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
             room(known, first + LANES + STEP);
-            self.measured::<FMA, T>(batch, (unit, base), e, count, quads, &mut known.each[first..]);
+            let out = (&mut known.each[first..], &mut known.open[..]);
+            self.measured::<FMA, T>(batch, (unit, base), e, count, quads, out);
             known.columns.end = wanted.end;
         }
         let quad = (wanted.start - known.columns.start) as usize;
@@ -385,7 +393,8 @@ impl Setup<'_> {
         Spread::Rows
     }
 
-    /// Computes the results of quads at the given [origins](Quads::origins). Those of all come from coordinates if one estimate is not proved.
+    /// Computes the results of quads at the given [origins](Quads::origins): those whose estimates are not proved from their coordinates, side by side
+    /// in `spare`.
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
@@ -394,15 +403,42 @@ impl Setup<'_> {
         e: &[i64; 3],
         count: usize,
         quads: &mut Quads,
-        out: &mut [T],
+        (out, spare): (&mut [T], &mut [T]),
     ) {
         let rounded = whole_steps(count);
-        let Quads { origins: [xs, ys], coordinates, unknown, close, .. } = quads;
+        let Quads { origins: [xs, ys], coordinates, unknown, close, open, open_origins, .. } = quads;
         let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
-        // Without an early exit, which is slower.
-        let open = |close: &[i32]| close.iter().fold(false, |any, close| any | (*close < 0));
-        if !T::estimate::<FMA>(base, [xs, ys], out, close) || open(&close[..count]) {
-            self.measured_exactly::<FMA, T>(batch, (unit, base), e, [xs, ys], count, (coordinates, unknown), out);
+        let mut left = count;
+        if T::estimate::<FMA>(base, [xs, ys], out, close) {
+            // Without an early exit, which is slower.
+            left = close[..count].iter().fold(0, |left, close| left + usize::from(*close < 0));
+        }
+        if left == 0 {
+            return;
+        }
+        // A few are computed side by side, many with those between them.
+        let few = 2 * left <= count;
+        let (mut origins, mut to) = ([xs, ys], &mut *out);
+        if few {
+            left = 0;
+            for n in 0..count {
+                open[left] = n as u16;
+                left += usize::from(close[n] < 0);
+            }
+            let (rounded, last) = (whole_steps(left), open[left - 1]);
+            open[left..rounded].fill(last);
+            let [xs, ys] = open_origins;
+            for (n, quad) in open[..rounded].iter().enumerate() {
+                (xs[n], ys[n]) = (origins[0][usize::from(*quad)], origins[1][usize::from(*quad)]);
+            }
+            (origins, to) = ([&xs[..rounded], &ys[..rounded]], &mut spare[..rounded]);
+        }
+        let measured = if few { left } else { count };
+        self.measured_exactly::<FMA, T>(batch, (unit, base), e, origins, measured, (coordinates, unknown), to);
+        if few {
+            for (quad, result) in open[..left].iter().zip(spare) {
+                out[usize::from(*quad)] = *result;
+            }
         }
     }
 
