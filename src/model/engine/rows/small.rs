@@ -9,7 +9,7 @@ use super::color::colors;
 use super::compiled::{Sampler, Third};
 use super::depth::BoxDepths;
 use super::kernels::PerLane;
-use super::quotient::{Line, QuotientEstimate, SLACK, whole};
+use super::quotient::{QuotientEstimate, SLACK, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
@@ -320,21 +320,16 @@ impl Estimates {
     #[inline(always)]
     fn new<const FMA: bool>(edges: &Edges, g: &[Each<f64>; 3], bias: i32, proves: &mut Each<i32>) -> Estimates {
         let mut all = Estimates::default();
+        let (lines, bounds) = edges.function::<FMA>(g);
         // Not one struct for each quotient, because compilers do not vectorise such a loop.
         for n in 0..GROUP {
             let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
-            let (g, inverse) = (at(g), at(&edges.inverse));
-            let line = Line {
-                c: sum::<FMA>(&g, &at(&edges.e)),
-                x: sum::<FMA>(&g, &at(&edges.a)),
-                y: sum::<FMA>(&g, &at(&edges.b)),
-            };
+            let (g, inverse, line, terms) = (at(g), at(&edges.inverse), lines.of(n), bounds[n]);
             let size = [g[0].abs(), g[1].abs(), g[2].abs()];
             let is_whole = |k: usize| whole(g[k] * inverse[k]) == g[k] * inverse[k];
             let gap = if is_whole(0) & is_whole(1) & is_whole(2) { edges.gap[n] } else { 0.0 };
             // Adds half a denominator, half a texel, and the rounding error of this number.
             let most = sum::<FMA>(&size, &inverse) + 260.0;
-            let terms = sum::<FMA>(&size, &at(&edges.terms));
             let margin = (terms * edges.widest[n] + 2.0 * most * edges.ratio[n]) * SLACK + edges.floors[n];
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (edges.reciprocal[n], edges.widest[n]));
             let denominator = edges.denominator.of(n);
