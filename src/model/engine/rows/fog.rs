@@ -143,11 +143,10 @@ impl Setup<'_> {
         match fog {
             Fog::Same(factor) => out.fill(*factor),
             Fog::Factor(plane) => {
-                let planes = [*plane, *plane];
-                let Some(estimates) = self.estimates::<ROW>(&planes, (0, [0.0; 2]), local) else {
+                let Some(estimate) = self.estimate_of::<ROW>(plane, (0, 0.0), local) else {
                     return self.defined_factors(batch, |_| true, out);
                 };
-                if reciprocals.estimate::<FMA, ROW>(estimates, values, spare)[0] {
+                if reciprocals.floors::<FMA, ROW, i32>(estimate, values, |value| value) < 0 {
                     self.correct::<ROW>(batch, 0, plane, &local.e, values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {

@@ -281,10 +281,13 @@ fn quotients<const FMA: bool, const ROW: bool>(
     let lanes = u.len();
     let (v, close, xs, ys, rs) = (&mut v[..lanes], &mut close[..lanes], &xs[..lanes], &ys[..lanes], &rs[..lanes]);
     for n in 0..lanes {
-        let (x, y, r) = (xs[n], ys[n], rs[n]);
-        let (p, q) = (along.at::<FMA, ROW>(x, y) * r, down.at::<FMA, ROW>(x, y) * r);
-        let ((p, close_p), (q, close_q)) = (floor_and_proof(p, settled[0]), floor_and_proof(q, settled[1]));
-        (u[n], v[n], close[n]) = (p, q, close_p | close_q);
+        let p = along.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
+        (u[n], close[n]) = floor_and_proof(p, settled[0]);
+    }
+    for n in 0..lanes {
+        let q = down.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
+        let (floor, of_lane) = floor_and_proof(q, settled[1]);
+        (v[n], close[n]) = (floor, close[n] | of_lane);
     }
 }
 

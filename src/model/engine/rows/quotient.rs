@@ -275,32 +275,29 @@ impl Reciprocals {
     #[inline(always)]
     pub(super) fn estimate<const FMA: bool, const ROW: bool>(
         &self,
-        quotients: [QuotientEstimate; 2],
+        [one, other]: [QuotientEstimate; 2],
         first: &mut [i32],
         second: &mut [i32],
     ) -> [bool; 2] {
-        let close = self.floors::<FMA, ROW, i32>(quotients, first, second, |floor| floor);
-        [close[0] < 0, close[1] < 0]
+        // One after the other: both at a time need more registers than AVX2 has.
+        let close = self.floors::<FMA, ROW, i32>(one, first, |floor| floor);
+        [close < 0, self.floors::<FMA, ROW, i32>(other, second, |floor| floor) < 0]
     }
 
-    /// Writes the floors of two quotients, as another type. Returns for each a number that is negative if a lane is not proved.
+    /// Writes the floors of a quotient, as another type. Returns a number that is negative if a lane is not proved.
     #[inline(always)]
     pub(super) fn floors<const FMA: bool, const ROW: bool, T>(
         &self,
-        [one, other]: [QuotientEstimate; 2],
-        first: &mut [T],
-        second: &mut [T],
+        quotient: QuotientEstimate,
+        out: &mut [T],
         to: impl Fn(i32) -> T,
-    ) -> [i32; 2] {
-        let lanes = first.len();
-        let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
-        let mut close = [0_i32; 2];
+    ) -> i32 {
+        let (lanes, mut close) = (out.len(), 0);
+        let (xs, ys, rs) = (&self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         for n in 0..lanes {
-            let (x, y, r) = (xs[n], ys[n], rs[n]);
-            let ((a, a_close), (b, b_close)) = (one.at::<FMA, ROW>(x, y, r), other.at::<FMA, ROW>(x, y, r));
-            (first[n], second[n]) = (to(a), to(b));
-            close[0] |= a_close;
-            close[1] |= b_close;
+            let (floor, of_lane) = quotient.at::<FMA, ROW>(xs[n], ys[n], rs[n]);
+            out[n] = to(floor);
+            close |= of_lane;
         }
         close
     }

@@ -216,8 +216,9 @@ impl<'a> Setup<'a> {
         ])
     }
 
+    /// Does the same for one quotient.
     #[inline(always)]
-    fn estimate_of<const ROW: bool>(
+    pub(super) fn estimate_of<const ROW: bool>(
         &self,
         plane: &Plane,
         (bias, up): (i32, f64),

@@ -228,7 +228,7 @@ impl Boxes {
             return false;
         }
         let weighted = compiled.varies(context);
-        let Varying { coordinates, narrow: [w0, w2], reciprocals, .. } = &mut *varying;
+        let Varying { coordinates, narrow, reciprocals, .. } = &mut *varying;
         if weighted || compiled.shader.is_some() || !compiled.samplers.is_empty() {
             reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         }
@@ -237,15 +237,15 @@ impl Boxes {
             if self.projects[sampler] {
                 continue;
             }
-            let ([along, down], [u, v]) = (&self.coordinates[sampler], &mut coordinates[sampler]);
-            let close =
-                reciprocals.floors::<FMA, false, _>([along.of(n), down.of(n)], &mut u[at()], &mut v[at()], |u| u);
-            open |= close[0] | close[1];
+            for (estimates, out) in self.coordinates[sampler].iter().zip(&mut coordinates[sampler]) {
+                open |= reciprocals.floors::<FMA, false, _>(estimates.of(n), &mut out[at()], |value| value);
+            }
         }
         if weighted {
-            let [first, third] = [self.weights[0].of(n).not_negative(), self.weights[1].of(n).not_negative()];
-            let close = reciprocals.floors::<FMA, false, _>([first, third], &mut w0[at()], &mut w2[at()], |w| w as u16);
-            open |= close[0] | close[1];
+            for (estimates, out) in self.weights.iter().zip(narrow) {
+                let estimate = estimates.of(n).not_negative();
+                open |= reciprocals.floors::<FMA, false, _>(estimate, &mut out[at()], |weight| weight as u16);
+            }
         }
         if open < 0 {
             return false;
