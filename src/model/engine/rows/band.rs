@@ -186,7 +186,7 @@ pub(super) fn box_depths<const FMA: bool>(
     let coverage = boxes.coverage();
     let covered = batch::<HALF_STEP>(coverage, *used).inside::<false>();
     if job.compiled.depths_together {
-        boxes.depths.write::<FMA>(boxes.current, covered, job.draw.depth_format, varying.depths());
+        boxes.depths.write::<FMA>(boxes.current, covered, job.draw.depth_format, &mut varying.depth);
     } else {
         defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
     }

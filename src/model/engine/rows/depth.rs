@@ -203,7 +203,7 @@ impl BoxDepths {
         n: usize,
         batch: PixelBatch<'_>,
         format: DepthFormat,
-        (out, steps): (&mut PerLane<u32>, &mut Steps),
+        out: &mut PerLane<u32>,
     ) {
         let differences = all_differences(self.differences[0][n], self.differences[1][n], self.differences[2][n]);
         let edges = [self.edges[0].of(n), self.edges[1].of(n), self.edges[2].of(n)];
@@ -216,12 +216,12 @@ impl BoxDepths {
             range: None,
             format,
         };
-        let PixelBatch { at: Positions { x, y, .. }, .. } = batch;
-        let chunks = x.chunks(CHUNK).zip(y.chunks(CHUNK)).zip(out[batch.lanes()].chunks_mut(CHUNK));
-        for ((x, y), out) in chunks {
-            let positions = (x, y, &IOTA_REAL[..x.len()]);
-            depths.uncut_terms::<FMA, false>(0.0, positions, edges, (self.reciprocal[n], differences), steps);
-            depths.words::<FMA, false>(steps, out);
+        let reciprocal = (self.reciprocal[n], differences);
+        let out = &mut out[batch.lanes()];
+        let (xs, ys) = (&batch.at.x[..out.len()], &batch.at.y[..out.len()]);
+        for n in 0..out.len() {
+            let at = (f64::from(xs[n]), f64::from(ys[n]));
+            out[n] = depths.floored_word::<FMA>(depths.uncut::<FMA, false>(at, edges, reciprocal));
         }
     }
 }
@@ -436,16 +436,25 @@ impl Depths<'_> {
         let (ys, iota, references) = (&ys[..lanes], &iota[..lanes], &mut references[..lanes]);
         let (one, other) = (&mut one[..lanes], &mut other[..lanes]);
         for n in 0..lanes {
-            let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-            let e0 = edges[0].at::<FMA, ROW>(x, y);
-            let e1 = edges[1].at::<FMA, ROW>(x, y);
-            let e2 = edges[2].at::<FMA, ROW>(x, y);
-            let powers = [power(e0), power(e1), power(e2)];
-            let (e_one, e_other, by_one, by_other, reference) = choose(powers, [e0, e1, e2], self.z, differences);
-            one[n] = cut24(e_one * reciprocal) * by_one;
-            other[n] = cut24(e_other * reciprocal) * by_other;
-            references[n] = reference;
+            let at = position::<ROW>(n, last, xs, ys, iota);
+            [one[n], other[n], references[n]] = self.uncut::<FMA, ROW>(at, edges, (reciprocal, differences));
         }
+    }
+
+    /// Returns the [terms](Self::uncut_terms) of one pixel, and the depth of its reference.
+    #[inline(always)]
+    fn uncut<const FMA: bool, const ROW: bool>(
+        &self,
+        (x, y): (f64, f64),
+        edges: [Line; 3],
+        (reciprocal, differences): (f64, [[f64; 2]; 3]),
+    ) -> [f64; 3] {
+        let e0 = edges[0].at::<FMA, ROW>(x, y);
+        let e1 = edges[1].at::<FMA, ROW>(x, y);
+        let e2 = edges[2].at::<FMA, ROW>(x, y);
+        let powers = [power(e0), power(e1), power(e2)];
+        let (e_one, e_other, by_one, by_other, reference) = choose(powers, [e0, e1, e2], self.z, differences);
+        [cut24(e_one * reciprocal) * by_one, cut24(e_other * reciprocal) * by_other, reference]
     }
 
     /// Multiplies differences by their weights. Returns whether some are too close to a border.
@@ -486,21 +495,12 @@ impl Depths<'_> {
         let (references, one, other) = (&references[..lanes], &one[..lanes], &other[..lanes]);
         let (sums, lost) = (&mut sums[..lanes], &mut lost[..lanes]);
         for n in 0..lanes {
-            let (a, b, z) = (one[n], other[n], references[n]);
-            let largest = if a.abs() > b.abs() { a.abs() } else { b.abs() };
-            let largest = if z.abs() > largest { z.abs() } else { largest };
-            // Smaller terms yield no depth.
-            let top = power(if largest > 1e-200 { largest } else { 1e-200 });
-            let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
-            let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
-            let depth = sum * (top * LAST_BIT);
+            let terms = [one[n], other[n], references[n]];
             if GENERAL {
-                (sums[n], lost[n]) = (depth, 0.0);
+                (sums[n], lost[n]) = (total::<FMA>(terms), 0.0);
                 continue;
             }
-            let depth = if depth > 0.0 { depth } else { 0.0 };
-            let depth = if depth < self.full { depth } else { self.full };
-            out[n] = nearest(floor::<FMA>(depth)) as u32;
+            out[n] = self.floored_word::<FMA>(terms);
         }
         if GENERAL && self.offset != [0.0; 2] {
             for (sum, lost) in sums.iter_mut().zip(&mut *lost) {
@@ -516,6 +516,15 @@ impl Depths<'_> {
                 *out = self.word(*sum, *lost);
             }
         }
+    }
+
+    /// Returns the word of a depth that is the sum of three terms, floored and nothing else.
+    #[inline(always)]
+    fn floored_word<const FMA: bool>(&self, terms: [f64; 3]) -> u32 {
+        let depth = total::<FMA>(terms);
+        let depth = if depth > 0.0 { depth } else { 0.0 };
+        let depth = if depth < self.full { depth } else { self.full };
+        nearest(floor::<FMA>(depth)) as u32
     }
 
     /// DEP-3 to DEP-5: returns the word of a depth that is the sum of a double and a number below its last bit.
@@ -534,6 +543,18 @@ impl Depths<'_> {
         let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
         word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
+}
+
+/// DEP-1: returns the sum of three terms, each cut to 29 bits below the first of the largest.
+#[inline(always)]
+fn total<const FMA: bool>([a, b, z]: [f64; 3]) -> f64 {
+    let largest = if a.abs() > b.abs() { a.abs() } else { b.abs() };
+    let largest = if z.abs() > largest { z.abs() } else { largest };
+    // Smaller terms yield no depth.
+    let top = power(if largest > 1e-200 { largest } else { 1e-200 });
+    let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
+    let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
+    sum * (top * LAST_BIT)
 }
 
 /// Returns the factor that turns edge numbers times the reciprocal of a doubled area of at most 2^24 into weights.

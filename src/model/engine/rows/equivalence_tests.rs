@@ -315,7 +315,7 @@ fn compare_small<const FMA: bool>(
     let mut done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
     done &= !small.has_ratios || small.interpolate_ratios::<FMA>(plain, batch, varying);
     if plain.depths_together {
-        small.depths.write::<FMA>(0, batch, context.draw.depth_format, varying.depths());
+        small.depths.write::<FMA>(0, batch, context.draw.depth_format, &mut varying.depth);
     } else {
         super::depth::depths::<FMA, false>(context, batch, varying.depths());
     }
