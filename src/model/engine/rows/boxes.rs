@@ -1,5 +1,4 @@
 //! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
-#![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
 use super::kernels::{PerLane, STEP};
 use super::quotient::Positions;
