@@ -9,13 +9,10 @@ use super::planes::edge_lines;
 use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whole};
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
-use super::shapes::{Each, GROUP, Lines, Shapes};
 use crate::engine::context::TriangleContext;
-use crate::number::convert::depth as fraction;
-use crate::plan::PlannedDraw;
 use crate::raster::depth::{difference, largest_edge, w_ratio};
 use crate::raster::interpolate::most_dominant;
-use crate::state::{DepthFormat, DepthRange, PolygonOffset, VertexDepths};
+use crate::state::{DepthFormat, DepthRange, VertexDepths};
 use std::ops::Range;
 
 /// Bits of a double below its first 24.
@@ -154,81 +151,9 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     defined
 }
 
-/// Returns whether depths of a draw, if it has any, are fractions of whole steps that are floored and nothing else.
-pub(super) fn are_floored(draw: &PlannedDraw) -> bool {
-    draw.depth_test.as_ref().is_none_or(|test| {
-        test.vertex_depths == VertexDepths::Fractions
-            && test.offset == PolygonOffset { bias: 0.0, factor: 0.0 }
-            && test.range.is_none()
-            && !(test.w_buffer || draw.depth_format.is_float())
-    })
-}
-
-/// Depths in boxes of small triangles, for a draw for which [`are_floored`] holds.
-#[derive(Debug, Default)]
-pub(super) struct BoxDepths {
-    edges: [Lines; 3],
-    z: [Each<f64>; 3],
-    /// Differences of the depths of vertices 1 and 0, 2 and 0, 2 and 1, times the [unit](unit_of_weights).
-    differences: [Each<f64>; 3],
-    reciprocal: Each<f64>,
-}
-
-impl BoxDepths {
-    /// Sets up all boxes, from z at the vertices.
-    #[inline(always)]
-    pub(super) fn set_up(&mut self, z: &[Each<f32>; 3], format: DepthFormat, shapes: &Shapes) {
-        let (bits, mut unit) = (format.bits(), [0.0; GROUP]);
-        for n in 0..GROUP {
-            // There is no area past the last box.
-            let area = i64::from(shapes.doubled_area[n]).max(1);
-            for k in 0..3 {
-                self.z[k][n] = fraction(z[k][n], bits) as f64;
-            }
-            (self.reciprocal[n], unit[n]) = (bits_of_reciprocal(area), unit_of_weights(area));
-        }
-        self.edges = [shapes.lines(0), shapes.lines(1), shapes.lines(2)];
-        // Exact in binary32, too, because depths are whole numbers of at most 24 bits.
-        for (differences, (a, b)) in self.differences.iter_mut().zip([(1, 0), (2, 0), (2, 1)]) {
-            for n in 0..GROUP {
-                differences[n] = (self.z[a][n] - self.z[b][n]) * unit[n];
-            }
-        }
-    }
-
-    /// Writes the depths of one box.
-    #[inline(always)]
-    pub(super) fn write<const FMA: bool>(
-        &self,
-        n: usize,
-        batch: PixelBatch<'_>,
-        format: DepthFormat,
-        out: &mut PerLane<u32>,
-    ) {
-        let differences = all_differences(self.differences[0][n], self.differences[1][n], self.differences[2][n]);
-        let edges = [self.edges[0].of(n), self.edges[1].of(n), self.edges[2].of(n)];
-        let depths = Depths {
-            z: [self.z[0][n], self.z[1][n], self.z[2][n]],
-            differences,
-            ratios: [1.0; 3],
-            full: f64::from(format.largest()),
-            offset: [0.0; 2],
-            range: None,
-            format,
-        };
-        let reciprocal = (self.reciprocal[n], differences);
-        let out = &mut out[batch.lanes()];
-        let (xs, ys) = (&batch.at.x[..out.len()], &batch.at.y[..out.len()]);
-        for n in 0..out.len() {
-            let at = (f64::from(xs[n]), f64::from(ys[n]));
-            out[n] = depths.floored_word::<FMA>(depths.uncut::<FMA, false>(at, edges, reciprocal));
-        }
-    }
-}
-
 /// Returns the differences of the depths of the [two other vertices](OTHERS) from each vertex.
 #[inline(always)]
-fn all_differences(first: f64, second: f64, third: f64) -> [[f64; 2]; 3] {
+pub(super) fn all_differences(first: f64, second: f64, third: f64) -> [[f64; 2]; 3] {
     [[first, second], [-first, third], [-second, -third]]
 }
 
@@ -437,24 +362,8 @@ impl Depths<'_> {
         let (one, other) = (&mut one[..lanes], &mut other[..lanes]);
         for n in 0..lanes {
             let at = position::<ROW>(n, last, xs, ys, iota);
-            [one[n], other[n], references[n]] = self.uncut::<FMA, ROW>(at, edges, (reciprocal, differences));
+            [one[n], other[n], references[n]] = uncut_terms::<FMA, ROW>(at, edges, self.z, (reciprocal, differences));
         }
-    }
-
-    /// Returns the [terms](Self::uncut_terms) of one pixel, and the depth of its reference.
-    #[inline(always)]
-    fn uncut<const FMA: bool, const ROW: bool>(
-        &self,
-        (x, y): (f64, f64),
-        edges: [Line; 3],
-        (reciprocal, differences): (f64, [[f64; 2]; 3]),
-    ) -> [f64; 3] {
-        let e0 = edges[0].at::<FMA, ROW>(x, y);
-        let e1 = edges[1].at::<FMA, ROW>(x, y);
-        let e2 = edges[2].at::<FMA, ROW>(x, y);
-        let powers = [power(e0), power(e1), power(e2)];
-        let (e_one, e_other, by_one, by_other, reference) = choose(powers, [e0, e1, e2], self.z, differences);
-        [cut24(e_one * reciprocal) * by_one, cut24(e_other * reciprocal) * by_other, reference]
     }
 
     /// Multiplies differences by their weights. Returns whether some are too close to a border.
@@ -500,7 +409,7 @@ impl Depths<'_> {
                 (sums[n], lost[n]) = (total::<FMA>(terms), 0.0);
                 continue;
             }
-            out[n] = self.floored_word::<FMA>(terms);
+            out[n] = floored_word::<FMA>(terms, self.full);
         }
         if GENERAL && self.offset != [0.0; 2] {
             for (sum, lost) in sums.iter_mut().zip(&mut *lost) {
@@ -516,15 +425,6 @@ impl Depths<'_> {
                 *out = self.word(*sum, *lost);
             }
         }
-    }
-
-    /// Returns the word of a depth that is the sum of three terms, floored and nothing else.
-    #[inline(always)]
-    fn floored_word<const FMA: bool>(&self, terms: [f64; 3]) -> u32 {
-        let depth = total::<FMA>(terms);
-        let depth = if depth > 0.0 { depth } else { 0.0 };
-        let depth = if depth < self.full { depth } else { self.full };
-        nearest(floor::<FMA>(depth)) as u32
     }
 
     /// DEP-3 to DEP-5: returns the word of a depth that is the sum of a double and a number below its last bit.
@@ -545,6 +445,32 @@ impl Depths<'_> {
     }
 }
 
+/// DEP-1: returns the terms of the two vertices that are not the reference of a pixel, and the depth of the reference, where nothing is cut off edge
+/// functions. `differences` are multiplied by the [unit](unit_of_weights).
+#[inline(always)]
+pub(super) fn uncut_terms<const FMA: bool, const ROW: bool>(
+    (x, y): (f64, f64),
+    edges: [Line; 3],
+    z: [f64; 3],
+    (reciprocal, differences): (f64, [[f64; 2]; 3]),
+) -> [f64; 3] {
+    let e0 = edges[0].at::<FMA, ROW>(x, y);
+    let e1 = edges[1].at::<FMA, ROW>(x, y);
+    let e2 = edges[2].at::<FMA, ROW>(x, y);
+    let powers = [power(e0), power(e1), power(e2)];
+    let (e_one, e_other, by_one, by_other, reference) = choose(powers, [e0, e1, e2], z, differences);
+    [cut24(e_one * reciprocal) * by_one, cut24(e_other * reciprocal) * by_other, reference]
+}
+
+/// Returns the word of a depth that is the sum of three terms, at most `full`, floored and nothing else.
+#[inline(always)]
+pub(super) fn floored_word<const FMA: bool>(terms: [f64; 3], full: f64) -> u32 {
+    let depth = total::<FMA>(terms);
+    let depth = if depth > 0.0 { depth } else { 0.0 };
+    let depth = if depth < full { depth } else { full };
+    nearest(floor::<FMA>(depth)) as u32
+}
+
 /// DEP-1: returns the sum of three terms, each cut to 29 bits below the first of the largest.
 #[inline(always)]
 fn total<const FMA: bool>([a, b, z]: [f64; 3]) -> f64 {
@@ -559,7 +485,7 @@ fn total<const FMA: bool>([a, b, z]: [f64; 3]) -> f64 {
 
 /// Returns the factor that turns edge numbers times the reciprocal of a doubled area of at most 2^24 into weights.
 #[inline(always)]
-fn unit_of_weights(area: i64) -> f64 {
+pub(super) fn unit_of_weights(area: i64) -> f64 {
     power_of_two(area.leading_zeros() as i32 - 64 - 28)
 }
 

@@ -11,7 +11,7 @@
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
 //! | `third.rs` | layers of volumes, depths to compare with |
-//! | `shapes.rs`, `small.rs`, `ratios.rs` | the same for boxes of small triangles, eight at a time: corners, spans and what functions share; coordinates on planes and weights; the rest |
+//! | `shapes.rs`, `small.rs`, `ratios.rs`, `box_depths.rs` | the same for boxes of small triangles, eight at a time: corners, spans and what functions share; coordinates on planes and weights; coordinates by q, numbers, depths to compare with; depths |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
@@ -26,6 +26,7 @@
 //! integer. What rows do not cover is computed by the definition, pixel by pixel, within the same blocks.
 
 mod band;
+mod box_depths;
 mod boxes;
 mod build;
 mod color;
@@ -227,7 +228,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
         && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
-    let are_floored = depth::are_floored(draw) && !compiled.completes_quads;
+    let are_floored = box_depths::are_floored(draw) && !compiled.completes_quads;
     compiled.depths_together = draw.depth_test.is_some() && are_floored;
     compiled.together = are_floored && (compiled.shader.is_none() || compiled.of_numbers().is_some());
     compiled.read = [compiled.primary, compiled.secondary]

@@ -351,6 +351,7 @@ impl Setup<'_> {
         let above = ((j & !1) - j) as f32;
         let room = |known: &mut Known<T>, count: usize| {
             known.each.resize(known.each.len().max(count), T::behind(unit));
+            // Not where some are open: code that grows a list would slow down the loops beside it.
             known.open.resize(LANES, T::behind(unit));
         };
         if base.behind {

@@ -4,10 +4,10 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::CompiledDraw;
+use super::box_depths::BoxDepths;
 use super::boxes::BoxCoverage;
 use super::color::colors;
 use super::compiled::{Sampler, Third};
-use super::depth::BoxDepths;
 use super::kernels::PerLane;
 use super::quotient::{QuotientEstimate, SLACK, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
@@ -132,7 +132,7 @@ impl Boxes {
         for (n, sampler) in own(compiled) {
             let unit = &context.draw.units[sampler.index];
             let (of, set) = (&context.draw.assembly.vertices, unit.stage.coordinate_set);
-            let ([s, t], q) = (repeated(unit, of, vertices), of.gather(set, 3, vertices));
+            let q = of.gather(set, 3, vertices);
             let mut is_plane = [true; GROUP];
             for n in 0..GROUP {
                 is_plane[n] = [q[0][n], q[1][n], q[2][n]] == [1.0; 3];
@@ -145,6 +145,7 @@ impl Boxes {
             for n in 0..GROUP {
                 proves[n] &= -i32::from(is_plane[n] & !(may_lose & (shapes.exact[n] == 0)));
             }
+            let [s, t] = repeated(unit, of, vertices);
             let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
             let [u, v] = &mut self.coordinates[n];
             for (estimates, at, side, up) in [(u, s, width, up), (v, t, height, down)] {
