@@ -15,7 +15,7 @@
 //!   `ninebit-scene`.
 //! * [`plan`] reduces a scene to what can reach a frame. Once a [`plan::Plan`] exists, nothing can fail any more;
 //!   [`limits`] says how much it accepts.
-//! * [`engine`] draws: by default in blocks of 256 pixels, or pixel by pixel in the order in which the definition is
+//! * [`engine`] draws: by default in blocks of 384 pixels, or pixel by pixel in the order in which the definition is
 //!   written. Both run the rules of [`raster`], [`texture`], [`combiner`] and [`rop`] and store the same bytes.
 //! * [`number`] holds the lanes, which are the types that rules compute with: the integers of the definition, the real
 //!   numbers of the ideal, and both side by side. Each rule is written once, generic over the lane.

@@ -12,7 +12,7 @@ use crate::state::{
 use std::ops::{Deref, DerefMut};
 
 /// Number of pixels of a block.
-pub(crate) const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 384;
 
 /// Number of lanes of a step. Batches are handled in whole steps, so that lanes past their end may be written.
 pub(super) const STEP: usize = 16;

@@ -302,7 +302,7 @@ mod tests {
             };
             for red in 0..=255 {
                 let factors = [luminance_factor(red, state); BLOCK];
-                let mut channel = std::array::from_fn(|c| c as i16);
+                let mut channel = std::array::from_fn(|c| c as u8 as i16);
                 let wanted =
                     channel.map(|c| i16::from(shader::luminance_byte(shader::luminance(c.into(), red, state))));
                 let mut fused = channel;
