@@ -58,6 +58,28 @@ pub struct Line {
     pub absolute: bool,
 }
 
+/// The function of an interpolated fog coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Curve {
+    /// FOG-2.
+    Line(Line),
+    /// FOG-4.
+    Table(FogMode),
+}
+
+impl Curve {
+    /// Returns the curve of a function, or `None` if its numbers are not finite.
+    pub(crate) fn new(function: &FogFunction) -> Option<Curve> {
+        let mode = function.mode;
+        if !mode.is_linear() {
+            return Some(Curve::Table(mode));
+        }
+        let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (function.p0, function.p1) };
+        let line = Line { p0, p1, absolute: mode == FogMode::LinearAbs };
+        (p0.is_finite() && p1.is_finite()).then_some(Curve::Line(line))
+    }
+}
+
 /// A fog byte and the value that it was computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FogFactor {
@@ -81,7 +103,7 @@ pub enum FogStep {
 }
 
 /// INT-5n: limits a factor to 0..1. NaN, which clipping makes of infinite factors, counts as 0.
-pub(super) fn limited(factor: f32) -> f32 {
+pub(crate) fn limited(factor: f32) -> f32 {
     if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
@@ -91,19 +113,12 @@ impl FogPlane {
         let Some(function) = function else {
             return FogPlane::Factor(triangle.factor(vertices.map(limited)));
         };
-        let mode = function.mode;
-        let mut finite = vertices.iter().all(|n| n.is_finite());
-        if mode.is_linear() {
-            let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (function.p0, function.p1) };
-            finite &= p0.is_finite() && p1.is_finite();
-            if finite {
-                let line = Line { p0, p1, absolute: mode == FogMode::LinearAbs };
-                return FogPlane::Linear(line, triangle.attribute(vertices));
-            }
-        } else if finite {
-            return FogPlane::Exponential(mode, triangle.attribute(vertices));
+        let finite = vertices.iter().all(|n| n.is_finite());
+        match Curve::new(&function) {
+            Some(Curve::Line(line)) if finite => FogPlane::Linear(line, triangle.attribute(vertices)),
+            Some(Curve::Table(mode)) if finite => FogPlane::Exponential(mode, triangle.attribute(vertices)),
+            _ => FogPlane::NotFinite(not_finite(function.mode)),
         }
-        FogPlane::NotFinite(not_finite(mode))
     }
 
     /// Returns the fog at a sample that the triangle covers.

@@ -152,6 +152,12 @@ impl Vertices {
         self.position[component].gather(triangles)
     }
 
+    /// Returns the fog of the vertices of triangles, which must exist, like [`gather`](Self::gather).
+    #[inline(always)]
+    pub(crate) fn gather_fog<const N: usize>(&self, triangles: &[[u32; 3]; N]) -> [[f32; N]; 3] {
+        self.fog.gather(triangles)
+    }
+
     /// Calls `change` with the index and the contents of each vertex, and stores the changed vertices.
     pub fn update(&mut self, mut change: impl FnMut(usize, &mut Vertex)) {
         let changed = self.iter().enumerate().map(|(index, mut vertex)| {

@@ -71,7 +71,7 @@ pub(super) fn plain<const FMA: bool>(
     boxes.interpolate::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
 }
 
-/// Computes coordinates that are divided by q, depths to compare with and numbers of the texture shader in the block's current box, whose other
+/// Computes coordinates that are divided by q, depths to compare with, fog and numbers of the texture shader in the block's current box, whose other
 /// attributes are interpolated. Returns `false` if something is not proved; then nothing that was written counts.
 #[inline(always)]
 pub(super) fn ratios<const FMA: bool>(
@@ -79,14 +79,36 @@ pub(super) fn ratios<const FMA: bool>(
     compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, boxes, used, workshop, .. } = block;
+    let Block { varying, rows, boxes, used, workshop, .. } = block;
     let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
-    let proves = boxes.interpolate_ratios::<FMA>(compiled, batch, varying);
+    let proves = boxes.interpolate_ratios::<FMA>((context, compiled), batch, varying, rows);
     if let (true, Some(shader)) = (proves, compiled.of_numbers()) {
         let numbers = (boxes.numbers(), boxes.current);
         workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);
     }
     proves
+}
+
+/// Sets up what is computed by [`levels`].
+#[inline(always)]
+pub(super) fn set_up_levels<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    compiled: &CompiledDraw,
+    boxes: &mut Boxes,
+) {
+    boxes.set_up_levels::<FMA>(context, compiled);
+}
+
+/// Computes the fetches of samplers with levels in the block's current box, whose other attributes are interpolated. Returns `false` if something is
+/// not proved; then nothing that was written counts.
+#[inline(always)]
+pub(super) fn levels<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    compiled: &CompiledDraw,
+    block: &mut Block,
+) -> bool {
+    let Block { varying, boxes, used, .. } = block;
+    boxes.interpolate_levels::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying)
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.

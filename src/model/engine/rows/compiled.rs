@@ -74,9 +74,9 @@ impl Sampler {
         if self.filters && !self.mixes { 128 } else { 0 }
     }
 
-    /// Returns whether it needs nothing for each pixel but two coordinates, on one level, and perhaps a depth to compare with.
+    /// Returns whether it needs nothing for each pixel but two coordinates, and perhaps a level of detail or a depth to compare with.
     pub(super) fn is_plain(&self) -> bool {
-        !(self.mixes || self.pairs > 0 || self.has_images())
+        !(self.pairs > 0 || self.has_images())
     }
 
     /// Returns whether it has faces or layers.
@@ -119,8 +119,8 @@ pub(crate) struct CompiledDraw {
     pub(super) shader: Option<Arc<Shader>>,
     /// Whether each pixel needs estimates besides coordinates: taps, layers or depths to compare with.
     pub(super) estimates: bool,
-    /// Whether nothing is interpolated but colours, depths, inputs of the texture shader, and coordinates of textures with one level, neither cube
-    /// maps nor volumes; and no quads are completed.
+    /// Whether nothing is interpolated but colours, depths, fog, inputs of the texture shader, and coordinates of textures that are neither cube maps nor
+    /// volumes; and no quads are completed.
     pub(super) plain: bool,
     /// Whether there are depths, and those of small triangles are set up together.
     pub(super) depths_together: bool,
@@ -149,6 +149,17 @@ impl CompiledDraw {
             (a ^ b) | (b ^ c)
         });
         (primary & self.read[0]) | (secondary & self.read[1]) != 0
+    }
+
+    /// Returns whether something besides colours is divided by D.
+    #[inline(always)]
+    pub(super) fn divides(&self) -> bool {
+        self.shader.is_some() || self.fog.is_some() || !self.samplers.is_empty()
+    }
+
+    /// Returns whether a plain draw reads depths to compare with, fog, or numbers of the texture shader.
+    pub(super) fn reads_ratios(&self) -> bool {
+        self.estimates || self.fog.is_some() || self.of_numbers().is_some()
     }
 
     /// Returns the texture shader if all of its inputs are numbers.

@@ -288,6 +288,9 @@ fn draw_boxes<T: Kernels>(
         if block.boxes.has_ratios {
             T::set_up_ratios(&contexts[0], job.compiled, &mut block.boxes);
         }
+        if block.boxes.has_levels {
+            T::set_up_levels(&contexts[0], job.compiled, &mut block.boxes);
+        }
     }
     let count = std::mem::take(&mut block.boxes.count);
     while next < count {
@@ -344,7 +347,8 @@ fn begin_part<T: Kernels>(
         }
         let proves = job.compiled.plain
             && T::plain(context, job.compiled, block)
-            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block));
+            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block))
+            && (!block.boxes.has_levels || T::levels(context, job.compiled, block));
         if !proves {
             return true;
         }

@@ -7,8 +7,9 @@
 use super::boxes::{HALF_STEP, batch, boxes, is_small};
 use super::kernels::{PerLane, STEP};
 use super::levels::MipFetches;
+use super::planes::inverse;
 use super::quads::Measure;
-use super::setup::PixelBatch;
+use super::setup::{PixelBatch, Setup};
 use super::small::Boxes;
 use super::taps::{Footprints, Pair, PairsOfQuad};
 use super::triangle::{Interpolators, Varying};
@@ -311,9 +312,15 @@ fn compare_small<const FMA: bool>(
     if small.has_ratios {
         small.set_up_ratios::<FMA>(context, plain);
     }
+    if small.has_levels {
+        small.set_up_levels::<FMA>(context, plain);
+    }
     let batch = batch::<HALF_STEP>(small.coverage(), 0);
     let mut done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
-    done &= !small.has_ratios || small.interpolate_ratios::<FMA>(plain, batch, varying);
+    done &= !small.has_ratios || small.interpolate_ratios::<FMA>((context, plain), batch, varying, rows);
+    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
+    done &= !small.has_levels || small.interpolate_levels::<FMA>(context, plain, batch, varying);
+    let (alone, mut wanted) = (Setup::new(context, &inverse(&context.triangle)), MipFetches::default());
     if plain.depths_together {
         small.depths.write::<FMA>(0, batch, context.draw.depth_format, &mut varying.depth);
     } else {
@@ -323,6 +330,10 @@ fn compare_small<const FMA: bool>(
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
             let unit = &context.draw.units[sampler.index];
+            if sampler.mixes {
+                compare_reads(&alone, sampler, batch, n, &varying.reads[index], &mut wanted);
+                continue;
+            }
             let place = context.sample_coordinates(unit, &sample, batch.pixel(n)).unwrap();
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
@@ -333,6 +344,9 @@ fn compare_small<const FMA: bool>(
                 assert_eq!(got, wanted, "reference of unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
             }
         }
+        let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
+        let slot = usize::from(plain.fog.unwrap());
+        assert_eq!(rows[slot].0[lane], fog, "{:?} {:?} of {:?}", batch.pixel(n), context.draw.fog, context.vertices());
         if plain.varies(context) {
             let weights = sample.weights().map(|w| w.value as u16);
             let got = varying.narrow.each_ref().map(|w| w[lane]);
@@ -342,6 +356,25 @@ fn compare_small<const FMA: bool>(
         assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", batch.pixel(n), context.vertices());
     }
     done
+}
+
+/// Compares the fetches of a pixel from a texture with levels with those of the definition.
+fn compare_reads(
+    setup: &Setup<'_>,
+    sampler: &super::Sampler,
+    batch: PixelBatch<'_>,
+    n: usize,
+    found: &MipFetches,
+    wanted: &mut MipFetches,
+) {
+    setup.defined_reads(batch, n, sampler, wanted);
+    let of = |reads: &MipFetches| {
+        let lane = batch.lane + n;
+        let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
+        (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
+    };
+    let (unit, vertices) = (sampler.index, setup.context.vertices());
+    assert_eq!(of(found), of(wanted), "unit {unit} {:?} of {vertices:?}", batch.pixel(n));
 }
 
 /// Compares a batch with the definition, pixel by pixel.
@@ -372,13 +405,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             let place = context.sample_coordinates(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
-                interpolators.setup.defined_reads(batch, n, sampler, &mut wanted);
-                let of = |reads: &MipFetches| {
-                    let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
-                    (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
-                };
-                let (got, wanted) = (of(&varying.reads[index]), of(&wanted));
-                assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
+                compare_reads(&interpolators.setup, sampler, batch, n, &varying.reads[index], &mut wanted);
                 continue;
             }
             let bias = if compiled.samplers[index].filters { 128 } else { 0 };
@@ -433,8 +460,8 @@ fn rows_interpolate(seed: u64) {
     let (wanted, least_drawn) = (all / 2, 10_000);
     let mut random = Random::seeded(seed);
     let (mut pixels, mut drawn, mut with_depths, mut round) = (0, 0, 0, 0_u64);
-    // By the kind of coordinates: on planes, divided by q, and both with depths to compare with.
-    let mut proved = [0; 4];
+    // By the kind of coordinates: on planes, divided by q, and both with depths to compare with; on planes with levels.
+    let mut proved = [0; 5];
     let (mut covers, mut small_boxes, mut reasons) = (Boxes::default(), Boxes::default(), Reasons::default());
     while pixels < wanted || drawn < least_drawn {
         round += 1;
@@ -482,8 +509,9 @@ fn rows_interpolate(seed: u64) {
             .filter(|sampler| sampler.is_plain())
             .map(|sampler| {
                 let samplers = vec![super::Sampler { shares: None, ..sampler.clone() }; 1 + round as usize % 4];
-                let kind = 2 * usize::from(sampler.third.is_some()) + usize::from(sampler.index == 2);
-                (kind, super::CompiledDraw { samplers, fog: None, plain: true, ..compiled.clone().into_owned() })
+                let of_coordinates = 2 * usize::from(sampler.third.is_some()) + usize::from(sampler.index == 2);
+                let kind = if sampler.mixes { 4 } else { of_coordinates };
+                (kind, super::CompiledDraw { samplers, plain: true, ..compiled.clone().into_owned() })
             })
             .collect();
         let draw = &plan.draws[0];

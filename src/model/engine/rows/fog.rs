@@ -7,12 +7,14 @@ use super::Reason;
 use super::kernels::PerLane;
 use super::planes::{Plane, inverse};
 use super::quotient::{Line, Reciprocals, SLACK, floor_of_factor, nearest, whole};
+use super::ratios::{Bounds, OfVertices};
 use super::setup::{BatchSetup, PixelBatch, Setup};
+use super::shapes::{Each, Edges, GROUP, Lines};
 use crate::engine::context::TriangleContext;
 use crate::number::convert::factor;
-use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
+use crate::raster::fog::{self, CENTRE, FogPlane, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;
-use crate::state::FogMode;
+use crate::state::{FogFunction, FogMode};
 
 /// The fog factor of a triangle's pixels.
 #[derive(Clone, Copy, Debug)]
@@ -25,13 +27,41 @@ pub(super) enum Fog {
     Function(Curve),
 }
 
-/// A fog function of d' or e, which is divided by D.
+/// A fog coordinate, d' or e, which is divided by D, and its function.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
     coordinate: Plane,
+    /// What the plane's numbers are multiplied by.
+    unit: f64,
+    function: Function,
+}
+
+/// A function of a fog coordinate.
+#[derive(Clone, Copy, Debug)]
+struct Function {
     /// Factor that turns p1 d' or e into 4096ths.
     scale: f64,
     kind: Kind,
+}
+
+impl Function {
+    fn new(curve: fog::Curve) -> Function {
+        match curve {
+            fog::Curve::Line(line) => {
+                let start = 4096.0 * (f64::from(line.p0) - 1.0);
+                let sign = line.absolute.then(|| f64::from(line.p1).signum());
+                Function { scale: 4096.0 * f64::from(line.p1), kind: Kind::Linear { start, sign } }
+            }
+            fog::Curve::Table(mode) => {
+                let table = match mode {
+                    FogMode::Exp => &EXP,
+                    FogMode::ExpAbs => &EXP_ABS,
+                    _ => &EXP2,
+                };
+                Function { scale: 4096.0, kind: Kind::Table(table) }
+            }
+        }
+    }
 }
 
 /// The function of the 4096ths.
@@ -77,22 +107,11 @@ impl Fog {
         let triangle = &context.triangle;
         let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
         let fog = context.fog.as_ref()?;
-        let (attribute, scale, kind) = match fog {
+        let (attribute, curve) = match fog {
             FogPlane::Factor(g) => return Some(Fog::Factor(plane(*g))),
             FogPlane::NotFinite(byte) => return Some(Fog::Same(i16::from(*byte))),
-            FogPlane::Linear(line, attribute) => {
-                let start = 4096.0 * (f64::from(line.p0) - 1.0);
-                let sign = line.absolute.then(|| f64::from(line.p1).signum());
-                (attribute, f64::from(line.p1), Kind::Linear { start, sign })
-            }
-            FogPlane::Exponential(mode, attribute) => {
-                let table = match mode {
-                    FogMode::Exp => &EXP,
-                    FogMode::ExpAbs => &EXP_ABS,
-                    _ => &EXP2,
-                };
-                (attribute, 1.0, Kind::Table(table))
-            }
+            FogPlane::Linear(line, attribute) => (attribute, fog::Curve::Line(*line)),
+            FogPlane::Exponential(mode, attribute) => (attribute, fog::Curve::Table(*mode)),
         };
         let [a, b, c] = context.vertices().fog();
         if a == b && b == c {
@@ -101,8 +120,8 @@ impl Fog {
         }
         let (g, exponent) = attribute.numbers();
         // A power of two close to a single-precision number, and so far from the limits of double precision.
-        let unit = f64::from_bits(((exponent + FACTOR_BITS + 1023).max(0) as u64) << 52);
-        Some(Fog::Function(Curve { coordinate: plane(g), scale: scale * unit, kind }))
+        let unit = f64::from_bits(((exponent + 1023).max(0) as u64) << 52);
+        Some(Fog::Function(Curve { coordinate: plane(g), unit, function: Function::new(curve) }))
     }
 
     /// Returns the factor of all pixels of a row within the triangle, if it does not vary along rows and is proved. `e` has the edge
@@ -114,14 +133,17 @@ impl Fog {
             Fog::Factor(_) => return None,
         };
         let (e, real) = (e.map(|e| e as f64), &curve.coordinate.real);
-        let line = real.line(&e).times(curve.scale);
+        let scale = curve.scale();
+        let line = real.line(&e).times(scale);
         if line.x != 0.0 {
             return None;
         }
         let reciprocal = 1.0 / setup.denominator.real.line(&e).c;
-        let off = 2.0 * real.reach * SLACK * curve.scale.abs();
+        let off = 2.0 * real.reach * SLACK * scale.abs();
         let (at, mut factor) = ([&[0.0][..], &[0.0], &[reciprocal]], [0]);
-        let is_proved = off < COARSEST && !curve.look_up::<false, true>(at, line, off, &mut factor, &mut [0], &mut [0]);
+        let function = &curve.function;
+        let is_proved =
+            off < COARSEST && !function.look_up::<false, true>(at, line, off, &mut factor, &mut [0], &mut [0]);
         is_proved.then_some(factor[0])
     }
 }
@@ -154,15 +176,16 @@ impl Setup<'_> {
                 }
             }
             Fog::Function(curve) => {
-                let line = curve.coordinate.real.line(&local.real).times(curve.scale);
-                let off = local.margin::<ROW>(&curve.coordinate.real) * curve.scale.abs();
+                let scale = curve.scale();
+                let line = curve.coordinate.real.line(&local.real).times(scale);
+                let off = local.margin::<ROW>(&curve.coordinate.real) * scale.abs();
                 // NaN proves nothing either.
                 let proves = off < COARSEST;
                 if !proves {
                     return self.defined_factors(batch, |_| true, out);
                 }
                 let at = reciprocals.lanes(out.len());
-                if curve.look_up::<FMA, ROW>(at, line, off, out, values, spare) {
+                if curve.function.look_up::<FMA, ROW>(at, line, off, out, values, spare) {
                     self.defined_factors(batch, |n| spare[n] != 0, out);
                 }
             }
@@ -181,6 +204,63 @@ impl Setup<'_> {
 }
 
 impl Curve {
+    /// Returns the factor that turns the plane's numbers into 4096ths.
+    #[inline(always)]
+    fn scale(&self) -> f64 {
+        self.function.scale * self.unit
+    }
+}
+
+/// The fog of boxes of small triangles, if it is a function of a coordinate.
+#[derive(Debug, Default)]
+pub(super) struct BoxFog {
+    function: Option<Function>,
+    /// 4096ths, and their largest error.
+    line: Lines,
+    off: Each<f64>,
+}
+
+impl BoxFog {
+    /// Sets up all boxes from d' or e at the vertices. Clears `proves` where nothing would be proved.
+    #[inline(always)]
+    pub(super) fn set_up<const FMA: bool>(
+        &mut self,
+        edges: &Edges,
+        values: &OfVertices,
+        function: &FogFunction,
+        proves: &mut Each<i32>,
+    ) {
+        self.function = fog::Curve::new(function).map(Function::new);
+        let scale = self.function.as_ref().map_or(f64::NAN, |function| function.scale);
+        let (line, _, bounds) = Bounds::new::<FMA>(edges, values);
+        for n in 0..GROUP {
+            let of = line.of(n).times(scale);
+            (self.line.c[n], self.line.x[n], self.line.y[n]) = (of.c, of.x, of.y);
+            self.off[n] = bounds.off(edges, n) * scale.abs();
+            // NaN proves nothing either.
+            proves[n] &= -i32::from(self.off[n] < COARSEST);
+        }
+    }
+
+    /// Writes the factors of a box, at these columns, rows and reciprocals of D. Returns whether some are not proved. `values` and `spare` are scratch
+    /// space.
+    #[inline(always)]
+    pub(super) fn factors<const FMA: bool>(
+        &self,
+        n: usize,
+        at: [&[f64]; 3],
+        out: &mut [i16],
+        values: &mut PerLane<i32>,
+        spare: &mut PerLane<i32>,
+    ) -> bool {
+        let Some(function) = &self.function else { return true };
+        let (values, spare) = (&mut values[..out.len()], &mut spare[..out.len()]);
+        let close = function.look_up::<FMA, false>(at, self.line.of(n), self.off[n], out, values, spare);
+        close && spare.iter().fold(0, |all, unknown| all | unknown) != 0
+    }
+}
+
+impl Function {
     /// FOG-2 at the vertices: writes bytes, and numbers other than 0 for lanes that are not proved. Returns whether there are such lanes.
     /// `line` over D gives the 4096ths, whose error is at most `off`. `at` has columns, rows and the reciprocals of D.
     #[inline(always)]

@@ -4,7 +4,7 @@
 use super::direction::CubeDirection;
 use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quads::{BaseLevel, Known, Quads, floor, parted};
+use super::quads::{BaseLevel, Exact, Known, Quads, Spread, floor, of_box, parted};
 use super::quotient::{Line, Reciprocals, nearest, whole};
 use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
 use super::short::Short;
@@ -66,8 +66,9 @@ impl Setup<'_> {
         reads: &mut MipFetches,
     ) {
         if let Some(base) = self.base_level::<FMA, ROW>(batch, (sampler, planes), local) {
-            let local = (local, reciprocals);
-            self.levels_by::<FMA, ROW>(batch, sampler, &base, floors, local, short, (quads, placing), reads);
+            let exact = Some(Exact { setup: self, batch: &batch, e: &local.e });
+            let of = (self.unit(sampler), sampler, &base);
+            fetches::<FMA, ROW>(batch, of, exact, floors, reciprocals, short, (quads, placing), reads);
             return;
         }
         let Planes::Direction(directions, _) = planes else {
@@ -90,8 +91,9 @@ impl Setup<'_> {
                     let local = own.as_ref().unwrap_or(local);
                     if let Some(base) = self.base_level::<FMA, true>(part, (sampler, planes), local) {
                         let work = (&mut *quads, &mut *placing);
-                        let local = (local, reciprocals);
-                        self.levels_by::<FMA, true>(part, sampler, &base, floors, local, short, work, reads);
+                        let exact = Some(Exact { setup: self, batch: &part, e: &local.e });
+                        let of = (self.unit(sampler), sampler, &base);
+                        fetches::<FMA, true>(part, of, exact, floors, reciprocals, short, work, reads);
                         break true;
                     }
                     let (last, odd_row) = (part.at.last.into(), (j & 1) as f64);
@@ -116,86 +118,9 @@ impl Setup<'_> {
         }
     }
 
-    /// Computes all fetches of a batch from the coordinates of level 0.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    fn levels_by<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        sampler: &Sampler,
-        base: &BaseLevel<'_>,
-        floors: Option<[&[i32]; 2]>,
-        (local, reciprocals): (&BatchSetup, &Reciprocals),
-        short: &mut Short,
-        (quads, placing): (&mut Quads, &mut Placing),
-        reads: &mut MipFetches,
-    ) {
-        let Some(table) = &sampler.table else { return };
-        let unit = &self.context.draw.units[sampler.index];
-        let lanes = batch.at.x.len();
-        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, base), &local.e, quads, &mut reads.known);
-        let Placing { at, floors: [u, v], lods, levels, close, whole } = placing;
-        spread.hand_out(quads, &reads.known.each, batch.count, lods);
-        let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
-        let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
-        let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
-        if floors.is_none() {
-            // The smallest level has the largest shifts.
-            let (last, mut settled) = (shifts(ranges[1][1]), [(0.0, 0.0); 2]);
-            for axis in 0..2 {
-                let (gap, shared) = base.gaps[axis];
-                let lowers = |planes: &[Plane; 2]| self.may_lower(&batch, &planes[axis]);
-                let gap = if gap > 0.0 && base.planes.is_some_and(lowers) { 0.0 } else { gap };
-                // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
-                let floors = if last[axis] > shared { base.floors * f64::from(1 << last[axis]) } else { 0.0 };
-                settled[axis] = parted(gap, base.off + floors);
-            }
-            let lines = [base.along, base.down, base.denominator];
-            match base.losses {
-                Some(losses) => {
-                    let [at_u, at_v] = at;
-                    short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, 0.0, [&mut *at_u, &mut *at_v]);
-                    settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
-                }
-                None => {
-                    let reciprocals = if base.planes.is_some() {
-                        reciprocals
-                    } else {
-                        short.reciprocals.set::<FMA, ROW>(batch.at, base.denominator);
-                        &short.reciprocals
-                    };
-                    quotients::<FMA, ROW>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
-                }
-            }
-        }
-        let mut any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
-        if let Some(planes) = base.planes
-            && any_close
-            && base.losses.is_none()
-            && self.shift_with(sampler, planes)
-        {
-            self.correct_coordinates::<ROW>(batch, 0, planes, [true; 2], &local.e, u, v, whole);
-            any_close = false;
-        }
-        let [u, v] = floors.unwrap_or([u, v]);
-        reads.place_all((unit, table, base.face as u32), batch.lanes(), ranges, lods, levels, u, v);
-        let filters = Taken::of_unit(unit);
-        let count = if any_close { batch.count } else { 0 };
-        for n in (0..count).filter(|n| placing.close[*n] < 0) {
-            let Some(planes) = base.planes else {
-                self.defined_reads(batch, n, sampler, reads);
-                continue;
-            };
-            for which in 0..2 {
-                let level = placing.levels[which][n];
-                let on_axis = |axis: usize| {
-                    let shift = shifts(level)[axis];
-                    self.corrected(batch, n, &planes[axis].g.map(|g| g >> shift), placing.floors[axis][n] >> shift)
-                };
-                let placed = table.placed(level as usize, base.face as u32);
-                reads.place(which, batch.lane + n, &placed, filters, placing.lods[n], [on_axis(0), on_axis(1)]);
-            }
-        }
+    /// Returns the unit of a sampler.
+    fn unit(&self, sampler: &Sampler) -> &PlannedUnit {
+        &self.context.draw.units[sampler.index]
     }
 
     /// Returns the floor by INT-4 and INT-4t of a coordinate whose estimate is less than one off.
@@ -226,6 +151,101 @@ impl Setup<'_> {
         }
         reads.weights[lane] = weight as u16;
     }
+}
+
+/// Computes all fetches of a batch from the coordinates of level 0. Returns `false` if something is not proved and nothing decides it; then nothing
+/// counts.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+pub(super) fn fetches<const FMA: bool, const ROW: bool>(
+    batch: PixelBatch<'_>,
+    (unit, sampler, base): (&PlannedUnit, &Sampler, &BaseLevel<'_>),
+    exact: Option<Exact<'_>>,
+    floors: Option<[&[i32]; 2]>,
+    reciprocals: &Reciprocals,
+    short: &mut Short,
+    (quads, placing): (&mut Quads, &mut Placing),
+    reads: &mut MipFetches,
+) -> bool {
+    let Some(table) = &sampler.table else { return exact.is_some() };
+    let lanes = batch.at.x.len();
+    let spread = match exact {
+        Some(Exact { setup, e, .. }) => {
+            setup.of_quads::<FMA, ROW, i32>(batch, (unit, base), e, quads, &mut reads.known)
+        }
+        None if of_box::<FMA, i32>((unit, base), None, quads, &mut reads.known) => Spread::Rows,
+        None => return false,
+    };
+    let Placing { at, floors: [u, v], lods, levels, close, whole } = placing;
+    spread.hand_out(quads, &reads.known.each, batch.count, lods);
+    let ranges = choose(unit, lods, levels, &mut reads.weights[batch.lanes()]);
+    let shifts = |level: i32| unit.plane_shifts(&unit.levels[level as usize]);
+    let (u, v, close) = (&mut u[..lanes], &mut v[..lanes], &mut close[..lanes]);
+    // What decides coordinates on planes.
+    let on_planes = exact.zip(base.planes);
+    if floors.is_none() {
+        // The smallest level has the largest shifts.
+        let (last, mut settled) = (shifts(ranges[1][1]), [(0.0, 0.0); 2]);
+        for axis in 0..2 {
+            let (gap, shared) = base.gaps[axis];
+            let gap = match on_planes {
+                Some((Exact { setup, .. }, planes)) if gap > 0.0 && setup.may_lower(&batch, &planes[axis]) => 0.0,
+                _ => gap,
+            };
+            // In steps of level 0, because a coordinate that is whole on a smaller level is whole there.
+            let floors = if last[axis] > shared { base.floors * f64::from(1 << last[axis]) } else { 0.0 };
+            settled[axis] = parted(gap, base.off + floors);
+        }
+        let lines = [base.along, base.down, base.denominator];
+        match base.losses {
+            Some(losses) => {
+                let [at_u, at_v] = at;
+                short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, 0.0, [&mut *at_u, &mut *at_v]);
+                settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
+            }
+            None => {
+                let reciprocals = if base.by_d {
+                    reciprocals
+                } else {
+                    short.reciprocals.set::<FMA, ROW>(batch.at, base.denominator);
+                    &short.reciprocals
+                };
+                quotients::<FMA, ROW>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
+            }
+        }
+    }
+    let mut any_close = floors.is_none() && close.iter().fold(0, |all, close| all | close) < 0;
+    if let Some((Exact { setup, e, .. }, planes)) = on_planes
+        && any_close
+        && base.losses.is_none()
+        && setup.shift_with(sampler, planes)
+    {
+        setup.correct_coordinates::<ROW>(batch, 0, planes, [true; 2], e, u, v, whole);
+        any_close = false;
+    }
+    let [u, v] = floors.unwrap_or([u, v]);
+    reads.place_all((unit, table, base.face as u32), batch.lanes(), ranges, lods, levels, u, v);
+    if !any_close {
+        return true;
+    }
+    let Some(Exact { setup, .. }) = exact else { return false };
+    let filters = Taken::of_unit(unit);
+    for n in (0..batch.count).filter(|n| placing.close[*n] < 0) {
+        let Some(planes) = base.planes else {
+            setup.defined_reads(batch, n, sampler, reads);
+            continue;
+        };
+        for which in 0..2 {
+            let level = placing.levels[which][n];
+            let on_axis = |axis: usize| {
+                let shift = shifts(level)[axis];
+                setup.corrected(batch, n, &planes[axis].g.map(|g| g >> shift), placing.floors[axis][n] >> shift)
+            };
+            let placed = table.placed(level as usize, base.face as u32);
+            reads.place(which, batch.lane + n, &placed, filters, placing.lods[n], [on_axis(0), on_axis(1)]);
+        }
+    }
+    true
 }
 
 impl MipFetches {

@@ -33,11 +33,14 @@ impl Measure for i32 {
         lods: &mut [i32],
         close: &mut [i32],
     ) -> bool {
-        let slopes = Slopes::new(base);
-        if let Some(slopes) = &slopes {
+        let (slopes, proves) = match base.slopes {
+            Some(slopes) => (slopes, true),
+            None => Slopes::with_proof(base),
+        };
+        if proves {
             slopes.lods::<FMA>(origins, lods, close);
         }
-        slopes.is_some()
+        proves
     }
 
     #[inline(always)]
@@ -52,22 +55,23 @@ impl Measure for i32 {
 
 /// How fast u and v change from pixel to pixel. The difference of two quotients of linear functions is a linear function of one
 /// coordinate, divided by both denominators. A level of detail is proved unless the floors of the coordinates could change it.
-struct Slopes {
-    /// The denominator, 1 at the first pixel: its value there, and its changes to the right and below.
-    denominator: [f32; 3],
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slopes {
+    /// The changes of the denominator to the right and below. It is 1 at the first pixel.
+    pub(super) denominator: [f32; 2],
     /// Numerators of the differences of u and v to the pixel on the right, at row 0, and to the one below, at column 0; 1/65536 texel.
-    right: [f32; 2],
-    below: [f32; 2],
+    pub(super) right: [f32; 2],
+    pub(super) below: [f32; 2],
     /// What a row adds to the former, and a column takes off the latter.
-    cross: [f32; 2],
+    pub(super) cross: [f32; 2],
     /// Bounds of the error in 256ths of a level: of any quad, and of a quad whose pixels are 1/65536 texel apart.
-    margins: [f32; 2],
+    pub(super) margins: [f32; 2],
 }
 
 impl Slopes {
-    /// Sets up the quads of a batch. Returns `None` if hardly anything would be proved.
+    /// Sets up the quads of a batch, and returns whether anything would be proved. Without branches, so that compilers set up several batches at once.
     #[inline(always)]
-    fn new(base: &BaseLevel<'_>) -> Option<Slopes> {
+    pub(super) fn with_proof(base: &BaseLevel<'_>) -> (Slopes, bool) {
         let unit = 1.0 / base.denominator.c;
         let (d, lowest, [columns, rows]) = (base.denominator.times(unit), base.lowest * unit, base.reach);
         let (mut right, mut below, mut cross) = ([0.0; 2], [0.0; 2], [0.0; 2]);
@@ -85,15 +89,12 @@ impl Slopes {
         let ratio = (1.0 + d.x.abs() * columns + d.y.abs() * rows) / lowest;
         // Estimates of both coordinates, rounding in single precision, and in double precision.
         let off = 512.0 * base.off + (size / (1 << 21) as f64 + terms / (1_u64 << 48) as f64) * widest;
-        let proves = lowest > 0.0 && ratio < 64.0 && off < 4.0 && size * widest < FARTHEST / 4.0;
-        if !proves {
-            return None;
-        }
+        let proves = (lowest > 0.0) & (ratio < 64.0) & (off < 4.0) & (size * widest < FARTHEST / 4.0);
         // A floor moves each difference by less than 1, and the larger distance by less than the root of 2.
         let of_floors = STEPS_PER_E * (1.0 + ROOT_ERROR) * std::f64::consts::SQRT_2 * (1.0 + off);
         let of_any = LOG_ERROR + STEPS_PER_E * ratio / (1 << 20) as f64;
-        let (denominator, margins) = ([1.0, d.x as f32, d.y as f32], [of_any as f32, of_floors as f32]);
-        Some(Slopes { denominator, right, below, cross, margins })
+        let (denominator, margins) = ([d.x as f32, d.y as f32], [of_any as f32, of_floors as f32]);
+        (Slopes { denominator, right, below, cross, margins }, proves)
     }
 
     /// Computes the levels of detail of quads. Sets the sign bits of those that are not proved, and clears those of the others.
@@ -101,10 +102,10 @@ impl Slopes {
     fn lods<const FMA: bool>(&self, [xs, ys]: [&[f32]; 2], lods: &mut [i32], close: &mut [i32]) {
         let lanes = lods.len();
         let (xs, ys, close) = (&xs[..lanes], &ys[..lanes], &mut close[..lanes]);
-        let Slopes { denominator: [c, dx, dy], right, below, cross, margins: [of_any, of_floors] } = *self;
+        let Slopes { denominator: [dx, dy], right, below, cross, margins: [of_any, of_floors] } = *self;
         for n in 0..lanes {
             let (x, y) = (xs[n], ys[n]);
-            let here = fused::<FMA>(dy, y, fused::<FMA>(dx, x, c));
+            let here = fused::<FMA>(dy, y, fused::<FMA>(dx, x, 1.0));
             let (on_right, lower) = (here + dx, here + dy);
             let square = |[u, v]: [f32; 2], by: f32| (u * u + v * v) * (by * by);
             let right = square([0, 1].map(|k| fused::<FMA>(cross[k], y, right[k])), lower);

@@ -27,6 +27,7 @@
 
 mod band;
 mod box_depths;
+mod box_levels;
 mod boxes;
 mod build;
 mod color;
@@ -225,7 +226,6 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
     compiled.plain = compiled.samplers.iter().all(|sampler| sampler.depends || sampler.is_plain())
-        && compiled.fog.is_none()
         && !compiled.samples_pixels
         && !compiled.completes_quads;
     let are_floored = box_depths::are_floored(draw) && !compiled.completes_quads;

@@ -4,8 +4,9 @@
 
 use super::direction::{CubeDirection, constant, reaches_limit};
 use super::kernels::{LANES, PerLane, STEP};
+use super::lods::Slopes;
 use super::planes::Plane;
-use super::quotient::{Line, SLACK, any_negative, whole};
+use super::quotient::{Line, SLACK, any_negative, larger, whole};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup, whole_steps};
 use super::shapes::SIDE;
 use super::short::Losses;
@@ -19,6 +20,15 @@ use std::ops::Range;
 
 /// Coordinates of three pixels of each quad: u and v in 1/65536 texel, whole numbers.
 pub(super) type AtQuads = [[PerLane<f64>; 2]; 3];
+
+/// A triangle that is set up alone: its exact numbers and the definition decide what estimates of a batch do not prove.
+#[derive(Clone, Copy)]
+pub(super) struct Exact<'s> {
+    pub(super) setup: &'s Setup<'s>,
+    pub(super) batch: &'s PixelBatch<'s>,
+    /// Edge functions at the batch's first pixel.
+    pub(super) e: &'s [i64; 3],
+}
 
 /// A result that a unit derives from the coordinates at a quad.
 pub(super) trait Measure: Copy {
@@ -198,7 +208,7 @@ pub(super) struct BaseLevel<'p> {
     pub(super) lowest: f64,
     pub(super) reach: [f64; 2],
     /// What was added to u and v because they are [constant](super::planes::up), 1/65536 texel.
-    up: [f64; 2],
+    pub(super) up: [f64; 2],
     /// Upper bound of the error of an estimate, 1/256 texel.
     pub(super) off: f64,
     /// Upper bound of the change of a smaller level's coordinates by the floors of its numerators (INT-4).
@@ -206,12 +216,85 @@ pub(super) struct BaseLevel<'p> {
     pub(super) face: Face,
     /// Whether all of the batch lies behind the viewer, where no level of detail is known.
     pub(super) behind: bool,
+    /// Whether the denominator is D.
+    pub(super) by_d: bool,
     /// Planes whose exact remainders decide what estimates do not prove.
     pub(super) planes: Option<&'p [Plane; 2]>,
     /// Losses of the three functions where weights fall short (TEX-15, INT-4t).
     pub(super) losses: Option<[Losses; 3]>,
     /// For planes: the numbers of which all values of u and of v are multiples, and the powers of two that divide the G_k.
     pub(super) gaps: [(f64, u32); 2],
+    /// How fast the coordinates change, if that is set up.
+    pub(super) slopes: Option<Slopes>,
+}
+
+impl Default for BaseLevel<'_> {
+    fn default() -> Self {
+        BaseLevel {
+            along: Line::default(),
+            down: Line::default(),
+            denominator: Line::default(),
+            lowest: 0.0,
+            reach: [0.0; 2],
+            up: [0.0; 2],
+            off: 0.0,
+            floors: 0.0,
+            face: Face::PositiveX,
+            behind: false,
+            by_d: false,
+            planes: None,
+            losses: None,
+            gaps: [(0.0, 0); 2],
+            slopes: None,
+        }
+    }
+}
+
+impl BaseLevel<'_> {
+    /// Returns whether anything is proved, with coordinates in such a `range` and the least D. Without branches, so that compilers set up several
+    /// batches at once.
+    #[inline(always)]
+    pub(super) fn proves(&self, range: f64, least: f64) -> bool {
+        // NaN proves nothing either.
+        (least > 0.0)
+            & (self.lowest > 0.0)
+            & (range < MAX_COORDINATE)
+            & (self.off < COARSEST / 256.0)
+            & (self.floors < COARSEST)
+    }
+}
+
+/// Returns the least value of a function at the pixels of quads, none of which lies further to the left of the first pixel, or more than one row above
+/// it.
+#[inline(always)]
+pub(super) fn least_around(line: Line, left: f64, [columns, rows]: [f64; 2]) -> f64 {
+    line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows)
+}
+
+/// Returns how far a function falls at most, so many steps back and ahead.
+#[inline(always)]
+fn falls(slope: f64, back: f64, ahead: f64) -> f64 {
+    if slope > 0.0 { slope * back } else { -slope * ahead }
+}
+
+/// Returns what is added to a coordinate on planes for what is added to [others](super::planes::up), 1/65536 texel.
+#[inline(always)]
+pub(super) fn up_of_quads(up: f64) -> f64 {
+    // Also between two steps of the coordinates of quads.
+    if up > 0.0 { 256.0 * up + HALF_STEP } else { 0.0 }
+}
+
+/// Returns upper bounds for coordinates on planes around a batch, which are divided by D: of their magnitudes, with those of all terms, and of their
+/// changes by the floors of numerators (INT-4). Takes the least D and its terms, the terms of u and v, bounds of their magnitudes at the vertices, and
+/// the least P_k.
+#[inline(always)]
+pub(super) fn bounds_on_planes((lowest, of_d): (f64, f64), terms: [f64; 2], reach: [f64; 2], least: f64) -> (f64, f64) {
+    let widest = 1.0 / lowest;
+    let ratio = of_d * widest;
+    // Outside of the triangle, numbers can be larger than at the vertices.
+    let most = [terms[0] * widest + 2.0 * reach[0] * ratio, terms[1] * widest + 2.0 * reach[1] * ratio];
+    // The magnitudes of weights add up to `ratio` at most.
+    (larger(most[0], most[1]) * (1.0 + ratio), 1.25 * ratio / least)
 }
 
 impl Setup<'_> {
@@ -227,8 +310,7 @@ impl Setup<'_> {
         let (columns, rows) = (local.columns + 1.0, local.rows + 1.0);
         // No pixel lies further to the left of a row's first pixel, or above that of a box.
         let left = if ROW { 1.0 } else { columns };
-        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
-        let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
+        let least = |line: Line| least_around(line, left, [columns, rows]);
         let (lowest, reach) = (least(local.denominator), [columns, rows]);
         // Quotients by another line than D.
         let divided = |[along, down]: [Line; 2], denominator: Line, off: f64, face: Face| BaseLevel {
@@ -237,30 +319,22 @@ impl Setup<'_> {
             denominator,
             lowest: least(denominator),
             reach,
-            up: [0.0; 2],
             off,
-            floors: 0.0,
             face,
-            behind: false,
-            planes: None,
-            losses: None,
-            gaps: [(0.0, 0); 2],
+            ..BaseLevel::default()
         };
         let (base, range) = match planes {
             Planes::Plane(planes) if !self.stays_near(&batch, planes, local) => return None,
             Planes::Plane(planes) => {
-                let widest = 1.0 / lowest;
-                let ratio = self.denominator.real.terms(&local.real, columns, rows) * widest;
-                // Outside of the triangle, numbers can be larger than at the vertices.
-                let most = |plane: &Plane| {
-                    plane.real.terms(&local.real, columns, rows) * widest + 2.0 * plane.real.reach * ratio
-                };
-                let (one, other) = (most(&planes[0]), most(&planes[1]));
-                let range = (if one > other { one } else { other }) * (1.0 + ratio);
+                let [u, v] = [&planes[0].real, &planes[1].real];
+                let of_d = self.denominator.real.terms(&local.real, columns, rows);
+                let terms = [u.terms(&local.real, columns, rows), v.terms(&local.real, columns, rows)];
                 let p = &self.context.triangle.p;
                 let losses = self.context.triangle.loses_on_planes().then(|| self.losses_on_planes(planes));
-                // Also between two steps of the coordinates of quads.
-                let up = sampler.up.map(|up| if up > 0.0 && losses.is_none() { 256.0 * up + HALF_STEP } else { 0.0 });
+                let up = if losses.is_none() { sampler.up.map(up_of_quads) } else { [0.0; 2] };
+                let least = p[0].min(p[1]).min(p[2]) as f64;
+                let reaches = [u.reach, v.reach];
+                let (range, floors) = bounds_on_planes((lowest, of_d), terms, reaches, least);
                 let line = |n: usize| planes[n].real.line(&local.real).plus(local.denominator.times(up[n] / 256.0));
                 let base = BaseLevel {
                     along: line(0),
@@ -270,13 +344,12 @@ impl Setup<'_> {
                     reach,
                     up,
                     off: range * SLACK,
-                    // The magnitudes of weights add up to `ratio` at most.
-                    floors: 1.25 * ratio / p[0].min(p[1]).min(p[2]) as f64,
-                    face: Face::PositiveX,
-                    behind: false,
+                    floors,
+                    by_d: true,
                     planes: Some(planes),
                     losses,
                     gaps: [planes[0].gap(&self.context.triangle), planes[1].gap(&self.context.triangle)],
+                    ..BaseLevel::default()
                 };
                 (base, range)
             }
@@ -328,13 +401,7 @@ impl Setup<'_> {
             }
             Planes::Other | Planes::Shared => return None,
         };
-        // NaN proves nothing either.
-        let proves = lowest > 0.0
-            && base.lowest > 0.0
-            && range < MAX_COORDINATE
-            && base.off < COARSEST / 256.0
-            && base.floors < COARSEST;
-        proves.then_some(base)
+        base.proves(range, lowest).then_some(base)
     }
 
     /// Computes the results of the quads of a batch. Returns how lanes map to them.
@@ -349,20 +416,14 @@ impl Setup<'_> {
     ) -> Spread {
         let (i, j) = batch.first;
         let above = ((j & !1) - j) as f32;
-        let room = |known: &mut Known<T>, count: usize| {
-            known.each.resize(known.each.len().max(count), T::behind(unit));
-            // Not where some are open: code that grows a list would slow down the loops beside it.
-            known.open.resize(LANES, T::behind(unit));
-        };
+        let exact = Some(Exact { setup: self, batch: &batch, e });
         if base.behind {
-            room(known, 1);
+            known.make_room(unit, 1);
             (known.of, known.each[0]) = (None, T::behind(unit));
             return Spread::First;
         }
         if !ROW {
-            room(known, LANES + STEP);
-            known.of = None;
-            self.measured::<FMA, T>(batch, (unit, base), e, quads.count, quads, (&mut known.each, &mut known.open));
+            of_box::<FMA, T>((unit, base), exact, quads, known);
             return Spread::Rows;
         }
         let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
@@ -384,108 +445,14 @@ impl Setup<'_> {
             }
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
-            room(known, first + LANES + STEP);
+            known.make_room(unit, first + LANES + STEP);
             let out = (&mut known.each[first..], &mut known.open[..]);
-            self.measured::<FMA, T>(batch, (unit, base), e, count, quads, out);
+            measured::<FMA, T>((unit, base), exact, count, quads, out);
             known.columns.end = wanted.end;
         }
         let quad = (wanted.start - known.columns.start) as usize;
         (quads.rows[0], quads.filled) = (QuadsOfRow { lane: 0, quad, odd: (i & 1) as usize }, 1);
         Spread::Rows
-    }
-
-    /// Computes the results of quads at the given [origins](Quads::origins): those whose estimates are not proved from their coordinates, side by side
-    /// in `spare`.
-    #[inline(always)]
-    fn measured<const FMA: bool, T: Measure>(
-        &self,
-        batch: PixelBatch<'_>,
-        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
-        e: &[i64; 3],
-        count: usize,
-        quads: &mut Quads,
-        (out, spare): (&mut [T], &mut [T]),
-    ) {
-        let rounded = whole_steps(count);
-        let Quads { origins: [xs, ys], coordinates, unknown, close, open, open_origins, .. } = quads;
-        let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
-        let mut left = count;
-        if T::estimate::<FMA>(base, [xs, ys], out, close) {
-            // Without an early exit, which is slower.
-            left = close[..count].iter().fold(0, |left, close| left + usize::from(*close < 0));
-        }
-        if left == 0 {
-            return;
-        }
-        // A few are computed side by side, many with those between them.
-        let few = 2 * left <= count;
-        let (mut origins, mut to) = ([xs, ys], &mut *out);
-        if few {
-            left = 0;
-            for n in 0..count {
-                open[left] = n as u16;
-                left += usize::from(close[n] < 0);
-            }
-            let (rounded, last) = (whole_steps(left), open[left - 1]);
-            open[left..rounded].fill(last);
-            let [xs, ys] = open_origins;
-            for (n, quad) in open[..rounded].iter().enumerate() {
-                (xs[n], ys[n]) = (origins[0][usize::from(*quad)], origins[1][usize::from(*quad)]);
-            }
-            (origins, to) = ([&xs[..rounded], &ys[..rounded]], &mut spare[..rounded]);
-        }
-        let measured = if few { left } else { count };
-        self.measured_exactly::<FMA, T>(batch, (unit, base), e, origins, measured, (coordinates, unknown), to);
-        if few {
-            for (quad, result) in open[..left].iter().zip(spare) {
-                out[usize::from(*quad)] = *result;
-            }
-        }
-    }
-
-    /// Computes the results of quads from their coordinates.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and the scratch space apart")]
-    fn measured_exactly<const FMA: bool, T: Measure>(
-        &self,
-        batch: PixelBatch<'_>,
-        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
-        e: &[i64; 3],
-        [xs, ys]: [&[f32]; 2],
-        count: usize,
-        (coordinates, unknown): (&mut AtQuads, &mut PerLane<u64>),
-        out: &mut [T],
-    ) {
-        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
-        let rounded = xs.len();
-        let unknown = &mut unknown[..rounded];
-        unknown.fill(0);
-        for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
-            corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
-        }
-        if let Some(planes) = base.planes
-            && any_negative(unknown)
-        {
-            for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
-                for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
-                    let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
-                    let bottom = self.denominator.exact(e).at(x, y);
-                    for ((plane, up), at) in planes.iter().zip(base.up).zip(at) {
-                        let value = at[n] as i64 - up as i64;
-                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, value).0 as f64;
-                    }
-                }
-            }
-            unknown.fill(0);
-        }
-        T::measure::<FMA>(unit, coordinates, count, &mut out[..rounded], unknown);
-        if !any_negative(unknown) {
-            return;
-        }
-        for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
-            let pixel = (batch.first.0 + xs[n] as i64, batch.first.1 + ys[n] as i64);
-            out[n] = self.defined_quad(batch, unit, pixel);
-        }
     }
 
     /// Computes the result of a quad by the definition.
@@ -495,6 +462,123 @@ impl Setup<'_> {
         let sample = self.sample(batch, 0);
         T::defined(unit, self.context.sample_coordinates(unit, &sample, pixel).and_then(|place| place.quad()))
     }
+}
+
+impl<T: Measure> Known<T> {
+    /// Makes room for so many results. Not where some are open: code that grows a list would slow down the loops beside it.
+    #[inline(always)]
+    fn make_room(&mut self, unit: &PlannedUnit, count: usize) {
+        self.each.resize(self.each.len().max(count), T::behind(unit));
+        self.open.resize(LANES, T::behind(unit));
+    }
+}
+
+/// Computes the results of the [quads of a box](Quads::begin_box). Returns `false` if some are not proved and nothing decides them.
+#[inline(always)]
+pub(super) fn of_box<const FMA: bool, T: Measure>(
+    (unit, base): (&PlannedUnit, &BaseLevel<'_>),
+    exact: Option<Exact<'_>>,
+    quads: &mut Quads,
+    known: &mut Known<T>,
+) -> bool {
+    known.make_room(unit, LANES + STEP);
+    known.of = None;
+    let count = quads.count;
+    measured::<FMA, T>((unit, base), exact, count, quads, (&mut known.each, &mut known.open))
+}
+
+/// Computes the results of quads at the given [origins](Quads::origins): those whose estimates are not proved from their coordinates, side by side
+/// in `spare`. Returns `false` if some are not proved then and nothing decides them.
+#[inline(always)]
+fn measured<const FMA: bool, T: Measure>(
+    (unit, base): (&PlannedUnit, &BaseLevel<'_>),
+    exact: Option<Exact<'_>>,
+    count: usize,
+    quads: &mut Quads,
+    (out, spare): (&mut [T], &mut [T]),
+) -> bool {
+    let rounded = whole_steps(count);
+    let Quads { origins: [xs, ys], coordinates, unknown, close, open, open_origins, .. } = quads;
+    let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
+    let mut left = count;
+    if T::estimate::<FMA>(base, [xs, ys], out, close) {
+        // Without an early exit, which is slower.
+        left = close[..count].iter().fold(0, |left, close| left + usize::from(*close < 0));
+    }
+    if left == 0 {
+        return true;
+    }
+    // A few are computed side by side, many with those between them.
+    let few = 2 * left <= count;
+    let (mut origins, mut to) = ([xs, ys], &mut *out);
+    if few {
+        left = 0;
+        for n in 0..count {
+            open[left] = n as u16;
+            left += usize::from(close[n] < 0);
+        }
+        let (rounded, last) = (whole_steps(left), open[left - 1]);
+        open[left..rounded].fill(last);
+        let [xs, ys] = open_origins;
+        for (n, quad) in open[..rounded].iter().enumerate() {
+            (xs[n], ys[n]) = (origins[0][usize::from(*quad)], origins[1][usize::from(*quad)]);
+        }
+        (origins, to) = ([&xs[..rounded], &ys[..rounded]], &mut spare[..rounded]);
+    }
+    let measured = if few { left } else { count };
+    if !measured_exactly::<FMA, T>((unit, base), exact, origins, measured, (coordinates, unknown), to) {
+        return false;
+    }
+    if few {
+        for (quad, result) in open[..left].iter().zip(spare) {
+            out[usize::from(*quad)] = *result;
+        }
+    }
+    true
+}
+
+/// Computes the results of quads from their coordinates. Returns `false` if some are not proved and nothing decides them.
+#[inline(always)]
+fn measured_exactly<const FMA: bool, T: Measure>(
+    (unit, base): (&PlannedUnit, &BaseLevel<'_>),
+    exact: Option<Exact<'_>>,
+    [xs, ys]: [&[f32]; 2],
+    count: usize,
+    (coordinates, unknown): (&mut AtQuads, &mut PerLane<u64>),
+    out: &mut [T],
+) -> bool {
+    const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
+    let rounded = xs.len();
+    let unknown = &mut unknown[..rounded];
+    unknown.fill(0);
+    for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
+        corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+    }
+    if let (Some(planes), Some(Exact { setup, e, .. })) = (base.planes, exact)
+        && any_negative(unknown)
+    {
+        for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+            for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
+                let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
+                let bottom = setup.denominator.exact(e).at(x, y);
+                for ((plane, up), at) in planes.iter().zip(base.up).zip(at) {
+                    let value = at[n] as i64 - up as i64;
+                    at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, value).0 as f64;
+                }
+            }
+        }
+        unknown.fill(0);
+    }
+    T::measure::<FMA>(unit, coordinates, count, &mut out[..rounded], unknown);
+    if !any_negative(unknown) {
+        return true;
+    }
+    let Some(Exact { setup, batch, .. }) = exact else { return false };
+    for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+        let pixel = (batch.first.0 + xs[n] as i64, batch.first.1 + ys[n] as i64);
+        out[n] = setup.defined_quad(*batch, unit, pixel);
+    }
+    true
 }
 
 /// Returns what is added to estimates whose error is less than `off`, and the distance from an integer below which they prove nothing. If

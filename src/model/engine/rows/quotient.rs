@@ -111,7 +111,7 @@ pub(super) struct QuotientEstimate {
 
 /// Returns 2^n for a small n.
 #[inline(always)]
-fn power(n: i32) -> f64 {
+pub(super) fn power(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 

@@ -232,7 +232,7 @@ impl BoxNumber {
 }
 
 /// Bounds of a number's function in boxes.
-struct Bounds {
+pub(super) struct Bounds {
     terms: Each<f64>,
     /// The largest magnitude of a quotient by D.
     reach: Each<f64>,
@@ -245,7 +245,7 @@ struct Bounds {
 impl Bounds {
     /// Returns the function of values at the vertices, its numbers at the vertices, and bounds.
     #[inline(always)]
-    fn new<const FMA: bool>(edges: &Edges, values: &OfVertices) -> (Lines, [Each<f64>; 3], Bounds) {
+    pub(super) fn new<const FMA: bool>(edges: &Edges, values: &OfVertices) -> (Lines, [Each<f64>; 3], Bounds) {
         let (mut g, [mut reach, mut lost, mut least]) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3]);
         for n in 0..GROUP {
             // Exact, because 28 bits are multiplied by 24.
@@ -263,7 +263,7 @@ impl Bounds {
 
     /// Returns the largest error of a quotient by D.
     #[inline(always)]
-    fn off(&self, edges: &Edges, n: usize) -> f64 {
+    pub(super) fn off(&self, edges: &Edges, n: usize) -> f64 {
         (self.terms[n] * edges.widest[n] + 2.0 * self.reach[n] * edges.ratio[n]) * SLACK
             + self.lost[n] * edges.floors[n]
     }

@@ -5,10 +5,13 @@
 
 use super::CompiledDraw;
 use super::box_depths::BoxDepths;
+use super::box_levels::BoxLevels;
 use super::boxes::BoxCoverage;
 use super::color::colors;
 use super::compiled::{Sampler, Third};
+use super::fog::BoxFog;
 use super::kernels::PerLane;
+use super::levels::fetches;
 use super::quotient::{QuotientEstimate, SLACK, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
@@ -16,6 +19,8 @@ use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
 use super::triangle::Varying;
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
+use crate::number::convert::factor;
+use crate::raster::fog::limited;
 use crate::state::{PlaneLoss, TEXTURE_UNITS, Vertices};
 use crate::texture::coordinates::wrapped_axis;
 use crate::texture::planned::PlannedUnit;
@@ -45,10 +50,17 @@ pub(super) struct Boxes {
     /// Whether there are any of them, of the following, or numbers.
     pub(super) has_ratios: bool,
     short: Weights,
+    /// The same for those samplers that have levels.
+    levels: [BoxLevels; TEXTURE_UNITS],
+    /// Whether there are any of them.
+    pub(super) has_levels: bool,
     /// Depths that samplers compare with.
     references: [References; TEXTURE_UNITS],
     /// Weights 0 and 2.
     weights: [Estimates; 2],
+    /// Fog, if it is read: as a function, or factors of the vertices in 4096ths.
+    fog: BoxFog,
+    factors: Estimates,
     /// Numbers that the texture shader reads.
     numbers: Vec<BoxNumber>,
     /// Whether all estimates can prove something.
@@ -95,12 +107,12 @@ impl Boxes {
             let z = context.draw.assembly.vertices.gather_positions(2, &vertices);
             self.depths.set_up(&z, context.draw.depth_format, &self.shapes);
         }
-        (self.proves, self.has_ratios) = ([true; GROUP], false);
+        (self.proves, self.has_ratios, self.has_levels) = ([true; GROUP], false, false);
         if !compiled.plain {
             return;
         }
         let varies = all.iter().any(|(_, triangle)| compiled.varies(&contexts[*triangle]));
-        if varies || compiled.shader.is_some() || !compiled.samplers.is_empty() {
+        if varies || compiled.divides() {
             self.shapes.weigh(&self.corners, all, (context.draw.perspective, context.plan.profile));
             self.set_up_functions::<FMA>(&vertices, (context, compiled), varies);
         }
@@ -139,11 +151,15 @@ impl Boxes {
             }
             // Most draws divide all coordinates of a unit by q or none.
             self.projects[n] = !is_plane[0];
-            if self.projects[n] {
+            if self.projects[n] && !sampler.mixes {
                 continue;
             }
             for n in 0..GROUP {
                 proves[n] &= -i32::from(is_plane[n] & !(may_lose & (shapes.exact[n] == 0)));
+            }
+            self.has_levels |= sampler.mixes;
+            if sampler.mixes {
+                continue;
             }
             let [s, t] = repeated(unit, of, vertices);
             let (bias, [width, height], [up, down]) = (sampler.bias(), sampler.sides, sampler.up);
@@ -166,10 +182,12 @@ impl Boxes {
             }
         }
         self.proves = proves.map(|proves| proves != 0);
-        self.has_ratios = compiled.estimates || compiled.of_numbers().is_some() || self.projects.contains(&true);
+        let any = self.proves[..self.count].contains(&true);
+        self.has_levels &= any;
+        self.has_ratios = any && (compiled.reads_ratios() || self.projects.contains(&true));
     }
 
-    /// Sets up coordinates that are divided by q, depths to compare with, and numbers of a texture shader, if there are [any](Self::has_ratios).
+    /// Sets up coordinates that are divided by q, depths to compare with, fog, and numbers of a texture shader, if there are [any](Self::has_ratios).
     #[inline(always)]
     pub(super) fn set_up_ratios<const FMA: bool>(&mut self, context: &TriangleContext<'_>, compiled: &CompiledDraw) {
         let (of, vertices) = (&context.draw.assembly.vertices, &self.vertices());
@@ -197,6 +215,21 @@ impl Boxes {
                 self.ratios[index].set_up::<FMA>((edges, shapes), [&s, &t, &q], sampler.sides, &mut proves);
             }
         }
+        if compiled.fog.is_some() {
+            let values = of.gather_fog(vertices);
+            match &context.draw.fog.function {
+                Some(function) => self.fog.set_up::<FMA>(edges, &values, function, &mut proves),
+                None => {
+                    let mut g = [[0.0; GROUP]; 3];
+                    for k in 0..3 {
+                        for n in 0..GROUP {
+                            g[k][n] = 4096.0 * f64::from(limited(values[k][n])) * edges.p[k][n];
+                        }
+                    }
+                    self.factors = Estimates::new::<FMA>(edges, &g, 0, &mut proves);
+                }
+            }
+        }
         for n in 0..GROUP {
             self.proves[n] &= proves[n] != 0;
         }
@@ -205,6 +238,24 @@ impl Boxes {
         for (number, (stage, component, _)) in self.numbers.iter_mut().zip(&shader.varying) {
             let values = of.gather(shader.stages[*stage].state.coordinate_set, *component, vertices);
             number.set_up::<FMA>((edges, shapes), &values);
+        }
+    }
+
+    /// Sets up level 0 of samplers with levels, if there are [any](Self::has_levels).
+    #[inline(always)]
+    pub(super) fn set_up_levels<const FMA: bool>(&mut self, context: &TriangleContext<'_>, compiled: &CompiledDraw) {
+        let (vertices, mut proves, mut extents) = (&self.vertices(), [-1; GROUP], [[1.0; GROUP]; 2]);
+        for (n, ((rows, columns), _)) in self.all[..self.count].iter().enumerate() {
+            (extents[0][n], extents[1][n]) = ((columns.1 - columns.0) as f64, (rows.1 - rows.0) as f64);
+        }
+        for (index, sampler) in own(compiled).filter(|(_, sampler)| sampler.mixes) {
+            let unit = &context.draw.units[sampler.index];
+            let at = repeated(unit, &context.draw.assembly.vertices, vertices);
+            let shifts = unit.levels.last().map_or([0; 2], |smallest| unit.plane_shifts(smallest));
+            self.levels[index].set_up::<FMA>((&self.edges, &extents), &at, (sampler, shifts), &mut proves);
+        }
+        for n in 0..GROUP {
+            self.proves[n] &= proves[n] != 0;
         }
     }
 
@@ -230,12 +281,12 @@ impl Boxes {
         }
         let weighted = compiled.varies(context);
         let Varying { coordinates, narrow, reciprocals, .. } = &mut *varying;
-        if weighted || compiled.shader.is_some() || !compiled.samplers.is_empty() {
+        if weighted || compiled.divides() {
             reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         }
         let (at, mut open) = (|| batch.lanes(), 0);
         for (sampler, _) in own(compiled) {
-            if self.projects[sampler] {
+            if self.projects[sampler] || compiled.samplers[sampler].mixes {
                 continue;
             }
             for (estimates, out) in self.coordinates[sampler].iter().zip(&mut coordinates[sampler]) {
@@ -255,14 +306,15 @@ impl Boxes {
         true
     }
 
-    /// Computes coordinates that are divided by q, and depths to compare with, of the pixels of the current box, whose other attributes are proved.
-    /// Returns `false` if something is not.
+    /// Computes coordinates that are divided by q, depths to compare with, and fog of the pixels of the current box, whose other attributes are
+    /// proved. Returns `false` if something is not.
     #[inline(always)]
     pub(super) fn interpolate_ratios<const FMA: bool>(
         &self,
-        compiled: &CompiledDraw,
+        (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
         batch: PixelBatch<'_>,
-        Varying { coordinates, references, short, .. }: &mut Varying,
+        Varying { coordinates, references, short, whole: [values, spare], reciprocals, .. }: &mut Varying,
+        rows: &mut [PerLane<i16>],
     ) -> bool {
         let (n, lanes) = (self.current, || batch.lanes());
         let of = (&self.edges, &self.shapes);
@@ -280,7 +332,40 @@ impl Boxes {
                 open |= self.ratios[index].floors::<FMA>(n, batch.at, sampler.bias(), short, out);
             }
         }
+        if let Some(slot) = compiled.fog {
+            let out = &mut rows[usize::from(slot)][lanes()];
+            if context.draw.fog.function.is_some() {
+                open |= self.fog.factors::<FMA>(n, reciprocals.lanes(out.len()), out, values, spare);
+            } else {
+                let to = |value: i32| factor(value.clamp(0, 4096)) as i16;
+                open |= reciprocals.floors::<FMA, false, _>(self.factors.of(n), out, to) < 0;
+            }
+        }
         !open
+    }
+}
+
+impl Boxes {
+    /// Computes the fetches of samplers with levels for the pixels of the current box, whose other attributes are proved. Returns `false` if something
+    /// is not.
+    #[inline(always)]
+    pub(super) fn interpolate_levels<const FMA: bool>(
+        &self,
+        context: &TriangleContext<'_>,
+        compiled: &CompiledDraw,
+        batch: PixelBatch<'_>,
+        Varying { reads, quads, placing, short, reciprocals, .. }: &mut Varying,
+    ) -> bool {
+        quads.begin_box(batch);
+        for (index, sampler) in own(compiled).filter(|(_, sampler)| sampler.mixes) {
+            let base = self.levels[index].of(self.current, self.edges.denominator.of(self.current), sampler);
+            let of = (&context.draw.units[sampler.index], sampler, &base);
+            let work = (&mut **quads, &mut **placing);
+            if !fetches::<FMA, false>(batch, of, None, None, reciprocals, short, work, &mut reads[index]) {
+                return false;
+            }
+        }
+        true
     }
 }
 
