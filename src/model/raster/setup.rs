@@ -246,8 +246,7 @@ pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
 #[inline(always)]
 pub(crate) fn centres<T: Whole>(n: [T; 3]) -> (T, T) {
     let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
-    let eight = T::from(8);
-    ((low - eight) >> 4, ((high - eight) >> 4) + T::from(1))
+    ((low + T::from(7)) >> 4, ((high - T::from(8)) >> 4) + T::from(1))
 }
 
 /// Returns P_k: the exact products of the other two w, floored to one common exponent, each at least 1.

@@ -225,9 +225,12 @@ impl Edges {
             ratio[n] = sum::<FMA>(&p, &bounds) * widest[n];
             reciprocal[n] = 1.0 / line.c;
             floors[n] = 1.25 / least;
-            // All P are equal if the reciprocal is exact.
+            // All P are equal if the reciprocal is exact. A power of two divides all edge functions.
             let is_power = shapes.p[0][n].count_ones() == 1;
-            gap[n] = if is_power & (shapes.exact[n] != 0) { 1.0 / area[n] } else { 0.0 };
+            let bits = |of: &[Each<i32>; 3]| of[0][n] | of[1][n] | of[2][n];
+            let bits = bits(&shapes.e) | bits(&shapes.a) | bits(&shapes.b);
+            let unit = f64::from(bits & bits.wrapping_neg());
+            gap[n] = if is_power & (shapes.exact[n] != 0) { unit / area[n] } else { 0.0 };
             (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
         }
         Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap, area }
