@@ -267,9 +267,6 @@ pub(super) fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
     (j as usize - band.first_row) * band.width + i as usize
 }
 
-/// From this average length of runs on, words of the surface are worked on in place instead of being copied.
-const LONG_RUN: usize = 48;
-
 /// Computes and stores a block whose texture shader stages have run.
 #[inline(always)]
 pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
@@ -313,17 +310,11 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     }
     // Most blocks lose no fragment.
     let merges = compiled.merges && !(compiled.writes_whole && store::all(&alive[..*used]));
-    if !merges && runs.len() * LONG_RUN <= *used {
-        for run in runs.iter() {
-            store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
-        }
+    store::pack(draw, compiled, rows, words);
+    if merges {
+        store::merge_runs(draw.write_mask, alive, words, stored, runs, band.words);
     } else {
-        store::pack(draw, compiled, rows, 0, words);
-        if merges {
-            store::merge_runs(draw.write_mask, alive, words, stored, runs, band.words);
-        } else {
-            store::write_runs(words, runs, band.words);
-        }
+        store::write_runs(words, runs, band.words);
     }
     if draw.depth_test.is_some() {
         alive.fill(true);

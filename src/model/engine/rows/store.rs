@@ -42,10 +42,13 @@ fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], ou
     }
 }
 
-/// Packs the stored rows into words, from a lane on.
+/// A row of a block.
+type Row = [i16; BLOCK];
+
+/// Packs the stored rows into words.
 #[inline(always)]
-pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[PerLane<i16>], lane: usize, words: &mut [u32]) {
-    let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
+pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[PerLane<i16>], words: &mut [u32; BLOCK]) {
+    let row = |channel: usize| rows[usize::from(compiled.stored[channel])].block();
     let (r, g, b, a) = (row(0), row(1), row(2), row(3));
     match draw.surface {
         SurfaceFormat::A8R8G8B8 => pack_halves(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
@@ -56,7 +59,7 @@ pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[PerLane<
 }
 
 #[inline(always)]
-fn pack_as(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], words: &mut [u32]) {
+fn pack_as(format: SurfaceFormat, r: &Row, g: &Row, b: &Row, a: &Row, words: &mut [u32; BLOCK]) {
     for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
         *word = surface::pack(format, [*r as u8, *g as u8, *b as u8, *a as u8]);
     }
@@ -64,7 +67,7 @@ fn pack_as(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], wo
 
 /// Packs words of four bytes, of which G and B make the lower half: in 16 bits, halves take fewer instructions than words.
 #[inline(always)]
-fn pack_halves(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], words: &mut [u32]) {
+fn pack_halves(format: SurfaceFormat, r: &Row, g: &Row, b: &Row, a: &Row, words: &mut [u32; BLOCK]) {
     for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
         let low = surface::pack(format, [0, *g as u8, *b as u8, 0]) as u16;
         let high = (surface::pack(format, [*r as u8, 0, 0, *a as u8]) >> 16) as u16;
