@@ -11,8 +11,7 @@ use crate::raster::setup::{Triangle, centres, is_flat};
 /// Largest number of columns and of rows of the bounding box of a triangle that is cut into boxes.
 const WIDEST: i32 = 8 * SIDE as i32;
 
-/// The same for triangles with a single w. Their quotients are often exact: along rows the DDA handles that, in boxes each one has to be
-/// corrected.
+/// The same for triangles with a single w. Their quotients are often exact, and along longer rows the DDA handles that faster.
 const WIDEST_FLAT: i32 = 2 * SIDE as i32;
 
 /// Returns whether a triangle whose bounding box has so many rows and columns is drawn as boxes instead of row by row. `is_flat` says whether it has

@@ -345,8 +345,9 @@ fn begin_part<T: Kernels>(
         if count == 0 || !begin_box::<T>(job, context, band, block) {
             continue;
         }
+        let interpolate = if block.boxes.is_tied() { T::tied } else { T::plain };
         let proves = job.compiled.plain
-            && T::plain(context, job.compiled, block)
+            && interpolate(context, job.compiled, block)
             && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block))
             && (!block.boxes.has_levels || T::levels(context, job.compiled, block));
         if !proves {

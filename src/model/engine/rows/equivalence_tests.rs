@@ -316,7 +316,11 @@ fn compare_small<const FMA: bool>(
         small.set_up_levels::<FMA>(context, plain);
     }
     let batch = batch::<HALF_STEP>(small.coverage(), 0);
-    let mut done = small.interpolate::<FMA>(context, plain, batch, varying, rows);
+    let mut done = if small.is_tied() {
+        small.interpolate_tied::<FMA>(context, plain, batch, varying, rows)
+    } else {
+        small.interpolate::<FMA>(context, plain, batch, varying, rows)
+    };
     done &= !small.has_ratios || small.interpolate_ratios::<FMA>((context, plain), batch, varying, rows);
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
     done &= !small.has_levels || small.interpolate_levels::<FMA>(context, plain, batch, varying);
@@ -459,7 +463,7 @@ fn rows_interpolate(seed: u64) {
     let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let (wanted, least_drawn) = (all / 2, 10_000);
     let mut random = Random::seeded(seed);
-    let (mut pixels, mut drawn, mut with_depths, mut round) = (0, 0, 0, 0_u64);
+    let (mut pixels, mut drawn, mut with_depths, mut tied, mut round) = (0, 0, 0, 0, 0_u64);
     // By the kind of coordinates: on planes, divided by q, and both with depths to compare with; on planes with levels.
     let mut proved = [0; 5];
     let (mut covers, mut small_boxes, mut reasons) = (Boxes::default(), Boxes::default(), Reasons::default());
@@ -547,6 +551,7 @@ fn rows_interpolate(seed: u64) {
                             compare_small::<false>(&alone, plain, part, &mut small_boxes, &mut varying, &mut rows)
                         };
                         proved[*kind] += u64::from(done);
+                        tied += u64::from(done && small_boxes.is_tied());
                         with_depths += u64::from(done && plain.depths_together);
                     }
                     if round.is_multiple_of(4) {
@@ -583,7 +588,7 @@ fn rows_interpolate(seed: u64) {
         }
     }
     println!(
-        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once, {with_depths} with depths; definition: {reasons:?}"
+        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once, {with_depths} with depths, {tied} with ties; definition: {reasons:?}"
     );
-    assert!(proved.iter().all(|boxes| *boxes > drawn / 200) && with_depths > drawn / 20);
+    assert!(proved.iter().all(|boxes| *boxes > drawn / 200) && with_depths > drawn / 20 && tied > drawn / 50);
 }

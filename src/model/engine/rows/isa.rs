@@ -126,6 +126,8 @@ text! {
         fn set_up_levels(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
         /// Calls [`band::levels`] with this instruction set.
         fn levels(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        /// Calls [`band::tied`] with this instruction set.
+        fn tied(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::in_box`] with this instruction set.
         fn in_box(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
         /// Calls [`band::row`] with this instruction set.

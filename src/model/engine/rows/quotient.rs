@@ -128,13 +128,14 @@ impl QuotientEstimate {
         margin: f64,
         bias: i32,
     ) -> Option<QuotientEstimate> {
-        let (estimate, proves) =
+        let (estimate, proves, _) =
             QuotientEstimate::with_proof::<ROW>(numerator, denominator, extent, reciprocals, (margin, 0.0), bias);
         proves.then_some(estimate)
     }
 
     /// Sets up a quotient, and returns whether it can prove anything. If quotients are multiples of `gap`, one that is close to an integer
-    /// may be known to be that integer; 0 means that nothing is known. Without branches, so that compilers set up several at once.
+    /// may be known to be that integer; 0 means that nothing is known. The last number is the largest fraction of such a value, or negative if nothing is
+    /// known. Without branches, so that compilers set up several at once.
     #[inline(always)]
     pub(super) fn with_proof<const ROW: bool>(
         numerator: Line,
@@ -143,7 +144,7 @@ impl QuotientEstimate {
         (reciprocal, widest): (f64, f64),
         (margin, gap): (f64, f64),
         bias: i32,
-    ) -> (QuotientEstimate, bool) {
+    ) -> (QuotientEstimate, bool, i32) {
         let first = numerator.c * reciprocal;
         let base = whole(first);
         let rest = numerator.less(base, denominator);
@@ -162,14 +163,21 @@ impl QuotientEstimate {
         let limit = nearest(if parted { scale } else { scale - 2.0 * off });
         // NaN proves nothing either.
         let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
-        let shift = shift as u32;
-        (QuotientEstimate { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
+        let (shift, whole) = (shift as u32, nearest(if parted { 2.0 * off } else { -1.0 }));
+        let base = nearest(first).wrapping_sub(bias);
+        (QuotientEstimate { line, base, shift, limit, least: i32::MIN }, proves, whole)
     }
 
     /// Returns the floor of a lane's value. The sign bit of the second number is set if the floor is not proved.
     #[inline(always)]
     fn floor(&self, step: i32) -> (i32, i32) {
-        ((step >> self.shift) + self.base, self.limit - (step & ((1 << self.shift) - 1)))
+        ((step >> self.shift) + self.base, self.limit - self.fraction(step))
+    }
+
+    /// Returns the fraction of a lane's value.
+    #[inline(always)]
+    fn fraction(&self, step: i32) -> i32 {
+        step & ((1 << self.shift) - 1)
     }
 
     /// Declares that the quotient is not negative: an estimate below 0 is then a proved 0.
@@ -300,6 +308,26 @@ impl Reciprocals {
             close |= of_lane;
         }
         close
+    }
+
+    /// Does what [`floors`](Self::floors) does, and marks the lanes whose quotients are whole because their fractions are at most `least`. Returns whether
+    /// there are any, too.
+    #[inline(always)]
+    pub(super) fn floors_and_whole<const FMA: bool>(
+        &self,
+        (quotient, least): (QuotientEstimate, i32),
+        out: &mut [i32],
+        whole: &mut [i32],
+    ) -> (i32, bool) {
+        let (lanes, mut close, mut any) = (out.len(), 0, 0);
+        let (xs, ys, rs, whole) = (&self.x[..lanes], &self.y[..lanes], &self.r[..lanes], &mut whole[..lanes]);
+        for n in 0..lanes {
+            let step = quotient.step::<FMA, false>(xs[n], ys[n], rs[n]);
+            let (floor, of_lane) = quotient.floor(step);
+            (out[n], whole[n]) = (floor, i32::from(quotient.fraction(step) <= least));
+            (close, any) = (close | of_lane, any | whole[n]);
+        }
+        (close, any != 0)
     }
 
     /// Returns the floors of a lane, or `None` if one is not proved.

@@ -199,6 +199,8 @@ pub(super) struct Edges {
     pub(super) floors: Each<f64>,
     /// If the values at the vertices are whole and no tie is lowered (INT-3), quotients are multiples of this number; otherwise 0.
     pub(super) gap: Each<f64>,
+    /// The same if ties are lowered.
+    pub(super) tied: Each<f64>,
     /// The doubled area.
     pub(super) area: Each<f64>,
 }
@@ -209,7 +211,7 @@ impl Edges {
         let [e, a, b, p] = [shapes.e, shapes.a, shapes.b, shapes.p].map(|of| of.map(|of| of.map(f64::from)));
         let area = shapes.doubled_area.map(f64::from);
         let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
-        let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap] = [[0.0; GROUP]; 5];
+        let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap, mut tied] = [[0.0; GROUP]; 6];
         // One loop, because compilers would make vectors across k of another.
         for n in 0..GROUP {
             let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
@@ -225,15 +227,28 @@ impl Edges {
             ratio[n] = sum::<FMA>(&p, &bounds) * widest[n];
             reciprocal[n] = 1.0 / line.c;
             floors[n] = 1.25 / least;
-            // All P are equal if the reciprocal is exact. A power of two divides all edge functions.
-            let is_power = shapes.p[0][n].count_ones() == 1;
+            // Equal P cancel. A power of two divides all edge functions.
             let bits = |of: &[Each<i32>; 3]| of[0][n] | of[1][n] | of[2][n];
             let bits = bits(&shapes.e) | bits(&shapes.a) | bits(&shapes.b);
-            let unit = f64::from(bits & bits.wrapping_neg());
-            gap[n] = if is_power & (shapes.exact[n] != 0) { unit / area[n] } else { 0.0 };
+            let unit = f64::from(bits & bits.wrapping_neg()) / area[n];
+            let unit = if (p[0] == p[1]) & (p[1] == p[2]) { unit } else { 0.0 };
+            let (is_exact, is_power) = (shapes.exact[n] != 0, shapes.p[0][n].count_ones() == 1);
+            gap[n] = if is_exact & is_power { unit } else { 0.0 };
+            tied[n] = if is_exact { 0.0 } else { unit };
             (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
         }
-        Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap, area }
+        Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap, tied, area }
+    }
+
+    /// Returns the edge functions of a box.
+    #[inline(always)]
+    pub(super) fn lines(&self, n: usize) -> [Line; 3] {
+        // Not a closure, because one that is called three times is not inlined.
+        [
+            Line { c: self.e[0][n], x: self.a[0][n], y: self.b[0][n] },
+            Line { c: self.e[1][n], x: self.a[1][n], y: self.b[1][n] },
+            Line { c: self.e[2][n], x: self.a[2][n], y: self.b[2][n] },
+        ]
     }
 
     /// Returns the function with these values at the vertices in each box, and an upper bound of its terms.

@@ -338,11 +338,7 @@ pub(super) fn lower_by_lane(
         let e1 = edges[1].at::<false, false>(x, y);
         let e2 = edges[2].at::<false, false>(x, y);
         let (a, b, c) = (p0 * e0, p1 * e1, p2 * e2);
-        let d = a + b + c;
-        let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
-        let of_first = if is_first { 0.0 } else { loss_first * e0 };
-        let of_third = if is_third { 0.0 } else { loss_third * e2 };
-        let (sum, terms) = (of_first + of_third, of_first.abs() + of_third.abs());
+        let (sum, terms) = lost_by_class([e0, e2], [a, b, c], [loss_first, loss_third]);
         lowered[n] = if sum > 0.0 { whole[n] } else { 0 };
         // Terms that almost cancel each other decide nothing.
         let is_open = (sum.abs() < terms * SLACK) & (whole[n] != 0);
@@ -355,6 +351,37 @@ pub(super) fn lower_by_lane(
         *value -= *lowered;
     }
     true
+}
+
+/// Returns what a numerator loses that loses so much for each unit of the edge functions 0 and 2 if those weights fall short, and the sum of the
+/// magnitudes of its terms. `n` has the numerators of the weights, exactly.
+#[inline(always)]
+fn lost_by_class([first, third]: [f64; 2], n: [f64; 3], [loss_first, loss_third]: [f64; 2]) -> (f64, f64) {
+    let d = n[0] + n[1] + n[2];
+    let [is_first, is_third] = most_dominant([class(n[0], d), class(n[1], d), class(n[2], d)]);
+    let of_first = if is_first { 0.0 } else { loss_first * first };
+    let of_third = if is_third { 0.0 } else { loss_third * third };
+    (of_first + of_third, of_first.abs() + of_third.abs())
+}
+
+/// INT-4t: lowers those of the coordinates in a box that are whole, where all P_k are equal. `loss` has the differences of the coordinates, whole
+/// numbers, at the vertices 0 and 2 to that at vertex 1.
+#[inline(always)]
+pub(super) fn lower_flat<const FMA: bool>(
+    edges: [Line; 3],
+    at: Positions<'_>,
+    loss: [f64; 2],
+    whole: &[i32],
+    values: &mut [i32],
+) {
+    let lanes = values.len();
+    let (xs, ys, whole) = (&at.x[..lanes], &at.y[..lanes], &whole[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
+        let (a, b) = (edges[0].at::<FMA, false>(x, y), edges[1].at::<FMA, false>(x, y));
+        let c = edges[2].at::<FMA, false>(x, y);
+        values[n] -= if lost_by_class([a, c], [a, b, c], loss).0 > 0.0 { whole[n] } else { 0 };
+    }
 }
 
 /// Returns 2 above a half of d, 1 above a quarter, and otherwise 0.

@@ -7,15 +7,16 @@ use super::CompiledDraw;
 use super::box_depths::BoxDepths;
 use super::box_levels::BoxLevels;
 use super::boxes::BoxCoverage;
-use super::color::colors;
+use super::color::{colors, narrow_weights};
 use super::compiled::{Sampler, Third};
 use super::fog::BoxFog;
 use super::kernels::PerLane;
 use super::levels::fetches;
-use super::quotient::{QuotientEstimate, SLACK, whole};
+use super::quotient::{QuotientEstimate, SLACK, break_ties, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
+use super::short::lower_flat;
 use super::triangle::Varying;
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
@@ -65,6 +66,8 @@ pub(super) struct Boxes {
     numbers: Vec<BoxNumber>,
     /// Whether all estimates can prove something.
     proves: Each<bool>,
+    /// Whether quotients that are whole may be told from others, and are lowered then.
+    ties: Each<bool>,
 }
 
 impl Boxes {
@@ -107,7 +110,7 @@ impl Boxes {
             let z = context.draw.assembly.vertices.gather_positions(2, &vertices);
             self.depths.set_up(&z, context.draw.depth_format, &self.shapes);
         }
-        (self.proves, self.has_ratios, self.has_levels) = ([true; GROUP], false, false);
+        (self.proves, self.ties, self.has_ratios, self.has_levels) = ([true; GROUP], [false; GROUP], false, false);
         if !compiled.plain {
             return;
         }
@@ -181,7 +184,9 @@ impl Boxes {
                 *estimates = Estimates::new::<FMA>(edges, &g, 0, &mut proves);
             }
         }
-        self.proves = proves.map(|proves| proves != 0);
+        for n in 0..GROUP {
+            (self.proves[n], self.ties[n]) = (proves[n] != 0, edges.tied[n] > 0.0);
+        }
         let any = self.proves[..self.count].contains(&true);
         self.has_levels &= any;
         self.has_ratios = any && (compiled.reads_ratios() || self.projects.contains(&true));
@@ -306,6 +311,61 @@ impl Boxes {
         true
     }
 
+    /// Returns whether the current box is one for [`interpolate_tied`](Self::interpolate_tied).
+    #[inline(always)]
+    pub(super) fn is_tied(&self) -> bool {
+        self.ties[self.current]
+    }
+
+    /// Does what [`interpolate`](Self::interpolate) does where ties are lowered: INT-3 and INT-4t on triangles with a single w.
+    #[inline(always)]
+    pub(super) fn interpolate_tied<const FMA: bool>(
+        &self,
+        context: &TriangleContext<'_>,
+        compiled: &CompiledDraw,
+        batch: PixelBatch<'_>,
+        varying: &mut Varying,
+        rows: &mut [PerLane<i16>],
+    ) -> bool {
+        let n = self.current;
+        if !self.proves[n] {
+            return false;
+        }
+        let Varying { coordinates, weights, whole: [whole0, whole2], narrow, reciprocals, .. } = &mut *varying;
+        reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
+        let (at, mut open) = (|| batch.lanes(), 0);
+        let (whole0, whole2) = (&mut whole0[at()], &mut whole2[at()]);
+        for (sampler, _) in own(compiled) {
+            if self.projects[sampler] || compiled.samplers[sampler].mixes {
+                continue;
+            }
+            for (estimates, out) in self.coordinates[sampler].iter().zip(&mut coordinates[sampler]) {
+                let out = &mut out[at()];
+                let (close, any) = reciprocals.floors_and_whole::<FMA>(estimates.tied(n), out, whole0);
+                open |= close;
+                if any {
+                    lower_flat::<FMA>(self.edges.lines(n), batch.at, estimates.loss(n), whole0, out);
+                }
+            }
+        }
+        if compiled.varies(context) {
+            let [w0, w2] = &mut *weights;
+            let (w0, w2) = (&mut w0[at()], &mut w2[at()]);
+            let (close, any) = reciprocals.floors_and_whole::<FMA>(self.weights[0].tied(n), w0, whole0);
+            let (other, any_other) = reciprocals.floors_and_whole::<FMA>(self.weights[1].tied(n), w2, whole2);
+            open |= close | other;
+            if any | any_other {
+                break_ties(w0, w2, whole0, whole2);
+            }
+            narrow_weights(batch, weights, narrow);
+        }
+        if open < 0 {
+            return false;
+        }
+        colors(context, compiled, batch, &varying.narrow, rows);
+        true
+    }
+
     /// Computes coordinates that are divided by q, depths to compare with, and fog of the pixels of the current box, whose other attributes are
     /// proved. Returns `false` if something is not.
     #[inline(always)]
@@ -398,6 +458,10 @@ struct Estimates {
     base: Each<i32>,
     shift: Each<u32>,
     limit: Each<i32>,
+    /// The largest fraction of a whole quotient, negative if that is not known.
+    whole: Each<i32>,
+    /// Differences of the values at the vertices 0 and 2 to that at vertex 1.
+    losses: [Each<f64>; 2],
 }
 
 impl Estimates {
@@ -413,19 +477,33 @@ impl Estimates {
             let (g, inverse, line, terms) = (at(g), at(&edges.inverse), lines.of(n), bounds[n]);
             let size = [g[0].abs(), g[1].abs(), g[2].abs()];
             let is_whole = |k: usize| whole(g[k] * inverse[k]) == g[k] * inverse[k];
-            let gap = if is_whole(0) & is_whole(1) & is_whole(2) { edges.gap[n] } else { 0.0 };
+            let gap = if is_whole(0) & is_whole(1) & is_whole(2) { edges.gap[n] + edges.tied[n] } else { 0.0 };
             // Adds half a denominator, half a texel, and the rounding error of this number.
             let most = sum::<FMA>(&size, &inverse) + 260.0;
             let margin = (terms * edges.widest[n] + 2.0 * most * edges.ratio[n]) * SLACK + edges.floors[n];
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (edges.reciprocal[n], edges.widest[n]));
             let denominator = edges.denominator.of(n);
-            let (one, is) =
+            let (one, is, least) =
                 QuotientEstimate::with_proof::<false>(line, denominator, extent, reciprocals, (margin, gap), bias);
             (all.line.c[n], all.line.x[n], all.line.y[n]) = (one.line.c, one.line.x, one.line.y);
-            (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
+            (all.base[n], all.shift[n], all.limit[n], all.whole[n]) = (one.base, one.shift, one.limit, least);
+            let middle = whole(g[1] * inverse[1]);
+            all.losses[0][n] = whole(g[0] * inverse[0]) - middle;
+            all.losses[1][n] = whole(g[2] * inverse[2]) - middle;
             proves[n] &= -i32::from(is);
         }
         all
+    }
+
+    /// Returns the estimate of a box whose ties are lowered, and the largest fraction of a whole quotient.
+    #[inline(always)]
+    fn tied(&self, n: usize) -> (QuotientEstimate, i32) {
+        (self.of(n), self.whole[n])
+    }
+
+    #[inline(always)]
+    fn loss(&self, n: usize) -> [f64; 2] {
+        [self.losses[0][n], self.losses[1][n]]
     }
 
     #[inline(always)]
