@@ -128,14 +128,13 @@ impl QuotientEstimate {
         margin: f64,
         bias: i32,
     ) -> Option<QuotientEstimate> {
-        let (estimate, proves, _) =
+        let (estimate, proves) =
             QuotientEstimate::with_proof::<ROW>(numerator, denominator, extent, reciprocals, (margin, 0.0), bias);
         proves.then_some(estimate)
     }
 
     /// Sets up a quotient, and returns whether it can prove anything. If quotients are multiples of `gap`, one that is close to an integer
-    /// may be known to be that integer; 0 means that nothing is known. The last number is the largest fraction of such a value, or negative if nothing is
-    /// known. Without branches, so that compilers set up several at once.
+    /// may be known to be that integer; 0 means that nothing is known. Without branches, so that compilers set up several at once.
     #[inline(always)]
     pub(super) fn with_proof<const ROW: bool>(
         numerator: Line,
@@ -144,7 +143,7 @@ impl QuotientEstimate {
         (reciprocal, widest): (f64, f64),
         (margin, gap): (f64, f64),
         bias: i32,
-    ) -> (QuotientEstimate, bool, i32) {
+    ) -> (QuotientEstimate, bool) {
         let first = numerator.c * reciprocal;
         let base = whole(first);
         let rest = numerator.less(base, denominator);
@@ -163,15 +162,22 @@ impl QuotientEstimate {
         let limit = nearest(if parted { scale } else { scale - 2.0 * off });
         // NaN proves nothing either.
         let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
-        let (shift, whole) = (shift as u32, nearest(if parted { 2.0 * off } else { -1.0 }));
-        let base = nearest(first).wrapping_sub(bias);
-        (QuotientEstimate { line, base, shift, limit, least: i32::MIN }, proves, whole)
+        let shift = shift as u32;
+        (QuotientEstimate { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
     }
 
     /// Returns the floor of a lane's value. The sign bit of the second number is set if the floor is not proved.
     #[inline(always)]
     fn floor(&self, step: i32) -> (i32, i32) {
         ((step >> self.shift) + self.base, self.limit - self.fraction(step))
+    }
+
+    /// Returns the largest fraction of a whole quotient, if quotients are multiples of `gap`; it is negative if the estimate does not tell them from
+    /// others. They are at most half as far above an integer as the next ones.
+    #[inline(always)]
+    fn largest_of_whole(&self, gap: f64) -> i32 {
+        let is_parted = self.limit == 1 << self.shift;
+        if is_parted { (0.5 * gap * power(self.shift as i32)) as i32 } else { -1 }
     }
 
     /// Returns the fraction of a lane's value.
@@ -310,15 +316,17 @@ impl Reciprocals {
         close
     }
 
-    /// Does what [`floors`](Self::floors) does, and marks the lanes whose quotients are whole because their fractions are at most `least`. Returns whether
-    /// there are any, too.
+    /// Does what [`floors`](Self::floors) does, and marks the lanes whose quotients are whole, where they are multiples of `gap`, if that part is known.
+    /// Returns whether there are any, too.
     #[inline(always)]
     pub(super) fn floors_and_whole<const FMA: bool>(
         &self,
-        (quotient, least): (QuotientEstimate, i32),
+        quotient: QuotientEstimate,
+        gap: f64,
         out: &mut [i32],
         whole: &mut [i32],
     ) -> (i32, bool) {
+        let least = quotient.largest_of_whole(gap);
         let (lanes, mut close, mut any) = (out.len(), 0, 0);
         let (xs, ys, rs, whole) = (&self.x[..lanes], &self.y[..lanes], &self.r[..lanes], &mut whole[..lanes]);
         for n in 0..lanes {

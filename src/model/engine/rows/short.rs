@@ -364,8 +364,8 @@ fn lost_by_class([first, third]: [f64; 2], n: [f64; 3], [loss_first, loss_third]
     (of_first + of_third, of_first.abs() + of_third.abs())
 }
 
-/// INT-4t: lowers those of the coordinates in a box that are whole, where all P_k are equal. `loss` has the differences of the coordinates, whole
-/// numbers, at the vertices 0 and 2 to that at vertex 1.
+/// INT-4t: lowers those of the coordinates in a box that are whole, where all P_k are equal. `loss` has the differences of the coordinates at the
+/// vertices 0 and 2 to that at vertex 1. They are multiples of a texel's 256th, so that nothing is rounded.
 #[inline(always)]
 pub(super) fn lower_flat<const FMA: bool>(
     edges: [Line; 3],

@@ -335,24 +335,29 @@ impl Boxes {
         reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         let (at, mut open) = (|| batch.lanes(), 0);
         let (whole0, whole2) = (&mut whole0[at()], &mut whole2[at()]);
-        for (sampler, _) in own(compiled) {
-            if self.projects[sampler] || compiled.samplers[sampler].mixes {
+        let gap = self.edges.tied[n];
+        for (index, sampler) in own(compiled) {
+            if self.projects[index] || sampler.mixes {
                 continue;
             }
-            for (estimates, out) in self.coordinates[sampler].iter().zip(&mut coordinates[sampler]) {
-                let out = &mut out[at()];
-                let (close, any) = reciprocals.floors_and_whole::<FMA>(estimates.tied(n), out, whole0);
+            for (axis, out) in coordinates[index].iter_mut().enumerate() {
+                let (estimate, out) = (self.coordinates[index][axis].of(n), &mut out[at()]);
+                let (close, any) = reciprocals.floors_and_whole::<FMA>(estimate, gap, out, whole0);
                 open |= close;
                 if any {
-                    lower_flat::<FMA>(self.edges.lines(n), batch.at, estimates.loss(n), whole0, out);
+                    let (of, vertices) = (&context.draw.assembly.vertices, self.corners.vertices[self.all[n].1]);
+                    let [[first], [middle], [third]] =
+                        repeated(&context.draw.units[sampler.index], of, &[vertices])[axis].map(|of| of.map(f64::from));
+                    let loss = [first - middle, third - middle];
+                    lower_flat::<FMA>(self.edges.lines(n), batch.at, loss, whole0, out);
                 }
             }
         }
         if compiled.varies(context) {
             let [w0, w2] = &mut *weights;
             let (w0, w2) = (&mut w0[at()], &mut w2[at()]);
-            let (close, any) = reciprocals.floors_and_whole::<FMA>(self.weights[0].tied(n), w0, whole0);
-            let (other, any_other) = reciprocals.floors_and_whole::<FMA>(self.weights[1].tied(n), w2, whole2);
+            let (close, any) = reciprocals.floors_and_whole::<FMA>(self.weights[0].of(n), gap, w0, whole0);
+            let (other, any_other) = reciprocals.floors_and_whole::<FMA>(self.weights[1].of(n), gap, w2, whole2);
             open |= close | other;
             if any | any_other {
                 break_ties(w0, w2, whole0, whole2);
@@ -431,12 +436,12 @@ impl Boxes {
 
 /// Returns s and t of a unit at vertices of triangles, repeated as CYL-1 says.
 #[inline(always)]
-fn repeated(unit: &PlannedUnit, of: &Vertices, vertices: &Each<[u32; 3]>) -> [[Each<f32>; 3]; 2] {
+fn repeated<const N: usize>(unit: &PlannedUnit, of: &Vertices, vertices: &[[u32; 3]; N]) -> [[[f32; N]; 3]; 2] {
     let set = unit.stage.coordinate_set;
     let mut both = [of.gather(set, 0, vertices), of.gather(set, 1, vertices)];
     if unit.state.cylindrical_wrap != [false; 2] {
         for (axis, values) in both.iter_mut().enumerate() {
-            for n in 0..GROUP {
+            for n in 0..N {
                 [values[0][n], values[1][n], values[2][n]] =
                     wrapped_axis(unit, axis, [values[0][n], values[1][n], values[2][n]]);
             }
@@ -458,10 +463,6 @@ struct Estimates {
     base: Each<i32>,
     shift: Each<u32>,
     limit: Each<i32>,
-    /// The largest fraction of a whole quotient, negative if that is not known.
-    whole: Each<i32>,
-    /// Differences of the values at the vertices 0 and 2 to that at vertex 1.
-    losses: [Each<f64>; 2],
 }
 
 impl Estimates {
@@ -483,27 +484,13 @@ impl Estimates {
             let margin = (terms * edges.widest[n] + 2.0 * most * edges.ratio[n]) * SLACK + edges.floors[n];
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (edges.reciprocal[n], edges.widest[n]));
             let denominator = edges.denominator.of(n);
-            let (one, is, least) =
+            let (one, is) =
                 QuotientEstimate::with_proof::<false>(line, denominator, extent, reciprocals, (margin, gap), bias);
             (all.line.c[n], all.line.x[n], all.line.y[n]) = (one.line.c, one.line.x, one.line.y);
-            (all.base[n], all.shift[n], all.limit[n], all.whole[n]) = (one.base, one.shift, one.limit, least);
-            let middle = whole(g[1] * inverse[1]);
-            all.losses[0][n] = whole(g[0] * inverse[0]) - middle;
-            all.losses[1][n] = whole(g[2] * inverse[2]) - middle;
+            (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
             proves[n] &= -i32::from(is);
         }
         all
-    }
-
-    /// Returns the estimate of a box whose ties are lowered, and the largest fraction of a whole quotient.
-    #[inline(always)]
-    fn tied(&self, n: usize) -> (QuotientEstimate, i32) {
-        (self.of(n), self.whole[n])
-    }
-
-    #[inline(always)]
-    fn loss(&self, n: usize) -> [f64; 2] {
-        [self.losses[0][n], self.losses[1][n]]
     }
 
     #[inline(always)]
