@@ -128,26 +128,6 @@ pub(super) fn edge_lines(triangle: &Triangle, e: &[i64; 3]) -> [Line; 3] {
     ]
 }
 
-/// Returns the function sum g_k E_k, with g_k divided by a power of two that divides them all, if all its terms and sums stay below a number so
-/// many columns and rows around a pixel. Doubles hold them exactly, up to 2^53.
-#[inline(always)]
-pub(super) fn exact_line(
-    triangle: &Triangle,
-    e: &[i64; 3],
-    (g, shared): (&[i64; 3], u32),
-    (columns, rows): (i32, i32),
-    most: f64,
-) -> Option<Line> {
-    let (mut line, mut size) = (Line::default(), 0.0);
-    for k in 0..3 {
-        let g = (g[k] >> shared) as f64;
-        let (c, x, y) = (g * e[k] as f64, g * triangle.a[k] as f64, g * triangle.b[k] as f64);
-        line = line.plus(Line { c, x, y });
-        size += c.abs() + x.abs() * f64::from(columns) + y.abs() * f64::from(rows);
-    }
-    (size < most).then_some(line)
-}
-
 /// An upper bound of the last bit that an [attribute](crate::raster::attribute) keeps, relative to the largest of a triangle's three numbers.
 pub(super) const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
 

@@ -411,26 +411,6 @@ pub(super) fn correct<const ROW: bool>(
     }
 }
 
-/// Does what [`correct`] does for a box, with functions that doubles hold exactly, as they hold the products of estimates and denominators.
-#[inline(always)]
-pub(super) fn correct_exactly(
-    at: Positions<'_>,
-    numerator: Line,
-    denominator: Line,
-    values: &mut [i32],
-    whole: &mut [i32],
-) {
-    let lanes = values.len();
-    let (whole, xs, ys) = (&mut whole[..lanes], &at.x[..lanes], &at.y[..lanes]);
-    for n in 0..lanes {
-        let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
-        let (top, d) = (numerator.at::<false, false>(x, y), denominator.at::<false, false>(x, y));
-        let rest = top - f64::from(values[n]) * d;
-        values[n] += i32::from(rest >= d) - i32::from(rest < 0.0);
-        whole[n] = i32::from((rest == 0.0) | (rest.abs() == d));
-    }
-}
-
 /// INT-3: lowers tied weights. It takes the floors of 256 b0 and 256 b2, and the lanes that [`correct`] found to be exact.
 ///
 /// A tied weight is a positive multiple of 1/256. So the class of each weight follows from its ceiling in 256ths: the next power of two.

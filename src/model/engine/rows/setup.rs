@@ -3,11 +3,9 @@
 
 use super::compiled::{Reason, Reasons, Sampler};
 use super::kernels::{LANES, PerLane, STEP};
-use super::planes::{Plane, RealPlane, exact_line};
-use super::quotient::{
-    IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, correct_exactly, larger,
-};
-use super::short::{Parts, lower_by_lane};
+use super::planes::{Plane, RealPlane};
+use super::quotient::{IOTA, Line, Positions, QuotientEstimate, Reciprocals, SLACK, break_ties, correct, larger};
+use super::short::Parts;
 use crate::engine::context::TriangleContext;
 use crate::raster::interpolate::{QUOTIENT_LIMIT, Sample, shortfall};
 use crate::raster::setup::Triangle;
@@ -310,15 +308,6 @@ impl<'a> Setup<'a> {
         values: &mut [i32],
         whole: &mut [i32],
     ) {
-        if !ROW && !batch.reaches_beyond() {
-            let of = |g, most| exact_line(&self.context.triangle, e, (g, plane.shared), batch.extent, most);
-            // From a numerator, up to 128 denominators are taken, and then about a whole of it.
-            let most = (1_u64 << 51) as f64;
-            if let (Some(top), Some(bottom)) = (of(&plane.g, most), of(&self.denominator.g, most / 128.0)) {
-                let top = top.less(f64::from(bias), bottom);
-                return correct_exactly(batch.at, top, bottom, values, whole);
-            }
-        }
         let bottom = self.denominator.exact(e);
         correct::<ROW>(batch.at, plane.exact(e).less(i64::from(bias), bottom), bottom, values, whole);
     }
@@ -342,9 +331,6 @@ impl<'a> Setup<'a> {
     ) {
         let triangle = &self.context.triangle;
         if !self.may_lower(&batch, plane) {
-            return;
-        }
-        if (!ROW || batch.reaches_beyond()) && lower_by_lane(triangle, batch, &plane.g, whole, values) {
             return;
         }
         let parts =

@@ -3,13 +3,13 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::BLOCK;
-use super::kernels::{LANES, PerLane};
-use super::planes::{Plane, edge_lines, inverse};
+use super::kernels::PerLane;
+use super::planes::{Plane, inverse};
 use super::quotient::{
     IOTA_REAL, Line, Positions, Reciprocals, SLACK, any_negative, multiply_add, nearest, position, whole,
 };
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
-use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant, shortfall};
+use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
 
@@ -302,75 +302,13 @@ fn classify<const FMA: bool, const ROW: bool>(
     (most_dominant([class(a, d), class(b, d), class(c, d)]), close, [a, c])
 }
 
-/// INT-4t: lowers those coordinates that are whole, if a function with these G_k loses something there, lane by lane. Returns `false`, and
-/// changes nothing, unless double precision decides it for all.
-#[inline(always)]
-pub(super) fn lower_by_lane(
-    triangle: &Triangle,
-    batch: PixelBatch<'_>,
-    g: &[i64; 3],
-    whole: &[i32],
-    values: &mut [i32],
-) -> bool {
-    let (p, first) = (triangle.p, triangle.edges(batch.first.0, batch.first.1));
-    // No edge function is larger than the area within the triangle.
-    let reach = |k: usize| {
-        let (columns, rows) = (i64::from(batch.extent.0), i64::from(batch.extent.1));
-        first[k].abs() + triangle.a[k].abs() * columns + triangle.b[k].abs() * rows
-    };
-    let edge = if batch.reaches_beyond() { reach(0).max(reach(1)).max(reach(2)) } else { triangle.doubled_area };
-    let largest = p[0].max(p[1]).max(p[2]) as f64 * edge as f64;
-    // Then four times a numerator is exact, and weights are classified exactly.
-    let fits = 4.0 * largest < (1_u64 << 53) as f64;
-    if !fits {
-        return false;
-    }
-    let (edges, [p0, p1, p2]) = (edge_lines(triangle, &first), p.map(|p| p as f64));
-    let loss = |k: usize| shortfall(triangle, &[1; 3], g, [k == 0, k == 2]) as f64;
-    let (loss_first, loss_third) = (loss(0), loss(2));
-    let (mut lowered, mut open) = ([0; LANES], 0);
-    let lanes = values.len();
-    let (lowered, whole) = (&mut lowered[..lanes], &whole[..lanes]);
-    let (xs, ys) = (&batch.at.x[..lanes], &batch.at.y[..lanes]);
-    for n in 0..lanes {
-        let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
-        let e0 = edges[0].at::<false, false>(x, y);
-        let e1 = edges[1].at::<false, false>(x, y);
-        let e2 = edges[2].at::<false, false>(x, y);
-        let (a, b, c) = (p0 * e0, p1 * e1, p2 * e2);
-        let (sum, terms) = lost_by_class([e0, e2], [a, b, c], [loss_first, loss_third]);
-        lowered[n] = if sum > 0.0 { whole[n] } else { 0 };
-        // Terms that almost cancel each other decide nothing.
-        let is_open = (sum.abs() < terms * SLACK) & (whole[n] != 0);
-        open |= i32::from(is_open);
-    }
-    if open != 0 {
-        return false;
-    }
-    for (value, lowered) in values.iter_mut().zip(lowered) {
-        *value -= *lowered;
-    }
-    true
-}
-
-/// Returns what a numerator loses that loses so much for each unit of the edge functions 0 and 2 if those weights fall short, and the sum of the
-/// magnitudes of its terms. `n` has the numerators of the weights, exactly.
-#[inline(always)]
-fn lost_by_class([first, third]: [f64; 2], n: [f64; 3], [loss_first, loss_third]: [f64; 2]) -> (f64, f64) {
-    let d = n[0] + n[1] + n[2];
-    let [is_first, is_third] = most_dominant([class(n[0], d), class(n[1], d), class(n[2], d)]);
-    let of_first = if is_first { 0.0 } else { loss_first * first };
-    let of_third = if is_third { 0.0 } else { loss_third * third };
-    (of_first + of_third, of_first.abs() + of_third.abs())
-}
-
-/// INT-4t: lowers those of the coordinates in a box that are whole, where all P_k are equal. `loss` has the differences of the coordinates at the
+/// INT-4t: lowers those of the coordinates in a box that are whole, where all P_k are equal. `losses` has the differences of the coordinates at the
 /// vertices 0 and 2 to that at vertex 1. They are multiples of a texel's 256th, so that nothing is rounded.
 #[inline(always)]
 pub(super) fn lower_flat<const FMA: bool>(
     edges: [Line; 3],
     at: Positions<'_>,
-    loss: [f64; 2],
+    losses: [f64; 2],
     whole: &[i32],
     values: &mut [i32],
 ) {
@@ -380,7 +318,10 @@ pub(super) fn lower_flat<const FMA: bool>(
         let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
         let (a, b) = (edges[0].at::<FMA, false>(x, y), edges[1].at::<FMA, false>(x, y));
         let c = edges[2].at::<FMA, false>(x, y);
-        values[n] -= if lost_by_class([a, c], [a, b, c], loss).0 > 0.0 { whole[n] } else { 0 };
+        let d = a + b + c;
+        let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
+        let lost = if is_first { 0.0 } else { losses[0] * a } + if is_third { 0.0 } else { losses[1] * c };
+        values[n] -= if lost > 0.0 { whole[n] } else { 0 };
     }
 }
 

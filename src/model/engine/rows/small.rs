@@ -159,6 +159,8 @@ impl Boxes {
             }
             for n in 0..GROUP {
                 proves[n] &= -i32::from(is_plane[n] & !(may_lose & (shapes.exact[n] == 0)));
+                // Ties on levels are lowered one by one.
+                proves[n] &= -i32::from(!(sampler.mixes & (edges.tied[n] > 0.0)));
             }
             self.has_levels |= sampler.mixes;
             if sampler.mixes {
