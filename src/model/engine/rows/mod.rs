@@ -11,7 +11,7 @@
 //! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q, moved or, by policy, on planes |
 //! | `third.rs` | layers of volumes, depths to compare with |
-//! | `shapes.rs`, `small.rs`, `ratios.rs`, `box_depths.rs` | the same for boxes of small triangles, eight at a time: corners, spans and what functions share; coordinates on planes and weights; coordinates by q, numbers, depths to compare with; depths |
+//! | `shapes.rs`, `small.rs`, `ratios.rs`, `box_depths.rs`, `box_levels.rs` | the same for boxes of small triangles, eight at a time: corners, spans and what functions share; coordinates on planes and weights; coordinates by q, numbers, depths to compare with; depths; level 0 of textures with levels |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
 //! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |

@@ -410,9 +410,7 @@ impl Boxes {
         }
         !open
     }
-}
 
-impl Boxes {
     /// Computes the fetches of samplers with levels for the pixels of the current box, whose other attributes are proved. Returns `false` if something
     /// is not.
     #[inline(always)]
