@@ -68,14 +68,14 @@ pub(super) fn plain<const FMA: bool>(
     block: &mut Block,
 ) -> bool {
     let Block { varying, rows, boxes, used, .. } = block;
-    boxes.interpolate::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
+    boxes.interpolate::<FMA, false>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
 }
 
 /// Does the same for a box whose ties are lowered.
 #[inline(always)]
 pub(super) fn tied<const FMA: bool>(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool {
     let Block { varying, rows, boxes, used, .. } = block;
-    boxes.interpolate_tied::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
+    boxes.interpolate::<FMA, true>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
 }
 
 /// Computes coordinates that are divided by q, depths to compare with, fog and numbers of the texture shader in the block's current box, whose other

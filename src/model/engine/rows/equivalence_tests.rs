@@ -317,9 +317,9 @@ fn compare_small<const FMA: bool>(
     }
     let batch = batch::<HALF_STEP>(small.coverage(), 0);
     let mut done = if small.is_tied() {
-        small.interpolate_tied::<FMA>(context, plain, batch, varying, rows)
+        small.interpolate::<FMA, true>(context, plain, batch, varying, rows)
     } else {
-        small.interpolate::<FMA>(context, plain, batch, varying, rows)
+        small.interpolate::<FMA, false>(context, plain, batch, varying, rows)
     };
     done &= !small.has_ratios || small.interpolate_ratios::<FMA>((context, plain), batch, varying, rows);
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));

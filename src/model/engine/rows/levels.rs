@@ -46,7 +46,7 @@ pub(super) struct Placing {
 impl Setup<'_> {
     /// Returns whether the coordinates on all levels that a sampler reads are those of level 0, shifted.
     pub(super) fn shift_with(&self, sampler: &Sampler, planes: &[Plane; 2]) -> bool {
-        let unit = &self.context.draw.units[sampler.index];
+        let unit = self.unit(sampler);
         let shifts = unit.levels.last().map_or([0; 2], |smallest| unit.plane_shifts(smallest));
         planes[0].shifts_by(shifts[0]) && planes[1].shifts_by(shifts[1])
     }
@@ -138,7 +138,7 @@ impl Setup<'_> {
     #[inline(never)]
     pub(super) fn defined_reads(&self, batch: PixelBatch<'_>, n: usize, sampler: &Sampler, reads: &mut MipFetches) {
         let Some(table) = &sampler.table else { return };
-        let unit = &self.context.draw.units[sampler.index];
+        let unit = self.unit(sampler);
         self.count_defined(Reason::Levels, 1);
         let (sample, lane) = (self.sample(batch, n), batch.lane + n);
         let Some(place) = self.context.sample_coordinates(unit, &sample, batch.pixel(n)) else { return };

@@ -12,7 +12,7 @@ use super::compiled::{Sampler, Third};
 use super::fog::BoxFog;
 use super::kernels::PerLane;
 use super::levels::fetches;
-use super::quotient::{QuotientEstimate, SLACK, break_ties, whole};
+use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
@@ -48,10 +48,10 @@ pub(super) struct Boxes {
     /// The same for those samplers whose coordinates are divided by q.
     ratios: [Ratios; TEXTURE_UNITS],
     projects: [bool; TEXTURE_UNITS],
-    /// Whether there are any of them, of the following, or numbers.
+    /// Whether there are any of them, depths to compare with, fog, or numbers.
     pub(super) has_ratios: bool,
     short: Weights,
-    /// The same for those samplers that have levels.
+    /// Level 0 of the samplers that have levels.
     levels: [BoxLevels; TEXTURE_UNITS],
     /// Whether there are any of them.
     pub(super) has_levels: bool,
@@ -158,9 +158,9 @@ impl Boxes {
                 continue;
             }
             for n in 0..GROUP {
-                proves[n] &= -i32::from(is_plane[n] & !(may_lose & (shapes.exact[n] == 0)));
                 // Ties on levels are lowered one by one.
-                proves[n] &= -i32::from(!(sampler.mixes & (edges.tied[n] > 0.0)));
+                let loses = (may_lose & (shapes.exact[n] == 0)) | (sampler.mixes & (edges.tied[n] > 0.0));
+                proves[n] &= -i32::from(is_plane[n] & !loses);
             }
             self.has_levels |= sampler.mixes;
             if sampler.mixes {
@@ -271,10 +271,16 @@ impl Boxes {
         &self.numbers
     }
 
-    /// Interpolates all attributes of the pixels of the current box, of which there is at least one, for a plain draw. Returns `false` if something is
-    /// not proved; then nothing counts.
+    /// Returns whether ties of the current box are lowered.
     #[inline(always)]
-    pub(super) fn interpolate<const FMA: bool>(
+    pub(super) fn is_tied(&self) -> bool {
+        self.ties[self.current]
+    }
+
+    /// Interpolates all attributes of the pixels of the current box, of which there is at least one, for a plain draw. `TIES` says whether it
+    /// [is tied](Self::is_tied). Returns `false` if something is not proved; then nothing counts.
+    #[inline(always)]
+    pub(super) fn interpolate<const FMA: bool, const TIES: bool>(
         &self,
         context: &TriangleContext<'_>,
         compiled: &CompiledDraw,
@@ -287,20 +293,28 @@ impl Boxes {
             return false;
         }
         let weighted = compiled.varies(context);
-        let Varying { coordinates, narrow, reciprocals, .. } = &mut *varying;
+        let Varying { coordinates, weights, whole, narrow, reciprocals, .. } = &mut *varying;
         if weighted || compiled.divides() {
             reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         }
         let (at, mut open) = (|| batch.lanes(), 0);
-        for (sampler, _) in own(compiled) {
-            if self.projects[sampler] || compiled.samplers[sampler].mixes {
+        for (index, sampler) in own(compiled) {
+            if self.projects[index] || sampler.mixes {
                 continue;
             }
-            for (estimates, out) in self.coordinates[sampler].iter().zip(&mut coordinates[sampler]) {
-                open |= reciprocals.floors::<FMA, false, _>(estimates.of(n), &mut out[at()], |value| value);
+            for (axis, (estimates, out)) in self.coordinates[index].iter().zip(&mut coordinates[index]).enumerate() {
+                let (estimate, out) = (estimates.of(n), &mut out[at()]);
+                open |= if TIES {
+                    self.lowered::<FMA>(context, (sampler, axis), batch, (estimate, reciprocals), out, &mut whole[0])
+                } else {
+                    reciprocals.floors::<FMA, false, _>(estimate, out, |value| value)
+                };
             }
         }
-        if weighted {
+        if weighted && TIES {
+            open |= self.lowered_weights::<FMA>(batch, reciprocals, weights, whole);
+            narrow_weights(batch, weights, narrow);
+        } else if weighted {
             for (estimates, out) in self.weights.iter().zip(narrow) {
                 let estimate = estimates.of(n).not_negative();
                 open |= reciprocals.floors::<FMA, false, _>(estimate, &mut out[at()], |weight| weight as u16);
@@ -313,64 +327,46 @@ impl Boxes {
         true
     }
 
-    /// Returns whether the current box is one for [`interpolate_tied`](Self::interpolate_tied).
+    /// INT-4t: writes a coordinate along an axis on a triangle with a single w. Returns a number that is negative if it is not proved.
     #[inline(always)]
-    pub(super) fn is_tied(&self) -> bool {
-        self.ties[self.current]
-    }
-
-    /// Does what [`interpolate`](Self::interpolate) does where ties are lowered: INT-3 and INT-4t on triangles with a single w.
-    #[inline(always)]
-    pub(super) fn interpolate_tied<const FMA: bool>(
+    fn lowered<const FMA: bool>(
         &self,
         context: &TriangleContext<'_>,
-        compiled: &CompiledDraw,
+        (sampler, axis): (&Sampler, usize),
         batch: PixelBatch<'_>,
-        varying: &mut Varying,
-        rows: &mut [PerLane<i16>],
-    ) -> bool {
-        let n = self.current;
-        if !self.proves[n] {
-            return false;
+        (estimate, reciprocals): (QuotientEstimate, &Reciprocals),
+        out: &mut [i32],
+        whole: &mut PerLane<i32>,
+    ) -> i32 {
+        let (n, whole) = (self.current, &mut whole[batch.lanes()]);
+        let (close, any) = reciprocals.floors_and_whole::<FMA>(estimate, self.edges.tied[n], out, whole);
+        if any {
+            let (of, vertices) = (&context.draw.assembly.vertices, self.corners.vertices[self.all[n].1]);
+            let [[first], [middle], [third]] =
+                repeated(&context.draw.units[sampler.index], of, &[vertices])[axis].map(|of| of.map(f64::from));
+            lower_flat::<FMA>(self.edges.lines(n), batch.at, [first - middle, third - middle], whole, out);
         }
-        let Varying { coordinates, weights, whole: [whole0, whole2], narrow, reciprocals, .. } = &mut *varying;
-        reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
-        let (at, mut open) = (|| batch.lanes(), 0);
-        let (whole0, whole2) = (&mut whole0[at()], &mut whole2[at()]);
+        close
+    }
+
+    /// INT-3: writes the weights 0 and 2 on a triangle with a single w. Returns a number that is negative if they are not proved.
+    #[inline(always)]
+    fn lowered_weights<const FMA: bool>(
+        &self,
+        batch: PixelBatch<'_>,
+        reciprocals: &Reciprocals,
+        [w0, w2]: &mut [PerLane<i32>; 2],
+        [whole0, whole2]: &mut [PerLane<i32>; 2],
+    ) -> i32 {
+        let (n, at) = (self.current, || batch.lanes());
+        let (w0, w2, whole0, whole2) = (&mut w0[at()], &mut w2[at()], &mut whole0[at()], &mut whole2[at()]);
         let gap = self.edges.tied[n];
-        for (index, sampler) in own(compiled) {
-            if self.projects[index] || sampler.mixes {
-                continue;
-            }
-            for (axis, out) in coordinates[index].iter_mut().enumerate() {
-                let (estimate, out) = (self.coordinates[index][axis].of(n), &mut out[at()]);
-                let (close, any) = reciprocals.floors_and_whole::<FMA>(estimate, gap, out, whole0);
-                open |= close;
-                if any {
-                    let (of, vertices) = (&context.draw.assembly.vertices, self.corners.vertices[self.all[n].1]);
-                    let [[first], [middle], [third]] =
-                        repeated(&context.draw.units[sampler.index], of, &[vertices])[axis].map(|of| of.map(f64::from));
-                    let loss = [first - middle, third - middle];
-                    lower_flat::<FMA>(self.edges.lines(n), batch.at, loss, whole0, out);
-                }
-            }
+        let (close, any) = reciprocals.floors_and_whole::<FMA>(self.weights[0].of(n), gap, w0, whole0);
+        let (other, any_other) = reciprocals.floors_and_whole::<FMA>(self.weights[1].of(n), gap, w2, whole2);
+        if any | any_other {
+            break_ties(w0, w2, whole0, whole2);
         }
-        if compiled.varies(context) {
-            let [w0, w2] = &mut *weights;
-            let (w0, w2) = (&mut w0[at()], &mut w2[at()]);
-            let (close, any) = reciprocals.floors_and_whole::<FMA>(self.weights[0].of(n), gap, w0, whole0);
-            let (other, any_other) = reciprocals.floors_and_whole::<FMA>(self.weights[1].of(n), gap, w2, whole2);
-            open |= close | other;
-            if any | any_other {
-                break_ties(w0, w2, whole0, whole2);
-            }
-            narrow_weights(batch, weights, narrow);
-        }
-        if open < 0 {
-            return false;
-        }
-        colors(context, compiled, batch, &varying.narrow, rows);
-        true
+        close | other
     }
 
     /// Computes coordinates that are divided by q, depths to compare with, and fog of the pixels of the current box, whose other attributes are
