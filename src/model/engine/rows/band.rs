@@ -282,6 +282,7 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     if *used == 0 {
         return;
     }
+    let lanes = work.lanes;
     let (words, stored) = (words.block_mut(), stored.block_mut());
     let (depth, alive) = (depth.block_mut(), alive.block_mut());
     if compiled.drops_late {
@@ -294,13 +295,13 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     }
     if compiled.destination.iter().any(Option::is_some) {
         store::read_runs(band.words, runs, stored);
-        store::read(draw, compiled, stored, rows);
+        store::read((draw, compiled), lanes, stored, rows);
     }
     if compiled.reads_surface {
         store::mark(taken, runs);
     }
     for (node, at) in &compiled.operations {
-        kernels::run(node, *at, rows);
+        kernels::run(node, *at, lanes, rows);
     }
     if compiled.drops_late {
         if let Some(test) = &draw.alpha_test {
@@ -317,9 +318,9 @@ pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
     }
     // Most blocks lose no fragment.
     let merges = compiled.merges && !(compiled.writes_whole && store::all(&alive[..*used]));
-    store::pack(draw, compiled, rows, words);
+    store::pack((draw, compiled), lanes, rows, words);
     if merges {
-        store::merge_runs(draw.write_mask, alive, words, stored, runs, band.words);
+        store::merge_runs((draw.write_mask, lanes), alive, words, stored, runs, band.words);
     } else {
         store::write_runs(words, runs, band.words);
     }

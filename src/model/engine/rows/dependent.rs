@@ -3,7 +3,7 @@
 
 use super::depth::floor;
 use super::dot::{Facing, Floats, is_finite};
-use super::kernels::PerLane;
+use super::kernels::{Lanes, PerLane};
 use super::levels::{MipFetches, choose};
 use super::quads::{AtQuads, Measure};
 use super::quotient::{larger, whole};
@@ -92,14 +92,14 @@ impl BlockQuads {
     #[inline(always)]
     pub(super) fn set_floats<const FMA: bool>(
         &mut self,
-        axis: usize,
+        (axis, lanes): (usize, Lanes),
         floats: &Floats,
         side: u32,
         open: &mut [i32; BLOCK],
     ) {
         let (scale, limit) = (65536.0 * f64::from(side), (COORDINATE_LIMIT << 8) as f64);
-        let fine = &mut self.fine[axis];
-        for n in 0..BLOCK {
+        let fine = self.fine[axis].block_mut();
+        for n in 0..lanes.count() {
             let t = f64::from(floats[n]) * scale;
             open[n] |= i32::from(t.abs() >= limit);
             // NaN counts as 0.
@@ -166,7 +166,7 @@ impl BlockQuads {
     #[allow(clippy::too_many_arguments, reason = "results apart, so that the compiler sees that none overlaps another")]
     pub(super) fn fetches<const FMA: bool>(
         &mut self,
-        (unit, table): (&PlannedUnit, &Table),
+        (unit, table, used): (&PlannedUnit, &Table, Lanes),
         u: &[i32],
         v: &[i32],
         faces: Option<&PerLane<u32>>,
@@ -200,11 +200,12 @@ impl BlockQuads {
             }
             quad += count;
         }
-        let ranges = choose(unit, lods, levels, &mut reads.weights[..BLOCK]);
-        reads.place_all((unit, table, 0), 0..BLOCK, ranges, lods, levels, &u[..BLOCK], &v[..BLOCK]);
+        let used = used.count();
+        let ranges = choose(unit, lods, levels, &mut reads.weights[..used]);
+        reads.place_all((unit, table, 0), 0..used, ranges, lods, levels, &u[..used], &v[..used]);
         if let Some(faces) = faces {
             for entries in &mut reads.entries {
-                for (entry, face) in entries[..BLOCK].iter_mut().zip(&**faces) {
+                for (entry, face) in entries[..used].iter_mut().zip(&**faces) {
                     *entry += (face * table.face) as i32;
                 }
             }

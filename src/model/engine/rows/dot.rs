@@ -3,6 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
 
 use super::BLOCK;
+use super::kernels::Lanes;
 use super::quotient::{nearest, nearest_32, whole, whole_32};
 use crate::number::convert::factor;
 use crate::state::DotMapping;
@@ -28,12 +29,18 @@ impl Remap {
 
     /// Computes the fractions of the registers R, G, B and A. `doubled` tells which of them hold twice the byte.
     #[inline(always)]
-    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: [&mut Floats; 3]) {
+    pub(super) fn run(
+        self,
+        lanes: Lanes,
+        registers: [Option<&[i16; BLOCK]>; 4],
+        doubled: [bool; 4],
+        out: [&mut Floats; 3],
+    ) {
         match self {
             Remap::Bytes(linear) => {
                 for n in 0..3 {
                     if let Some(register) = registers[n] {
-                        linear.run(register, doubled[n], out[n]);
+                        linear.run(lanes, register, doubled[n], out[n]);
                     }
                 }
             }
@@ -44,7 +51,7 @@ impl Remap {
                 // Two loops, so that each has a constant mapping.
                 macro_rules! each {
                     ($mapping:expr) => {
-                        for n in 0..BLOCK {
+                        for n in 0..lanes.count() {
                             let bytes = [r[n] >> down[0], g[n] >> down[1], b[n] >> down[2], a[n] >> down[3]];
                             let bytes = [bytes[0] as u8, bytes[1] as u8, bytes[2] as u8, bytes[3] as u8];
                             [x[n], y[n], z[n]] = dot::remap($mapping, bytes);
@@ -86,9 +93,9 @@ impl Linear {
 
     /// Computes the fractions of a channel. `doubled` tells whether it holds twice the byte.
     #[inline(always)]
-    fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+    fn run(self, lanes: Lanes, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
         let whole = f32::from(self.whole);
-        for n in 0..BLOCK {
+        for n in 0..lanes.count() {
             out[n] = f32::from(self.numerator(register[n] >> u32::from(doubled))) / whole;
         }
     }
@@ -96,17 +103,17 @@ impl Linear {
 
 /// TSH-4: dot products of three numbers and a remapped colour.
 #[inline(always)]
-pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: [&Floats; 3], out: &mut Floats) {
-    for n in 0..BLOCK {
+pub(super) fn products(lanes: Lanes, [s, t, r]: [&Floats; 3], [x, y, z]: [&Floats; 3], out: &mut Floats) {
+    for n in 0..lanes.count() {
         out[n] = dot::dot([s[n], t[n], r[n]], [x[n], y[n], z[n]]);
     }
 }
 
 /// TSH-5: reflects vectors.
 #[inline(always)]
-pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mut [Floats; 3]) {
+pub(super) fn reflect(lanes: Lanes, [x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mut [Floats; 3]) {
     let [out_x, out_y, out_z] = out;
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let [reflected_x, reflected_y, reflected_z] = dot::reflect([x[n], y[n], z[n]], [a[n], b[n], c[n]]).vector;
         (out_x[n], out_y[n], out_z[n]) = (reflected_x, reflected_y, reflected_z);
     }
@@ -115,6 +122,7 @@ pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mu
 /// TSH-7: computes how far blue and green move both coordinates, in 1/128 image. Their registers may hold twice the byte.
 #[inline(always)]
 pub(super) fn moved(
+    lanes: Lanes,
     [m0, m1, m2, m3]: [f32; 4],
     (blue, blue_doubled): (&[i16; BLOCK], bool),
     (green, green_doubled): (&[i16; BLOCK], bool),
@@ -122,7 +130,7 @@ pub(super) fn moved(
     down: &mut Floats,
 ) {
     let (down_blue, down_green) = (u32::from(blue_doubled), u32::from(green_doubled));
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let (b, g) = (f32::from((blue[n] >> down_blue) as i8), f32::from((green[n] >> down_green) as i8));
         (along[n], down[n]) = (dot::moved([m0, m3], [b, g]), dot::moved([m1, m2], [b, g]));
     }
@@ -133,8 +141,8 @@ const TWELVE_BITS: f32 = 24_576.0;
 
 /// TSH-8: multiplies a channel by the factors of the pixels' luminance, which keep products far from integers.
 #[inline(always)]
-pub(super) fn luminance<const FMA: bool>(factors: &Floats, channel: &mut [i16; BLOCK]) {
-    for n in 0..BLOCK {
+pub(super) fn luminance<const FMA: bool>(lanes: Lanes, factors: &Floats, channel: &mut [i16; BLOCK]) {
+    for n in 0..lanes.count() {
         let c = f32::from(channel[n].max(0));
         let sum = if FMA { c.mul_add(factors[n], TWELVE_BITS) } else { c * factors[n] + TWELVE_BITS };
         // A product of 4096 or more is 255 like 4095.
@@ -142,16 +150,16 @@ pub(super) fn luminance<const FMA: bool>(factors: &Floats, channel: &mut [i16; B
         channel[n] = (bits >> 9) as i16;
     }
     // A loop of its own, so that vectors hold twice as many lanes.
-    for value in channel {
-        *value = factor(i32::from(*value & 4095)) as i16;
+    for n in 0..lanes.count() {
+        channel[n] = factor(i32::from(channel[n] & 4095)) as i16;
     }
 }
 
 /// Writes coordinates on an image as floors in 1/256 texel less `bias`, limited to `limit`. NaN counts as 0.
 #[inline(always)]
-pub(super) fn coordinate(f: &Floats, side: u32, limit: i32, bias: i32, out: &mut [i32; BLOCK]) {
+pub(super) fn coordinate(lanes: Lanes, f: &Floats, side: u32, limit: i32, bias: i32, out: &mut [i32; BLOCK]) {
     let (scale, limit) = (256.0 * f64::from(side), f64::from(limit));
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         // Exact, because 24 bits are multiplied by at most 12.
         let t = f64::from(f[n]) * scale;
         let t = if t > -limit { t } else { -limit };
@@ -209,19 +217,19 @@ impl Facing {
 /// TEX-12 and TEX-13 of vectors: writes the face, and u and v on it as floors in 1/256 texel less `bias`.
 ///
 /// With the major component m, K = 128 `size`, which is a power of two, and n the integer nearest to K s / m, computed roughly, the floor
-/// is K + n, or one less if s is [below](is_below) m n / K. The fourth argument is scratch space.
+/// is K + n, or one less if s is [below](is_below) m n / K. The argument after them is scratch space.
 #[inline(always)]
 pub(super) fn on_faces<const FMA: bool>(
+    lanes: Lanes,
     [x, y, z]: [&Floats; 3],
-    size: u32,
-    bias: i32,
+    (size, bias): (u32, i32),
     [along, down, majors]: &mut [Floats; 3],
     u: &mut [i32; BLOCK],
     v: &mut [i32; BLOCK],
     faces: &mut [u32; BLOCK],
 ) {
     let k = (128 * size) as f32;
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let direction = [x[n], y[n], z[n]];
         let finite = is_finite(direction);
         let facing = Facing::new(direction);
@@ -237,7 +245,7 @@ pub(super) fn on_faces<const FMA: bool>(
         let scale = if m < TINY { 1.0 / TINY } else { 1.0 };
         (along[n], down[n], majors[n]) = (kept(s) * scale, kept(t) * scale, kept(m) * scale);
     }
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let (s, t, m) = (along[n], down[n], majors[n]);
         // The zero vector has the coordinates 0.
         let center = if m > 0.0 { k } else { 0.0 };
@@ -284,7 +292,7 @@ mod tests {
                 };
                 let registers = [register(0), register(1), register(2), register(3)];
                 let mut out = [[0.0; BLOCK]; 3];
-                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, out.each_mut());
+                Remap::new(*mapping).run(Lanes::default(), registers.each_ref().map(Some), doubled, out.each_mut());
                 for n in 0..BLOCK {
                     let got = out.each_ref().map(|out| out[n]);
                     assert_eq!(got, dot::remap(*mapping, bytes(n)), "{mapping:?} {:?}", bytes(n));
@@ -318,12 +326,28 @@ mod tests {
             let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
             if round % 4 < 2 {
-                on_faces::<true>(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
+                on_faces::<true>(
+                    Lanes::default(),
+                    vector.each_ref(),
+                    (size, bias),
+                    &mut scratch,
+                    &mut u,
+                    &mut v,
+                    &mut faces,
+                );
             } else {
-                on_faces::<false>(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
+                on_faces::<false>(
+                    Lanes::default(),
+                    vector.each_ref(),
+                    (size, bias),
+                    &mut scratch,
+                    &mut u,
+                    &mut v,
+                    &mut faces,
+                );
             }
             let mut plain = [0; BLOCK];
-            coordinate(&vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
+            coordinate(Lanes::default(), &vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
             for n in 0..BLOCK {
                 let direction = shader::direction([vector[0][n], vector[1][n], vector[2][n]]);
                 let face = Face::from_direction(direction, direction.map(i64::abs), 0);

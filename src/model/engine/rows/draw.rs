@@ -4,7 +4,7 @@ use super::band::{Block, index};
 use super::boxes::{Entered, batch, boxes, columns_of_quads, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::isa::Kernels;
-use super::kernels::{PerLane, STEP};
+use super::kernels::{Lanes, PerLane, STEP};
 use super::levels::MipFetches;
 use super::setup::{Covered, PixelBatch, Run, whole_steps};
 use super::shapes::GROUP;
@@ -268,6 +268,7 @@ fn draw_box_of_quads<T: Kernels>(
 /// Computes a block and stores it.
 #[inline(always)]
 fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+    block.work.lanes = Lanes::first(block.used);
     if job.compiled.shader.is_some() && block.used > 0 {
         T::shade(job, block, band);
     }

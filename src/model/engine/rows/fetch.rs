@@ -1,7 +1,7 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
 use super::filter::{Footprint, Vectors, filter, filter_half, filter_one};
-use super::kernels::{LANES, PerLane};
+use super::kernels::{LANES, Lanes, PerLane};
 use super::levels::MipFetches;
 use super::store;
 use super::table::{Axis, Column, Table, Texels};
@@ -23,11 +23,14 @@ pub(super) struct Workspace {
     next: [[i16; BLOCK]; 4],
     /// 16-bit halves: that of A and R, and that of G and B.
     halves: [[i32; BLOCK]; 2],
+    /// The lanes that are fetched. At the end, because the arrays are aligned.
+    pub(super) lanes: Lanes,
 }
 
 impl Default for Workspace {
     fn default() -> Self {
         Workspace {
+            lanes: Lanes::default(),
             entries: [0; BLOCK],
             texels: [0; BLOCK],
             footprints: [[0; 4]; BLOCK],
@@ -75,14 +78,14 @@ pub(super) fn locate(
     work: &mut Workspace,
 ) {
     let (u, v) = (u.block_mut(), v.block_mut());
-    let entries = &mut work.entries;
+    let Workspace { lanes, entries, .. } = work;
     let [columns, rows] = &table.axes;
-    columns.reduce(u);
-    rows.reduce(v);
+    columns.reduce(&mut u[..lanes.count()]);
+    rows.reduce(&mut v[..lanes.count()]);
     match faces.map(PerLane::block) {
-        Some(faces) => address::<true>(table, u, v, |n| faces[n] * table.face, entries),
-        None if table.axes.iter().all(Axis::repeats) => address::<false>(table, u, v, |_| 0, entries),
-        None => address::<true>(table, u, v, |_| 0, entries),
+        Some(faces) => address::<true>((table, *lanes), u, v, |n| faces[n] * table.face, entries),
+        None if table.axes.iter().all(Axis::repeats) => address::<false>((table, *lanes), u, v, |_| 0, entries),
+        None => address::<true>((table, *lanes), u, v, |_| 0, entries),
     }
 }
 
@@ -101,7 +104,7 @@ pub(super) fn sample(
     rows: &mut [PerLane<i16>],
 ) {
     if texels(vectors, table, at, references, signed, wanted, work, rows) {
-        load(signed, wanted, rows);
+        load(work.lanes, signed, wanted, rows);
     }
 }
 
@@ -121,10 +124,11 @@ fn texels(
     let (u, v) = (u.block(), v.block());
     if let Texels::Wide(texels, linear) = &table.texels {
         work.filter_halves(texels, *linear, (u, v));
-        bytes_of_halves(&work.halves, signed, wanted, rows);
+        bytes_of_halves((work.lanes, &work.halves), signed, wanted, rows);
         return false;
     }
-    let Workspace { entries, texels: found, footprints, .. } = work;
+    let Workspace { lanes, entries, texels: found, footprints, .. } = work;
+    let lanes = *lanes;
     // Channels that are not wanted go to the spare rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else {
@@ -133,35 +137,35 @@ fn texels(
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     match &table.texels {
         Texels::Single(texels) => {
-            fetch(texels, entries, found);
-            unpack(found, red, green, blue, alpha);
+            fetch(lanes, texels, entries, found);
+            unpack(lanes, found, red, green, blue, alpha);
         }
         // Done above, and by `sample_levels`.
         Texels::Wide(..) | Texels::Levels(_) | Texels::WideLevels(_) => {}
         Texels::Depths(texels, function) => {
-            fetch(texels, entries, found);
+            fetch(lanes, texels, entries, found);
             let mut passed = [true; BLOCK];
             store::test(*function, |n| references[n], |n| found[n], &mut passed);
             for (out, _) in [red, green, blue, alpha].into_iter().zip(wanted).filter(|(_, wanted)| wanted.is_some()) {
-                for (out, passed) in out.iter_mut().zip(passed) {
-                    *out = if passed { 255 } else { 0 };
+                for n in 0..lanes.count() {
+                    out[n] = if passed[n] { 255 } else { 0 };
                 }
             }
             return false;
         }
         Texels::One(channel, texels) => {
-            fetch(texels, entries, found);
+            fetch(lanes, texels, entries, found);
             let out = match channel {
                 0 => red,
                 1 => green,
                 2 => blue,
                 _ => alpha,
             };
-            filter_one(found, u, v, out);
+            filter_one(lanes, found, u, v, out);
         }
         Texels::Footprints(texels) => {
-            fetch_footprints(texels, entries, footprints);
-            filter(vectors, footprints, u, v, red, green, blue, alpha);
+            fetch_footprints(lanes, texels, entries, footprints);
+            filter((vectors, lanes), footprints, u, v, red, green, blue, alpha);
         }
     }
     true
@@ -180,63 +184,59 @@ fn sample_taps(
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
 ) {
+    // Not closures: compilers do not inline them, and they lack the caller's instruction set.
+    let taps = pairs.iter().flat_map(|pair| [(pair, 1), (pair, -1)]);
     if let Texels::Wide(texels, linear) = &table.texels {
         let mut sums = [[0_i32; BLOCK]; 2];
-        each_tap(table, at, pairs, work, |[u, v], weights, work| {
-            let (u, v) = (u.block(), v.block());
-            work.filter_halves(texels, *linear, (u, v));
+        for (pair, side) in taps {
+            let [u, v] = tap(table, at, (pair, side), work);
+            work.filter_halves(texels, *linear, (u.block(), v.block()));
+            let weights = pair.weights.block();
             for (sums, half) in sums.iter_mut().zip(&work.halves) {
-                for n in 0..BLOCK {
+                for n in 0..work.lanes.count() {
                     sums[n] += half[n] * i32::from(weights[n]);
                 }
             }
-        });
+        }
         let halves = sums.map(|sums| sums.map(|sum| (sum + 128) >> 8));
-        bytes_of_halves(&halves, signed, wanted, rows);
+        bytes_of_halves((work.lanes, &halves), signed, wanted, rows);
         return;
     }
     let mut sums = [[0_u16; BLOCK]; 4];
-    each_tap(table, at, pairs, work, |at, weights, work| {
-        texels(vectors, table, at, &NO_REFERENCES, signed, wanted, work, rows);
+    for (pair, side) in taps {
+        let at = tap(table, at, (pair, side), work);
+        texels(vectors, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
+        let weights = pair.weights.block();
         for (sums, wanted) in sums.iter_mut().zip(wanted) {
             let Some(wanted) = wanted else { continue };
             let channel = rows[usize::from(wanted)].block();
-            for n in 0..BLOCK {
+            for n in 0..work.lanes.count() {
                 sums[n] += channel[n] as u16 * weights[n];
             }
         }
-    });
+    }
     for (sums, wanted) in sums.iter().zip(wanted) {
         let Some(wanted) = wanted else { continue };
-        for (out, sum) in rows[usize::from(wanted)].block_mut().iter_mut().zip(sums) {
-            *out = ((sum + 128) >> 8) as i16;
+        let out = rows[usize::from(wanted)].block_mut();
+        for n in 0..work.lanes.count() {
+            out[n] = ((sums[n] + 128) >> 8) as i16;
         }
     }
-    load(signed, wanted, rows);
+    load(work.lanes, signed, wanted, rows);
 }
 
-/// Locates one tap of all pixels after the other. Hands its coordinates and weights over.
+/// Locates a tap of all pixels, on one side of their centres. Returns its coordinates.
 #[inline(always)]
-fn each_tap(
-    table: &Table,
-    at: &[PerLane<i32>; 2],
-    pairs: &[Pair],
-    work: &mut Workspace,
-    mut take: impl FnMut(&[PerLane<i32>; 2], &[u16; BLOCK], &mut Workspace),
-) {
-    for Pair { offsets, weights } in pairs {
-        let weights = weights.block();
-        for side in [1, -1] {
-            let mut at = at.clone();
-            for axis in 0..2 {
-                for (at, offset) in at[axis].iter_mut().zip(&*offsets[axis]) {
-                    *at += side * offset;
-                }
-            }
-            locate(table, &mut at, None, work);
-            take(&at, weights, work);
+fn tap(table: &Table, at: &[PerLane<i32>; 2], (pair, side): (&Pair, i32), work: &mut Workspace) -> [PerLane<i32>; 2] {
+    let mut at = at.clone();
+    for (at, offsets) in at.iter_mut().zip(&pair.offsets) {
+        let (at, offsets) = (at.block_mut(), offsets.block());
+        for n in 0..work.lanes.count() {
+            at[n] += side * offsets[n];
         }
     }
+    locate(table, &mut at, None, work);
+    at
 }
 
 /// References for units that do not compare.
@@ -279,48 +279,50 @@ fn sample_levels(
     };
     let weights = reads.weights.block();
     if is_wide {
-        let at = reads.of_level(0, &mut work.entries);
+        let at = reads.of_level(0, work.lanes, &mut work.entries);
         work.filter_halves(texels, true, at);
         if both {
             let nearer = work.halves;
-            let at = reads.of_level(1, &mut work.entries);
+            let at = reads.of_level(1, work.lanes, &mut work.entries);
             work.filter_halves(texels, true, at);
             for (half, nearer) in work.halves.iter_mut().zip(&nearer) {
-                for n in 0..BLOCK {
+                for n in 0..work.lanes.count() {
                     half[n] = lerp(nearer[n], half[n], i32::from(weights[n]));
                 }
             }
         }
-        bytes_of_halves(&work.halves, signed, wanted, rows);
+        bytes_of_halves((work.lanes, &work.halves), signed, wanted, rows);
         return;
     }
-    let Workspace { entries, footprints, next, .. } = work;
+    let Workspace { lanes, entries, footprints, next, .. } = work;
+    let lanes = *lanes;
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let (u, v) = reads.of_level(0, entries);
-    fetch_footprints(texels, entries, footprints);
-    filter(vectors, footprints, u, v, red, green, blue, alpha);
+    let (u, v) = reads.of_level(0, lanes, entries);
+    fetch_footprints(lanes, texels, entries, footprints);
+    filter((vectors, lanes), footprints, u, v, red, green, blue, alpha);
     if both {
-        let (u, v) = reads.of_level(1, entries);
-        fetch_footprints(texels, entries, footprints);
+        let (u, v) = reads.of_level(1, lanes, entries);
+        fetch_footprints(lanes, texels, entries, footprints);
         let [next_red, next_green, next_blue, next_alpha] = next;
-        filter(vectors, footprints, u, v, next_red, next_green, next_blue, next_alpha);
+        filter((vectors, lanes), footprints, u, v, next_red, next_green, next_blue, next_alpha);
         for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
             if wanted.is_some() {
-                mix(channel, next, weights);
+                mix(lanes, channel, next, weights);
             }
         }
     }
-    load(signed, wanted, rows);
+    load(lanes, signed, wanted, rows);
 }
 
 impl MipFetches {
     /// Writes the entries of one of two levels. Returns the coordinates for its weights.
     #[inline(always)]
-    fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> (&[i32; BLOCK], &[i32; BLOCK]) {
-        for (entry, found) in entries.iter_mut().zip(self.entries[which].block()) {
-            *entry = *found as u32;
+    fn of_level(&self, which: usize, lanes: Lanes, entries: &mut [u32; BLOCK]) -> (&[i32; BLOCK], &[i32; BLOCK]) {
+        let found = self.entries[which].block();
+        for n in 0..lanes.count() {
+            entries[n] = found[n] as u32;
         }
         let [u, v] = &self.coordinates[which];
         (u.block(), v.block())
@@ -329,19 +331,20 @@ impl MipFetches {
 
 /// TEX-9: mixes two levels of a channel.
 #[inline(always)]
-fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[u16; BLOCK]) {
-    for ((channel, next), weight) in channel.iter_mut().zip(next).zip(weights) {
-        *channel = lerp(*channel as u16, *next as u16, *weight) as i16;
+fn mix(lanes: Lanes, channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[u16; BLOCK]) {
+    for n in 0..lanes.count() {
+        channel[n] = lerp(channel[n] as u16, next[n] as u16, weights[n]) as i16;
     }
 }
 
 /// TEX-18: subtracts the 128 that the table adds to signed channels, and doubles them.
 #[inline(always)]
-fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) {
+fn load(lanes: Lanes, signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) {
     for (signed, wanted) in signed.into_iter().zip(wanted) {
         if let (true, Some(wanted)) = (signed, wanted) {
-            for out in rows[usize::from(wanted)].block_mut() {
-                *out = (i32::from(*out) - 128).signed_texel() as i16;
+            let out = rows[usize::from(wanted)].block_mut();
+            for n in 0..lanes.count() {
+                out[n] = (i32::from(out[n]) - 128).signed_texel() as i16;
             }
         }
     }
@@ -350,14 +353,14 @@ fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) 
 /// Computes entries. `LIMITS` says whether an axis has limits.
 #[inline(always)]
 fn address<const LIMITS: bool>(
-    table: &Table,
+    (table, lanes): (&Table, Lanes),
     u: &mut [i32; BLOCK],
     v: &mut [i32; BLOCK],
     face: impl Fn(usize) -> u32,
     entries: &mut [u32; BLOCK],
 ) {
     let ([columns, rows], pitch) = (table.axes, table.pitch);
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         if LIMITS {
             // Not `clamp`, because a function that can panic keeps the loop from being vectorised.
             u[n] = u[n].max(columns.low).min(columns.high);
@@ -369,7 +372,8 @@ fn address<const LIMITS: bool>(
 
 /// Not inlined. A loop of its own keeps its addresses in registers, and texels need no wide vectors.
 #[inline(never)]
-fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
+fn fetch(lanes: Lanes, texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
+    let (entries, found) = (&entries[..lanes.count()], &mut found[..lanes.count()]);
     for (entries, found) in entries.as_chunks::<GROUP>().0.iter().zip(found.as_chunks_mut::<GROUP>().0) {
         for n in 0..GROUP {
             found[n] = texels[entries[n] as usize];
@@ -382,7 +386,8 @@ const GROUP: usize = 4;
 
 /// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
 #[inline(never)]
-fn fetch_footprints(columns: &[Column], entries: &[u32; BLOCK], found: &mut [Footprint; BLOCK]) {
+fn fetch_footprints(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], found: &mut [Footprint; BLOCK]) {
+    let (entries, found) = (&entries[..lanes.count()], &mut found[..lanes.count()]);
     let Some(count) = columns.len().checked_sub(1) else { return };
     let (left, right) = (&columns[..count], &columns[1..]);
     let (entries, found) = (entries.as_chunks::<GROUP>().0, found.as_chunks_mut::<GROUP>().0);
@@ -399,27 +404,35 @@ impl Workspace {
     /// Filters both 16-bit halves of the footprints at the entries, the one of A and R first.
     #[inline(always)]
     fn filter_halves(&mut self, texels: &[Column], linear: bool, at: (&[i32; BLOCK], &[i32; BLOCK])) {
-        let Workspace { entries, footprints, halves: [first, second], .. } = self;
-        fetch_footprints(texels, entries, footprints);
+        let Workspace { lanes, entries, footprints, halves: [first, second], .. } = self;
+        let lanes = *lanes;
+        fetch_footprints(lanes, texels, entries, footprints);
         let kept = if linear { -1 } else { 0 };
-        filter_half::<16>(footprints, at, kept, first);
-        filter_half::<0>(footprints, at, kept, second);
+        filter_half::<16>(lanes, footprints, at, kept, first);
+        filter_half::<0>(lanes, footprints, at, kept, second);
     }
 }
 
 /// TEX-1, TEX-18: splits halves into bytes: A and R, G and B.
 #[inline(always)]
-fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) {
+fn bytes_of_halves(
+    (lanes, halves): (Lanes, &[[i32; BLOCK]; 2]),
+    signed: [bool; 4],
+    wanted: [Option<u16>; 4],
+    rows: &mut [PerLane<i16>],
+) {
     for (half, [high, low]) in halves.iter().zip([[3, 0], [1, 2]]) {
         if let Some(slot) = wanted[low] {
-            for (out, half) in rows[usize::from(slot)].block_mut().iter_mut().zip(half) {
-                *out = (half & 255) as i16;
+            let out = rows[usize::from(slot)].block_mut();
+            for n in 0..lanes.count() {
+                out[n] = (half[n] & 255) as i16;
             }
         }
         if let Some(slot) = wanted[high] {
-            for (out, half) in rows[usize::from(slot)].block_mut().iter_mut().zip(half) {
-                let byte = (half >> 8) as i16;
-                *out = if signed[high] { 2 * (byte - 128) } else { byte };
+            let out = rows[usize::from(slot)].block_mut();
+            for n in 0..lanes.count() {
+                let byte = (half[n] >> 8) as i16;
+                out[n] = if signed[high] { 2 * (byte - 128) } else { byte };
             }
         }
     }
@@ -428,13 +441,14 @@ fn bytes_of_halves(halves: &[[i32; BLOCK]; 2], signed: [bool; 4], wanted: [Optio
 /// Writes the channels of texels.
 #[inline(always)]
 fn unpack(
+    lanes: Lanes,
     texels: &[u32; BLOCK],
     red: &mut [i16; BLOCK],
     green: &mut [i16; BLOCK],
     blue: &mut [i16; BLOCK],
     alpha: &mut [i16; BLOCK],
 ) {
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         red[n] = (texels[n] & 255) as i16;
         green[n] = (texels[n] >> 8 & 255) as i16;
         blue[n] = (texels[n] >> 16 & 255) as i16;

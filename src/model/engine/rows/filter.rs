@@ -1,6 +1,7 @@
 //! TEX-6 on rows: the filter of footprints.
 
 use super::BLOCK;
+use super::kernels::Lanes;
 use crate::number::Swar2;
 use crate::texture::filter::{bilinear, lerp};
 
@@ -23,7 +24,7 @@ pub(crate) enum Vectors {
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 pub(super) fn filter(
-    vectors: Vectors,
+    (vectors, lanes): (Vectors, Lanes),
     footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
@@ -37,8 +38,8 @@ pub(super) fn filter(
         let channels = [&mut *red, &mut *green, &mut *blue, &mut *alpha];
         let done = match vectors {
             Vectors::Portable => false,
-            Vectors::Avx2 => x86::filter_256(footprints, u, v, channels),
-            Vectors::Avx512 => x86::filter_512(footprints, u, v, channels),
+            Vectors::Avx2 => x86::filter_256(lanes, footprints, u, v, channels),
+            Vectors::Avx512 => x86::filter_512(lanes, footprints, u, v, channels),
         };
         if done {
             return;
@@ -46,13 +47,14 @@ pub(super) fn filter(
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = vectors;
-    two_at_a_time(footprints, u, v, red, green, blue, alpha);
+    two_at_a_time(lanes, footprints, u, v, red, green, blue, alpha);
 }
 
 /// TEX-6 of four channels, two at a time.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
 fn two_at_a_time(
+    lanes: Lanes,
     footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
@@ -61,7 +63,7 @@ fn two_at_a_time(
     blue: &mut [i16; BLOCK],
     alpha: &mut [i16; BLOCK],
 ) {
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let [a, c, b, d] = footprints[n];
         let (along, down) = (weight(u[n]), weight(v[n]));
         let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
@@ -73,8 +75,14 @@ fn two_at_a_time(
 
 /// TEX-6 of a single channel: both rows together along u, then along v.
 #[inline(always)]
-pub(super) fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
-    for n in 0..BLOCK {
+pub(super) fn filter_one(
+    lanes: Lanes,
+    texels: &[u32; BLOCK],
+    u: &[i32; BLOCK],
+    v: &[i32; BLOCK],
+    out: &mut [i16; BLOCK],
+) {
+    for n in 0..lanes.count() {
         let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
         out[n] = lerp(Swar2(rows.0 & 255), Swar2(rows.0 >> 16), weight(v[n])).0 as i16;
     }
@@ -83,13 +91,14 @@ pub(super) fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOC
 /// TEX-6 of a 16-bit half that begins at bit `SHIFT`. `kept` masks the weights.
 #[inline(always)]
 pub(super) fn filter_half<const SHIFT: u32>(
+    lanes: Lanes,
     footprints: &[Footprint; BLOCK],
     (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
     kept: i32,
     out: &mut [i32; BLOCK],
 ) {
     let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let [a, c, b, d] = footprints[n];
         let (along, down) = (weight(u[n]) as i32 & kept, weight(v[n]) as i32 & kept);
         out[n] = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
@@ -114,6 +123,7 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 mod x86 {
     use super::BLOCK;
     use crate::engine::rows::filter::Footprint;
+    use crate::engine::rows::kernels::Lanes;
     use multiversion::multiversion;
     use multiversion::target::match_target;
     use std::arch::x86_64::*;
@@ -129,6 +139,7 @@ mod x86 {
         ($name:ident, $target:literal, $steps:ident) => {
             #[multiversion(targets($target))]
             pub(super) fn $name(
+                lanes: Lanes,
                 footprints: &[Footprint; BLOCK],
                 u: &[i32; BLOCK],
                 v: &[i32; BLOCK],
@@ -141,14 +152,14 @@ mod x86 {
                         let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
                         let footprints = footprints.as_chunks::<STEP>().0;
                         let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
-                        for n in 0..BLOCK / STEP {
+                        for n in 0..lanes.count() / STEP {
                             let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
                             $steps(&footprints[n], &u[n], &v[n], outs);
                         }
                         true
                     }
                     _ => {
-                        let _ = (footprints, u, v, channels);
+                        let _ = (lanes, footprints, u, v, channels);
                         false
                     }
                 }
@@ -328,7 +339,7 @@ mod tests {
             let out = [Vectors::Portable, Vectors::Avx2, Vectors::Avx512].map(|vectors| {
                 let mut out = [[0; BLOCK]; 4];
                 let [r, g, b, a] = &mut out;
-                filter(vectors, &footprints, &u, &v, r, g, b, a);
+                filter((vectors, Lanes::default()), &footprints, &u, &v, r, g, b, a);
                 out
             });
             for n in 0..BLOCK {

@@ -20,6 +20,34 @@ pub(super) const STEP: usize = 16;
 /// Number of lanes of a row: a block, and room for steps past its end. A multiple of a cache line.
 pub(super) const LANES: usize = BLOCK + 2 * STEP;
 
+/// The lanes of a block that are computed, in whole parts: many blocks of small draws and of boxes are not full.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lanes(usize);
+
+/// Number of lanes of a part. Parts fill a block, and hold whole vectors of all types.
+const PART: usize = 64;
+const _: () = assert!(BLOCK.is_multiple_of(PART) && PART.is_multiple_of(STEP));
+
+impl Lanes {
+    /// Returns the parts that hold the first lanes.
+    #[inline(always)]
+    pub(super) fn first(count: usize) -> Lanes {
+        Lanes(count.div_ceil(PART))
+    }
+
+    /// Returns the number of lanes.
+    #[inline(always)]
+    pub(super) fn count(self) -> usize {
+        self.0.min(BLOCK / PART) * PART
+    }
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        Lanes::first(BLOCK)
+    }
+}
+
 /// One number for each pixel of a block. Aligned, so that no vector crosses a cache line.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
@@ -135,36 +163,36 @@ fn unsigned_dot(a: [i16; 3], b: [i16; 3]) -> i16 {
     unsigned_identity(dot_product(a, b).rounded()).0
 }
 
-/// Runs a loop over the block. `out` is a parameter of its own, so that the compiler knows that it does not overlap the operands.
+/// Runs a loop over lanes. `out` is a parameter of its own, so that the compiler knows that it does not overlap the operands.
 #[inline(always)]
-fn each(out: &mut [i16; BLOCK], f: impl Fn(usize) -> i16) {
-    for n in 0..BLOCK {
+fn each(out: &mut [i16; BLOCK], lanes: Lanes, f: impl Fn(usize) -> i16) {
+    for n in 0..lanes.count() {
         out[n] = f(n);
     }
 }
 
 /// Maps a row. `mapping` is constant at each call, so that each loop has one mapping.
 #[inline(always)]
-fn map_row(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
-    each(out, |n| mapped(mapping, v[n]))
+fn map_row(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK], lanes: Lanes) {
+    each(out, lanes, |n| mapped(mapping, v[n]))
 }
 
 /// Maps a row whose mapping depends on policies.
 #[inline(always)]
-fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK], lanes: Lanes) {
     use ExpandCentre::{Centred, Literal};
     use HalfBiasConstant::{Half127, Half127And5, Half128};
     match (mapping.centre, mapping.half) {
-        (Centred, Half128) => map_row(Mapping { centre: Centred, half: Half128, ..mapping }, v, out),
-        (Literal, _) => map_row(Mapping { centre: Literal, half: Half128, ..mapping }, v, out),
-        (_, Half127) => map_row(Mapping { centre: Centred, half: Half127, ..mapping }, v, out),
-        (_, Half127And5) => map_row(Mapping { centre: Centred, half: Half127And5, ..mapping }, v, out),
+        (Centred, Half128) => map_row(Mapping { centre: Centred, half: Half128, ..mapping }, v, out, lanes),
+        (Literal, _) => map_row(Mapping { centre: Literal, half: Half128, ..mapping }, v, out, lanes),
+        (_, Half127) => map_row(Mapping { centre: Centred, half: Half127, ..mapping }, v, out, lanes),
+        (_, Half127And5) => map_row(Mapping { centre: Centred, half: Half127And5, ..mapping }, v, out, lanes),
     }
 }
 
 /// Computes sums of products of rows, and applies a function to them.
 #[inline(always)]
-fn sum_row(pairs: &Pairs, before: &[PerLane<i16>], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
+fn sum_row(pairs: &Pairs, before: &[PerLane<i16>], out: &mut [i16; BLOCK], lanes: Lanes, of: impl Fn(i32) -> i16) {
     // Zeros past the last pair, whatever unused rows hold.
     let mut all: [&[i16; BLOCK]; 2 * MAX_PRODUCTS] = [&ZEROS; 2 * MAX_PRODUCTS];
     for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
@@ -172,23 +200,23 @@ fn sum_row(pairs: &Pairs, before: &[PerLane<i16>], out: &mut [i16; BLOCK], of: i
     }
     let [a, b, c, d, e, f, g, h, ..] = all;
     match pairs.count {
-        1 => each(out, |n| of(total([a, b], n))),
-        2 => each(out, |n| of(total([a, b, c, d], n))),
-        3 => each(out, |n| of(dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]))),
-        4 => each(out, |n| of(total([a, b, c, d, e, f, g, h], n))),
-        _ => each(out, |n| of(total(all, n))),
+        1 => each(out, lanes, |n| of(total([a, b], n))),
+        2 => each(out, lanes, |n| of(total([a, b, c, d], n))),
+        3 => each(out, lanes, |n| of(dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]))),
+        4 => each(out, lanes, |n| of(total([a, b, c, d, e, f, g, h], n))),
+        _ => each(out, lanes, |n| of(total(all, n))),
     }
 }
 
 /// CMB-9 and NUM-3 of a row. `bias` and `scale` are constant at each call.
 #[inline(always)]
-fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
-    each(out, |n| finished(v[n], bias, scale, floor))
+fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], out: &mut [i16; BLOCK], lanes: Lanes) {
+    each(out, lanes, |n| finished(v[n], bias, scale, floor))
 }
 
 /// Computes the row of a node from earlier rows.
 #[inline(always)]
-pub(super) fn run(node: &Node, at: usize, rows: &mut [PerLane<i16>]) {
+pub(super) fn run(node: &Node, at: usize, lanes: Lanes, rows: &mut [PerLane<i16>]) {
     let (before, after) = rows.split_at_mut(at);
     let Some(out) = after.first_mut() else { return };
     let out = out.block_mut();
@@ -199,73 +227,75 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [PerLane<i16>]) {
         Node::Map(mapping, v) => {
             let v = row(v);
             match mapping.of {
-                InputMapping::UnsignedIdentity => map_row(Mapping::plain(InputMapping::UnsignedIdentity), v, out),
-                InputMapping::UnsignedInvert => map_row(Mapping::plain(InputMapping::UnsignedInvert), v, out),
+                InputMapping::UnsignedIdentity => {
+                    map_row(Mapping::plain(InputMapping::UnsignedIdentity), v, out, lanes)
+                }
+                InputMapping::UnsignedInvert => map_row(Mapping::plain(InputMapping::UnsignedInvert), v, out, lanes),
                 InputMapping::ExpandNormal => {
-                    map_row_by_policy(Mapping { of: InputMapping::ExpandNormal, ..mapping }, v, out);
+                    map_row_by_policy(Mapping { of: InputMapping::ExpandNormal, ..mapping }, v, out, lanes);
                 }
                 InputMapping::ExpandNegate => {
-                    map_row_by_policy(Mapping { of: InputMapping::ExpandNegate, ..mapping }, v, out);
+                    map_row_by_policy(Mapping { of: InputMapping::ExpandNegate, ..mapping }, v, out, lanes);
                 }
                 InputMapping::HalfBiasNormal => {
-                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNormal, ..mapping }, v, out);
+                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNormal, ..mapping }, v, out, lanes);
                 }
                 InputMapping::HalfBiasNegate => {
-                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNegate, ..mapping }, v, out);
+                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNegate, ..mapping }, v, out, lanes);
                 }
-                InputMapping::SignedIdentity => out.copy_from_slice(v),
-                InputMapping::SignedNegate => map_row(Mapping::plain(InputMapping::SignedNegate), v, out),
+                InputMapping::SignedIdentity => map_row(Mapping::plain(InputMapping::SignedIdentity), v, out, lanes),
+                InputMapping::SignedNegate => map_row(Mapping::plain(InputMapping::SignedNegate), v, out, lanes),
             }
         }
-        Node::Sum(pairs) => sum_row(&pairs, before, out, rounded),
-        Node::HalfSum(pairs) => sum_row(&pairs, before, out, rounded_quarters),
+        Node::Sum(pairs) => sum_row(&pairs, before, out, lanes, rounded),
+        Node::HalfSum(pairs) => sum_row(&pairs, before, out, lanes, rounded_quarters),
         Node::After(bias, scale, halves, pairs) => {
             let pairs = &pairs;
             match scale {
-                Scale::One => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::One)),
-                Scale::Two => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Two)),
-                Scale::Four => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Four)),
-                Scale::Half => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Half)),
+                Scale::One => sum_row(pairs, before, out, lanes, |sum| rounded_after(sum, halves, bias, Scale::One)),
+                Scale::Two => sum_row(pairs, before, out, lanes, |sum| rounded_after(sum, halves, bias, Scale::Two)),
+                Scale::Four => sum_row(pairs, before, out, lanes, |sum| rounded_after(sum, halves, bias, Scale::Four)),
+                Scale::Half => sum_row(pairs, before, out, lanes, |sum| rounded_after(sum, halves, bias, Scale::Half)),
             }
         }
         Node::Bytes([a, b]) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| byte_product(a[n], b[n]));
+            each(out, lanes, |n| byte_product(a[n], b[n]));
         }
         Node::ByteSum(v) => {
             let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];
-            each(out, |n| byte_sum([a[n], b[n], c[n], d[n]]));
+            each(out, lanes, |n| byte_sum([a[n], b[n], c[n], d[n]]));
         }
         Node::Difference(v) => {
             let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];
-            each(out, |n| difference([a[n], b[n], c[n], d[n]]));
+            each(out, lanes, |n| difference([a[n], b[n], c[n], d[n]]));
         }
         Node::UnsignedDot(v) => {
             let [a, b, c, d, e, f] = [row(v[0]), row(v[1]), row(v[2]), row(v[3]), row(v[4]), row(v[5])];
-            each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
+            each(out, lanes, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
         Node::Scaled(bias, scale, v) => {
             let v = row(v);
-            each(out, |n| scaled(v[n], bias, scale));
+            each(out, lanes, |n| scaled(v[n], bias, scale));
         }
         Node::Output(bias, scale, floor, v) => {
             let v = row(v);
             match (bias, scale) {
-                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, floor, v, out),
-                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, floor, v, out),
-                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, floor, v, out),
-                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, floor, v, out),
-                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, floor, v, out),
-                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, floor, v, out),
+                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, floor, v, out, lanes),
+                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, floor, v, out, lanes),
+                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, floor, v, out, lanes),
+                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, floor, v, out, lanes),
+                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, floor, v, out, lanes),
+                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, floor, v, out, lanes),
                 // Not legal (CMB-9), so it never occurs.
-                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, floor, v, out),
+                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, floor, v, out, lanes),
             }
         }
         Node::Select(mux, v) => {
             let [by, cd, ab] = [row(v[0]), row(v[1]), row(v[2])];
-            // Both are read, so that there is no branch.
-            let choose = |takes_cd: bool, cd: i16, ab: i16| if takes_cd { cd } else { ab };
-            let mut select = |mux: Mux| each(out, |n| choose(takes_cd(by[n], mux), cd[n], ab[n]));
+            // By bits, because compilers turn a choice into one of addresses.
+            let choose = |takes_cd: bool, cd: i16, ab: i16| ab ^ ((cd ^ ab) & -i16::from(takes_cd));
+            let mut select = |mux: Mux| each(out, lanes, |n| choose(takes_cd(by[n], mux), cd[n], ab[n]));
             match mux {
                 Mux(MuxSelect::Msb, MuxNegative::Sign) => select(Mux(MuxSelect::Msb, MuxNegative::Sign)),
                 Mux(MuxSelect::Msb, MuxNegative::Bit7) => select(Mux(MuxSelect::Msb, MuxNegative::Bit7)),
@@ -274,31 +304,31 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [PerLane<i16>]) {
         }
         Node::Add([a, b]) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| a[n] + b[n]);
+            each(out, lanes, |n| a[n] + b[n]);
         }
         Node::Minus([a, b]) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| a[n] - b[n]);
+            each(out, lanes, |n| a[n] - b[n]);
         }
         Node::Least([a, b]) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| a[n].min(b[n]));
+            each(out, lanes, |n| a[n].min(b[n]));
         }
         Node::Greatest([a, b]) => {
             let (a, b) = (row(a), row(b));
-            each(out, |n| a[n].max(b[n]));
+            each(out, lanes, |n| a[n].max(b[n]));
         }
         Node::Clamp(v) => {
             let v = row(v);
-            each(out, |n| v[n].clamp(0, 255));
+            each(out, lanes, |n| v[n].clamp(0, 255));
         }
         Node::Truncate(bits, v) => {
             let v = row(v);
-            each(out, |n| i32::from(v[n]).truncated(bits) as i16);
+            each(out, lanes, |n| i32::from(v[n]).truncated(bits) as i16);
         }
         Node::Signed(v) => {
             let v = row(v);
-            each(out, |n| i32::from(v[n]).signed_byte() as i16);
+            each(out, lanes, |n| i32::from(v[n]).signed_byte() as i16);
         }
     }
 }
@@ -308,6 +338,15 @@ static ZEROS: [i16; BLOCK] = [0; BLOCK];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Every number of pixels, by no more than a part too many.
+    #[test]
+    fn parts_hold_the_lanes_in_use() {
+        for used in 0..=BLOCK {
+            let computed = Lanes::first(used).count();
+            assert!((used..used + PART).contains(&computed) && computed <= BLOCK, "{used}: {computed}");
+        }
+    }
 
     /// Sums of one to six products, with other numbers in the rows that nobody reads.
     #[test]
@@ -325,7 +364,7 @@ mod tests {
             }
             let at = rows.len();
             rows.push(PerLane::from_value(0));
-            run(&Node::Sum(Pairs { count, values }), at, &mut rows);
+            run(&Node::Sum(Pairs { count, values }), at, Lanes::default(), &mut rows);
             assert_eq!(rows[at].block(), &[wanted.rounded(); BLOCK], "{count}");
         }
     }

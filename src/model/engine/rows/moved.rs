@@ -3,7 +3,7 @@
 
 use super::depth::floor;
 use super::dot::Floats;
-use super::kernels::{LANES, PerLane, STEP};
+use super::kernels::{LANES, Lanes, PerLane, STEP};
 use super::planes::{RealPlane, fraction_bits};
 use super::quotient::{larger, multiply_add, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch};
@@ -128,7 +128,7 @@ impl Moved {
 /// floors are not proved, or not those on smaller levels, which are the same shifted by up to `shift` bits.
 #[inline(always)]
 pub(super) fn place<const FMA: bool>(
-    sampler: &Sampler,
+    (sampler, lanes): (&Sampler, Lanes),
     (moved, shift): (&Moved, u32),
     [along, down]: [&Floats; 2],
     [u, v]: &mut [PerLane<i32>; 2],
@@ -140,7 +140,7 @@ pub(super) fn place<const FMA: bool>(
         let (near_u, near_v) = ((at_u - whole(at_u)).abs(), (at_v - whole(at_v)).abs());
         (at_u, at_v, larger(near_u, near_v))
     };
-    for (step, off) in moved.off[..BLOCK / STEP].iter().enumerate() {
+    for (step, off) in moved.off[..lanes.count() / STEP].iter().enumerate() {
         let (lanes, mut close) = (step * STEP..(step + 1) * STEP, 0);
         let room = 0.5 - off * f64::from(1 << shift);
         for n in lanes.clone() {
@@ -179,14 +179,14 @@ fn by<const FMA: bool>([u, v]: &[PerLane<f64>; 2], sides: [u32; 2], offsets: [f3
 /// Returns whether there are such lanes.
 #[inline(always)]
 pub(super) fn place_finely<const FMA: bool>(
-    sampler: &Sampler,
+    (sampler, lanes): (&Sampler, Lanes),
     moved: &Moved,
     [along, down]: [&Floats; 2],
     [u, v]: &mut [PerLane<f64>; 2],
     unproved: &mut PerLane<i32>,
 ) -> bool {
     let mut any = 0;
-    for n in 0..BLOCK {
+    for n in 0..lanes.count() {
         let [at_u, at_v] = by::<FMA>(&moved.at_quads, sampler.sides, [along[n], down[n]], n);
         let (at_u, at_v, off) = (256.0 * (at_u + 0.5), 256.0 * (at_v + 0.5), 256.0 * moved.off[n / STEP]);
         let close = ((at_u - whole(at_u)).abs() - off).to_bits() | ((at_v - whole(at_v)).abs() - off).to_bits();

@@ -284,6 +284,7 @@ mod tests {
     use super::*;
     use crate::engine::rows::BLOCK;
     use crate::engine::rows::dot;
+    use crate::engine::rows::kernels::Lanes;
 
     /// All reds and channels, with scales of any size and both signs, some of which make products whole.
     #[test]
@@ -306,13 +307,13 @@ mod tests {
                 let wanted =
                     channel.map(|c| i16::from(shader::luminance_byte(shader::luminance(c.into(), red, state))));
                 let mut fused = channel;
-                dot::luminance::<true>(&factors, &mut fused);
-                dot::luminance::<false>(&factors, &mut channel);
+                dot::luminance::<true>(Lanes::default(), &factors, &mut fused);
+                dot::luminance::<false>(Lanes::default(), &factors, &mut channel);
                 assert_eq!((fused, channel), (wanted, wanted), "{state:?} {red}");
             }
         }
         let mut negative = [-254; BLOCK];
-        dot::luminance::<true>(&[4096.0; BLOCK], &mut negative);
+        dot::luminance::<true>(Lanes::default(), &[4096.0; BLOCK], &mut negative);
         assert_eq!(negative, [0; BLOCK]);
     }
 }

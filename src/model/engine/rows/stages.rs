@@ -7,7 +7,7 @@
 use super::dependent::{BlockQuads, DefinedTriangle};
 use super::dot::{self, Floats};
 use super::fetch::{self, Workspace};
-use super::kernels::PerLane;
+use super::kernels::{Lanes, PerLane};
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
@@ -301,13 +301,14 @@ pub(super) fn run<const FMA: bool>(
 ) -> u64 {
     let Some(shader) = &job.compiled.shader else { return 0 };
     workshop.is_remapped.fill(false);
+    let lanes = work.lanes;
     let mut dotted = [false; TEXTURE_UNITS];
     if shader.kills {
         varying.alive.fill(true);
     }
     for (index, stage) in shader.stages.iter().enumerate().filter(|(_, stage)| stage.runs) {
         if stage.dots {
-            dot_product(job.compiled, shader, index, &mut dotted, workshop, rows);
+            dot_product((job.compiled, lanes), shader, index, &mut dotted, workshop, rows);
         }
         let wanted = job.compiled.textures[index];
         match stage.state.operation {
@@ -318,7 +319,7 @@ pub(super) fn run<const FMA: bool>(
                         && let Some(number) = number(&workshop.numbers, &workshop.same, stage.numbers[n])
                     {
                         let out = rows[usize::from(slot)].block_mut();
-                        for k in 0..BLOCK {
+                        for k in 0..lanes.count() {
                             // A byte, also in lanes without a pixel, which may hold any number.
                             out[k] = (number[k] as i32 & 255) as i16;
                         }
@@ -352,13 +353,18 @@ pub(super) fn run<const FMA: bool>(
                         if let (Some(blue), Some(green)) = (blue, green) {
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
                             let [along, down, _] = &mut workshop.dot.scratch;
-                            dot::moved(matrix, blue, green, along, down);
+                            dot::moved(lanes, matrix, blue, green, along, down);
                             let shift = shader.moved[stage.moved].shift;
-                            place::<FMA>(sampler, (moved, shift), [along, down], numbers, &mut workshop.open);
+                            place::<FMA>((sampler, lanes), (moved, shift), [along, down], numbers, &mut workshop.open);
                             if sampler.mixes {
                                 let quads = &mut workshop.quads;
-                                if place_finely::<FMA>(sampler, moved, [along, down], &mut quads.fine, &mut quads.close)
-                                {
+                                if place_finely::<FMA>(
+                                    (sampler, lanes),
+                                    moved,
+                                    [along, down],
+                                    &mut quads.fine,
+                                    &mut quads.close,
+                                ) {
                                     quads.settle(job, &job.draw.units[sampler.index], [along, down]);
                                 }
                                 quads.take_lanes();
@@ -372,10 +378,11 @@ pub(super) fn run<const FMA: bool>(
                             let Some(slot) = earlier[channels[n]] else { continue };
                             let Some(table) = stage.dependent[n].first_chunk::<256>() else { continue };
                             let (from, down) = (rows[usize::from(slot)].block(), u32::from(doubled[channels[n]]));
-                            let (bias, fine) = (sampler.bias(), &mut workshop.quads.fine[n]);
-                            for ((out, fine), from) in numbers[n].iter_mut().zip(&mut **fine).zip(from) {
-                                let at = table[usize::from((*from >> down) as u8)];
-                                (*out, *fine) = ((at >> 8) - bias, f64::from(at));
+                            let (bias, fine) = (sampler.bias(), workshop.quads.fine[n].block_mut());
+                            let out = numbers[n].block_mut();
+                            for k in 0..lanes.count() {
+                                let at = table[usize::from((from[k] >> down) as u8)];
+                                (out[k], fine[k]) = ((at >> 8) - bias, f64::from(at));
                             }
                         }
                         if sampler.mixes {
@@ -384,12 +391,12 @@ pub(super) fn run<const FMA: bool>(
                     }
                     ShaderOperation::DotProduct2D => {
                         for n in 0..2 {
-                            dot_product(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
+                            dot_product((job.compiled, lanes), shader, index + n - 1, &mut dotted, workshop, rows);
                             let limit = COORDINATE_LIMIT as i32;
                             let (floats, side) = (&workshop.dot.dots[index + n - 1], sampler.sides[n]);
-                            dot::coordinate(floats, side, limit, sampler.bias(), numbers[n].block_mut());
+                            dot::coordinate(lanes, floats, side, limit, sampler.bias(), numbers[n].block_mut());
                             if sampler.mixes {
-                                workshop.quads.set_floats::<FMA>(n, floats, side, workshop.open.block_mut());
+                                workshop.quads.set_floats::<FMA>((n, lanes), floats, side, workshop.open.block_mut());
                             }
                         }
                         if sampler.mixes {
@@ -398,11 +405,13 @@ pub(super) fn run<const FMA: bool>(
                     }
                     _ => {
                         for n in 1..4 {
-                            dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
+                            dot_product((job.compiled, lanes), shader, n, &mut dotted, workshop, rows);
                         }
-                        let Some((vector, scratch, quads)) = workshop.vector(shader, &operation) else { continue };
+                        let Some((vector, scratch, quads)) = workshop.vector((shader, lanes), &operation) else {
+                            continue;
+                        };
                         let ([u, v], faces) = (numbers.each_mut().map(PerLane::block_mut), faces.block_mut());
-                        dot::on_faces::<FMA>(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
+                        dot::on_faces::<FMA>(lanes, vector, (sampler.sides[0], sampler.bias()), scratch, u, v, faces);
                         if sampler.mixes {
                             quads.set_directions(vector, sampler.sides[0]);
                         }
@@ -412,17 +421,18 @@ pub(super) fn run<const FMA: bool>(
                     let (open, [u, v]) = (workshop.open.block_mut(), &varying.coordinates[at]);
                     let of = (&job.draw.units[sampler.index], &**table);
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
-                    workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
+                    workshop.quads.fetches::<FMA>((of.0, of.1, lanes), u, v, faces, open, reads);
                 }
                 fetch::sample_unit(job, at, varying, work, rows);
                 fetch::drop_keyed(sampler, work, &mut varying.alive);
                 if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), earlier[0]) {
                     let [products, ..] = &mut workshop.dot.scratch;
-                    for (product, red) in products.iter_mut().zip(rows[usize::from(red)].block()) {
-                        *product = factors[usize::from(*red as u16 % 512)];
+                    let red = rows[usize::from(red)].block();
+                    for n in 0..lanes.count() {
+                        products[n] = factors[usize::from(red[n] as u16 % 512)];
                     }
                     for slot in wanted[..3].iter().flatten() {
-                        dot::luminance::<FMA>(products, rows[usize::from(*slot)].block_mut());
+                        dot::luminance::<FMA>(lanes, products, rows[usize::from(*slot)].block_mut());
                     }
                 }
             }
@@ -446,7 +456,7 @@ impl Workshop {
     #[inline(always)]
     fn vector(
         &mut self,
-        shader: &Shader,
+        (shader, lanes): (&Shader, Lanes),
         operation: &ShaderOperation,
     ) -> Option<([&Floats; 3], &mut [Floats; 3], &mut BlockQuads)> {
         let Workshop { numbers, same, dot, quads, .. } = self;
@@ -460,7 +470,7 @@ impl Workshop {
             ShaderOperation::DotReflectConstantEye { .. } => eye.each_ref(),
             _ => return Some((dots, scratch, quads)),
         };
-        dot::reflect(dots, eye, reflected);
+        dot::reflect(lanes, dots, eye, reflected);
         Some((reflected.each_ref(), scratch, quads))
     }
 }
@@ -468,7 +478,7 @@ impl Workshop {
 /// TSH-4: computes the dot product of a stage, unless it is known already.
 #[inline(always)]
 fn dot_product(
-    compiled: &CompiledDraw,
+    (compiled, lanes): (&CompiledDraw, Lanes),
     shader: &Shader,
     index: usize,
     dotted: &mut [bool; TEXTURE_UNITS],
@@ -484,11 +494,11 @@ fn dot_product(
         let [r, g, b, a] = &compiled.textures[*previous];
         let register = |slot: &Option<u16>| slot.map(|slot| rows[usize::from(slot)].block());
         let registers = [register(r), register(g), register(b), register(a)];
-        remap.run(registers, *doubled, work.vectors[stage.vector].each_mut().map(PerLane::block_mut));
+        remap.run(lanes, registers, *doubled, work.vectors[stage.vector].each_mut().map(PerLane::block_mut));
     }
     let Workshop { numbers, same, vectors, dot, .. } = work;
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
-        dot::products([s, t, r], vectors[stage.vector].each_ref().map(PerLane::block), &mut dot.dots[index]);
+        dot::products(lanes, [s, t, r], vectors[stage.vector].each_ref().map(PerLane::block), &mut dot.dots[index]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading, packing and writing surface words, and the tests.
 
 use super::depth::OUTSIDE;
-use super::kernels::PerLane;
+use super::kernels::{Lanes, PerLane};
 use super::setup::Run;
 use super::{BLOCK, CompiledDraw};
 use crate::plan::PlannedDraw;
@@ -12,33 +12,43 @@ use crate::state::{
 
 /// Unpacks the channels that blending reads from the surface's words.
 #[inline(always)]
-pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BLOCK], rows: &mut [PerLane<i16>]) {
+pub(super) fn read(
+    (draw, compiled): (&PlannedDraw, &CompiledDraw),
+    lanes: Lanes,
+    words: &[u32; BLOCK],
+    rows: &mut [PerLane<i16>],
+) {
     for channel in 0..4 {
         let Some(row) = compiled.destination[channel] else { continue };
         let out = rows[usize::from(row)].block_mut();
         match channel {
-            0 => read_channel::<0>(draw.surface, words, out),
-            1 => read_channel::<1>(draw.surface, words, out),
-            2 => read_channel::<2>(draw.surface, words, out),
-            _ => read_channel::<3>(draw.surface, words, out),
+            0 => read_channel::<0>(draw.surface, lanes, words, out),
+            1 => read_channel::<1>(draw.surface, lanes, words, out),
+            2 => read_channel::<2>(draw.surface, lanes, words, out),
+            _ => read_channel::<3>(draw.surface, lanes, words, out),
         }
     }
 }
 
 /// Calls the loop with a constant format for the most frequent formats.
 #[inline(always)]
-fn read_channel<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
+fn read_channel<const CHANNEL: usize>(
+    format: SurfaceFormat,
+    lanes: Lanes,
+    words: &[u32; BLOCK],
+    out: &mut [i16; BLOCK],
+) {
     match format {
-        SurfaceFormat::A8R8G8B8 => read_as::<CHANNEL>(SurfaceFormat::A8R8G8B8, words, out),
-        SurfaceFormat::R5G6B5 => read_as::<CHANNEL>(SurfaceFormat::R5G6B5, words, out),
-        other => read_as::<CHANNEL>(other, words, out),
+        SurfaceFormat::A8R8G8B8 => read_as::<CHANNEL>(SurfaceFormat::A8R8G8B8, lanes, words, out),
+        SurfaceFormat::R5G6B5 => read_as::<CHANNEL>(SurfaceFormat::R5G6B5, lanes, words, out),
+        other => read_as::<CHANNEL>(other, lanes, words, out),
     }
 }
 
 #[inline(always)]
-fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
-    for (out, word) in out.iter_mut().zip(words) {
-        *out = i16::from(surface::read(format, *word)[CHANNEL]);
+fn read_as<const CHANNEL: usize>(format: SurfaceFormat, lanes: Lanes, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
+    for n in 0..lanes.count() {
+        out[n] = i16::from(surface::read(format, words[n])[CHANNEL]);
     }
 }
 
@@ -47,31 +57,36 @@ type Row = [i16; BLOCK];
 
 /// Packs the stored rows into words.
 #[inline(always)]
-pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[PerLane<i16>], words: &mut [u32; BLOCK]) {
+pub(super) fn pack(
+    (draw, compiled): (&PlannedDraw, &CompiledDraw),
+    lanes: Lanes,
+    rows: &[PerLane<i16>],
+    words: &mut [u32; BLOCK],
+) {
     let row = |channel: usize| rows[usize::from(compiled.stored[channel])].block();
-    let (r, g, b, a) = (row(0), row(1), row(2), row(3));
+    let of = [row(0), row(1), row(2), row(3)];
     match draw.surface {
-        SurfaceFormat::A8R8G8B8 => pack_halves(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
-        SurfaceFormat::X8R8G8B8O => pack_halves(SurfaceFormat::X8R8G8B8O, r, g, b, a, words),
-        SurfaceFormat::R5G6B5 => pack_as(SurfaceFormat::R5G6B5, r, g, b, a, words),
-        other => pack_as(other, r, g, b, a, words),
+        SurfaceFormat::A8R8G8B8 => pack_halves(SurfaceFormat::A8R8G8B8, lanes, of, words),
+        SurfaceFormat::X8R8G8B8O => pack_halves(SurfaceFormat::X8R8G8B8O, lanes, of, words),
+        SurfaceFormat::R5G6B5 => pack_as(SurfaceFormat::R5G6B5, lanes, of, words),
+        other => pack_as(other, lanes, of, words),
     }
 }
 
 #[inline(always)]
-fn pack_as(format: SurfaceFormat, r: &Row, g: &Row, b: &Row, a: &Row, words: &mut [u32; BLOCK]) {
-    for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
-        *word = surface::pack(format, [*r as u8, *g as u8, *b as u8, *a as u8]);
+fn pack_as(format: SurfaceFormat, lanes: Lanes, [r, g, b, a]: [&Row; 4], words: &mut [u32; BLOCK]) {
+    for n in 0..lanes.count() {
+        words[n] = surface::pack(format, [r[n] as u8, g[n] as u8, b[n] as u8, a[n] as u8]);
     }
 }
 
 /// Packs words of four bytes, of which G and B make the lower half: in 16 bits, halves take fewer instructions than words.
 #[inline(always)]
-fn pack_halves(format: SurfaceFormat, r: &Row, g: &Row, b: &Row, a: &Row, words: &mut [u32; BLOCK]) {
-    for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
-        let low = surface::pack(format, [0, *g as u8, *b as u8, 0]) as u16;
-        let high = (surface::pack(format, [*r as u8, 0, 0, *a as u8]) >> 16) as u16;
-        *word = u32::from(low) | (u32::from(high) << 16);
+fn pack_halves(format: SurfaceFormat, lanes: Lanes, [r, g, b, a]: [&Row; 4], words: &mut [u32; BLOCK]) {
+    for n in 0..lanes.count() {
+        let low = surface::pack(format, [0, g[n] as u8, b[n] as u8, 0]) as u16;
+        let high = (surface::pack(format, [r[n] as u8, 0, 0, a[n] as u8]) >> 16) as u16;
+        words[n] = u32::from(low) | (u32::from(high) << 16);
     }
 }
 
@@ -109,16 +124,16 @@ pub(super) fn write_runs(from: &[u32; BLOCK], runs: &[Run], words: &mut [u32]) {
 /// ROP-6: does the same, but keeps the bits of the mask that are not set, and the words of dropped fragments.
 #[inline(always)]
 pub(super) fn merge_runs(
-    mask: u32,
+    (mask, lanes): (u32, Lanes),
     alive: &[bool; BLOCK],
     from: &mut [u32; BLOCK],
     kept: &mut [u32; BLOCK],
     runs: &[Run],
     words: &mut [u32],
 ) {
-    for ((from, kept), alive) in from.iter_mut().zip(&mut *kept).zip(alive) {
-        let mask = if *alive { mask } else { 0 };
-        (*from, *kept) = (*from & mask, !mask);
+    for n in 0..lanes.count() {
+        let mask = if alive[n] { mask } else { 0 };
+        (from[n], kept[n]) = (from[n] & mask, !mask);
     }
     for Run { lane, at, count } in runs.iter().copied() {
         write_run::<true>(&from[lane..][..count], &kept[lane..][..count], &mut words[at..][..count]);
