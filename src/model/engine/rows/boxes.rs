@@ -180,7 +180,7 @@ pub(super) enum Entered {
 /// [together](super::small::Boxes). Returns how each is drawn.
 #[inline(always)]
 pub(super) fn enter<const WIDE: bool>(
-    contexts: &mut [TriangleContext<'_>; GROUP],
+    contexts: &mut [TriangleContext<'_>],
     numbers: &[u32],
     window: Window,
     together: bool,

@@ -55,7 +55,8 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
     let vacant = |_| TriangleContext::vacant(plan, draw, compiled.shader.is_none());
-    let mut contexts: [_; GROUP] = std::array::from_fn(vacant);
+    // No more than the draw has triangles: most draws of sprites have two.
+    let mut contexts: Vec<_> = (0..job.triangles.len().min(GROUP)).map(vacant).collect();
     for window in walk::windows(draw, band.rows()) {
         for numbers in job.triangles.chunks(GROUP) {
             let entered = T::enter(&mut contexts, numbers, window, compiled.together, &mut block.boxes.corners);
@@ -75,7 +76,7 @@ fn draw_triangle<T: Kernels>(
     job: &Job<'_>,
     at: usize,
     entered: Entered,
-    contexts: &mut [TriangleContext<'_>; GROUP],
+    contexts: &mut [TriangleContext<'_>],
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
@@ -279,7 +280,7 @@ fn finish<T: Kernels>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
 #[inline(always)]
 fn draw_boxes<T: Kernels>(
     job: &Job<'_>,
-    contexts: &mut [TriangleContext<'_>; GROUP],
+    contexts: &mut [TriangleContext<'_>],
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {

@@ -6,7 +6,7 @@ use super::compiled::{CompiledDraw, Job};
 use super::draw;
 use super::filter::Vectors;
 use super::setup::Covered;
-use super::shapes::{Corners, Each, GROUP};
+use super::shapes::{Corners, Each};
 use super::small::Boxes;
 use super::triangle::Interpolators;
 use crate::engine::context::TriangleContext;
@@ -111,7 +111,7 @@ text! {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::enter`] with this instruction set.
-        fn enter(contexts: &mut [TriangleContext<'_>; GROUP], numbers: &[u32], window: Window, together: bool, corners: &mut Corners) -> Each<Entered>;
+        fn enter(contexts: &mut [TriangleContext<'_>], numbers: &[u32], window: Window, together: bool, corners: &mut Corners) -> Each<Entered>;
         /// Calls [`band::complete`] with this instruction set.
         fn complete(context: &mut TriangleContext<'_>);
         /// Calls [`band::set_up`] with this instruction set.
