@@ -1,9 +1,8 @@
 //! TEX-9 to TEX-11 for boxes of small triangles: level 0 of a sampler around them, set up eight at a time.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::base_level::{BaseLevel, Slopes, bounds_on_planes, least_around, up_of_quads};
 use super::compiled::Sampler;
-use super::lods::Slopes;
-use super::quads::{BaseLevel, bounds_on_planes, least_around, up_of_quads};
 use super::quotient::{Line, SLACK, larger, power, whole};
 use super::ratios::OfVertices;
 use super::shapes::{Each, Edges, GROUP, Lines, smaller, sum};

@@ -1,10 +1,11 @@
 //! TEX-9 to TEX-11 on rows: the level of detail of each pixel, and the entries on its levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::base_level::{BaseLevel, parted};
 use super::direction::CubeDirection;
 use super::kernels::PerLane;
 use super::planes::Plane;
-use super::quads::{BaseLevel, Exact, Known, Quads, Spread, floor, of_box, parted};
+use super::quads::{Exact, Known, Quads, Spread, floor, of_box};
 use super::quotient::{Line, Reciprocals, nearest, whole};
 use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
 use super::short::Short;

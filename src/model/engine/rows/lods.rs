@@ -1,7 +1,8 @@
 //! TEX-10, TEX-11 on rows: the level of detail of quads, from how fast coordinates change or from the coordinates.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::quads::{AtQuads, BaseLevel, Measure};
+use super::base_level::{BaseLevel, Slopes};
+use super::quads::{AtQuads, Measure};
 use super::quotient::{Line, nearest_32, whole_32};
 use crate::texture::lod::{self, Quad};
 use crate::texture::planned::PlannedUnit;
@@ -51,21 +52,6 @@ impl Measure for i32 {
     fn defined(_: &PlannedUnit, quad: Option<Quad>) -> i32 {
         lod::log2_ratio(quad)
     }
-}
-
-/// How fast u and v change from pixel to pixel. The difference of two quotients of linear functions is a linear function of one
-/// coordinate, divided by both denominators. A level of detail is proved unless the floors of the coordinates could change it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Slopes {
-    /// The changes of the denominator to the right and below. It is 1 at the first pixel.
-    pub(super) denominator: [f32; 2],
-    /// Numerators of the differences of u and v to the pixel on the right, at row 0, and to the one below, at column 0; 1/65536 texel.
-    pub(super) right: [f32; 2],
-    pub(super) below: [f32; 2],
-    /// What a row adds to the former, and a column takes off the latter.
-    pub(super) cross: [f32; 2],
-    /// Bounds of the error in 256ths of a level: of any quad, and of a quad whose pixels are 1/65536 texel apart.
-    pub(super) margins: [f32; 2],
 }
 
 impl Slopes {

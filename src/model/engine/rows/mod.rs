@@ -14,7 +14,7 @@
 //! | `shapes.rs`, `small.rs`, `ratios.rs`, `box_depths.rs`, `box_levels.rs` | the same for boxes of small triangles, eight at a time: corners, spans and what functions share; coordinates on planes and weights; coordinates by q, numbers, depths to compare with; depths; level 0 of textures with levels |
 //! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `filter.rs` | textures laid out for rows; address, fetch; filter |
-//! | `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
+//! | `base_level.rs`, `quads.rs`, `lods.rs`, `levels.rs`, `taps.rs` | level 0 around a batch; coordinates at quads; their lods; levels of pixels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `moved.rs` | coordinates that bump stages move |
 //! | `dependent.rs` | levels of detail of dependent reads, from the lanes of quads |
@@ -26,6 +26,7 @@
 //! integer. What rows do not cover is computed by the definition, pixel by pixel, within the same blocks.
 
 mod band;
+mod base_level;
 mod box_depths;
 mod box_levels;
 mod boxes;
