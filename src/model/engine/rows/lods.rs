@@ -29,7 +29,7 @@ impl Measure for i32 {
 
     #[inline(always)]
     fn estimate<const FMA: bool>(
-        base: &BaseLevel<'_>,
+        (unit, base): (&PlannedUnit, &BaseLevel<'_>),
         origins: [&[f32]; 2],
         lods: &mut [i32],
         close: &mut [i32],
@@ -39,7 +39,7 @@ impl Measure for i32 {
             None => Slopes::with_proof(base),
         };
         if proves {
-            slopes.lods::<FMA>(origins, lods, close);
+            slopes.lods::<FMA>(lod::Selection::from_unit(unit).least_read(), origins, lods, close);
         }
         proves
     }
@@ -83,9 +83,12 @@ impl Slopes {
         (Slopes { denominator, right, below, cross, margins }, proves)
     }
 
-    /// Computes the levels of detail of quads. Sets the sign bits of those that are not proved, and clears those of the others.
+    /// Computes the levels of detail of quads. Sets the sign bits of those that are not proved, and clears those of the others. Below `least_read`
+    /// they need not be exact.
     #[inline(always)]
-    fn lods<const FMA: bool>(&self, [xs, ys]: [&[f32]; 2], lods: &mut [i32], close: &mut [i32]) {
+    fn lods<const FMA: bool>(&self, least_read: i32, [xs, ys]: [&[f32]; 2], lods: &mut [i32], close: &mut [i32]) {
+        // The floor of a logarithm that is larger by the error is at most one more, and another one covers the roundings of this sum.
+        let least_read = (least_read - 2) as f32;
         let lanes = lods.len();
         let (xs, ys, close) = (&xs[..lanes], &ys[..lanes], &mut close[..lanes]);
         let Slopes { denominator: [dx, dy], right, below, cross, margins: [of_any, of_floors] } = *self;
@@ -102,8 +105,9 @@ impl Slopes {
             let inverse_root = f32::from_bits((0x5f37_59df - (bits >> 1)) as u32);
             let log = log2_in_steps::<FMA>(mantissa) - 0.5;
             let from_middle = (log - whole_32(log)).abs();
-            close[n] = (0.5 - of_any - of_floors * inverse_root - from_middle).to_bits() as i32;
             lods[n] = 128 * ((bits >> 23) - 127 - 32) + nearest_32(log);
+            let error = of_any + of_floors * inverse_root;
+            close[n] = ((0.5 - error - from_middle).to_bits() & (least_read - error - lods[n] as f32).to_bits()) as i32;
         }
     }
 }

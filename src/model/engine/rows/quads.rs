@@ -33,7 +33,12 @@ pub(super) trait Measure: Copy {
     /// Estimates the results of quads from how coordinates change around their [origins](Quads::origins). Sign bits of `close` mark those
     /// that are not proved. Returns `false` if nothing was estimated.
     #[inline(always)]
-    fn estimate<const FMA: bool>(_: &BaseLevel<'_>, _: [&[f32]; 2], _: &mut [Self], _: &mut [i32]) -> bool {
+    fn estimate<const FMA: bool>(
+        _: (&PlannedUnit, &BaseLevel<'_>),
+        _: [&[f32]; 2],
+        _: &mut [Self],
+        _: &mut [i32],
+    ) -> bool {
         false
     }
 
@@ -283,7 +288,7 @@ fn measured<const FMA: bool, T: Measure>(
     let Quads { origins: [xs, ys], coordinates, unknown, close, open, open_origins, .. } = quads;
     let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
     let mut left = count;
-    if T::estimate::<FMA>(base, [xs, ys], out, close) {
+    if T::estimate::<FMA>((unit, base), [xs, ys], out, close) {
         // Without an early exit, which is slower.
         left = close[..count].iter().fold(0, |left, close| left + usize::from(*close < 0));
     }
