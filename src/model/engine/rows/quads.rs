@@ -58,10 +58,8 @@ pub(super) struct Quads {
     coordinates: AtQuads,
     /// Doubles as bits, negative for quads whose coordinates are not known.
     unknown: PerLane<u64>,
-    /// Sign bits of quads whose estimated result is not proved, the indices of these quads, and their origins.
+    /// Sign bits of quads whose estimated result is not proved.
     close: PerLane<i32>,
-    open: PerLane<u16>,
-    open_origins: [PerLane<f32>; 2],
     /// Number of quads of a box.
     count: usize,
     /// The rows of a batch.
@@ -116,13 +114,11 @@ pub(super) struct Known<T> {
     columns: Range<i64>,
     /// Result of each quad, from the first column on.
     pub(super) each: Vec<T>,
-    /// Results of quads whose estimates are not proved.
-    open: Vec<T>,
 }
 
 impl<T> Default for Known<T> {
     fn default() -> Self {
-        Known { of: None, columns: 0..0, each: Vec::new(), open: Vec::new() }
+        Known { of: None, columns: 0..0, each: Vec::new() }
     }
 }
 
@@ -233,8 +229,7 @@ impl Setup<'_> {
             ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
             known.make_room(unit, first + LANES + STEP);
-            let out = (&mut known.each[first..], &mut known.open[..]);
-            measured::<FMA, T>((unit, base), exact, count, quads, out);
+            measured::<FMA, T>((unit, base), exact, count, quads, &mut known.each[first..]);
             known.columns.end = wanted.end;
         }
         let quad = (wanted.start - known.columns.start) as usize;
@@ -252,11 +247,10 @@ impl Setup<'_> {
 }
 
 impl<T: Measure> Known<T> {
-    /// Makes room for so many results. Not where some are open: code that grows a list would slow down the loops beside it.
+    /// Makes room for so many results.
     #[inline(always)]
     fn make_room(&mut self, unit: &PlannedUnit, count: usize) {
         self.each.resize(self.each.len().max(count), T::behind(unit));
-        self.open.resize(LANES, T::behind(unit));
     }
 }
 
@@ -271,54 +265,32 @@ pub(super) fn of_box<const FMA: bool, T: Measure>(
     known.make_room(unit, LANES + STEP);
     known.of = None;
     let count = quads.count;
-    measured::<FMA, T>((unit, base), exact, count, quads, (&mut known.each, &mut known.open))
+    measured::<FMA, T>((unit, base), exact, count, quads, &mut known.each)
 }
 
-/// Computes the results of quads at the given [origins](Quads::origins): those whose estimates are not proved from their coordinates, side by side
-/// in `spare`. Returns `false` if some are not proved then and nothing decides them.
+/// Computes the results of quads at the given [origins](Quads::origins), a step of quads from their coordinates if the estimate of one is not proved.
+/// Returns `false` if some are not proved then and nothing decides them.
 #[inline(always)]
 fn measured<const FMA: bool, T: Measure>(
     (unit, base): (&PlannedUnit, &BaseLevel<'_>),
     exact: Option<Exact<'_>>,
     count: usize,
     quads: &mut Quads,
-    (out, spare): (&mut [T], &mut [T]),
+    out: &mut [T],
 ) -> bool {
     let rounded = whole_steps(count);
-    let Quads { origins: [xs, ys], coordinates, unknown, close, open, open_origins, .. } = quads;
+    let Quads { origins: [xs, ys], coordinates, unknown, close, .. } = quads;
     let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
-    let mut left = count;
-    if T::estimate::<FMA>((unit, base), [xs, ys], out, close) {
-        // Without an early exit, which is slower.
-        left = close[..count].iter().fold(0, |left, close| left + usize::from(*close < 0));
-    }
-    if left == 0 {
-        return true;
-    }
-    // A few are computed side by side, many with those between them.
-    let few = 2 * left <= count;
-    let (mut origins, mut to) = ([xs, ys], &mut *out);
-    if few {
-        left = 0;
-        for n in 0..count {
-            open[left] = n as u16;
-            left += usize::from(close[n] < 0);
+    let estimates = T::estimate::<FMA>((unit, base), [xs, ys], out, close);
+    for first in (0..count).step_by(STEP) {
+        let lanes = first..first + STEP;
+        if estimates && close[lanes.clone()].iter().fold(0, |all, close| all | close) >= 0 {
+            continue;
         }
-        let (rounded, last) = (whole_steps(left), open[left - 1]);
-        open[left..rounded].fill(last);
-        let [xs, ys] = open_origins;
-        for (n, quad) in open[..rounded].iter().enumerate() {
-            (xs[n], ys[n]) = (origins[0][usize::from(*quad)], origins[1][usize::from(*quad)]);
-        }
-        (origins, to) = ([&xs[..rounded], &ys[..rounded]], &mut spare[..rounded]);
-    }
-    let measured = if few { left } else { count };
-    if !measured_exactly::<FMA, T>((unit, base), exact, origins, measured, (coordinates, unknown), to) {
-        return false;
-    }
-    if few {
-        for (quad, result) in open[..left].iter().zip(spare) {
-            out[usize::from(*quad)] = *result;
+        let (origins, count) = ([&xs[lanes.clone()], &ys[lanes.clone()]], STEP.min(count - first));
+        let work = (&mut *coordinates, &mut *unknown);
+        if !measured_exactly::<FMA, T>((unit, base), exact, origins, count, work, &mut out[lanes]) {
+            return false;
         }
     }
     true
