@@ -101,8 +101,8 @@ pub(crate) enum Third {
 pub(crate) struct CompiledDraw {
     /// Operations in order, each with the row of its result.
     pub(super) operations: Vec<(Node, usize)>,
-    /// Constant of each row; 0 if the row is computed.
-    pub(super) rows: Vec<i16>,
+    /// What each row is filled with when a draw begins, unless an operation computes it.
+    pub(super) rows: Vec<Option<i16>>,
     pub(super) primary: [Option<u16>; 4],
     pub(super) secondary: [Option<u16>; 4],
     pub(super) fog: Option<u16>,

@@ -24,8 +24,10 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
         return shaded;
     }
     block.rows.resize(compiled.rows.len(), PerLane::from_value(0));
-    for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
-        row.fill(*constant);
+    for (row, value) in block.rows.iter_mut().zip(&compiled.rows) {
+        if let Some(value) = value {
+            row.fill(*value);
+        }
     }
     // Earlier draws may have dropped fragments.
     block.alive.fill(true);

@@ -191,10 +191,10 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
             for (slot, value) in slots.iter_mut().zip(shader::initial(stage)) {
                 let Some(value) = value else { continue };
                 match slot {
-                    Some(row) => compiled.rows[usize::from(*row)] = value,
+                    Some(row) => compiled.rows[usize::from(*row)] = Some(value),
                     None => {
                         *slot = Some(compiled.rows.len() as u16);
-                        compiled.rows.push(value);
+                        compiled.rows.push(Some(value));
                     }
                 }
             }
@@ -333,13 +333,18 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
         }
     }
     // The first rows are the spare ones.
-    compiled.rows.resize(SPARE, 0);
+    compiled.rows.resize(SPARE, None);
     let mut row_of = vec![0_u16; count];
     for n in (0..count).filter(|n| reached[*n]) {
         let row = compiled.rows.len() as u16;
         row_of[n] = row;
         let node = built.graph.node(Value(n as u16));
-        compiled.rows.push(if let Node::Constant(value) = node { value } else { 0 });
+        compiled.rows.push(match node {
+            Node::Constant(value) => Some(value),
+            // Lanes without a pixel hold what a lane with one may hold.
+            Node::Input(_) => Some(0),
+            _ => None,
+        });
         match node {
             Node::Constant(_) => {}
             Node::Input(Input::Primary(channel)) => compiled.primary[channel] = Some(row),
