@@ -12,9 +12,6 @@ use super::{CompiledDraw, Job, Reason, Reasons, store};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
 
-// Kernels stand here, wherever their text is.
-pub(super) use super::boxes::enter;
-
 /// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug, Default)]
 pub(crate) struct Block {
@@ -35,12 +32,6 @@ pub(crate) struct Block {
     pub(super) alive: PerLane<bool>,
     /// Number of pixels, by reason, of which the definition computed something.
     pub(crate) defined: Reasons,
-}
-
-/// Sets up coordinates and fog of a triangle.
-#[inline(always)]
-pub(super) fn complete<const WIDE: bool>(context: &mut TriangleContext<'_>) {
-    context.complete();
 }
 
 /// Finds the pixels of boxes, and sets up what is set up together.

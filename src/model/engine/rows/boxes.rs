@@ -178,8 +178,8 @@ pub(super) enum Entered {
 
 /// Takes triangles that may cover pixels in the given rows and columns, and sets them up, unless they are small and small ones are set up
 /// [together](super::small::Boxes). Returns how each is drawn.
-#[inline(always)]
-pub(super) fn enter<const WIDE: bool>(
+#[inline(never)]
+pub(super) fn enter(
     contexts: &mut [TriangleContext<'_>],
     numbers: &[u32],
     window: Window,

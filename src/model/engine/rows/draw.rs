@@ -1,7 +1,7 @@
 //! From triangles to batches of pixels, and from batches to blocks.
 
 use super::band::{Block, index};
-use super::boxes::{Entered, batch, boxes, columns_of_quads, spans_of_quads};
+use super::boxes::{Entered, batch, boxes, columns_of_quads, enter, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::isa::Kernels;
 use super::kernels::{Lanes, PerLane, STEP};
@@ -61,7 +61,7 @@ pub(super) fn run<T: Kernels>(job: &Job<'_>, band: &mut Band<'_>, block: &mut Bl
     let mut contexts: Vec<_> = (0..job.triangles.len().min(GROUP)).map(vacant).collect();
     for window in walk::windows(draw, band.rows()) {
         for numbers in job.triangles.chunks(GROUP) {
-            let entered = T::enter(&mut contexts, numbers, window, compiled.together, &mut block.boxes.corners);
+            let entered = enter(&mut contexts, numbers, window, compiled.together, &mut block.boxes.corners);
             for (at, entered) in entered[..numbers.len()].iter().enumerate() {
                 shaded += draw_triangle::<T>(job, at, *entered, &mut contexts, band, block);
             }
@@ -98,7 +98,7 @@ fn draw_triangle<T: Kernels>(
     }
     let context = &mut contexts[at];
     // Written out where it is needed: a function that draws by a closure is not inlined, so that rows are not compiled for the instruction set.
-    T::complete(context);
+    context.complete();
     let interpolators = Interpolators::new(context, compiled, std::mem::take(&mut block.planes));
     shaded += match entered {
         Entered::Nothing => 0,
@@ -318,7 +318,7 @@ fn draw_parts<T: Kernels>(
     let mut shaded = 0;
     // Nothing else is computed of triangles that the depth test drops.
     if begin_part::<T>(job, &mut parts, &mut shaded, context, band, block) {
-        T::complete(context);
+        context.complete();
         let interpolators = Interpolators::new(context, job.compiled, std::mem::take(&mut block.planes));
         loop {
             T::in_box(&interpolators, job, block);

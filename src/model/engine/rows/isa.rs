@@ -1,16 +1,14 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
 use super::band::{self, Block};
-use super::boxes::Entered;
 use super::compiled::{CompiledDraw, Job};
 use super::draw;
 use super::filter::Vectors;
 use super::setup::Covered;
-use super::shapes::{Corners, Each};
 use super::small::Boxes;
 use super::triangle::Interpolators;
 use crate::engine::context::TriangleContext;
-use crate::engine::walk::{Band, Window};
+use crate::engine::walk::Band;
 use crate::state::{Named, named};
 use multiversion::multiversion;
 use multiversion::target::match_target;
@@ -110,10 +108,6 @@ text! {
     {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
-        /// Calls [`band::enter`] with this instruction set.
-        fn enter(contexts: &mut [TriangleContext<'_>], numbers: &[u32], window: Window, together: bool, corners: &mut Corners) -> Each<Entered>;
-        /// Calls [`band::complete`] with this instruction set.
-        fn complete(context: &mut TriangleContext<'_>);
         /// Calls [`band::set_up`] with this instruction set.
         fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes);
         /// Calls [`band::set_up_ratios`] with this instruction set.
