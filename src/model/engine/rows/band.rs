@@ -40,17 +40,18 @@ pub(super) fn set_up<const FMA: bool>(contexts: &[TriangleContext<'_>], compiled
     boxes.set_up::<FMA>(contexts, compiled);
 }
 
-/// Sets up what is computed by [`ratios`].
+/// Sets up what is computed by [`more`].
 #[inline(always)]
-pub(super) fn set_up_ratios<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    boxes: &mut Boxes,
-) {
-    boxes.set_up_ratios::<FMA>(context, compiled);
+pub(super) fn set_up_more<const FMA: bool>(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes) {
+    if boxes.has_ratios {
+        boxes.set_up_ratios::<FMA>(context, compiled);
+    }
+    if boxes.has_levels {
+        boxes.set_up_levels::<FMA>(context, compiled);
+    }
 }
 
-/// Interpolates all attributes but [`ratios`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing
+/// Interpolates all attributes but [`more`] in the block's current box, for a plain draw. Returns `false` if something is not proved; then nothing
 /// that was written counts.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
@@ -69,44 +70,20 @@ pub(super) fn tied<const FMA: bool>(context: &TriangleContext<'_>, compiled: &Co
     boxes.interpolate::<FMA, true>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying, rows)
 }
 
-/// Computes coordinates that are divided by q, depths to compare with, fog and numbers of the texture shader in the block's current box, whose other
-/// attributes are interpolated. Returns `false` if something is not proved; then nothing that was written counts.
+/// Computes what else a plain draw reads in the block's current box: coordinates that are divided by q, depths to compare with, fog, numbers of the
+/// texture shader, and fetches of samplers with levels. Returns `false` if something is not proved; then nothing that was written counts.
 #[inline(always)]
-pub(super) fn ratios<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    block: &mut Block,
-) -> bool {
+pub(super) fn more<const FMA: bool>(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool {
     let Block { varying, rows, boxes, used, workshop, .. } = block;
     let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
-    let proves = boxes.interpolate_ratios::<FMA>((context, compiled), batch, varying, rows);
-    if let (true, Some(shader)) = (proves, compiled.of_numbers()) {
+    if boxes.has_ratios && !boxes.interpolate_ratios::<FMA>((context, compiled), batch, varying, rows) {
+        return false;
+    }
+    if let (true, Some(shader)) = (boxes.has_ratios, compiled.of_numbers()) {
         let numbers = (boxes.numbers(), boxes.current);
         workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);
     }
-    proves
-}
-
-/// Sets up what is computed by [`levels`].
-#[inline(always)]
-pub(super) fn set_up_levels<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    boxes: &mut Boxes,
-) {
-    boxes.set_up_levels::<FMA>(context, compiled);
-}
-
-/// Computes the fetches of samplers with levels in the block's current box, whose other attributes are interpolated. Returns `false` if something is
-/// not proved; then nothing that was written counts.
-#[inline(always)]
-pub(super) fn levels<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    compiled: &CompiledDraw,
-    block: &mut Block,
-) -> bool {
-    let Block { varying, boxes, used, .. } = block;
-    boxes.interpolate_levels::<FMA>(context, compiled, batch::<HALF_STEP>(boxes.coverage(), *used), varying)
+    !boxes.has_levels || boxes.interpolate_levels::<FMA>(context, compiled, batch, varying)
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.

@@ -289,11 +289,8 @@ fn draw_boxes<T: Kernels>(
     let (mut next, mut shaded) = (0, 0);
     if block.boxes.count > 0 {
         T::set_up(contexts, job.compiled, &mut block.boxes);
-        if block.boxes.has_ratios {
-            T::set_up_ratios(&contexts[0], job.compiled, &mut block.boxes);
-        }
-        if block.boxes.has_levels {
-            T::set_up_levels(&contexts[0], job.compiled, &mut block.boxes);
+        if block.boxes.has_more() {
+            T::set_up_more(&contexts[0], job.compiled, &mut block.boxes);
         }
     }
     let count = std::mem::take(&mut block.boxes.count);
@@ -352,8 +349,7 @@ fn begin_part<T: Kernels>(
         let interpolate = if block.boxes.is_tied() { T::tied } else { T::plain };
         let proves = job.compiled.plain
             && interpolate(context, job.compiled, block)
-            && (!block.boxes.has_ratios || T::ratios(context, job.compiled, block))
-            && (!block.boxes.has_levels || T::levels(context, job.compiled, block));
+            && (!block.boxes.has_more() || T::more(context, job.compiled, block));
         if !proves {
             return true;
         }

@@ -110,16 +110,12 @@ text! {
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::set_up`] with this instruction set.
         fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes);
-        /// Calls [`band::set_up_ratios`] with this instruction set.
-        fn set_up_ratios(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
-        /// Calls [`band::ratios`] with this instruction set.
-        fn ratios(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        /// Calls [`band::set_up_more`] with this instruction set.
+        fn set_up_more(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
+        /// Calls [`band::more`] with this instruction set.
+        fn more(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::plain`] with this instruction set.
         fn plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// Calls [`band::set_up_levels`] with this instruction set.
-        fn set_up_levels(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
-        /// Calls [`band::levels`] with this instruction set.
-        fn levels(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::tied`] with this instruction set.
         fn tied(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
         /// Calls [`band::in_box`] with this instruction set.

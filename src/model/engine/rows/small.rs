@@ -271,6 +271,11 @@ impl Boxes {
         &self.numbers
     }
 
+    /// Returns whether there is anything besides coordinates on planes without levels, and weights.
+    pub(super) fn has_more(&self) -> bool {
+        self.has_ratios || self.has_levels
+    }
+
     /// Returns whether ties of the current box are lowered.
     #[inline(always)]
     pub(super) fn is_tied(&self) -> bool {
