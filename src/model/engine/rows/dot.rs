@@ -325,29 +325,14 @@ mod tests {
             let vector = [floats(&mut state), floats(&mut state), floats(&mut state)];
             let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
+            let (all, of, at) = (Lanes::default(), vector.each_ref(), (size, bias));
             if round % 4 < 2 {
-                on_faces::<true>(
-                    Lanes::default(),
-                    vector.each_ref(),
-                    (size, bias),
-                    &mut scratch,
-                    &mut u,
-                    &mut v,
-                    &mut faces,
-                );
+                on_faces::<true>(all, of, at, &mut scratch, &mut u, &mut v, &mut faces);
             } else {
-                on_faces::<false>(
-                    Lanes::default(),
-                    vector.each_ref(),
-                    (size, bias),
-                    &mut scratch,
-                    &mut u,
-                    &mut v,
-                    &mut faces,
-                );
+                on_faces::<false>(all, of, at, &mut scratch, &mut u, &mut v, &mut faces);
             }
             let mut plain = [0; BLOCK];
-            coordinate(Lanes::default(), &vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
+            coordinate(all, &vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
             for n in 0..BLOCK {
                 let direction = shader::direction([vector[0][n], vector[1][n], vector[2][n]]);
                 let face = Face::from_direction(direction, direction.map(i64::abs), 0);

@@ -1,4 +1,4 @@
-//! The fast engine evaluates 384 pixels at a time: every combiner register becomes a row of 384 16-bit numbers.
+//! The fast engine evaluates up to 384 pixels at a time: every combiner register becomes a row of 384 16-bit numbers.
 //!
 //! | file | knows |
 //! |---|---|

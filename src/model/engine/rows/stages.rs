@@ -419,9 +419,9 @@ pub(super) fn run<const FMA: bool>(
                 }
                 if let (true, Some(reads)) = (sampler.mixes, varying.reads.get_mut(at)) {
                     let (open, [u, v]) = (workshop.open.block_mut(), &varying.coordinates[at]);
-                    let of = (&job.draw.units[sampler.index], &**table);
+                    let of = (&job.draw.units[sampler.index], &**table, lanes);
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
-                    workshop.quads.fetches::<FMA>((of.0, of.1, lanes), u, v, faces, open, reads);
+                    workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
                 }
                 fetch::sample_unit(job, at, varying, work, rows);
                 fetch::drop_keyed(sampler, work, &mut varying.alive);
