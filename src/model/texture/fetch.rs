@@ -42,6 +42,11 @@ impl PlannedUnit {
         [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]
     }
 
+    /// Returns the [shifts](Self::plane_shifts) of the smallest level, which are the largest.
+    pub(crate) fn largest_shifts(&self) -> [u32; 2] {
+        self.levels.last().map_or([0; 2], |smallest| self.plane_shifts(smallest))
+    }
+
     /// Returns the address modes along s and t. Cube maps stay on the face (TEX-14).
     pub fn modes(&self) -> [AddressMode; 2] {
         match self.kind {

@@ -145,7 +145,7 @@ fn texels(
         Texels::Depths(texels, function) => {
             fetch(lanes, texels, entries, found);
             let mut passed = [true; BLOCK];
-            store::test(*function, |n| references[n], |n| found[n], &mut passed);
+            store::test(*function, |n| references[n], |n| found[n], &mut passed[..lanes.count()]);
             for (out, _) in [red, green, blue, alpha].into_iter().zip(wanted).filter(|(_, wanted)| wanted.is_some()) {
                 for n in 0..lanes.count() {
                     out[n] = if passed[n] { 255 } else { 0 };

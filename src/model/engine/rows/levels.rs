@@ -47,8 +47,7 @@ pub(super) struct Placing {
 impl Setup<'_> {
     /// Returns whether the coordinates on all levels that a sampler reads are those of level 0, shifted.
     pub(super) fn shift_with(&self, sampler: &Sampler, planes: &[Plane; 2]) -> bool {
-        let unit = self.unit(sampler);
-        let shifts = unit.levels.last().map_or([0; 2], |smallest| unit.plane_shifts(smallest));
+        let shifts = self.unit(sampler).largest_shifts();
         planes[0].shifts_by(shifts[0]) && planes[1].shifts_by(shifts[1])
     }
 
@@ -399,7 +398,7 @@ fn scattered(
     for (n, first) in firsts.iter_mut().take(unit.levels.len()).enumerate() {
         *first = table.placed(n, face).first;
     }
-    let most = unit.levels.last().map_or([0; 2], |level| unit.plane_shifts(level).map(|shift| shift as i32));
+    let most = unit.largest_shifts().map(|shift| shift as i32);
     let (width, height) = (unit.levels[0].width as i32, unit.levels[0].height as i32);
     let ([columns, rows], pitch) = (table.axes, table.pitch);
     let lanes = lods.len();

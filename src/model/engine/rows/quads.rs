@@ -56,8 +56,6 @@ pub(super) struct Quads {
     /// Columns and rows of the upper left pixels of the quads, relative to the batch's first pixel.
     origins: [PerLane<f32>; 2],
     coordinates: AtQuads,
-    /// Doubles as bits, negative for quads whose coordinates are not known.
-    unknown: PerLane<u64>,
     /// Sign bits of quads whose estimated result is not proved.
     close: PerLane<i32>,
     /// Number of quads of a box.
@@ -279,7 +277,7 @@ fn measured<const FMA: bool, T: Measure>(
     out: &mut [T],
 ) -> bool {
     let rounded = whole_steps(count);
-    let Quads { origins: [xs, ys], coordinates, unknown, close, .. } = quads;
+    let Quads { origins: [xs, ys], coordinates, close, .. } = quads;
     let (xs, ys, close, out) = (&xs[..rounded], &ys[..rounded], &mut close[..rounded], &mut out[..rounded]);
     let estimates = T::estimate::<FMA>((unit, base), [xs, ys], out, close);
     for first in (0..count).step_by(STEP) {
@@ -288,33 +286,31 @@ fn measured<const FMA: bool, T: Measure>(
             continue;
         }
         let (origins, count) = ([&xs[lanes.clone()], &ys[lanes.clone()]], STEP.min(count - first));
-        let work = (&mut *coordinates, &mut *unknown);
-        if !measured_exactly::<FMA, T>((unit, base), exact, origins, count, work, &mut out[lanes]) {
+        if !measured_exactly::<FMA, T>((unit, base), exact, origins, count, coordinates, &mut out[lanes]) {
             return false;
         }
     }
     true
 }
 
-/// Computes the results of quads from their coordinates. Returns `false` if some are not proved and nothing decides them.
+/// Computes the results of a step of quads from their coordinates. Returns `false` if some are not proved and nothing decides them.
 #[inline(always)]
 fn measured_exactly<const FMA: bool, T: Measure>(
     (unit, base): (&PlannedUnit, &BaseLevel<'_>),
     exact: Option<Exact<'_>>,
     [xs, ys]: [&[f32]; 2],
     count: usize,
-    (coordinates, unknown): (&mut AtQuads, &mut PerLane<u64>),
+    coordinates: &mut AtQuads,
     out: &mut [T],
 ) -> bool {
     const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
-    let rounded = xs.len();
-    let unknown = &mut unknown[..rounded];
-    unknown.fill(0);
+    // Doubles as bits, negative for quads whose coordinates are not known.
+    let mut unknown = [0; STEP];
     for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
-        corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+        corners::<FMA>(base, [xs, ys], [x as f64, y as f64], &mut u[..STEP], &mut v[..STEP], &mut unknown);
     }
     if let (Some(planes), Some(Exact { setup, e, .. })) = (base.planes, exact)
-        && any_negative(unknown)
+        && any_negative(&unknown)
     {
         for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
             for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
@@ -328,8 +324,8 @@ fn measured_exactly<const FMA: bool, T: Measure>(
         }
         unknown.fill(0);
     }
-    T::measure::<FMA>(unit, coordinates, count, &mut out[..rounded], unknown);
-    if !any_negative(unknown) {
+    T::measure::<FMA>(unit, coordinates, count, out, &mut unknown);
+    if !any_negative(&unknown) {
         return true;
     }
     let Some(Exact { setup, batch, .. }) = exact else { return false };

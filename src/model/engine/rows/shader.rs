@@ -183,9 +183,8 @@ impl Shader {
                 }
                 stage.moved = self.moved.len();
                 let unit = &draw.units[samplers[sampler?].index];
-                let smallest = unit.levels.last().filter(|_| unit.needs_lod());
-                let [along, down] = smallest.map_or([0; 2], |level| unit.plane_shifts(level));
                 let mixes = unit.needs_lod();
+                let [along, down] = if mixes { unit.largest_shifts() } else { [0; 2] };
                 self.moved.push(Bump { stage: index, sides, most, mixes, shift: along.max(down) });
                 if let Some(state) = luminance {
                     let factors: Vec<f32> = (0..=255).map(|red| luminance_factor(red, state)).collect();

@@ -258,7 +258,7 @@ impl Boxes {
         for (index, sampler) in own(compiled).filter(|(_, sampler)| sampler.mixes) {
             let unit = &context.draw.units[sampler.index];
             let at = repeated(unit, &context.draw.assembly.vertices, vertices);
-            let shifts = unit.levels.last().map_or([0; 2], |smallest| unit.plane_shifts(smallest));
+            let shifts = unit.largest_shifts();
             self.levels[index].set_up::<FMA>((&self.edges, &extents), &at, (sampler, shifts), &mut proves);
         }
         for n in 0..GROUP {
