@@ -198,8 +198,8 @@ pub(super) fn box_depths<const FMA: bool>(
         }
         return is_visible;
     }
-    let lanes = |run: &Run| run.lane..run.lane + run.count;
-    runs.iter().any(|run| store::may_pass(job.draw, &incoming[lanes(run)], &band.depth[run.at..]))
+    let lanes = |run: &Run| run.lane()..run.lane() + run.count();
+    runs.iter().any(|run| store::may_pass(job.draw, &incoming[lanes(run)], &band.depth[run.at()..]))
 }
 
 /// Runs the stages of the texture shader for a block.
@@ -215,7 +215,7 @@ impl Block {
     #[inline(always)]
     pub(super) fn append(&mut self, band: &Band<'_>, pixel: (i64, i64), count: usize, marks: bool) {
         let at = index(band, pixel);
-        self.runs.push(Run { lane: self.used, at, count });
+        self.runs.push(Run::new(self.used, at as u32, count));
         self.used += count;
         if marks {
             let last = self.runs.len() - 1;
@@ -232,7 +232,13 @@ impl Block {
 
     #[inline(always)]
     pub(super) fn is_box_taken(&self, band: &Band<'_>) -> bool {
-        self.boxes.coverage().drawn().any(|(_, pixel, count)| self.is_taken(band, pixel, count))
+        let coverage = self.boxes.coverage();
+        let first = coverage.index(band);
+        let is_taken = |run: Run| {
+            let run = run.further(0, first);
+            store::is_marked(&self.taken, run.at(), run.count())
+        };
+        coverage.drawn().any(is_taken)
     }
 }
 

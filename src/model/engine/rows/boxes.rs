@@ -2,10 +2,10 @@
 
 use super::kernels::{PerLane, STEP};
 use super::quotient::Positions;
-use super::setup::{Covered, PixelBatch};
+use super::setup::{Covered, PixelBatch, Run};
 use super::shapes::{Corners, Each, GROUP, ROWS, SIDE, Spans};
 use crate::engine::context::TriangleContext;
-use crate::engine::walk::Window;
+use crate::engine::walk::{Band, Window};
 use crate::raster::setup::{Triangle, centres, is_flat};
 
 /// Largest number of columns and of rows of the bounding box of a triangle that is cut into boxes.
@@ -41,8 +41,8 @@ pub(super) struct BoxCoverage {
     pub(super) x: PerLane<i16>,
     pub(super) y: PerLane<i16>,
     pub(super) count: usize,
-    /// For each row: its number, the first column and the number of pixels.
-    runs: [(i64, i64, usize); ROWS],
+    /// Its rows, whose lanes and pixels count from the first.
+    runs: [Run; ROWS],
     filled: usize,
     /// Number of pixels that the triangle covers: all but those that [complete](Self::complete) quads.
     pub(super) covered: usize,
@@ -61,20 +61,19 @@ struct Beyond {
 }
 
 impl BoxCoverage {
-    /// Takes the covered pixels of box `n` of those that have `spans`.
+    /// Takes the covered pixels of box `n` of those that have `spans`, on a surface with rows of so many pixels.
     #[inline(always)]
-    pub(super) fn cover(&mut self, spans: &Spans, n: usize, (rows, columns): Window) {
-        let (left, top) = (columns.0, rows.0);
+    pub(super) fn cover(&mut self, spans: &Spans, n: usize, ((top, _), (left, _)): Window, width: u32) {
         let (mut used, mut filled) = (0, 0);
         // What a row without pixels writes, the next one overwrites.
-        for y in 0..((rows.1 - top) as usize).min(ROWS) {
-            let (low, count) = (spans.0[y][n], spans.1[y][n] as usize);
+        for y in 0..spans.rows.min(ROWS) {
+            let (low, count) = (spans.first[y][n], spans.count[y][n] as usize);
             let lanes = used..used + STEP;
             self.y[lanes.clone()].fill(y as i16);
             for (n, to) in (0..).zip(&mut self.x[lanes]) {
                 *to = low as i16 + n;
             }
-            self.runs[filled] = (top + y as i64, left + i64::from(low), count);
+            self.runs[filled] = Run::new(used, (y as u32 * width).wrapping_add(low as u32), count);
             filled += usize::from(count > 0);
             used += count;
         }
@@ -89,7 +88,7 @@ impl BoxCoverage {
 
     /// Finds all pixels of the quads that a triangle meets in a box, two rows at a time. The box begins at an even row and column, but for what
     /// is not drawn.
-    pub(super) fn complete(&mut self, triangle: &Triangle, (rows, columns): Window) {
+    pub(super) fn complete(&mut self, triangle: &Triangle, (rows, columns): Window, width: u32) {
         (self.count, self.filled, self.covered, self.extent) = (0, 0, 0, (0, 0));
         for top in (rows.0 & !1..rows.1).step_by(2) {
             let spans = spans_of_quads(triangle, top, (rows, columns));
@@ -114,7 +113,8 @@ impl BoxCoverage {
                 }
                 let covered = (end - start) as usize;
                 self.beyond.parts[self.filled] = Covered(if covered > 0 { (start - low) as usize } else { 0 }, covered);
-                self.runs[self.filled] = (top + n as i64, low, count);
+                let at = ((top + n as i64 - self.first.1) as u32).wrapping_mul(width).wrapping_add(x as u32);
+                self.runs[self.filled] = Run::new(self.count, at, count);
                 self.filled += 1;
                 self.count += count;
                 self.covered += covered;
@@ -131,23 +131,40 @@ impl BoxCoverage {
         }
     }
 
-    /// Returns for each row that has pixels its number, the first column and the number of pixels.
+    /// Returns the index in a band of the pixel that the others count from, modulo 2^32, because it may lie outside.
     #[inline(always)]
-    pub(super) fn runs(&self) -> &[(i64, i64, usize)] {
+    pub(super) fn index(&self, band: &Band<'_>) -> u32 {
+        let (i, j) = self.first;
+        ((j - band.first_row as i64) * band.width as i64 + i) as u32
+    }
+
+    /// Returns the rows that have pixels.
+    #[inline(always)]
+    pub(super) fn runs(&self) -> &[Run] {
         &self.runs[..self.filled]
     }
 
-    /// Returns the covered pixels: the first lane, column and row of the first pixel, and the number of pixels of each row that has any.
+    /// Returns the covered pixels of each row that has any.
     #[inline(always)]
-    pub(super) fn drawn(&self) -> impl Iterator<Item = (usize, (i64, i64), usize)> {
-        let mut next = 0;
-        self.runs().iter().enumerate().filter_map(move |(n, (j, i, count))| {
-            let Covered(first, covered) =
-                if self.covered == self.count { Covered(0, *count) } else { self.beyond.parts[n] };
-            let lane = next + first;
-            next += count;
-            (covered > 0).then_some((lane, (i + first as i64, *j), covered))
+    pub(super) fn drawn(&self) -> impl Iterator<Item = Run> {
+        let is_whole = self.covered == self.count;
+        self.runs().iter().enumerate().filter_map(move |(n, run)| {
+            let Covered(first, count) = if is_whole { Covered(0, run.count()) } else { self.beyond.parts[n] };
+            (count > 0).then(|| run.part(first, count))
         })
+    }
+
+    /// Appends [these](Self::drawn), so many lanes and pixels further.
+    #[inline(always)]
+    pub(super) fn append(&self, (lanes, pixels): (usize, u32), runs: &mut Vec<Run>) {
+        if self.covered != self.count {
+            runs.extend(self.drawn().map(|run| run.further(lanes, pixels)));
+            return;
+        }
+        // Of most boxes all pixels are covered. All runs, because a loop over the used ones would end unpredictably.
+        let filled = runs.len() + self.filled;
+        runs.extend_from_slice(&self.runs.map(|run| run.further(lanes, pixels)));
+        runs.truncate(filled);
     }
 }
 
@@ -239,6 +256,9 @@ mod tests {
     use crate::random::Random;
     use crate::state::Profile;
 
+    /// Pixels of a row.
+    const WIDTH: u32 = 4096;
+
     /// The rows of all boxes of triangles of all sizes and shapes are what spans say.
     #[test]
     fn boxes_hold_the_spans() {
@@ -275,13 +295,16 @@ mod tests {
                 let found = shapes.spans(all);
                 for (n, ((rows, columns), _)) in all.iter().enumerate() {
                     assert!(rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE);
-                    coverage.cover(&found, n, (*rows, *columns));
+                    coverage.cover(&found, n, (*rows, *columns), WIDTH);
+                    let (width, (left, top)) = (i64::from(WIDTH), coverage.first);
+                    let pixel = |at: i64| (top + at / width, left + at % width);
+                    let runs: Vec<_> = coverage.drawn().map(|run| (pixel(run.at() as i64), run.count())).collect();
                     let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, *columns)));
                     let wanted: Vec<_> =
-                        spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
-                    assert_eq!(coverage.runs(), wanted, "{triangle:?} {rows:?} {columns:?}");
+                        spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| ((j, s.0), (s.1 - s.0) as usize)).collect();
+                    assert_eq!(runs, wanted, "{triangle:?} {rows:?} {columns:?}");
                     let mut pixels =
-                        wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
+                        wanted.iter().flat_map(|((j, first), count)| (0..*count).map(move |n| (first + n as i64, *j)));
                     for n in 0..coverage.count {
                         let (x, y) = (i64::from(coverage.x[n]), i64::from(coverage.y[n]));
                         assert_eq!(Some((coverage.first.0 + x, coverage.first.1 + y)), pixels.next());

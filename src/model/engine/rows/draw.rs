@@ -1,12 +1,12 @@
 //! From triangles to batches of pixels, and from batches to blocks.
 
-use super::band::{Block, index};
+use super::band::Block;
 use super::boxes::{Entered, batch, boxes, columns_of_quads, enter, spans_of_quads};
 use super::dependent::PixelQuads;
 use super::isa::Kernels;
 use super::kernels::{Lanes, PerLane, STEP};
 use super::levels::MipFetches;
-use super::setup::{Covered, PixelBatch, Run, whole_steps};
+use super::setup::{Covered, PixelBatch, whole_steps};
 use super::shapes::GROUP;
 use super::taps::Footprints;
 use super::triangle::Interpolators;
@@ -247,7 +247,7 @@ fn draw_box_of_quads<T: Kernels>(
     block: &mut Block,
 ) -> u64 {
     let context = interpolators.setup.context;
-    block.boxes.coverage_mut().complete(&context.triangle, window);
+    block.boxes.coverage_mut().complete(&context.triangle, window, band.width as u32);
     if block.boxes.coverage().count == 0 {
         return 0;
     }
@@ -256,12 +256,11 @@ fn draw_box_of_quads<T: Kernels>(
     }
     if begin_box::<T>(job, context, band, block) {
         T::in_box(interpolators, job, block);
-        let mut upper = block.used;
-        for [(top, low, columns), _] in block.boxes.coverage().runs().as_chunks::<2>().0 {
-            let (pixel, count) = ((*low, *top), columns / 2);
-            let quads = PixelQuads { upper, lower: upper + columns, count, pixel, triangle: context.number };
-            block.workshop.quads.add(quads);
-            upper += 2 * columns;
+        let batch = batch::<STEP>(block.boxes.coverage(), block.used);
+        for [one, other] in batch.runs.as_chunks::<2>().0 {
+            let [upper, lower] = [one, other].map(|run| block.used + run.lane());
+            let (pixel, count) = (batch.pixel(one.lane()), one.count() / 2);
+            block.workshop.quads.add(PixelQuads { upper, lower, count, pixel, triangle: context.number });
         }
         append_box::<T>(job, context, block, false);
     }
@@ -288,6 +287,7 @@ fn draw_boxes<T: Kernels>(
 ) -> u64 {
     let (mut next, mut shaded) = (0, 0);
     if block.boxes.count > 0 {
+        block.boxes.width = band.width as u32;
         T::set_up(contexts, job.compiled, &mut block.boxes);
         if block.boxes.has_more() {
             T::set_up_more(&contexts[0], job.compiled, &mut block.boxes);
@@ -365,19 +365,9 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     if block.boxes.coverage().count > BLOCK - block.used || (job.compiled.reads_surface && block.is_box_taken(band)) {
         finish::<T>(job, block, band);
     }
-    let (first, mut lane) = (block.runs.len(), block.used);
+    let first = block.runs.len();
     let coverage = block.boxes.coverage();
-    // Most boxes have covered pixels only, and choices in each row would cost a small triangle some per cent.
-    if coverage.covered == coverage.count {
-        block.runs.extend(coverage.runs().iter().map(|(j, i, count)| {
-            let run = Run { lane, at: index(band, (*i, *j)), count: *count };
-            lane += count;
-            run
-        }));
-    } else {
-        let run = |(from, pixel, count)| Run { lane: lane + from, at: index(band, pixel), count };
-        block.runs.extend(coverage.drawn().map(run));
-    }
+    coverage.append((block.used, coverage.index(band)), &mut block.runs);
     let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {
         block.runs.truncate(first);

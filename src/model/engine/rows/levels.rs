@@ -7,7 +7,7 @@ use super::kernels::PerLane;
 use super::planes::Plane;
 use super::quads::{Exact, Known, Quads, Spread, floor, of_box};
 use super::quotient::{Line, Reciprocals, nearest, whole};
-use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
+use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Run, Setup};
 use super::short::Short;
 use super::table::{Placed, Table};
 use super::{Reason, Sampler};
@@ -77,9 +77,9 @@ impl Setup<'_> {
             }
             return;
         };
-        let row = [(batch.first.1, batch.first.0, batch.count)];
-        let (runs, mut lane) = (if ROW { &row } else { batch.runs }, batch.lane);
-        for (j, i, count) in runs.iter().copied() {
+        let row = [Run::new(0, 0, batch.count)];
+        for run in if ROW { &row } else { batch.runs } {
+            let ((i, j), count, lane) = (batch.pixel(run.lane()), run.count(), batch.lane + run.lane());
             // A box does not say which of them are covered.
             let covered = Covered(0, if batch.reaches_beyond() { 0 } else { count });
             let row = if ROW { batch } else { PixelBatch { covered, ..PixelBatch::row((i, j), count, lane) } };
@@ -111,7 +111,6 @@ impl Setup<'_> {
                 }
                 done += part.count;
             }
-            lane += count;
         }
         if !ROW {
             quads.begin_box(batch);

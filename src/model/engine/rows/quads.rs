@@ -6,7 +6,7 @@ use super::Reason;
 use super::base_level::{BaseLevel, parted};
 use super::kernels::{LANES, PerLane, STEP};
 use super::quotient::{any_negative, whole};
-use super::setup::{PixelBatch, Setup, whole_steps};
+use super::setup::{PixelBatch, Run, Setup, whole_steps};
 use super::shapes::SIDE;
 use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::lod::Quad;
@@ -70,22 +70,24 @@ impl Quads {
     #[inline(always)]
     pub(super) fn begin_box(&mut self, batch: PixelBatch<'_>) {
         let ((i, j), [xs, ys]) = (batch.first, &mut self.origins);
-        let (mut quads, mut lane) = (0, 0);
-        let mut runs = batch.runs;
+        let (mut quads, mut runs) = (0, batch.runs);
+        let pixel = |run: &Run| batch.pixel(run.lane());
         self.filled = 0;
-        while let Some((row, ..)) = runs.first() {
-            let rows = runs.iter().take(2).take_while(|(other, ..)| other >> 1 == row >> 1).count();
+        while let Some(first) = runs.first() {
+            let (_, row) = pixel(first);
+            let rows = runs.iter().take(2).take_while(|run| pixel(run).1 >> 1 == row >> 1).count();
             let (pair, later) = runs.split_at(rows);
             runs = later;
             let (mut low, mut high) = (i64::MAX, i64::MIN);
-            for (_, first, count) in pair {
-                (low, high) = (low.min(first >> 1), high.max((first + *count as i64 - 1) >> 1));
+            for run in pair {
+                let (first, _) = pixel(run);
+                (low, high) = (low.min(first >> 1), high.max((first + run.count() as i64 - 1) >> 1));
             }
-            for (_, first, count) in pair {
+            for run in pair {
+                let (first, _) = pixel(run);
                 let quad = quads + ((first >> 1) - low) as usize;
-                self.rows[self.filled] = QuadsOfRow { lane, quad, odd: (first & 1) as usize };
+                self.rows[self.filled] = QuadsOfRow { lane: run.lane(), quad, odd: (first & 1) as usize };
                 self.filled += 1;
-                lane += count;
             }
             // A whole step, of which the next rows overwrite what is too much.
             let (x, y) = ((2 * low - i) as i32, ((row & !1) - j) as f32);

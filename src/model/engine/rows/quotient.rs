@@ -153,10 +153,7 @@ impl QuotientEstimate {
         let bits = (range.to_bits() >> 52) as i32 - 1022;
         let shift = (30 - bits).clamp(0, FRACTION);
         let scale = power(shift);
-        // A whole number of steps above the error and half a step.
-        let off = whole(margin * scale + 2.0);
-        // Then exact quotients come out above their integer, and the next smaller quotients below it.
-        let parted = gap * scale >= 4.0 * off;
+        let (off, parted) = parted(margin, gap, scale);
         let down = if parted { -off } else { off };
         let line = rest.less(down * power(-shift), denominator).times(scale);
         let limit = nearest(if parted { scale } else { scale - 2.0 * off });
@@ -204,6 +201,14 @@ impl QuotientEstimate {
     fn at<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> (i32, i32) {
         self.floor(self.step::<FMA, ROW>(x, y, r))
     }
+}
+
+/// Returns a whole number of steps above the error and half a step, and whether multiples of `gap` that are whole can be told from others: then exact
+/// quotients come out above their integer, and the next smaller quotients below it.
+#[inline(always)]
+pub(super) fn parted(margin: f64, gap: f64, scale: f64) -> (f64, bool) {
+    let off = whole(margin * scale + 2.0);
+    (off, gap * scale >= 4.0 * off)
 }
 
 #[inline(always)]

@@ -41,8 +41,8 @@ pub(super) struct PixelBatch<'a> {
     pub(super) lane: usize,
     /// Largest distance of a pixel from the first, in columns and in rows.
     pub(super) extent: (i32, i32),
-    /// For a box: row, first column and number of pixels of each of its rows.
-    pub(super) runs: &'a [(i64, i64, usize)],
+    /// For a box: its rows, whose lanes count from its first.
+    pub(super) runs: &'a [Run],
     /// The pixels that the triangle covers; of a box, only their number. In a row that completes quads, there are others before and after them.
     pub(super) covered: Covered,
     /// For a box: columns and rows of covered pixels, which stand in for those that are not.
@@ -111,14 +111,50 @@ impl PixelBatch<'_> {
     }
 }
 
-/// Lanes of a block whose pixels lie side by side on the surface.
-#[derive(Clone, Copy, Debug)]
+/// Lanes of a block, or of a box, whose pixels lie side by side on the surface. Small, because boxes have many of them.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Run {
-    /// The first lane.
-    pub(super) lane: usize,
-    /// Index of the first pixel in the band.
-    pub(super) at: usize,
-    pub(super) count: usize,
+    /// Index of the first pixel in the band, modulo 2^32 while it counts from a pixel of the box.
+    at: u32,
+    /// The first lane, and 2^16 times the number of pixels.
+    lanes: u32,
+}
+
+impl Run {
+    #[inline(always)]
+    pub(super) fn new(lane: usize, at: u32, count: usize) -> Run {
+        Run { at, lanes: lane as u32 | (count as u32) << 16 }
+    }
+
+    /// Returns the run so many lanes and pixels further.
+    #[inline(always)]
+    pub(super) fn further(self, lanes: usize, pixels: u32) -> Run {
+        Run { at: self.at.wrapping_add(pixels), lanes: self.lanes.wrapping_add(lanes as u32) }
+    }
+
+    /// Returns so many pixels of the run from one on.
+    #[inline(always)]
+    pub(super) fn part(self, first: usize, count: usize) -> Run {
+        Run::new(self.lane() + first, self.at.wrapping_add(first as u32), count)
+    }
+
+    /// Returns the first lane.
+    #[inline(always)]
+    pub(super) fn lane(self) -> usize {
+        (self.lanes & 0xffff) as usize
+    }
+
+    /// Returns the index of the first pixel in the band.
+    #[inline(always)]
+    pub(super) fn at(self) -> usize {
+        self.at as usize
+    }
+
+    /// Returns the number of pixels.
+    #[inline(always)]
+    pub(super) fn count(self) -> usize {
+        (self.lanes >> 16) as usize
+    }
 }
 
 /// Rounds up to whole steps.

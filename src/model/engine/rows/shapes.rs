@@ -72,8 +72,15 @@ pub(super) struct Shapes {
     pub(super) exact: Each<i32>,
 }
 
-/// The first column of each row of each box, counted from the box's first, and the number of columns, which is 0 if the triangle covers none.
-pub(super) type Spans = ([Each<i32>; ROWS], [Each<i32>; ROWS]);
+/// The columns that triangles cover in boxes.
+pub(super) struct Spans {
+    /// The first column of each row of each box, counted from the box's first.
+    pub(super) first: [Each<i32>; ROWS],
+    /// The number of columns, which is 0 if the triangle covers none.
+    pub(super) count: [Each<i32>; ROWS],
+    /// Number of rows of the highest box.
+    pub(super) rows: usize,
+}
 
 /// A limit beyond all columns.
 const BEYOND: i32 = 1 << 23;
@@ -140,11 +147,11 @@ impl Shapes {
     /// below 2^15; larger quotients put the whole box on one side.
     #[inline(always)]
     pub(super) fn spans(&self, boxes: &[(Window, usize)]) -> Spans {
-        let (mut height, mut width) = (0, [0; GROUP]);
+        let [mut height, mut width] = [[0; GROUP]; 2];
         for (n, ((rows, columns), _)) in boxes.iter().enumerate() {
-            height = height.max((rows.1 - rows.0) as usize);
-            width[n] = (columns.1 - columns.0) as i32;
+            (height[n], width[n]) = ((rows.1 - rows.0) as i32, (columns.1 - columns.0) as i32);
         }
+        let highest = height.iter().fold(0, |highest, height| highest.max(*height)) as usize;
         // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the
         // way, which avoids a branch.
         let [mut from, mut to] = [[[0; GROUP]; 3]; 2];
@@ -159,9 +166,9 @@ impl Shapes {
             }
         }
         let [mut first, mut count] = [[[0; GROUP]; ROWS]; 2];
-        for j in 0..height.min(ROWS) {
+        for j in 0..highest.min(ROWS) {
             for n in 0..GROUP {
-                let (mut low, mut high) = (0, width[n]);
+                let (mut low, mut high) = (0, if (j as i32) < height[n] { width[n] } else { 0 });
                 for k in 0..3 {
                     let floor = nearest_32(r[k][n] * inverse[k][n] - 0.5);
                     r[k][n] += step[k][n];
@@ -172,7 +179,7 @@ impl Shapes {
                 (first[j][n], count[j][n]) = (low, high.wrapping_sub(low).max(0));
             }
         }
-        (first, count)
+        Spans { first, count, rows: highest.min(ROWS) }
     }
 }
 
@@ -244,11 +251,13 @@ impl Edges {
     #[inline(always)]
     pub(super) fn lines(&self, n: usize) -> [Line; 3] {
         // Not a closure, because one that is called three times is not inlined.
-        [
-            Line { c: self.e[0][n], x: self.a[0][n], y: self.b[0][n] },
-            Line { c: self.e[1][n], x: self.a[1][n], y: self.b[1][n] },
-            Line { c: self.e[2][n], x: self.a[2][n], y: self.b[2][n] },
-        ]
+        [self.line(0, n), self.line(1, n), self.line(2, n)]
+    }
+
+    /// Returns an edge function of a box.
+    #[inline(always)]
+    pub(super) fn line(&self, k: usize, n: usize) -> Line {
+        Line { c: self.e[k][n], x: self.a[k][n], y: self.b[k][n] }
     }
 
     /// Returns the function with these values at the vertices in each box, and an upper bound of its terms.
@@ -300,7 +309,7 @@ mod tests {
                     for (n, a) in slopes.iter().enumerate() {
                         (shapes.e[k][n], shapes.a[k][n], shapes.b[k][n]) = edge(*a);
                     }
-                    let (first, count) = shapes.spans(&all);
+                    let Spans { first, count, .. } = shapes.spans(&all);
                     for (n, a) in slopes.iter().enumerate() {
                         let (e, _, b) = edge(*a);
                         for j in 0..ROWS {

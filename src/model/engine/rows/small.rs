@@ -12,7 +12,7 @@ use super::compiled::{Sampler, Third};
 use super::fog::BoxFog;
 use super::kernels::PerLane;
 use super::levels::fetches;
-use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, whole};
+use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, nearest, parted, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
@@ -31,6 +31,8 @@ use crate::texture::planned::PlannedUnit;
 pub(super) struct Boxes {
     /// Corners of triangles.
     pub(super) corners: Corners,
+    /// Number of pixels of a row of the surface.
+    pub(super) width: u32,
     /// Rows and columns of each, and the index of the triangle among the contexts, in the order in which they are drawn.
     pub(super) all: Each<(Window, usize)>,
     pub(super) count: usize,
@@ -96,7 +98,7 @@ impl Boxes {
         self.shapes.place(&self.corners, all);
         let spans = self.shapes.spans(all);
         for (n, ((window, _), coverage)) in all.iter().zip(&mut self.coverages).enumerate() {
-            coverage.cover(&spans, n, *window);
+            coverage.cover(&spans, n, *window, self.width);
         }
     }
 
@@ -181,9 +183,7 @@ impl Boxes {
         }
         if varies {
             for (k, estimates) in [0, 2].into_iter().zip(&mut self.weights) {
-                let mut g = [[0.0; GROUP]; 3];
-                g[k] = edges.p[k].map(|p| 256.0 * p);
-                *estimates = Estimates::new::<FMA>(edges, &g, 0, &mut proves);
+                *estimates = Estimates::of_weight(edges, k, &mut proves);
             }
         }
         for n in 0..GROUP {
@@ -321,7 +321,7 @@ impl Boxes {
             narrow_weights(batch, weights, narrow);
         } else if weighted {
             for (estimates, out) in self.weights.iter().zip(narrow) {
-                let estimate = estimates.of(n).not_negative();
+                let estimate = QuotientEstimate { base: 0, shift: WEIGHT_SHIFT, least: 0, ..estimates.of(n) };
                 open |= reciprocals.floors::<FMA, false, _>(estimate, &mut out[at()], |weight| weight as u16);
             }
         }
@@ -457,6 +457,9 @@ fn own(compiled: &CompiledDraw) -> impl Iterator<Item = (usize, &Sampler)> {
     compiled.samplers.iter().enumerate().filter(|(_, sampler)| sampler.shares.is_none() && !sampler.depends)
 }
 
+/// Number of bits below a weight's 256th that estimates keep.
+const WEIGHT_SHIFT: u32 = 21;
+
 /// The [`QuotientEstimate`]s of a quotient in each box.
 #[derive(Debug, Default)]
 struct Estimates {
@@ -490,6 +493,25 @@ impl Estimates {
             (all.line.c[n], all.line.x[n], all.line.y[n]) = (one.line.c, one.line.x, one.line.y);
             (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
             proves[n] &= -i32::from(is);
+        }
+        all
+    }
+
+    /// Sets up 256 b_k, which lies between 0 and 256 at all pixels of a triangle.
+    #[inline(always)]
+    fn of_weight(edges: &Edges, k: usize, proves: &mut Each<i32>) -> Estimates {
+        let (scale, mut all) =
+            (f64::from(1 << WEIGHT_SHIFT), Estimates { shift: [WEIGHT_SHIFT; GROUP], ..Estimates::default() });
+        for n in 0..GROUP {
+            let times = 256.0 * edges.p[k][n];
+            let margin = (times * edges.terms[k][n] * edges.widest[n] + 2.0 * 516.0 * edges.ratio[n]) * SLACK;
+            let (off, parted) = parted(margin + edges.floors[n], edges.gap[n] + edges.tied[n], scale);
+            let (down, times) = (if parted { -off } else { off }, times * scale);
+            let (denominator, line) = (edges.denominator.of(n), edges.line(k, n));
+            let line = line.times(times).less(down, denominator);
+            (all.line.c[n], all.line.x[n], all.line.y[n]) = (line.c, line.x, line.y);
+            all.limit[n] = nearest(if parted { scale } else { scale - 2.0 * off });
+            proves[n] &= -i32::from(off * 8.0 < scale);
         }
         all
     }

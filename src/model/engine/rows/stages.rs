@@ -513,18 +513,18 @@ fn define(
     band: &Band<'_>,
 ) -> u64 {
     let mut count = 0;
-    let lanes = runs.last().map_or(0, |run| run.lane + run.count);
+    let lanes = runs.last().map_or(0, |run| run.lane() + run.count());
     // Most blocks have no open lanes.
     let any = work.open[..lanes].iter().fold(0, |all, open| all | open) != 0;
     let runs = if any { runs } else { &[] };
     let mut triangle = DefinedTriangle::default();
     for run in runs {
-        for n in (0..run.count).filter(|n| work.open[run.lane + n] != 0) {
-            let lane = run.lane + n;
+        for n in (0..run.count()).filter(|n| work.open[run.lane() + n] != 0) {
+            let lane = run.lane() + n;
             let at = work.triangles.partition_point(|(first, _)| *first <= lane);
             let Some((_, number)) = at.checked_sub(1).map(|at| work.triangles[at]) else { continue };
             let Some(context) = triangle.set_up(job, number) else { continue };
-            let index = run.at + n;
+            let index = run.at() + n;
             let pixel = ((index % band.width) as i64, (band.first_row + index / band.width) as i64);
             let sample = Sample::new(&context.triangle, context.triangle.edges(pixel.0, pixel.1));
             let mut registers = Registers::<i32>::new();

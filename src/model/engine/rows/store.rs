@@ -97,10 +97,10 @@ const SHORT_RUN: usize = 16;
 #[inline(always)]
 pub(super) fn read_runs(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
     for run in runs {
-        let (from, to) = (&words[run.at..], &mut out[run.lane..]);
-        let done = run.count <= SHORT_RUN && read_short(from, to);
+        let (from, to) = (&words[run.at()..], &mut out[run.lane()..]);
+        let done = run.count() <= SHORT_RUN && read_short(from, to);
         if !done {
-            to[..run.count].copy_from_slice(&from[..run.count]);
+            to[..run.count()].copy_from_slice(&from[..run.count()]);
         }
     }
 }
@@ -116,7 +116,8 @@ fn read_short(from: &[u32], to: &mut [u32]) -> bool {
 /// Writes the words of some runs to the surface or its depth buffer.
 #[inline(always)]
 pub(super) fn write_runs(from: &[u32; BLOCK], runs: &[Run], words: &mut [u32]) {
-    for Run { lane, at, count } in runs.iter().copied() {
+    for run in runs {
+        let (lane, at, count) = (run.lane(), run.at(), run.count());
         write_run::<false>(&from[lane..][..count], &from[lane..][..count], &mut words[at..][..count]);
     }
 }
@@ -135,7 +136,8 @@ pub(super) fn merge_runs(
         let mask = if alive[n] { mask } else { 0 };
         (from[n], kept[n]) = (from[n] & mask, !mask);
     }
-    for Run { lane, at, count } in runs.iter().copied() {
+    for run in runs {
+        let (lane, at, count) = (run.lane(), run.at(), run.count());
         write_run::<true>(&from[lane..][..count], &kept[lane..][..count], &mut words[at..][..count]);
     }
 }
@@ -187,7 +189,8 @@ fn bits(word: usize, at: usize, count: usize) -> u64 {
 /// Flips the bits of the pixels of some runs.
 #[inline(always)]
 pub(super) fn mark(taken: &mut [u64], runs: &[Run]) {
-    for Run { at, count, .. } in runs.iter().copied() {
+    for run in runs {
+        let (at, count) = (run.at(), run.count());
         for word in words(at, count) {
             taken[word] ^= bits(word, at, count);
         }
