@@ -83,7 +83,7 @@ impl MovedPlanes {
         let MovedPlanes { planes: [along, down], losses, floors, exact } = self;
         let BatchSetup { real, ratio, denominator, .. } = local;
         let (offs, scale) = ([local.margin::<ROW>(along), local.margin::<ROW>(down)], f64::from(1 << bump.shift));
-        let off = larger(offs[0], offs[1]) + floors * ratio + SUM + if bump.shift > 0 { OFFSET_FLOOR } else { 0.0 };
+        let off = larger(offs[0], offs[1]) + floors * ratio + SUM + OFFSET_FLOOR;
         // Hardly beyond the triangle no number has more bits.
         let exact = *exact && (!batch.reaches_beyond() || *ratio < 2.0);
         // NaN proves nothing either.
@@ -91,6 +91,7 @@ impl MovedPlanes {
         let stays = |plane: &RealPlane, most: f64| plane.reach * ratio + most < FARTHEST;
         let (off, plus) = if exact { (HALF_BIT / 2.0 / scale, HALF_BIT - 0.5) } else { (off, -0.5) };
         let off = if proves { off } else { 0.0 };
+        moved.has_exact |= exact;
         for largest in &mut moved.off[batch.lane / STEP..batch.lanes().end.div_ceil(STEP)] {
             *largest = larger(off, *largest);
         }
@@ -114,6 +115,8 @@ pub(super) struct Moved {
     at_quads: [PerLane<f64>; 2],
     /// The largest error of a coordinate in each step of lanes, on the level where it is.
     off: [f64; LANES / STEP],
+    /// Whether coordinates of some batch are exact.
+    has_exact: bool,
 }
 
 impl Moved {
@@ -121,6 +124,7 @@ impl Moved {
     #[inline(always)]
     pub(super) fn begin(&mut self) {
         self.off.fill(0.0);
+        self.has_exact = false;
     }
 }
 
@@ -128,6 +132,22 @@ impl Moved {
 /// floors are not proved, or not those on smaller levels, which are the same shifted by up to `shift` bits.
 #[inline(always)]
 pub(super) fn place<const FMA: bool>(
+    of: (&Sampler, Lanes),
+    (moved, shift): (&Moved, u32),
+    by: [&Floats; 2],
+    at: &mut [PerLane<i32>; 2],
+    open: &mut [i32],
+) {
+    if moved.has_exact {
+        place_by::<FMA, true>(of, (moved, shift), by, at, open);
+    } else {
+        place_by::<FMA, false>(of, (moved, shift), by, at, open);
+    }
+}
+
+/// Does the same. `EXACT` says that offsets are floored, as those of exact coordinates have to be.
+#[inline(always)]
+fn place_by<const FMA: bool, const EXACT: bool>(
     (sampler, lanes): (&Sampler, Lanes),
     (moved, shift): (&Moved, u32),
     [along, down]: [&Floats; 2],
@@ -136,7 +156,7 @@ pub(super) fn place<const FMA: bool>(
 ) {
     let (open, bias) = (&mut open[..BLOCK], sampler.bias());
     let place = |n: usize| {
-        let [at_u, at_v] = by::<FMA>(&moved.at, sampler.sides, [along[n], down[n]], n);
+        let [at_u, at_v] = by::<FMA, EXACT>(&moved.at, sampler.sides, [along[n], down[n]], n);
         let (near_u, near_v) = ((at_u - whole(at_u)).abs(), (at_v - whole(at_v)).abs());
         (at_u, at_v, larger(near_u, near_v))
     };
@@ -164,15 +184,25 @@ pub(super) fn place<const FMA: bool>(
     }
 }
 
-/// TSH-7: returns u and v of a lane, moved by so many 128ths of the image.
+/// TSH-7: returns u and v of a lane, moved by so many 128ths of the image. `FLOORS` says whether offsets are floored.
 #[inline(always)]
-fn by<const FMA: bool>([u, v]: &[PerLane<f64>; 2], sides: [u32; 2], offsets: [f32; 2], n: usize) -> [f64; 2] {
+fn by<const FMA: bool, const FLOORS: bool>(
+    [u, v]: &[PerLane<f64>; 2],
+    sides: [u32; 2],
+    offsets: [f32; 2],
+    n: usize,
+) -> [f64; 2] {
     const PARTS: f64 = (1 << OFFSET_BITS) as f64;
-    // A side of the image has 256 steps for each of its texels.
-    let [width, height] = [2.0 * f64::from(sides[0]) * PARTS, 2.0 * f64::from(sides[1]) * PARTS];
-    let by =
-        |offset: f32, side: f64, at: f64| multiply_add::<FMA>(floor::<FMA>(f64::from(offset) * side), 1.0 / PARTS, at);
-    [by(offsets[0], width, u[n]), by(offsets[1], height, v[n])]
+    let by = |offset: f32, side: u32, at: f64| {
+        // A side of the image has 256 steps for each of its texels.
+        let (offset, side) = (f64::from(offset), 2.0 * f64::from(side));
+        if FLOORS {
+            multiply_add::<FMA>(floor::<FMA>(offset * (side * PARTS)), 1.0 / PARTS, at)
+        } else {
+            multiply_add::<FMA>(offset, side, at)
+        }
+    };
+    [by(offsets[0], sides[0], u[n]), by(offsets[1], sides[1], v[n])]
 }
 
 /// TEX-11 of what [`place`] does: writes floors on level 0 in 1/65536 texel, and a number other than 0 for lanes where one is not proved.
@@ -187,7 +217,7 @@ pub(super) fn place_finely<const FMA: bool>(
 ) -> bool {
     let mut any = 0;
     for n in 0..lanes.count() {
-        let [at_u, at_v] = by::<FMA>(&moved.at_quads, sampler.sides, [along[n], down[n]], n);
+        let [at_u, at_v] = by::<FMA, true>(&moved.at_quads, sampler.sides, [along[n], down[n]], n);
         let (at_u, at_v, off) = (256.0 * (at_u + 0.5), 256.0 * (at_v + 0.5), 256.0 * moved.off[n / STEP]);
         let close = ((at_u - whole(at_u)).abs() - off).to_bits() | ((at_v - whole(at_v)).abs() - off).to_bits();
         unproved[n] = (close >> 63) as i32;

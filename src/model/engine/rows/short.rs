@@ -140,8 +140,11 @@ impl Parts {
             let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
             let short =
                 if close >> 63 != 0 { batch.sample(start as usize, triangle).short() } else { [!is_first, !is_third] };
-            parts.all[parts.count] = (start as usize, short);
-            parts.count += 1;
+            // A pixel that is too close belongs to the part before it or after it.
+            if parts.count == 0 || parts.all[parts.count - 1].1 != short {
+                parts.all[parts.count] = (start as usize, short);
+                parts.count += 1;
+            }
             start =
                 starts.as_flattened().iter().fold(BLOCK as i32, |next, n| if *n > start { next.min(*n) } else { next });
         }
