@@ -165,7 +165,7 @@ pub(super) fn row_depths<const FMA: bool>(
     if job.compiled.drops_late {
         store::may_pass(job.draw, incoming, memory)
     } else {
-        store::test_early(job.draw, incoming, memory, &mut alive[lanes])
+        store::test_early::<false>(job.draw, count, incoming, memory, &mut alive[lanes])
     }
 }
 
@@ -187,14 +187,14 @@ pub(super) fn box_depths<const FMA: bool>(
     } else {
         defined[Reason::Depths as usize] += depths::<FMA, false>(context, covered, varying.depths());
     }
-    let (incoming, runs, depth) = (&varying.depth, &runs[first..], depth.block_mut());
+    let (incoming, runs) = (&varying.depth, &runs[first..]);
     if !job.compiled.drops_late {
-        let lanes = *used..*used + coverage.count;
-        store::read_runs(band.depth, runs, depth);
+        let lanes = covered.lanes();
+        store::read_runs(band.depth, runs, depth.block_mut());
         let (incoming, memory) = (&incoming[lanes.clone()], &mut depth[lanes.clone()]);
-        let is_visible = store::test_early(job.draw, incoming, memory, &mut alive[lanes]);
+        let is_visible = store::test_early::<true>(job.draw, coverage.count, incoming, memory, &mut alive[lanes]);
         if is_visible {
-            store::write_runs(depth, runs, band.depth);
+            store::write_runs(depth.block(), runs, band.depth);
         }
         return is_visible;
     }

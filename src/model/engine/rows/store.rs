@@ -255,12 +255,23 @@ pub(super) fn test_depth_stencil(
 }
 
 /// DEP-2 without a stencil test, of fragments that are all alive: drops fragments, and stores the depths of those that are left. Returns
-/// `false` if none is; then all are alive again.
+/// `false` if none is; then all are alive again. `PADDED` says that lanes without a pixel follow those of `count` fragments; they stay alive.
 #[inline(always)]
-pub(super) fn test_early(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32], alive: &mut [bool]) -> bool {
+pub(super) fn test_early<const PADDED: bool>(
+    draw: &PlannedDraw,
+    count: usize,
+    incoming: &[u32],
+    memory: &mut [u32],
+    alive: &mut [bool],
+) -> bool {
     drop_outside(draw, incoming, alive);
     test_depth(draw, incoming, memory, alive);
-    let is_any_left = alive.iter().fold(false, |any, alive| any | alive);
+    let mut is_any_left = false;
+    for n in 0..alive.len() {
+        let is_pixel = !PADDED || (n as u32) < count as u32;
+        is_any_left |= alive[n] & is_pixel;
+        alive[n] |= !is_pixel;
+    }
     if !is_any_left {
         alive.fill(true);
     }
