@@ -6,7 +6,7 @@ use crate::state::{PlaneLoss, Profile};
 use std::ops::{Add, Mul, Shr, Sub};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
-const PERSPECTIVE_BITS: i32 = 28;
+pub(crate) const PERSPECTIVE_BITS: i32 = 28;
 
 /// A triangle that is set up for drawing.
 ///
@@ -85,7 +85,9 @@ impl Triangle {
     /// Sets the fields that depend on the w of the vertices.
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
-        (self.p, self.exact_reciprocal) = weights(w, self.doubled_area, perspective, profile);
+        let taken = significant(w, profile);
+        self.p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
+        self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & is_flat(w, perspective, profile);
     }
 
     /// INT-4t: sets what coordinates on planes lose.
@@ -150,27 +152,21 @@ impl Triangle {
         })
     }
 
-    /// Returns the linear functions of three coordinates of which only ratios are used.
+    /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one common exponent and 28 bits.
+    /// They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
     #[inline(always)]
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        direction(self.p, x)
+        let mut magnitudes = [(0, 0); 9];
+        for (n, magnitude) in magnitudes.iter_mut().enumerate() {
+            let (m, e) = split(x[n / 3][n % 3]);
+            *magnitude = (m.abs() * self.p[n % 3], e);
+        }
+        let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
+        for (n, g) in g.iter_mut().enumerate() {
+            *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
+        }
+        [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
     }
-}
-
-/// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one common exponent and 28 bits. They
-/// are truncated toward zero, so that opposite directions stay opposite (TEX-15).
-#[inline(always)]
-pub(crate) fn direction(p: [i64; 3], x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-    let mut magnitudes = [(0, 0); 9];
-    for (n, magnitude) in magnitudes.iter_mut().enumerate() {
-        let (m, e) = split(x[n / 3][n % 3]);
-        *magnitude = (m.abs() * p[n % 3], e);
-    }
-    let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
-    for (n, g) in g.iter_mut().enumerate() {
-        *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
-    }
-    [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
 }
 
 /// Whole numbers that hold the products of coordinates: 64 bits anywhere, 32 near a small triangle.
@@ -210,14 +206,6 @@ impl<T: Whole> EdgeFunctions<T> {
         let [(a0, b0, c0, owns0), (a1, b1, c1, owns1), (a2, b2, c2, owns2)] = [edge(1, 2), edge(2, 0), edge(0, 1)];
         EdgeFunctions { a: [a0, a1, a2], b: [b0, b1, b2], c: [c0, c1, c2], owns: [owns0, owns1, owns2], area }
     }
-}
-
-/// Returns P_k, and whether the reciprocal of the weights' sum is exact (INT-3).
-#[inline(always)]
-pub(crate) fn weights(w: [f32; 3], doubled_area: i64, perspective: bool, profile: Profile) -> ([i64; 3], bool) {
-    let taken = significant(w, profile);
-    let p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
-    (p, (doubled_area.count_ones() == 1) & is_flat(w, perspective, profile))
 }
 
 /// Returns whether a triangle has a single w, so that all P_k are equal.

@@ -19,7 +19,7 @@ use std::ops::Range;
 const BELOW_24_BITS: u64 = (1 << 29) - 1;
 
 /// Bits of the sign and the exponent of a double.
-const EXPONENT: u64 = 0xfff << 52;
+pub(super) const EXPONENT: u64 = 0xfff << 52;
 
 /// 2^-28, the last of 29 bits relative to the first.
 const LAST_BIT: f64 = 1.0 / (1_u64 << 28) as f64;

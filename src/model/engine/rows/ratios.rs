@@ -2,13 +2,13 @@
 //! numbers that a texture shader reads.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::depth::floor;
 use super::direction::COARSEST;
 use super::planes::{KEPT, fraction_bits_by_power};
-use super::quotient::{Line, Positions, SLACK, any_negative, larger};
-use super::shapes::{Each, Edges, GROUP, Lines, Shapes, smaller};
+use super::quotient::{Line, Positions, SLACK, any_negative, larger, nearest};
+use super::shapes::{Each, Edges, GROUP, Lines, Shapes, smaller, to_largest_weight};
 use super::short::{Dominance, SHORTFALL, Short, floors};
 use super::third::{SMALL_ERROR, words};
-use crate::raster::setup::direction;
 use crate::state::DepthFormat;
 
 /// A coordinate of the three vertices of each box.
@@ -54,6 +54,21 @@ impl Weights {
     }
 }
 
+/// Does what [`Triangle::direction`](crate::raster::setup::Triangle::direction) does, by doubles like the weights.
+#[inline(always)]
+fn direction<const FMA: bool>(p: [f64; 3], x: [[f32; 3]; 3]) -> [[f64; 3]; 3] {
+    let (mut g, mut size) = ([[0.0; 3]; 3], 0.0);
+    for (g, x) in g.iter_mut().zip(&x) {
+        *g = [f64::from(x[0]) * p[0], f64::from(x[1]) * p[1], f64::from(x[2]) * p[2]];
+        size = larger(larger(larger(g[0].abs(), g[1].abs()), g[2].abs()), size);
+    }
+    let scale = to_largest_weight(size);
+    for g in g.as_flattened_mut() {
+        *g = floor::<FMA>(g.abs() * scale).copysign(*g);
+    }
+    g
+}
+
 /// Coordinates of a sampler in boxes, where q is not 1.
 #[derive(Debug, Default)]
 pub(super) struct Ratios {
@@ -80,10 +95,10 @@ impl Ratios {
         let most = larger(width, height);
         for n in 0..GROUP {
             let at = |of: &OfVertices| [of[0][n], of[1][n], of[2][n]];
-            let p = [shapes.p[0][n].into(), shapes.p[1][n].into(), shapes.p[2][n].into()];
-            let [s, t, q] = direction(p, [at(s), at(t), at(q)]);
-            let sign = if (q[0] < 0) & (q[1] < 0) & (q[2] < 0) { -1.0 } else { 1.0 };
-            let by = |factor: f64, g: [i64; 3]| [g[0] as f64 * factor, g[1] as f64 * factor, g[2] as f64 * factor];
+            let p = [shapes.p[0][n], shapes.p[1][n], shapes.p[2][n]];
+            let [s, t, q] = direction::<FMA>(p, [at(s), at(t), at(q)]);
+            let sign = if (q[0] < 0.0) & (q[1] < 0.0) & (q[2] < 0.0) { -1.0 } else { 1.0 };
+            let by = |factor: f64, g: [f64; 3]| [g[0] * factor, g[1] * factor, g[2] * factor];
             let (s, t, q) = (by(sign * width, s), by(sign * height, t), by(sign, q));
             (g[0][0][n], g[0][1][n], g[0][2][n]) = (s[0], s[1], s[2]);
             (g[1][0][n], g[1][1][n], g[1][2][n]) = (t[0], t[1], t[2]);
@@ -210,7 +225,7 @@ impl BoxNumber {
         }
         // D is a power of two in few boxes.
         for n in (0..GROUP).filter(|n| edges.gap[*n] > 0.0) {
-            let (p, area) = (shapes.p[0][n].into(), shapes.doubled_area[n].into());
+            let (p, area) = (nearest(shapes.p[0][n]).into(), shapes.doubled_area[n].into());
             if fraction_bits_by_power(p, area, &[g[0][n], g[1][n], g[2][n]]).is_some() {
                 self.off[n] = 0.0;
             }
@@ -266,5 +281,36 @@ impl Bounds {
     pub(super) fn off(&self, edges: &Edges, n: usize) -> f64 {
         (self.terms[n] * edges.widest[n] + 2.0 * self.reach[n] * edges.ratio[n]) * SLACK
             + self.lost[n] * edges.floors[n]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::raster::setup::Triangle;
+
+    /// Coordinates of any size and sign, alike and far apart.
+    #[test]
+    fn directions_are_those_of_triangles() {
+        let (mut random, mut triangle) = (Random::seeded(42), Triangle::default());
+        for round in 0..40_000 {
+            let p = [0; 3].map(|_| 1 + (random.bits() >> (36 + random.bits() % 20)) as i64);
+            triangle.p = p;
+            let finite = |bits: u64| Some(f32::from_bits(bits as u32)).filter(|x| x.is_finite()).unwrap_or(0.0);
+            let size = finite(random.bits());
+            let x = [[0.0; 3]; 3].map(|of| {
+                of.map(|zero| match random.bits() % 8 {
+                    0 => zero,
+                    1..4 if round % 2 == 0 => size,
+                    4..6 if round % 2 == 0 => -size / 3.0,
+                    _ => finite(random.bits()),
+                })
+            });
+            let wanted = triangle.direction(x);
+            for found in [direction::<true>(p.map(|p| p as f64), x), direction::<false>(p.map(|p| p as f64), x)] {
+                assert_eq!(found.map(|of| of.map(|g| g as i64)), wanted, "{p:?} {x:?}");
+            }
+        }
     }
 }

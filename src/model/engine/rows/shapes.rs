@@ -1,10 +1,11 @@
 //! The shapes of eight small triangles at a time: RAS-1 to RAS-3, INT-1, and what all functions across them share.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::quotient::{Line, multiply_add, nearest_32};
+use super::depth::{EXPONENT, floor};
+use super::quotient::{Line, larger, multiply_add, nearest_32};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
-use crate::raster::setup::{EdgeFunctions, weights};
+use crate::raster::setup::{EdgeFunctions, PERSPECTIVE_BITS, is_flat, significant};
 use crate::state::Profile;
 
 /// Largest number of boxes that are set up at a time.
@@ -67,7 +68,7 @@ pub(super) struct Shapes {
     /// 1 for edges that belong to the other triangle (RAS-3).
     owed: [Each<i32>; 3],
     pub(super) doubled_area: Each<i32>,
-    pub(super) p: [Each<i32>; 3],
+    pub(super) p: [Each<f64>; 3],
     /// -1 if the reciprocal of the weights' sum is exact (INT-3), otherwise 0.
     pub(super) exact: Each<i32>,
 }
@@ -80,6 +81,13 @@ pub(super) struct Spans {
     pub(super) count: [Each<i32>; ROWS],
     /// Number of rows of the highest box.
     pub(super) rows: usize,
+}
+
+/// Returns the power of two by which a number other than 0 gets as many bits before the point as the largest weight has.
+#[inline(always)]
+pub(super) fn to_largest_weight(size: f64) -> f64 {
+    const EXPONENTS: u64 = ((2 * 1023 + PERSPECTIVE_BITS - 1) as u64) << 52;
+    f64::from_bits(EXPONENTS.wrapping_sub(size.to_bits() & EXPONENT))
 }
 
 /// A limit beyond all columns.
@@ -117,9 +125,10 @@ impl Shapes {
         Lines { c: self.e[k].map(f64::from), x: self.a[k].map(f64::from), y: self.b[k].map(f64::from) }
     }
 
-    /// INT-1: sets the weights of the vertices of [placed](Self::place) boxes.
+    /// INT-1: sets the weights of the vertices of [placed](Self::place) boxes. Doubles hold the product of two w exactly, and no vector of 64-bit
+    /// integers is as fast.
     #[inline(always)]
-    pub(super) fn weigh(
+    pub(super) fn weigh<const FMA: bool>(
         &mut self,
         corners: &Corners,
         boxes: &[(Window, usize)],
@@ -134,9 +143,14 @@ impl Shapes {
         let Shapes { doubled_area, p, exact, .. } = self;
         for n in 0..GROUP {
             let of = [w[0][n], w[1][n], w[2][n]];
-            let (weights, is_exact) = weights(of, doubled_area[n].into(), perspective, profile);
-            (p[0][n], p[1][n], p[2][n]) = (weights[0] as i32, weights[1] as i32, weights[2] as i32);
-            exact[n] = -i32::from(is_exact);
+            exact[n] = -i32::from((doubled_area[n].count_ones() == 1) & is_flat(of, perspective, profile));
+            let [a, b, c] = if perspective { significant(of, profile) } else { [1.0; 3] };
+            let (a, b, c) = (f64::from(a), f64::from(b), f64::from(c));
+            let products = [b * c, c * a, a * b];
+            let size = larger(larger(products[0].abs(), products[1].abs()), products[2].abs());
+            let scale = to_largest_weight(size);
+            let floored = |product: f64| larger(floor::<FMA>(product * scale), 1.0);
+            (p[0][n], p[1][n], p[2][n]) = (floored(products[0]), floored(products[1]), floored(products[2]));
         }
     }
 
@@ -215,7 +229,7 @@ pub(super) struct Edges {
 impl Edges {
     #[inline(always)]
     pub(super) fn new<const FMA: bool>(shapes: &Shapes) -> Edges {
-        let [e, a, b, p] = [shapes.e, shapes.a, shapes.b, shapes.p].map(|of| of.map(|of| of.map(f64::from)));
+        let ([e, a, b], p) = ([shapes.e, shapes.a, shapes.b].map(|of| of.map(|of| of.map(f64::from))), shapes.p);
         let area = shapes.doubled_area.map(f64::from);
         let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
         let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap, mut tied] = [[0.0; GROUP]; 6];
@@ -239,7 +253,7 @@ impl Edges {
             let bits = bits(&shapes.e) | bits(&shapes.a) | bits(&shapes.b);
             let unit = f64::from(bits & bits.wrapping_neg()) / area[n];
             let unit = if (p[0] == p[1]) & (p[1] == p[2]) { unit } else { 0.0 };
-            let (is_exact, is_power) = (shapes.exact[n] != 0, shapes.p[0][n].count_ones() == 1);
+            let (is_exact, is_power) = (shapes.exact[n] != 0, p[0].to_bits() << 12 == 0);
             gap[n] = if is_exact & is_power { unit } else { 0.0 };
             tied[n] = if is_exact { 0.0 } else { unit };
             (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
@@ -289,6 +303,44 @@ pub(super) fn smaller(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
+    use crate::raster::setup::Triangle;
+
+    /// Weights of any w: alike, far apart, subnormal, and 0.
+    #[test]
+    fn weights_are_those_of_triangles() {
+        let (mut random, mut shapes, mut corners) = (Random::seeded(41), Shapes::default(), Corners::default());
+        let all = std::array::from_fn::<_, GROUP, _>(|n| (((0, SIDE), (0, SIDE)), n));
+        for round in 0..20_000 {
+            let profile = [Profile::Nv2a, Profile::Nv10][round % 2];
+            for n in 0..GROUP {
+                shapes.doubled_area[n] = 1 << (random.bits() % 24);
+                let mut finite =
+                    || Some(f32::from_bits(random.bits() as u32)).filter(|w| w.is_finite()).unwrap_or(0.0).abs();
+                let first = finite();
+                for (k, w) in corners.w.iter_mut().enumerate() {
+                    let near = first * (1.0 + (k * n) as f32 / 64.0);
+                    w[n] = if n >= 4 && near.is_finite() { near } else { finite() };
+                }
+            }
+            for perspective in [true, false] {
+                let mut triangles: [Triangle; GROUP] = Default::default();
+                for (n, triangle) in triangles.iter_mut().enumerate() {
+                    triangle.doubled_area = shapes.doubled_area[n].into();
+                    triangle.weigh([0, 1, 2].map(|k| corners.w[k][n]), perspective, profile);
+                }
+                for fused in [false, true] {
+                    let weigh = if fused { Shapes::weigh::<true> } else { Shapes::weigh::<false> };
+                    weigh(&mut shapes, &corners, &all, (perspective, profile));
+                    for (n, triangle) in triangles.iter().enumerate() {
+                        let found = [0, 1, 2].map(|k| shapes.p[k][n] as i64);
+                        let w = corners.w.map(|w| w[n]);
+                        assert_eq!((found, shapes.exact[n] != 0), (triangle.p, triangle.exact_reciprocal), "{w:?}");
+                    }
+                }
+            }
+        }
+    }
 
     /// Every slope and many values, those around a whole number of columns above all.
     #[test]

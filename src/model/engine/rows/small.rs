@@ -118,7 +118,7 @@ impl Boxes {
         }
         let varies = all.iter().any(|(_, triangle)| compiled.varies(&contexts[*triangle]));
         if varies || compiled.divides() {
-            self.shapes.weigh(&self.corners, all, (context.draw.perspective, context.plan.profile));
+            self.shapes.weigh::<FMA>(&self.corners, all, (context.draw.perspective, context.plan.profile));
             self.set_up_functions::<FMA>(&vertices, (context, compiled), varies);
         }
     }
