@@ -168,7 +168,7 @@ impl Setup<'_> {
                 let Some(estimate) = self.estimate_of::<ROW>(plane, (0, 0.0), local) else {
                     return self.defined_factors(batch, |_| true, out);
                 };
-                if reciprocals.floors::<FMA, ROW, i32>(estimate, values, |value| value) < 0 {
+                if reciprocals.floors::<FMA, ROW, i32>(estimate, values, |value| value) {
                     self.correct::<ROW>(batch, 0, plane, &local.e, values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {

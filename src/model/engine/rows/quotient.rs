@@ -300,17 +300,17 @@ impl Reciprocals {
     ) -> [bool; 2] {
         // One after the other: both at a time need more registers than AVX2 has.
         let close = self.floors::<FMA, ROW, i32>(one, first, |floor| floor);
-        [close < 0, self.floors::<FMA, ROW, i32>(other, second, |floor| floor) < 0]
+        [close, self.floors::<FMA, ROW, i32>(other, second, |floor| floor)]
     }
 
-    /// Writes the floors of a quotient, as another type. Returns a number that is negative if a lane is not proved.
+    /// Writes the floors of a quotient, as another type. Returns whether a lane is not proved.
     #[inline(always)]
     pub(super) fn floors<const FMA: bool, const ROW: bool, T>(
         &self,
         quotient: QuotientEstimate,
         out: &mut [T],
         to: impl Fn(i32) -> T,
-    ) -> i32 {
+    ) -> bool {
         let (lanes, mut close) = (out.len(), 0);
         let (xs, ys, rs) = (&self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         for n in 0..lanes {
@@ -318,7 +318,7 @@ impl Reciprocals {
             out[n] = to(floor);
             close |= of_lane;
         }
-        close
+        close < 0
     }
 
     /// Does what [`floors`](Self::floors) does, and marks the lanes whose quotients are whole, where they are multiples of `gap`, if that part is known.
@@ -330,7 +330,7 @@ impl Reciprocals {
         gap: f64,
         out: &mut [i32],
         whole: &mut [i32],
-    ) -> (i32, bool) {
+    ) -> (bool, bool) {
         let least = quotient.largest_of_whole(gap);
         let (lanes, mut close, mut any) = (out.len(), 0, 0);
         let (xs, ys, rs, whole) = (&self.x[..lanes], &self.y[..lanes], &self.r[..lanes], &mut whole[..lanes]);
@@ -340,7 +340,7 @@ impl Reciprocals {
             (out[n], whole[n]) = (floor, i32::from(quotient.fraction(step) <= least));
             (close, any) = (close | of_lane, any | whole[n]);
         }
-        (close, any != 0)
+        (close < 0, any != 0)
     }
 
     /// Returns the floors of a lane, or `None` if one is not proved.

@@ -227,12 +227,13 @@ pub(super) struct Edges {
 }
 
 impl Edges {
+    /// Sets up all boxes. In place, because some compilers copy a result.
     #[inline(always)]
-    pub(super) fn new<const FMA: bool>(shapes: &Shapes) -> Edges {
-        let ([e, a, b], p) = ([shapes.e, shapes.a, shapes.b].map(|of| of.map(|of| of.map(f64::from))), shapes.p);
-        let area = shapes.doubled_area.map(f64::from);
-        let (mut terms, mut inverse, mut denominator) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3], Lines::default());
-        let [mut reciprocal, mut widest, mut ratio, mut floors, mut gap, mut tied] = [[0.0; GROUP]; 6];
+    pub(super) fn set<const FMA: bool>(&mut self, shapes: &Shapes) {
+        let [e, a, b] = [shapes.e, shapes.a, shapes.b].map(|of| of.map(|of| of.map(f64::from)));
+        let (p, area) = (shapes.p, shapes.doubled_area.map(f64::from));
+        (self.e, self.a, self.b, self.p, self.area) = (e, a, b, p, area);
+        let Edges { terms, inverse, denominator, reciprocal, widest, ratio, floors, gap, tied, .. } = self;
         // One loop, because compilers would make vectors across k of another.
         for n in 0..GROUP {
             let at = |of: &[Each<f64>; 3]| [of[0][n], of[1][n], of[2][n]];
@@ -258,7 +259,6 @@ impl Edges {
             tied[n] = if is_exact { 0.0 } else { unit };
             (denominator.c[n], denominator.x[n], denominator.y[n]) = (line.c, line.x, line.y);
         }
-        Edges { e, a, b, terms, p, inverse, denominator, reciprocal, widest, ratio, floors, gap, tied, area }
     }
 
     /// Returns the edge functions of a box.

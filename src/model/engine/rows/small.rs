@@ -141,7 +141,7 @@ impl Boxes {
         (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
         varies: bool,
     ) {
-        self.edges = Edges::new::<FMA>(&self.shapes);
+        self.edges.set::<FMA>(&self.shapes);
         let (shapes, edges) = (&self.shapes, &self.edges);
         let may_lose = context.plan.policies.plane_loss == PlaneLoss::Finite;
         let mut proves = [-1; GROUP];
@@ -302,7 +302,7 @@ impl Boxes {
         if weighted || compiled.divides() {
             reciprocals.set::<FMA, false>(batch.at, self.edges.denominator.of(n));
         }
-        let (at, mut open) = (|| batch.lanes(), 0);
+        let (at, mut open) = (|| batch.lanes(), false);
         for (index, sampler) in own(compiled) {
             if self.projects[index] || sampler.mixes {
                 continue;
@@ -325,14 +325,14 @@ impl Boxes {
                 open |= reciprocals.floors::<FMA, false, _>(estimate, &mut out[at()], |weight| weight as u16);
             }
         }
-        if open < 0 {
+        if open {
             return false;
         }
         colors(context, compiled, batch, &varying.narrow, rows);
         true
     }
 
-    /// INT-4t: writes a coordinate along an axis on a triangle with a single w. Returns a number that is negative if it is not proved.
+    /// INT-4t: writes a coordinate along an axis on a triangle with a single w. Returns whether it is not proved.
     #[inline(always)]
     fn lowered<const FMA: bool>(
         &self,
@@ -342,7 +342,7 @@ impl Boxes {
         (estimate, reciprocals): (QuotientEstimate, &Reciprocals),
         out: &mut [i32],
         whole: &mut PerLane<i32>,
-    ) -> i32 {
+    ) -> bool {
         let (n, whole) = (self.current, &mut whole[batch.lanes()]);
         let (close, any) = reciprocals.floors_and_whole::<FMA>(estimate, self.edges.tied[n], out, whole);
         if any {
@@ -354,7 +354,7 @@ impl Boxes {
         close
     }
 
-    /// INT-3: writes the weights 0 and 2 on a triangle with a single w. Returns a number that is negative if they are not proved.
+    /// INT-3: writes the weights 0 and 2 on a triangle with a single w. Returns whether they are not proved.
     #[inline(always)]
     fn lowered_weights<const FMA: bool>(
         &self,
@@ -362,7 +362,7 @@ impl Boxes {
         reciprocals: &Reciprocals,
         [w0, w2]: &mut [PerLane<i32>; 2],
         [whole0, whole2]: &mut [PerLane<i32>; 2],
-    ) -> i32 {
+    ) -> bool {
         let (n, at) = (self.current, || batch.lanes());
         let (w0, w2, whole0, whole2) = (&mut w0[at()], &mut w2[at()], &mut whole0[at()], &mut whole2[at()]);
         let gap = self.edges.tied[n];
@@ -406,7 +406,7 @@ impl Boxes {
                 open |= self.fog.factors::<FMA>(n, reciprocals.lanes(out.len()), out, values, spare);
             } else {
                 let to = |value: i32| factor(value.clamp(0, 4096)) as i16;
-                open |= reciprocals.floors::<FMA, false, _>(self.factors.of(n), out, to) < 0;
+                open |= reciprocals.floors::<FMA, false, _>(self.factors.of(n), out, to);
             }
         }
         !open
