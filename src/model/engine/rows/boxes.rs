@@ -267,14 +267,19 @@ mod tests {
         let (mut coverage, mut triangle, mut drawn) = (BoxCoverage::default(), Triangle::default(), 0);
         let (mut corners, mut shapes) = (Corners::default(), Shapes::default());
         for round in 0..40_000 {
-            // 1/16 pixel; every third is a sliver.
+            // 1/16 pixel; every third is a sliver, every fifth has a horizontal edge.
             let widest = 16 * i64::from(WIDEST);
             let (size, thin) = (1 + random(widest), if round % 3 == 0 { 1 + random(40) } else { widest });
-            let (x0, y0) = (random(4000), random(4000));
+            let (x0, y0) = (random(4000), widest + random(4000));
             let x = [x0, x0 + random(size), x0 + random(size)];
             let mut y = [y0, y0 + random(size), y0 + random(size)];
             if thin < size {
                 y = [0, 1, 2].map(|k| y0 + (x[k] - x0) / 2 + random(thin) / 2);
+            }
+            if round % 5 == 0 {
+                y[1] = y[0];
+                // Below the others, too.
+                y[2] = if round % 2 == 0 { 2 * y[0] - y[2] } else { y[2] };
             }
             if !triangle.place(x, y) {
                 continue;

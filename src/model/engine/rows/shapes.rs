@@ -182,15 +182,16 @@ impl Shapes {
         let [mut first, mut count] = [[[0; GROUP]; ROWS]; 2];
         for j in 0..highest.min(ROWS) {
             for n in 0..GROUP {
-                let (mut low, mut high) = (0, if (j as i32) < height[n] { width[n] } else { 0 });
+                let (mut low, mut high) = (0, width[n]);
                 for k in 0..3 {
                     let floor = nearest_32(r[k][n] * inverse[k][n] - 0.5);
                     r[k][n] += step[k][n];
-                    // Rows below a box, which nobody reads, may wrap.
+                    // Rows below a box, which have no columns, may wrap.
                     low = low.max(from[k][n].wrapping_sub(floor));
                     high = high.min(to[k][n].wrapping_add(floor.wrapping_add(1)));
                 }
-                (first[j][n], count[j][n]) = (low, high.wrapping_sub(low).max(0));
+                let is_inside = (j as i32) < height[n];
+                (first[j][n], count[j][n]) = (low, if is_inside { high.wrapping_sub(low).max(0) } else { 0 });
             }
         }
         Spans { first, count, rows: highest.min(ROWS) }
