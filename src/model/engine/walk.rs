@@ -24,6 +24,12 @@ impl Band<'_> {
     pub fn rows(&self) -> (i64, i64) {
         (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
     }
+
+    /// Returns the index of a pixel, modulo 2^32: pixels outside are counted from, too.
+    #[inline(always)]
+    pub fn index(&self, (i, j): (i64, i64)) -> u32 {
+        ((j - self.first_row as i64) * self.width as i64 + i) as u32
+    }
 }
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels and of stored ones.
@@ -106,7 +112,7 @@ pub fn pixel<O: Observer>(
     j: i64,
     observer: &mut O,
 ) -> bool {
-    let at = (j as usize - band.first_row) * band.width + i as usize;
+    let at = band.index((i, j)) as usize;
     let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
     let fragment = Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
     let result = context.shade::<i32, O>(&fragment, &mut depth, None, textures, observer);

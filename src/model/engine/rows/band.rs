@@ -34,10 +34,15 @@ pub(crate) struct Block {
     pub(crate) defined: Reasons,
 }
 
-/// Finds the pixels of boxes, and sets up what is set up together.
+/// Finds the pixels of boxes on a surface with rows of so many pixels, and sets up what is set up together.
 #[inline(always)]
-pub(super) fn set_up<const FMA: bool>(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes) {
-    boxes.set_up::<FMA>(contexts, compiled);
+pub(super) fn set_up<const FMA: bool>(
+    contexts: &[TriangleContext<'_>],
+    compiled: &CompiledDraw,
+    width: u32,
+    boxes: &mut Boxes,
+) {
+    boxes.set_up::<FMA>(contexts, compiled, width);
 }
 
 /// Sets up what is computed by [`more`].
@@ -160,7 +165,7 @@ pub(super) fn row_depths<const FMA: bool>(
     let Block { varying, alive, defined, .. } = block;
     let batch = PixelBatch::row(pixel, count, lane);
     defined[Reason::Depths as usize] += depths::<FMA, true>(context, batch, varying.depths());
-    let (lanes, at) = (lane..lane + count, index(band, pixel));
+    let (lanes, at) = (lane..lane + count, band.index(pixel) as usize);
     let (incoming, memory) = (&varying.depth[lanes.clone()], &mut band.depth[at..][..count]);
     if job.compiled.drops_late {
         store::may_pass(job.draw, incoming, memory)
@@ -214,8 +219,7 @@ impl Block {
     /// Appends a run of pixels to the block. `marks` says whether they are marked as taken.
     #[inline(always)]
     pub(super) fn append(&mut self, band: &Band<'_>, pixel: (i64, i64), count: usize, marks: bool) {
-        let at = index(band, pixel);
-        self.runs.push(Run::new(self.used, at as u32, count));
+        self.runs.push(Run::new(self.used, band.index(pixel), count));
         self.used += count;
         if marks {
             let last = self.runs.len() - 1;
@@ -226,26 +230,20 @@ impl Block {
     /// Returns whether the block has lanes for some of these pixels already.
     #[inline(always)]
     pub(super) fn is_taken(&self, band: &Band<'_>, pixel: (i64, i64), count: usize) -> bool {
-        let at = index(band, pixel);
+        let at = band.index(pixel) as usize;
         store::is_marked(&self.taken, at, count)
     }
 
     #[inline(always)]
     pub(super) fn is_box_taken(&self, band: &Band<'_>) -> bool {
         let coverage = self.boxes.coverage();
-        let first = coverage.index(band);
+        let first = band.index(coverage.first);
         let is_taken = |run: Run| {
             let run = run.further(0, first);
             store::is_marked(&self.taken, run.at(), run.count())
         };
         coverage.drawn().any(is_taken)
     }
-}
-
-/// Returns the index of a pixel in a band.
-#[inline(always)]
-pub(super) fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
-    (j as usize - band.first_row) * band.width + i as usize
 }
 
 /// Computes and stores a block whose texture shader stages have run.

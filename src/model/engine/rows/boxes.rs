@@ -5,7 +5,7 @@ use super::quotient::Positions;
 use super::setup::{Covered, PixelBatch, Run};
 use super::shapes::{Corners, Each, GROUP, ROWS, SIDE, Spans};
 use crate::engine::context::TriangleContext;
-use crate::engine::walk::{Band, Window};
+use crate::engine::walk::Window;
 use crate::raster::setup::{Triangle, centres, is_flat};
 
 /// Largest number of columns and of rows of the bounding box of a triangle that is cut into boxes.
@@ -129,13 +129,6 @@ impl BoxCoverage {
                 all[self.count..][..STEP].fill(value);
             }
         }
-    }
-
-    /// Returns the index in a band of the pixel that the others count from, modulo 2^32, because it may lie outside.
-    #[inline(always)]
-    pub(super) fn index(&self, band: &Band<'_>) -> u32 {
-        let (i, j) = self.first;
-        ((j - band.first_row as i64) * band.width as i64 + i) as u32
     }
 
     /// Returns the rows that have pixels.

@@ -1,12 +1,11 @@
 //! TEX-11 for dependent reads: the level of detail of a quad follows from where its pixels sample, and its pixels are lanes of one block.
 #![allow(clippy::float_arithmetic, reason = "integers that doubles hold, and estimates that exact products correct")]
 
-use super::depth::floor;
 use super::dot::{Facing, Floats, is_finite};
 use super::kernels::{Lanes, PerLane};
 use super::levels::{MipFetches, choose};
 use super::quads::{AtQuads, Measure};
-use super::quotient::{larger, whole};
+use super::quotient::{floor, larger, whole};
 use super::setup::whole_steps;
 use super::table::Table;
 use super::{BLOCK, Job};

@@ -6,7 +6,7 @@
 
 use super::kernels::{PerLane, STEP};
 use super::planes::edge_lines;
-use super::quotient::{IOTA_REAL, Line, MAGIC, Positions, nearest, position, whole};
+use super::quotient::{EXPONENT, IOTA_REAL, Line, MAGIC, Positions, cut, floor, nearest, position};
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::context::TriangleContext;
@@ -17,9 +17,6 @@ use std::ops::Range;
 
 /// Bits of a double below its first 24.
 const BELOW_24_BITS: u64 = (1 << 29) - 1;
-
-/// Bits of the sign and the exponent of a double.
-pub(super) const EXPONENT: u64 = 0xfff << 52;
 
 /// 2^-28, the last of 29 bits relative to the first.
 const LAST_BIT: f64 = 1.0 / (1_u64 << 28) as f64;
@@ -602,24 +599,4 @@ fn power(n: f64) -> f64 {
 #[inline(always)]
 fn cut24(n: f64) -> f64 {
     f64::from_bits(n.to_bits() & !BELOW_24_BITS)
-}
-
-/// Returns the floor of a number of less than 51 bits. With `WIDE`, the instruction set has an instruction for it.
-#[inline(always)]
-pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
-    if WIDE {
-        return n.floor();
-    }
-    let near = whole(n);
-    if near > n { near - 1.0 } else { near }
-}
-
-/// Rounds toward zero.
-#[inline(always)]
-pub(super) fn cut<const WIDE: bool>(n: f64) -> f64 {
-    if WIDE {
-        return n.trunc();
-    }
-    let magnitude = floor::<false>(n.abs());
-    if n < 0.0 { -magnitude } else { magnitude }
 }

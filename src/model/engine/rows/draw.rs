@@ -287,8 +287,7 @@ fn draw_boxes<T: Kernels>(
 ) -> u64 {
     let (mut next, mut shaded) = (0, 0);
     if block.boxes.count > 0 {
-        block.boxes.width = band.width as u32;
-        T::set_up(contexts, job.compiled, &mut block.boxes);
+        T::set_up(contexts, job.compiled, band.width as u32, &mut block.boxes);
         if block.boxes.has_more() {
             T::set_up_more(&contexts[0], job.compiled, &mut block.boxes);
         }
@@ -367,7 +366,7 @@ fn begin_box<T: Kernels>(job: &Job<'_>, context: &TriangleContext<'_>, band: &mu
     }
     let first = block.runs.len();
     let coverage = block.boxes.coverage();
-    coverage.append((block.used, coverage.index(band)), &mut block.runs);
+    coverage.append((block.used, band.index(coverage.first)), &mut block.runs);
     let is_visible = job.draw.depth_test.is_none() || T::box_depths(first, context, job, block, band);
     if !is_visible {
         block.runs.truncate(first);

@@ -308,7 +308,8 @@ fn compare_small<const FMA: bool>(
 ) -> bool {
     (small.all[0], small.count, small.current) = ((window, 0), 1, 0);
     small.corners.set(0, context);
-    small.set_up::<FMA>(std::slice::from_ref(context), plain);
+    // Nothing is stored on a surface.
+    small.set_up::<FMA>(std::slice::from_ref(context), plain, 0);
     if small.has_ratios {
         small.set_up_ratios::<FMA>(context, plain);
     }
@@ -537,7 +538,7 @@ fn rows_interpolate(seed: u64) {
                 covers.corners.set(0, &context);
                 for part in boxes((window, (first.max(columns.0), end.min(columns.1)))) {
                     (covers.all[0], covers.count) = ((part, 0), 1);
-                    covers.cover();
+                    covers.cover(0);
                     let coverage = covers.coverage();
                     if coverage.count == 0 {
                         continue;

@@ -109,7 +109,7 @@ text! {
         /// Calls [`band::flush`] with this instruction set.
         fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// Calls [`band::set_up`] with this instruction set.
-        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, boxes: &mut Boxes);
+        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, width: u32, boxes: &mut Boxes);
         /// Calls [`band::set_up_more`] with this instruction set.
         fn set_up_more(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
         /// Calls [`band::more`] with this instruction set.

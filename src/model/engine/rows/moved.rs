@@ -1,11 +1,10 @@
 //! TSH-7 on rows: coordinates that a stage moves. They are interpolated with their fraction, and floored where the stage runs.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::depth::floor;
 use super::dot::Floats;
 use super::kernels::{LANES, Lanes, PerLane, STEP};
 use super::planes::{RealPlane, fraction_bits};
-use super::quotient::{larger, multiply_add, nearest, whole};
+use super::quotient::{floor, larger, multiply_add, nearest, whole};
 use super::setup::{BatchSetup, PixelBatch};
 use super::shader::Bump;
 use super::short::{Dominance, Losses, losses};

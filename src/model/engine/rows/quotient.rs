@@ -109,6 +109,9 @@ pub(super) struct QuotientEstimate {
     pub(super) least: i32,
 }
 
+/// Bits of the sign and the exponent of a double.
+pub(super) const EXPONENT: u64 = 0xfff << 52;
+
 /// Returns 2^n for a small n.
 #[inline(always)]
 pub(super) fn power(n: i32) -> f64 {
@@ -153,12 +156,10 @@ impl QuotientEstimate {
         let bits = (range.to_bits() >> 52) as i32 - 1022;
         let shift = (30 - bits).clamp(0, FRACTION);
         let scale = power(shift);
-        let (off, parted) = parted(margin, gap, scale);
-        let down = if parted { -off } else { off };
+        let (down, limit, is) = proof(margin, gap, scale);
         let line = rest.less(down * power(-shift), denominator).times(scale);
-        let limit = nearest(if parted { scale } else { scale - 2.0 * off });
         // NaN proves nothing either.
-        let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
+        let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & is;
         let shift = shift as u32;
         (QuotientEstimate { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
     }
@@ -203,12 +204,15 @@ impl QuotientEstimate {
     }
 }
 
-/// Returns a whole number of steps above the error and half a step, and whether multiples of `gap` that are whole can be told from others: then exact
-/// quotients come out above their integer, and the next smaller quotients below it.
+/// Returns how many of the `scale` steps are taken off an estimate whose error is less than `margin`, the largest fraction that is proved then, and
+/// whether any is. Quotients are multiples of `gap`, or 0.
 #[inline(always)]
-pub(super) fn parted(margin: f64, gap: f64, scale: f64) -> (f64, bool) {
+pub(super) fn proof(margin: f64, gap: f64, scale: f64) -> (f64, i32, bool) {
+    // A whole number of steps above the error and half a step.
     let off = whole(margin * scale + 2.0);
-    (off, gap * scale >= 4.0 * off)
+    // Then exact quotients come out above their integer, and the next smaller quotients below it.
+    let parted = gap * scale >= 4.0 * off;
+    (if parted { -off } else { off }, nearest(if parted { scale } else { scale - 2.0 * off }), off * 8.0 < scale)
 }
 
 #[inline(always)]
@@ -220,6 +224,26 @@ pub(super) fn larger<T: Copy + PartialOrd>(a: T, b: T) -> T {
 #[inline(always)]
 pub(super) fn whole(q: f64) -> f64 {
     (q + MAGIC) - MAGIC
+}
+
+/// Returns the floor of a number of less than 51 bits. With `WIDE`, the instruction set has an instruction for it.
+#[inline(always)]
+pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
+    if WIDE {
+        return n.floor();
+    }
+    let near = whole(n);
+    if near > n { near - 1.0 } else { near }
+}
+
+/// Rounds toward zero.
+#[inline(always)]
+pub(super) fn cut<const WIDE: bool>(n: f64) -> f64 {
+    if WIDE {
+        return n.trunc();
+    }
+    let magnitude = floor::<false>(n.abs());
+    if n < 0.0 { -magnitude } else { magnitude }
 }
 
 /// Rounds to the nearest integer in single precision, as a float.

@@ -2,10 +2,9 @@
 //! numbers that a texture shader reads.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::depth::floor;
 use super::direction::COARSEST;
 use super::planes::{KEPT, fraction_bits_by_power};
-use super::quotient::{Line, Positions, SLACK, any_negative, larger, nearest};
+use super::quotient::{Line, Positions, SLACK, any_negative, floor, larger, nearest};
 use super::shapes::{Each, Edges, GROUP, Lines, Shapes, smaller, to_largest_weight};
 use super::short::{Dominance, SHORTFALL, Short, floors};
 use super::third::{SMALL_ERROR, words};

@@ -1,8 +1,7 @@
 //! The shapes of eight small triangles at a time: RAS-1 to RAS-3, INT-1, and what all functions across them share.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::depth::{EXPONENT, floor};
-use super::quotient::{Line, larger, multiply_add, nearest_32};
+use super::quotient::{EXPONENT, Line, floor, larger, multiply_add, nearest_32};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::raster::setup::{EdgeFunctions, PERSPECTIVE_BITS, is_flat, significant};
@@ -194,7 +193,7 @@ impl Shapes {
                 (first[j][n], count[j][n]) = (low, if is_inside { high.wrapping_sub(low).max(0) } else { 0 });
             }
         }
-        Spans { first, count, rows: highest.min(ROWS) }
+        Spans { first, count, rows: highest }
     }
 }
 

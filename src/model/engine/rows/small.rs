@@ -12,7 +12,7 @@ use super::compiled::{Sampler, Third};
 use super::fog::BoxFog;
 use super::kernels::PerLane;
 use super::levels::fetches;
-use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, nearest, parted, whole};
+use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, proof, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
 use super::shapes::{Corners, Each, Edges, GROUP, Lines, SIDE, Shapes, sum};
@@ -31,8 +31,6 @@ use crate::texture::planned::PlannedUnit;
 pub(super) struct Boxes {
     /// Corners of triangles.
     pub(super) corners: Corners,
-    /// Number of pixels of a row of the surface.
-    pub(super) width: u32,
     /// Rows and columns of each, and the index of the triangle among the contexts, in the order in which they are drawn.
     pub(super) all: Each<(Window, usize)>,
     pub(super) count: usize,
@@ -91,22 +89,27 @@ impl Boxes {
         &mut self.coverages[self.current]
     }
 
-    /// Finds the pixels of the boxes.
+    /// Finds the pixels of the boxes, on a surface with rows of so many pixels.
     #[inline(always)]
-    pub(super) fn cover(&mut self) {
+    pub(super) fn cover(&mut self, width: u32) {
         let all = &self.all[..self.count];
         self.shapes.place(&self.corners, all);
         let spans = self.shapes.spans(all);
         for (n, ((window, _), coverage)) in all.iter().zip(&mut self.coverages).enumerate() {
-            coverage.cover(&spans, n, *window, self.width);
+            coverage.cover(&spans, n, *window, width);
         }
     }
 
-    /// Finds the pixels of the boxes, and sets up their depths and, for a plain draw, all other functions. Contexts need not be
+    /// Finds the pixels of the boxes, and sets up their depths and, for a plain draw, all other functions. `width` is as in [`cover`](Self::cover). Contexts need not be
     /// [placed](TriangleContext::place).
     #[inline(always)]
-    pub(super) fn set_up<const FMA: bool>(&mut self, contexts: &[TriangleContext<'_>], compiled: &CompiledDraw) {
-        self.cover();
+    pub(super) fn set_up<const FMA: bool>(
+        &mut self,
+        contexts: &[TriangleContext<'_>],
+        compiled: &CompiledDraw,
+        width: u32,
+    ) {
+        self.cover(width);
         let (all, context, vertices) = (&self.all[..self.count], &contexts[0], self.vertices());
         if compiled.depths_together {
             let z = context.draw.assembly.vertices.gather_positions(2, &vertices);
@@ -505,13 +508,12 @@ impl Estimates {
         for n in 0..GROUP {
             let times = 256.0 * edges.p[k][n];
             let margin = (times * edges.terms[k][n] * edges.widest[n] + 2.0 * 516.0 * edges.ratio[n]) * SLACK;
-            let (off, parted) = parted(margin + edges.floors[n], edges.gap[n] + edges.tied[n], scale);
-            let (down, times) = (if parted { -off } else { off }, times * scale);
+            let (down, limit, is) = proof(margin + edges.floors[n], edges.gap[n] + edges.tied[n], scale);
             let (denominator, line) = (edges.denominator.of(n), edges.line(k, n));
-            let line = line.times(times).less(down, denominator);
+            let line = line.times(times * scale).less(down, denominator);
             (all.line.c[n], all.line.x[n], all.line.y[n]) = (line.c, line.x, line.y);
-            all.limit[n] = nearest(if parted { scale } else { scale - 2.0 * off });
-            proves[n] &= -i32::from(off * 8.0 < scale);
+            all.limit[n] = limit;
+            proves[n] &= -i32::from(is);
         }
         all
     }

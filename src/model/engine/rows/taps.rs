@@ -2,10 +2,9 @@
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, and quotients of them that are floored")]
 
 use super::Sampler;
-use super::depth::{cut, floor};
 use super::kernels::{PerLane, STEP};
 use super::quads::{AtQuads, Known, Measure, Quads};
-use super::quotient::{larger, nearest};
+use super::quotient::{cut, floor, larger, nearest};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;

@@ -2,11 +2,11 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
-use super::depth::{UNKNOWN, floor, word};
+use super::depth::{UNKNOWN, word};
 use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
-use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, nearest, position};
+use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, floor, nearest, position};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::table;
