@@ -16,6 +16,7 @@ mod tracing;
 pub mod walk;
 
 pub use counting::{DrawCounts, count, fragments};
+use rows::Kernels;
 pub use rows::{Isa, Reason};
 pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
@@ -115,7 +116,7 @@ pub fn render_counted(
 pub struct Renderer<'a> {
     plan: &'a Plan,
     rows: Option<Rows>,
-    isa: Isa,
+    kernels: Kernels,
     team: Team,
     /// Buffers of each thread of the team.
     blocks: Blocks,
@@ -146,10 +147,7 @@ impl<'a> Renderer<'a> {
     pub fn new(plan: &'a Plan, options: &RenderOptions) -> Renderer<'a> {
         // The calling thread draws too.
         let team = Team::new(options.threads);
-        let isa = options
-            .isa
-            .filter(|isa| isa.is_available())
-            .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
+        let kernels = options.isa.unwrap_or_else(Isa::best).kernels().unwrap_or(Kernels::BASELINE);
         let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan));
         let group = |draws: Range<usize>| {
             let all = &plan.draws[draws.clone()];
@@ -163,7 +161,7 @@ impl<'a> Renderer<'a> {
             Group { draws, borders, bins }
         };
         let groups = groups(plan).map(group).collect();
-        Renderer { plan, rows, isa, blocks: blocks(team.count()), team, groups }
+        Renderer { plan, rows, kernels, blocks: blocks(team.count()), team, groups }
     }
 
     /// Returns the engine that draws.
@@ -173,7 +171,7 @@ impl<'a> Renderer<'a> {
 
     /// Returns the instruction set of the fast engine.
     pub fn isa(&self) -> Isa {
-        self.isa
+        self.kernels.isa
     }
 
     /// Clears the targets and draws everything. Returns the frames and the statistics.
@@ -255,18 +253,16 @@ impl<'a> Renderer<'a> {
         let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
         draw_bands(plan, draws.clone(), borders, frames, (team, &self.blocks), |words| {
             let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, draws.clone(), words));
-            let (draws, shaded) = (draws.clone(), &shaded);
+            let (draws, shaded, kernels) = (draws.clone(), &shaded, &self.kernels);
             move |textures: &[Image<'_, i32>], number: usize, band: &mut walk::Band<'_>, block: &mut rows::Block| {
                 for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
                     let draw = &plan.draws[index];
                     let pixels = match &compiled {
                         Some(compiled) => {
-                            let compiled = &compiled[n];
+                            let compiled = compiled[n].as_ref();
                             let triangles = bins[n].of(number);
-                            let compiled = compiled.as_ref();
-                            let job =
-                                rows::Job { plan, draw, compiled, textures, triangles, vectors: Default::default() };
-                            if triangles.is_empty() { 0 } else { rows::isa::run(self.isa, job, band, block) }
+                            let job = kernels.job(plan, draw, compiled, textures, triangles);
+                            if triangles.is_empty() { 0 } else { rows::run(kernels, &job, band, block) }
                         }
                         None => walk::draw(plan, draw, textures, band, &mut Silent).0,
                     };

@@ -4,11 +4,13 @@ use super::boxes::{HALF_STEP, batch};
 use super::depth::depths;
 use super::fetch::{self, Workspace};
 use super::kernels::{self, PerLane, STEP};
+use super::levels::MipFetches;
 use super::setup::{Covered, PixelBatch, Run};
 use super::small::Boxes;
 use super::stages::{self, Workshop};
+use super::taps::Footprints;
 use super::triangle::{Functions, Interpolators, Varying};
-use super::{CompiledDraw, Job, Reason, Reasons, store};
+use super::{BLOCK, CompiledDraw, Job, Reason, Reasons, store};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
 
@@ -32,6 +34,44 @@ pub(crate) struct Block {
     pub(super) alive: PerLane<bool>,
     /// Number of pixels, by reason, of which the definition computed something.
     pub(crate) defined: Reasons,
+}
+
+/// Prepares a block for a draw.
+#[inline(always)]
+pub(super) fn begin<const FMA: bool>(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>) {
+    block.rows.resize(compiled.rows.len(), PerLane::from_value(0));
+    for (row, value) in block.rows.iter_mut().zip(&compiled.rows) {
+        if let Some(value) = value {
+            row.fill(*value);
+        }
+    }
+    // Earlier draws may have dropped fragments.
+    block.alive.fill(true);
+    block.varying.alive.fill(true);
+    // Entries of another draw's table mean nothing in this draw's.
+    block.varying.reads.clear();
+    if compiled.samplers.iter().any(|sampler| sampler.mixes) {
+        block.varying.reads.resize(compiled.samplers.len(), MipFetches::default());
+    }
+    // Lanes without a pixel are fetched too. Layers that an earlier volume left in them may lie beyond the images of this texture.
+    for (faces, sampler) in block.varying.faces.iter_mut().zip(&compiled.samplers) {
+        if sampler.has_images() {
+            faces.fill(0);
+        }
+    }
+    block.varying.footprints.clear();
+    if compiled.estimates {
+        block.varying.footprints.resize(compiled.samplers.len(), Footprints::default());
+        for (footprints, sampler) in block.varying.footprints.iter_mut().zip(&compiled.samplers) {
+            footprints.begin(sampler);
+        }
+    }
+    if let Some(shader) = &compiled.shader {
+        block.workshop.begin(shader);
+    }
+    if compiled.reads_surface {
+        block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
+    }
 }
 
 /// Finds the pixels of boxes on a surface with rows of so many pixels, and sets up what is set up together.
@@ -78,7 +118,8 @@ pub(super) fn tied<const FMA: bool>(context: &TriangleContext<'_>, compiled: &Co
 /// Computes what else a plain draw reads in the block's current box: coordinates that are divided by q, depths to compare with, fog, numbers of the
 /// texture shader, and fetches of samplers with levels. Returns `false` if something is not proved; then nothing that was written counts.
 #[inline(always)]
-pub(super) fn more<const FMA: bool>(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool {
+pub(super) fn more<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) -> bool {
+    let compiled = job.compiled;
     let Block { varying, rows, boxes, used, workshop, .. } = block;
     let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
     if boxes.has_ratios && !boxes.interpolate_ratios::<FMA>((context, compiled), batch, varying, rows) {
@@ -88,7 +129,7 @@ pub(super) fn more<const FMA: bool>(context: &TriangleContext<'_>, compiled: &Co
         let numbers = (boxes.numbers(), boxes.current);
         workshop.attributes_together::<FMA>(context.number, numbers, batch, &varying.reciprocals, shader);
     }
-    !boxes.has_levels || boxes.interpolate_levels::<FMA>(context, compiled, batch, varying)
+    !boxes.has_levels || boxes.interpolate_levels((context, compiled), job.interpolators.fetches, batch, varying)
 }
 
 /// Interpolates all attributes in one of the boxes of a triangle.
@@ -97,11 +138,23 @@ pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: &J
     let Block { varying, rows, boxes, used, .. } = block;
     interpolators.interpolate::<FMA, false>(
         batch::<STEP>(boxes.coverage(), *used),
-        job.compiled,
+        (job.compiled, &job.interpolators),
         job.textures,
         varying,
         rows,
     );
+}
+
+/// Begins a row of so many pixels.
+#[inline(always)]
+pub(super) fn begin_row<const FMA: bool>(
+    pixel: (i64, i64),
+    columns: i64,
+    interpolators: &Interpolators<'_>,
+    job: &Job<'_>,
+    block: &mut Block,
+) {
+    interpolators.begin_row(pixel, columns, job.compiled, &mut block.varying);
 }
 
 /// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just
@@ -118,7 +171,7 @@ pub(super) fn row<const FMA: bool>(
 ) {
     let Block { varying, rows, .. } = block;
     let batch = PixelBatch { covered, ..PixelBatch::row(pixel, count, lane) };
-    interpolators.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
+    interpolators.interpolate::<FMA, true>(batch, (job.compiled, &job.interpolators), job.textures, varying, rows);
 }
 
 /// Interpolates the inputs of the texture shader along a batch of a row.
@@ -207,6 +260,19 @@ pub(super) fn box_depths<const FMA: bool>(
     runs.iter().any(|run| store::may_pass(job.draw, &incoming[lanes(run)], &band.depth[run.at()..]))
 }
 
+/// Samples the unit of a sampler for a block.
+#[inline(always)]
+pub(super) fn sample<const FMA: bool>(
+    job: &Job<'_>,
+    sampler: usize,
+    varying: &mut Varying,
+    work: &mut Workspace,
+    rows: &mut [PerLane<i16>],
+) {
+    fetch::sample_unit(job, sampler, varying, work, rows);
+    fetch::drop_keyed(&job.compiled.samplers[sampler], work, &mut varying.alive);
+}
+
 /// Runs the stages of the texture shader for a block.
 #[inline(always)]
 pub(super) fn shade<const FMA: bool>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
@@ -246,24 +312,16 @@ impl Block {
     }
 }
 
-/// Computes and stores a block whose texture shader stages have run.
+/// Computes and stores a block whose units are sampled.
 #[inline(always)]
 pub(super) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = *job;
     let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
-    if *used == 0 {
-        return;
-    }
     let lanes = work.lanes;
     let (words, stored) = (words.block_mut(), stored.block_mut());
     let (depth, alive) = (depth.block_mut(), alive.block_mut());
     if compiled.drops_late {
-        *alive = *varying.alive.block();
-    }
-    let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
-    for (n, sampler) in samplers.iter().enumerate() {
-        fetch::sample_unit(job, n, varying, work, rows);
-        fetch::drop_keyed(sampler, work, alive);
+        *alive = std::mem::replace(varying.alive.block_mut(), [true; BLOCK]);
     }
     if compiled.destination.iter().any(Option::is_some) {
         store::read_runs(band.words, runs, stored);

@@ -136,7 +136,7 @@ pub(super) struct Slopes {
 impl Setup<'_> {
     /// Returns the coordinates of level 0 around a batch, or `None` if nothing would be proved.
     #[inline(always)]
-    pub(super) fn base_level<'p, const FMA: bool, const ROW: bool>(
+    pub(super) fn base_level<'p, const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &'p Planes),
@@ -145,7 +145,7 @@ impl Setup<'_> {
         // Pixels of a quad lie at most one pixel outside of the batch.
         let (columns, rows) = (local.columns + 1.0, local.rows + 1.0);
         // No pixel lies further to the left of a row's first pixel, or above that of a box.
-        let left = if ROW { 1.0 } else { columns };
+        let left = if batch.is_row() { 1.0 } else { columns };
         let least = |line: Line| least_around(line, left, [columns, rows]);
         let (lowest, reach) = (least(local.denominator), [columns, rows]);
         // Quotients by another line than D.
@@ -223,7 +223,7 @@ impl Setup<'_> {
                 let (odd_column, odd_row) = ((batch.first.0 & 1) as f64, (batch.first.1 & 1) as f64);
                 let meets =
                     |line: Line| line.c - falls(line.x, odd_column, local.columns) - falls(line.y, odd_row, 0.0);
-                if !(if ROW { direction.stays(face, meets) } else { direction.stays(face, least) }) {
+                if !(if batch.is_row() { direction.stays(face, meets) } else { direction.stays(face, least) }) {
                     return None;
                 }
                 let size = 128.0 * f64::from(sampler.sides[0]);

@@ -1,15 +1,12 @@
 //! A draw compiled to rows, and the statistics of its pixels.
 
-use super::filter::Vectors;
 use super::kernels::PerLane;
 use super::node::Node;
 use super::shader::Shader;
 use super::table::{Axis, Table};
 use crate::combiner::registers::Registers;
 use crate::engine::context::TriangleContext;
-use crate::plan::{Plan, PlannedDraw};
 use crate::state::{DepthFormat, Named, Register, TEXTURE_UNITS, named};
-use crate::texture::planned::Image;
 use std::sync::Arc;
 
 named! {
@@ -180,17 +177,4 @@ impl CompiledDraw {
             }
         }
     }
-}
-
-/// The parts of a draw that are the same for all of its blocks.
-#[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
-    pub(crate) plan: &'a Plan,
-    pub(crate) draw: &'a PlannedDraw,
-    pub(crate) compiled: &'a CompiledDraw,
-    pub(crate) textures: &'a [Image<'a, i32>],
-    /// Numbers of the triangles that may cover pixels, in order.
-    pub(crate) triangles: &'a [u32],
-    /// Vectors that the instruction set has.
-    pub(crate) vectors: Vectors,
 }

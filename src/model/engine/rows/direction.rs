@@ -165,7 +165,7 @@ impl CubeDirection {
     /// TEX-12 of a batch whose pixels meet several faces. It needs no denominator, because the perspective division cancels. Returns
     /// `false` if a pixel is too close to an edge; then no result counts.
     #[inline(always)]
-    pub(super) fn directions<const FMA: bool, const ROW: bool>(
+    pub(super) fn directions<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -177,64 +177,74 @@ impl CubeDirection {
         let lanes = batch.lanes();
         let [u, v] = numbers;
         let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
-        directions::<FMA, ROW>(batch.at, self.lines, (self.error, size, offset), u, v, faces)
+        directions::<FMA>(batch.at, self.lines, (self.error, size, offset), u, v, faces)
+    }
+}
+
+/// [`coordinates`], compiled for an instruction set.
+pub(super) type FindCoordinates = fn(
+    &Setup<'_>,
+    PixelBatch<'_>,
+    (&Sampler, &Planes),
+    (&BatchSetup, &Reciprocals),
+    (&mut [PerLane<i32>; 2], &mut PerLane<u32>),
+    (&mut Short, &mut PerLane<i32>),
+);
+
+/// Computes the coordinates of a batch by the functions of its sampler. The definition computes those that estimates do not prove.
+#[inline(always)]
+pub(super) fn coordinates<const FMA: bool>(
+    setup: &Setup<'_>,
+    batch: PixelBatch<'_>,
+    (sampler, planes): (&Sampler, &Planes),
+    (local, reciprocals): (&BatchSetup, &Reciprocals),
+    (numbers, faces): (&mut [PerLane<i32>; 2], &mut PerLane<u32>),
+    (short, whole): (&mut Short, &mut PerLane<i32>),
+) {
+    let done = match planes {
+        Planes::Plane(planes) if setup.context.triangle.loses_on_planes() => {
+            // The sum bounds both, and is NaN if one of them is.
+            let margin = local.margin::<false>(&planes[0].real) + local.margin::<false>(&planes[1].real);
+            let lines = [planes[0].real.line(&local.real), planes[1].real.line(&local.real), local.denominator];
+            let functions = (lines, setup.losses_on_planes(planes), (margin, 0.0));
+            setup.short_quotients::<FMA>(batch, sampler, functions, short, numbers, faces)
+        }
+        Planes::Plane(planes) => {
+            let [u, v] = &mut *numbers;
+            let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
+            setup.on_planes::<FMA, false>(batch, (sampler, planes), (local, reciprocals), u, v, whole);
+            true
+        }
+        Planes::Direction(planes, face) => {
+            let direction = CubeDirection::new(planes, local);
+            // Pixels beyond the triangle may meet another face than its vertices.
+            let face = match *face {
+                Some(face) if !batch.reaches_beyond() => Some(face),
+                _ if batch.is_row() => direction.face::<FMA>(local.columns),
+                face => face.filter(|face| direction.stays(*face, |line| line.least(local.columns, local.rows))),
+            };
+            match face {
+                Some(face) => {
+                    setup.on_face::<FMA>(batch, sampler, planes, face, &direction, local, short, numbers, faces)
+                }
+                None => direction.directions::<FMA>(batch, sampler, numbers, faces),
+            }
+        }
+        Planes::Ratio(planes, reach) => {
+            setup.projected::<FMA>(batch, sampler, planes, *reach, local, short, numbers, faces)
+        }
+        Planes::Other | Planes::Shared => false,
+    };
+    if !done {
+        setup.defined(batch, sampler, numbers, faces);
     }
 }
 
 impl Setup<'_> {
-    /// Computes the coordinates of a batch by the functions of its sampler. The definition computes those that estimates do not prove.
-    #[inline(always)]
-    pub(super) fn coordinates<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        (sampler, planes): (&Sampler, &Planes),
-        (local, reciprocals): (&BatchSetup, &Reciprocals),
-        (numbers, faces): (&mut [PerLane<i32>; 2], &mut PerLane<u32>),
-        (short, whole): (&mut Short, &mut PerLane<i32>),
-    ) {
-        let done = match planes {
-            Planes::Plane(planes) if self.context.triangle.loses_on_planes() => {
-                // The sum bounds both, and is NaN if one of them is.
-                let margin = local.margin::<ROW>(&planes[0].real) + local.margin::<ROW>(&planes[1].real);
-                let lines = [planes[0].real.line(&local.real), planes[1].real.line(&local.real), local.denominator];
-                let functions = (lines, self.losses_on_planes(planes), (margin, 0.0));
-                self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
-            }
-            Planes::Plane(planes) => {
-                let [u, v] = &mut *numbers;
-                let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
-                self.on_planes::<FMA, ROW>(batch, (sampler, planes), (local, reciprocals), u, v, whole);
-                true
-            }
-            Planes::Direction(planes, face) => {
-                let direction = CubeDirection::new(planes, local);
-                // Pixels beyond the triangle may meet another face than its vertices.
-                let face = match *face {
-                    Some(face) if !batch.reaches_beyond() => Some(face),
-                    _ if ROW => direction.face::<FMA>(local.columns),
-                    face => face.filter(|face| direction.stays(*face, |line| line.least(local.columns, local.rows))),
-                };
-                match face {
-                    Some(face) => {
-                        self.on_face::<FMA, ROW>(batch, sampler, planes, face, &direction, local, short, numbers, faces)
-                    }
-                    None => direction.directions::<FMA, ROW>(batch, sampler, numbers, faces),
-                }
-            }
-            Planes::Ratio(planes, reach) => {
-                self.projected::<FMA, ROW>(batch, sampler, planes, *reach, local, short, numbers, faces)
-            }
-            Planes::Other | Planes::Shared => false,
-        };
-        if !done {
-            self.defined(batch, sampler, numbers, faces);
-        }
-    }
-
     /// TEX-12 of a batch that meets one face: two ordinary quotients. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    fn on_face<const FMA: bool, const ROW: bool>(
+    fn on_face<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -248,7 +258,7 @@ impl Setup<'_> {
     ) -> bool {
         let [s, t, major] = face.components();
         let m = direction.component(major);
-        let least = self.least::<FMA, ROW>(batch, m, &planes[major.axis], local);
+        let least = self.least::<FMA>(batch, m, &planes[major.axis], local);
         let widest = 1.0 / least;
         let size = f64::from(sampler.sides[0]) * 128.0;
         // The error of both components, again for what is subtracted, and twice that.
@@ -260,14 +270,14 @@ impl Setup<'_> {
         };
         let (along, down) = (line(s), line(t));
         faces[batch.lanes()].fill(face as u32);
-        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, local, short, numbers, faces)
+        self.quotients::<FMA>(batch, sampler, [along, down, m], widest, margin, local, short, numbers, faces)
     }
 
     /// TEX-15 of a batch for s, t and q: two quotients of numbers that lose something where weights fall short. `reach` bounds
     /// their magnitudes, in images, if q is positive. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    fn projected<const FMA: bool, const ROW: bool>(
+    fn projected<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -289,7 +299,7 @@ impl Setup<'_> {
             // The largest s or t in place of those at the vertices. Losses take less than 2^-20 of the divisor.
             (BY_ANY_SIGN, smallest_divisor(2.0 * error, 2.0 * error * direction.error / SLACK))
         } else {
-            let widest = 1.0 / self.least::<FMA, ROW>(batch, q, &planes[2], local);
+            let widest = 1.0 / self.least::<FMA>(batch, q, &planes[2], local);
             let mut reach = reach;
             if batch.reaches_beyond() {
                 if widest <= 0.0 {
@@ -300,13 +310,13 @@ impl Setup<'_> {
             (error * (1.0 + reach) * widest, 0.0)
         };
         let functions = (lines, self.losses_by_q(planes, [width, height]), proved);
-        self.short_quotients::<FMA, ROW>(batch, sampler, functions, short, numbers, faces)
+        self.short_quotients::<FMA>(batch, sampler, functions, short, numbers, faces)
     }
 
     /// INT-4t: computes two quotients of lines with losses by a third one. `margin` is the largest error unless the divisor's magnitude is
     /// below `smallest`. The definition computes lanes that are not proved. Returns `false` if nothing would be proved.
     #[inline(always)]
-    fn short_quotients<const FMA: bool, const ROW: bool>(
+    fn short_quotients<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -320,14 +330,18 @@ impl Setup<'_> {
         if !proves {
             return false;
         }
-        short.keep::<FMA, ROW>(batch.at, lines, losses);
+        if batch.is_row() {
+            short.keep::<FMA, true>(batch.at, lines, losses);
+        } else {
+            short.keep::<FMA, false>(batch.at, lines, losses);
+        }
         let (lanes, [u, v], Short { at, close, .. }) = (batch.at.x.len(), &mut *numbers, short);
         close[..lanes].fill(0);
         if smallest > 0.0 {
             let (last, xs, ys) = (f64::from(batch.at.last), &batch.at.x[..lanes], &batch.at.y[..lanes]);
             for n in 0..lanes {
-                let (x, y) = position::<ROW>(n, last, xs, ys, &IOTA_REAL[..lanes]);
-                close[n] = (lines[2].at::<FMA, ROW>(x, y).abs() - smallest).to_bits();
+                let (x, y) = position::<false>(n, last, xs, ys, &IOTA_REAL[..lanes]);
+                close[n] = (lines[2].at::<FMA, false>(x, y).abs() - smallest).to_bits();
             }
         }
         floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[batch.lanes()]);
@@ -341,14 +355,14 @@ impl Setup<'_> {
 
     /// Returns a lower bound in the batch of a linear function that is positive at all vertices.
     #[inline(always)]
-    pub(super) fn least<const FMA: bool, const ROW: bool>(
+    pub(super) fn least<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         line: Line,
         plane: &Plane,
         local: &BatchSetup,
     ) -> f64 {
-        if ROW {
+        if batch.is_row() {
             let end = line.at::<FMA, true>(local.columns, 0.0);
             return if line.c < end { line.c } else { end };
         }
@@ -364,7 +378,7 @@ impl Setup<'_> {
     /// are not proved. Returns `false` if nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    fn quotients<const FMA: bool, const ROW: bool>(
+    fn quotients<const FMA: bool>(
         &self,
         batch: PixelBatch<'_>,
         sampler: &Sampler,
@@ -378,17 +392,21 @@ impl Setup<'_> {
     ) -> bool {
         let (extent, reciprocals) = ((local.columns, local.rows), (1.0 / m.c, widest));
         let (Some(along), Some(down)) = (
-            QuotientEstimate::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
-            QuotientEstimate::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),
+            QuotientEstimate::new::<false>(along, m, extent, reciprocals, margin, sampler.bias()),
+            QuotientEstimate::new::<false>(down, m, extent, reciprocals, margin, sampler.bias()),
         ) else {
             return false;
         };
         let [u, v] = numbers;
-        divided.set::<FMA, ROW>(batch.at, m);
-        let close = divided.estimate::<FMA, ROW>([along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
+        if batch.is_row() {
+            divided.set::<FMA, true>(batch.at, m);
+        } else {
+            divided.set::<FMA, false>(batch.at, m);
+        }
+        let close = divided.estimate::<FMA, false>([along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
         if close[0] | close[1] {
             for n in 0..batch.count {
-                match divided.prove::<ROW>(n, &[along, down]) {
+                match divided.prove::<false>(n, &[along, down]) {
                     Some([u, v]) => (numbers[0][batch.lane + n], numbers[1][batch.lane + n]) = (u, v),
                     None => self.defined_lane(batch, n, sampler, numbers, faces),
                 }
@@ -401,7 +419,7 @@ impl Setup<'_> {
 /// The loop of [`CubeDirection::directions`]. It takes the largest error of a component, half the face's size in 1/256 texel, and what is
 /// subtracted from coordinates.
 #[inline(always)]
-fn directions<const FMA: bool, const ROW: bool>(
+fn directions<const FMA: bool>(
     at: Positions<'_>,
     lines: [Line; 3],
     (error, size, offset): (f64, f64, f64),
@@ -414,9 +432,9 @@ fn directions<const FMA: bool, const ROW: bool>(
     let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
     for n in 0..lanes {
         let (column, row) = (f64::from(i32::from(columns[n]).min(at.last)), f64::from(rows[n]));
-        let x = lines[0].at::<FMA, ROW>(column, row);
-        let y = lines[1].at::<FMA, ROW>(column, row);
-        let z = lines[2].at::<FMA, ROW>(column, row);
+        let x = lines[0].at::<FMA, false>(column, row);
+        let y = lines[1].at::<FMA, false>(column, row);
+        let z = lines[2].at::<FMA, false>(column, row);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let (more, less) = (if ax > ay { ax } else { ay }, if ax > ay { ay } else { ax });
         let (magnitude, rest) = (if more > az { more } else { az }, if more > az { az } else { more });

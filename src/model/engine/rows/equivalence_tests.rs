@@ -5,13 +5,16 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::boxes::{HALF_STEP, batch, boxes, is_small};
+use super::direction::coordinates;
 use super::kernels::{PerLane, STEP};
-use super::levels::MipFetches;
+use super::levels::{MipFetches, fetches, levels};
 use super::planes::inverse;
 use super::quads::Measure;
 use super::setup::{PixelBatch, Setup};
 use super::small::Boxes;
+use super::taps::taps;
 use super::taps::{Footprints, Pair, PairsOfQuad};
+use super::triangle::InterpolatorKernels;
 use super::triangle::{Interpolators, Varying};
 use super::{BLOCK, Reasons, Rows};
 use crate::engine::TextureWords;
@@ -324,7 +327,7 @@ fn compare_small<const FMA: bool>(
     };
     done &= !small.has_ratios || small.interpolate_ratios::<FMA>((context, plain), batch, varying, rows);
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
-    done &= !small.has_levels || small.interpolate_levels::<FMA>(context, plain, batch, varying);
+    done &= !small.has_levels || small.interpolate_levels((context, plain), fetches::<FMA>, batch, varying);
     let (alone, mut wanted) = (Setup::new(context, &inverse(&context.triangle)), MipFetches::default());
     if plain.depths_together {
         small.depths.write::<FMA>(0, batch, context.draw.depth_format, &mut varying.depth);
@@ -392,7 +395,13 @@ fn compare<const FMA: bool, const ROW: bool>(
 ) {
     // Results of an earlier batch must not pass for those of this one.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
-    interpolators.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
+    let kernels = InterpolatorKernels {
+        coordinates: coordinates::<FMA>,
+        levels: levels::<FMA>,
+        fetches: fetches::<FMA>,
+        taps: taps::<FMA>,
+    };
+    interpolators.interpolate::<FMA, ROW>(batch, (compiled, &kernels), &[], varying, rows);
     super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
     let (context, mut wanted, mut taps) = (&interpolators.setup.context, MipFetches::default(), Footprints::default());
     for n in 0..batch.count {

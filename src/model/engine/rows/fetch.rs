@@ -15,7 +15,7 @@ use crate::texture::filter::lerp;
 /// Scratch space of a fetch. Aligned, because vectors are stored and soon loaded again.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     entries: [u32; BLOCK],
     texels: [u32; BLOCK],
     footprints: [Footprint; BLOCK],
@@ -39,6 +39,9 @@ impl Default for Workspace {
         }
     }
 }
+
+/// [`sample`](super::band::sample), compiled for an instruction set.
+pub(super) type SampleUnit = fn(&Job<'_>, usize, &mut Varying, &mut Workspace, &mut [PerLane<i16>]);
 
 /// Samples the unit of a sampler: its levels, its taps, or one texel or footprint of each pixel.
 #[inline(always)]

@@ -1,17 +1,28 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
 use super::band::{self, Block};
-use super::compiled::{CompiledDraw, Job};
-use super::draw;
+use super::base_level::BaseLevel;
+use super::compiled::{CompiledDraw, Sampler};
+use super::direction;
+use super::fetch::Workspace;
 use super::filter::Vectors;
-use super::setup::Covered;
+use super::job::Job;
+use super::kernels::PerLane;
+use super::levels::{self, Fetches, Floors, MipFetches, Placing};
+use super::quads::{Exact, Quads};
+use super::quotient::Reciprocals;
+use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
+use super::short::Short;
 use super::small::Boxes;
-use super::triangle::Interpolators;
+use super::taps::{self, Footprints};
+use super::triangle::{InterpolatorKernels, Interpolators, Varying};
 use crate::engine::context::TriangleContext;
 use crate::engine::walk::Band;
+use crate::plan::{Plan, PlannedDraw};
 use crate::state::{Named, named};
-use multiversion::multiversion;
+use crate::texture::planned::{Image, PlannedUnit};
 use multiversion::target::match_target;
+use multiversion::{multiversion, target};
 
 named! {
     /// Instruction sets that the fast engine is compiled for.
@@ -30,11 +41,16 @@ named! {
 impl Isa {
     /// Returns whether this machine has the instruction set.
     pub fn is_available(self) -> bool {
+        self.kernels().is_some()
+    }
+
+    /// Returns the engine's parts for the instruction set if this machine has it.
+    pub(crate) fn kernels(self) -> Option<Kernels> {
         match self {
-            Isa::Baseline => true,
-            Isa::V2 => v2::is_available(),
-            Isa::V3 => v3::is_available(),
-            Isa::V4 => v4::is_available(),
+            Isa::Baseline => Some(Kernels::BASELINE),
+            Isa::V2 => v2::kernels(),
+            Isa::V3 => v3::kernels(),
+            Isa::V4 => v4::kernels(),
         }
     }
 
@@ -44,114 +60,92 @@ impl Isa {
     }
 }
 
-/// Defines the engine's parts for an instruction set. They are separate functions, so that the code of one loop does not depend on the
-/// number of loops in the same function.
-///
-/// If the machine lacks the set, parts do nothing and `run` returns `None`. The constant tells each part whether the set has fused
-/// multiply-add.
-macro_rules! text {
-    ({ $($version:ident: $target:literal, $wide:literal;)* } $parts:tt) => {
-        text!(@parts $parts);
-        $(text!(@version $version, $target, $wide, $parts);)*
+impl Kernels {
+    /// Returns the job of drawing triangles of a draw.
+    pub(crate) fn job<'a>(
+        &self,
+        plan: &'a Plan,
+        draw: &'a PlannedDraw,
+        compiled: &'a CompiledDraw,
+        textures: &'a [Image<'a, i32>],
+        triangles: &'a [u32],
+    ) -> Job<'a> {
+        let Kernels { vectors, sample, coordinates, levels, fetches, taps, .. } = *self;
+        let interpolators = InterpolatorKernels { coordinates, levels, fetches, taps };
+        Job { plan, draw, compiled, textures, triangles, vectors, sample, interpolators }
+    }
+}
+
+/// Defines the engine's parts for each instruction set. They are separate functions, so that the code of one loop does not depend on the
+/// number of loops in the same function, and so that those with several callers are compiled once for each set. The constant tells each
+/// part whether the set has fused multiply-add.
+macro_rules! kernels {
+    ({ $($version:ident: $isa:ident, $target:literal, $wide:literal, $vectors:ident;)* } $parts:tt) => {
+        kernels!(@parts $parts);
+        $(kernels!(@version $version, $isa, $target, $wide, $vectors, $parts);)*
     };
-    (@parts { $($(#[$meta:meta])* fn $part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
-        pub(super) trait Kernels {
-            $($(#[$meta])* fn $part($($name: $type),*) $(-> $out)?;)*
+    (@parts { $(fn $module:ident::$part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
+        /// The engine's parts, compiled for an instruction set that this machine has. What calls them is compiled once.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct Kernels {
+            pub(crate) isa: Isa,
+            /// Vectors that the instruction set has.
+            pub(super) vectors: Vectors,
+            $(pub(super) $part: fn($($type),*) $(-> $out)?,)*
         }
 
-        /// The instruction set that the program was compiled for.
-        struct Baseline;
-
-        impl Kernels for Baseline {
-            $(fn $part($($name: $type),*) $(-> $out)? {
-                band::$part::<false>($($name),*)
-            })*
+        impl Kernels {
+            pub(crate) const BASELINE: Kernels =
+                Kernels { isa: Isa::Baseline, vectors: Vectors::Portable, $($part: $module::$part::<false>,)* };
         }
     };
-    (@version $version:ident, $target:literal, $wide:literal,
-        { $($(#[$meta:meta])* fn $part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
-        #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "elsewhere nothing but the baseline runs"))]
+    (@version $version:ident, $isa:ident, $target:literal, $wide:literal, $vectors:ident,
+        { $(fn $module:ident::$part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
         mod $version {
             use super::*;
 
-            struct Version;
-
-            impl Kernels for Version {
-                $(fn $part($($name: $type),*) $(-> $out)? {
-                    $part($($name),*)
-                })*
-            }
-
-            #[multiversion(targets($target))]
-            pub(super) fn is_available() -> bool {
-                match_target! { $target => true, _ => false }
-            }
-
-            #[multiversion(targets($target))]
-            pub(super) fn run(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
-                match_target! { $target => Some(draw::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
-            }
-
-            $(#[multiversion(targets($target))]
+            $(#[target($target)]
             fn $part($($name: $type),*) $(-> $out)? {
-                match_target! { $target => band::$part::<$wide>($($name),*), _ => { let _ = ($($name),*); Default::default() } }
+                $module::$part::<$wide>($($name),*)
             })*
+
+            #[multiversion(targets($target))]
+            pub(super) fn kernels() -> Option<Kernels> {
+                match_target! {
+                    $target => Some(Kernels { isa: Isa::$isa, vectors: Vectors::$vectors, $($part,)* }),
+                    _ => None,
+                }
+            }
         }
     };
 }
-text! {
+
+kernels! {
     {
-        v2: "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false;
-        v3: "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true;
-        v4: "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true;
+        v2: V2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false, Portable;
+        v3: V3, "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, Avx2;
+        v4: V4, "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, Avx512;
     }
     {
-        /// Calls [`band::flush`] with this instruction set.
-        fn flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
-        /// Calls [`band::set_up`] with this instruction set.
-        fn set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, width: u32, boxes: &mut Boxes);
-        /// Calls [`band::set_up_more`] with this instruction set.
-        fn set_up_more(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
-        /// Calls [`band::more`] with this instruction set.
-        fn more(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// Calls [`band::plain`] with this instruction set.
-        fn plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// Calls [`band::tied`] with this instruction set.
-        fn tied(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
-        /// Calls [`band::in_box`] with this instruction set.
-        fn in_box(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
-        /// Calls [`band::row`] with this instruction set.
-        fn row(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
-        /// Calls [`band::row_attributes`] with this instruction set.
-        fn row_attributes(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
-        /// Calls [`band::box_attributes`] with this instruction set.
-        fn box_attributes(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
-        /// Calls [`band::row_depths`] with this instruction set.
-        fn row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
-        /// Calls [`band::box_depths`] with this instruction set.
-        fn box_depths(first: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
-        /// Calls [`band::shade`] with this instruction set.
-        fn shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        fn band::begin(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>);
+        fn band::flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        fn band::set_up(contexts: &[TriangleContext<'_>], compiled: &CompiledDraw, width: u32, boxes: &mut Boxes);
+        fn band::set_up_more(context: &TriangleContext<'_>, compiled: &CompiledDraw, boxes: &mut Boxes);
+        fn band::more(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) -> bool;
+        fn band::plain(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        fn band::tied(context: &TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        fn levels::levels(setup: &Setup<'_>, fetches: Fetches, batch: PixelBatch<'_>, of: (&Sampler, &Planes), known: (&BatchSetup, &Reciprocals, Floors<'_>), work: (&mut Short, &mut Quads, &mut Placing), reads: &mut MipFetches);
+        fn direction::coordinates(setup: &Setup<'_>, batch: PixelBatch<'_>, of: (&Sampler, &Planes), local: (&BatchSetup, &Reciprocals), out: (&mut [PerLane<i32>; 2], &mut PerLane<u32>), work: (&mut Short, &mut PerLane<i32>));
+        fn taps::taps(setup: &Setup<'_>, batch: PixelBatch<'_>, of: (&Sampler, &Planes), local: &BatchSetup, quads: &mut Quads, footprints: &mut Footprints);
+        fn levels::fetches(batch: PixelBatch<'_>, of: (&PlannedUnit, &Sampler, &BaseLevel<'_>), exact: Option<Exact<'_>>, known: (&Reciprocals, Floors<'_>), work: (&mut Short, &mut Quads, &mut Placing), reads: &mut MipFetches) -> bool;
+        fn band::in_box(interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
+        fn band::begin_row(pixel: (i64, i64), columns: i64, interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
+        fn band::row(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, interpolators: &Interpolators<'_>, job: &Job<'_>, block: &mut Block);
+        fn band::row_attributes(pixel: (i64, i64), count: usize, lane: usize, covered: Covered, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
+        fn band::box_attributes(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
+        fn band::row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn band::box_depths(first: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn band::sample(job: &Job<'_>, sampler: usize, varying: &mut Varying, work: &mut Workspace, rows: &mut [PerLane<i16>]);
+        fn band::shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }
-}
-
-fn run_baseline(job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    draw::run::<Baseline>(job, band, block)
-}
-
-/// Draws the part of a draw that lies in a band, with an instruction set of this machine. Returns the number of covered pixels.
-pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    let vectors = match isa {
-        Isa::Baseline | Isa::V2 => Vectors::Portable,
-        Isa::V3 => Vectors::Avx2,
-        Isa::V4 => Vectors::Avx512,
-    };
-    let job = &Job { vectors, ..job };
-    let shaded = match isa {
-        Isa::Baseline => None,
-        Isa::V2 => v2::run(job, band, block),
-        Isa::V3 => v3::run(job, band, block),
-        Isa::V4 => v4::run(job, band, block),
-    };
-    shaded.unwrap_or_else(|| run_baseline(job, band, block))
 }

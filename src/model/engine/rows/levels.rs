@@ -51,72 +51,6 @@ impl Setup<'_> {
         planes[0].shifts_by(shifts[0]) && planes[1].shifts_by(shifts[1])
     }
 
-    /// Computes all fetches of a batch for a unit with levels. `floors` are the coordinates on level 0, if they are known and
-    /// [shifted](Self::shift_with). A batch that meets several faces of a cube map is divided into parts that meet one, row by row.
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-    pub(super) fn levels<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        (sampler, planes): (&Sampler, &Planes),
-        floors: Option<[&[i32]; 2]>,
-        (local, reciprocals): (&BatchSetup, &Reciprocals),
-        short: &mut Short,
-        (quads, placing): (&mut Quads, &mut Placing),
-        reads: &mut MipFetches,
-    ) {
-        if let Some(base) = self.base_level::<FMA, ROW>(batch, (sampler, planes), local) {
-            let exact = Some(Exact { setup: self, batch: &batch, e: &local.e });
-            let of = (self.unit(sampler), sampler, &base);
-            fetches::<FMA, ROW>(batch, of, exact, floors, reciprocals, short, (quads, placing), reads);
-            return;
-        }
-        let Planes::Direction(directions, _) = planes else {
-            for n in 0..batch.count {
-                self.defined_reads(batch, n, sampler, reads);
-            }
-            return;
-        };
-        let row = [Run::new(0, 0, batch.count)];
-        for run in if ROW { &row } else { batch.runs } {
-            let ((i, j), count, lane) = (batch.pixel(run.lane()), run.count(), batch.lane + run.lane());
-            // A box does not say which of them are covered.
-            let covered = Covered(0, if batch.reaches_beyond() { 0 } else { count });
-            let row = if ROW { batch } else { PixelBatch { covered, ..PixelBatch::row((i, j), count, lane) } };
-            let mut done = 0;
-            while done < count {
-                let mut part = row.part(done, count - done);
-                let proved = loop {
-                    let own = (!ROW || part.count < batch.count).then(|| self.local::<FMA, true>(part, true));
-                    let local = own.as_ref().unwrap_or(local);
-                    if let Some(base) = self.base_level::<FMA, true>(part, (sampler, planes), local) {
-                        let work = (&mut *quads, &mut *placing);
-                        let exact = Some(Exact { setup: self, batch: &part, e: &local.e });
-                        let of = (self.unit(sampler), sampler, &base);
-                        fetches::<FMA, true>(part, of, exact, floors, reciprocals, short, work, reads);
-                        break true;
-                    }
-                    let (last, odd_row) = (part.at.last.into(), (j & 1) as f64);
-                    let stretch = CubeDirection::new(directions, local).stretch::<FMA>(last, odd_row);
-                    if stretch == part.count {
-                        // The pixels of the first quad, of which another one can meet another face.
-                        let odd = part.first.0 & 1;
-                        part = row.part(done, part.count.min(2 - odd as usize));
-                        break false;
-                    }
-                    part = row.part(done, stretch);
-                };
-                for n in 0..if proved { 0 } else { part.count } {
-                    self.defined_reads(part, n, sampler, reads);
-                }
-                done += part.count;
-            }
-        }
-        if !ROW {
-            quads.begin_box(batch);
-        }
-    }
-
     /// Returns the unit of a sampler.
     fn unit(&self, sampler: &Sampler) -> &PlannedUnit {
         &self.context.draw.units[sampler.index]
@@ -152,26 +86,108 @@ impl Setup<'_> {
     }
 }
 
+/// Coordinates on level 0, if they are known and those of the levels are [theirs, shifted](Setup::shift_with).
+pub(super) type Floors<'a> = Option<[&'a [i32]; 2]>;
+
+/// [`levels`], compiled for an instruction set.
+pub(super) type FindLevels = fn(
+    &Setup<'_>,
+    Fetches,
+    PixelBatch<'_>,
+    (&Sampler, &Planes),
+    (&BatchSetup, &Reciprocals, Floors<'_>),
+    (&mut Short, &mut Quads, &mut Placing),
+    &mut MipFetches,
+);
+
+/// Computes all fetches of a batch for a unit with levels. A batch that meets several faces of a cube map is divided into parts that meet one,
+/// row by row.
+#[inline(always)]
+pub(super) fn levels<const FMA: bool>(
+    setup: &Setup<'_>,
+    fetches: Fetches,
+    batch: PixelBatch<'_>,
+    (sampler, planes): (&Sampler, &Planes),
+    (local, reciprocals, floors): (&BatchSetup, &Reciprocals, Floors<'_>),
+    (short, quads, placing): (&mut Short, &mut Quads, &mut Placing),
+    reads: &mut MipFetches,
+) {
+    let unit = setup.unit(sampler);
+    if let Some(base) = setup.base_level::<FMA>(batch, (sampler, planes), local) {
+        let exact = Some(Exact { setup, batch: &batch, e: &local.e });
+        fetches(batch, (unit, sampler, &base), exact, (reciprocals, floors), (short, quads, placing), reads);
+        return;
+    }
+    let Planes::Direction(directions, _) = planes else {
+        for n in 0..batch.count {
+            setup.defined_reads(batch, n, sampler, reads);
+        }
+        return;
+    };
+    let (is_row, row) = (batch.is_row(), [Run::new(0, 0, batch.count)]);
+    for run in if is_row { &row } else { batch.runs } {
+        let ((i, j), count, lane) = (batch.pixel(run.lane()), run.count(), batch.lane + run.lane());
+        // A box does not say which of them are covered.
+        let covered = Covered(0, if batch.reaches_beyond() { 0 } else { count });
+        let row = if is_row { batch } else { PixelBatch { covered, ..PixelBatch::row((i, j), count, lane) } };
+        let mut done = 0;
+        while done < count {
+            let mut part = row.part(done, count - done);
+            let proved = loop {
+                let own = (!is_row || part.count < batch.count).then(|| setup.local::<FMA, true>(part, true));
+                let local = own.as_ref().unwrap_or(local);
+                if let Some(base) = setup.base_level::<FMA>(part, (sampler, planes), local) {
+                    let exact = Some(Exact { setup, batch: &part, e: &local.e });
+                    let (of, work) = ((unit, sampler, &base), (&mut *short, &mut *quads, &mut *placing));
+                    fetches(part, of, exact, (reciprocals, floors), work, reads);
+                    break true;
+                }
+                let (last, odd_row) = (part.at.last.into(), (j & 1) as f64);
+                let stretch = CubeDirection::new(directions, local).stretch::<FMA>(last, odd_row);
+                if stretch == part.count {
+                    // The pixels of the first quad, of which another one can meet another face.
+                    let odd = part.first.0 & 1;
+                    part = row.part(done, part.count.min(2 - odd as usize));
+                    break false;
+                }
+                part = row.part(done, stretch);
+            };
+            for n in 0..if proved { 0 } else { part.count } {
+                setup.defined_reads(part, n, sampler, reads);
+            }
+            done += part.count;
+        }
+    }
+    if !is_row {
+        quads.begin_box(batch);
+    }
+}
+
+/// [`fetches`], compiled for an instruction set.
+pub(super) type Fetches = fn(
+    PixelBatch<'_>,
+    (&PlannedUnit, &Sampler, &BaseLevel<'_>),
+    Option<Exact<'_>>,
+    (&Reciprocals, Floors<'_>),
+    (&mut Short, &mut Quads, &mut Placing),
+    &mut MipFetches,
+) -> bool;
+
 /// Computes all fetches of a batch from the coordinates of level 0. Returns `false` if something is not proved and nothing decides it; then nothing
 /// counts.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-pub(super) fn fetches<const FMA: bool, const ROW: bool>(
+pub(super) fn fetches<const FMA: bool>(
     batch: PixelBatch<'_>,
     (unit, sampler, base): (&PlannedUnit, &Sampler, &BaseLevel<'_>),
     exact: Option<Exact<'_>>,
-    floors: Option<[&[i32]; 2]>,
-    reciprocals: &Reciprocals,
-    short: &mut Short,
-    (quads, placing): (&mut Quads, &mut Placing),
+    (reciprocals, floors): (&Reciprocals, Floors<'_>),
+    (short, quads, placing): (&mut Short, &mut Quads, &mut Placing),
     reads: &mut MipFetches,
 ) -> bool {
     let Some(table) = &sampler.table else { return exact.is_some() };
     let lanes = batch.at.x.len();
     let spread = match exact {
-        Some(Exact { setup, e, .. }) => {
-            setup.of_quads::<FMA, ROW, i32>(batch, (unit, base), e, quads, &mut reads.known)
-        }
+        Some(Exact { setup, e, .. }) => setup.of_quads::<FMA, i32>(batch, (unit, base), e, quads, &mut reads.known),
         None if of_box::<FMA, i32>((unit, base), None, quads, &mut reads.known) => Spread::Rows,
         None => return false,
     };
@@ -199,17 +215,26 @@ pub(super) fn fetches<const FMA: bool, const ROW: bool>(
         match base.losses {
             Some(losses) => {
                 let [at_u, at_v] = at;
-                short.dominance.divide::<FMA, ROW>(batch.at, lines, losses, 0.0, [&mut *at_u, &mut *at_v]);
+                let out: [&mut [f64]; 2] = [&mut *at_u, &mut *at_v];
+                if batch.is_row() {
+                    short.dominance.divide::<FMA, true>(batch.at, lines, losses, 0.0, out);
+                } else {
+                    short.dominance.divide::<FMA, false>(batch.at, lines, losses, 0.0, out);
+                }
                 settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
             }
             None => {
                 let reciprocals = if base.by_d {
                     reciprocals
                 } else {
-                    short.reciprocals.set::<FMA, ROW>(batch.at, base.denominator);
+                    if batch.is_row() {
+                        short.reciprocals.set::<FMA, true>(batch.at, base.denominator);
+                    } else {
+                        short.reciprocals.set::<FMA, false>(batch.at, base.denominator);
+                    }
                     &short.reciprocals
                 };
-                quotients::<FMA, ROW>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
+                quotients::<FMA>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
             }
         }
     }
@@ -219,7 +244,7 @@ pub(super) fn fetches<const FMA: bool, const ROW: bool>(
         && base.losses.is_none()
         && setup.shift_with(sampler, planes)
     {
-        setup.correct_coordinates::<ROW>(batch, 0, planes, [true; 2], e, u, v, whole);
+        setup.correct_coordinates::<false>(batch, 0, planes, [true; 2], e, u, v, whole);
         any_close = false;
     }
     let [u, v] = floors.unwrap_or([u, v]);
@@ -289,7 +314,7 @@ impl MipFetches {
 /// Computes the floors of two quotients on level 0. Sets the sign bits of lanes where one is so close to an integer that its floor is not
 /// proved, on that level or on smaller ones.
 #[inline(always)]
-fn quotients<const FMA: bool, const ROW: bool>(
+fn quotients<const FMA: bool>(
     [xs, ys, rs]: [&[f64]; 3],
     [along, down]: [Line; 2],
     settled: [(f64, f64); 2],
@@ -300,11 +325,11 @@ fn quotients<const FMA: bool, const ROW: bool>(
     let lanes = u.len();
     let (v, close, xs, ys, rs) = (&mut v[..lanes], &mut close[..lanes], &xs[..lanes], &ys[..lanes], &rs[..lanes]);
     for n in 0..lanes {
-        let p = along.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
+        let p = along.at::<FMA, false>(xs[n], ys[n]) * rs[n];
         (u[n], close[n]) = floor_and_proof(p, settled[0]);
     }
     for n in 0..lanes {
-        let q = down.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
+        let q = down.at::<FMA, false>(xs[n], ys[n]) * rs[n];
         let (floor, of_lane) = floor_and_proof(q, settled[1]);
         (v[n], close[n]) = (floor, close[n] | of_lane);
     }

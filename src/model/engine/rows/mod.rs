@@ -46,7 +46,8 @@ mod fetch;
 mod filter;
 mod fog;
 mod graph;
-pub(crate) mod isa;
+mod isa;
+mod job;
 mod kernels;
 mod levels;
 mod lods;
@@ -75,8 +76,11 @@ mod triangle;
 
 pub(crate) use band::Block;
 pub use compiled::Reason;
-pub(crate) use compiled::{CompiledDraw, Job, Reasons, Sampler};
+pub(crate) use compiled::{CompiledDraw, Reasons, Sampler};
+pub(crate) use draw::run;
 pub use isa::Isa;
+pub(crate) use isa::Kernels;
+pub(crate) use job::Job;
 pub(crate) use kernels::BLOCK;
 
 use crate::engine::TextureWords;

@@ -189,7 +189,7 @@ impl Spread {
 impl Setup<'_> {
     /// Computes the results of the quads of a batch. Returns how lanes map to them.
     #[inline(always)]
-    pub(super) fn of_quads<const FMA: bool, const ROW: bool, T: Measure>(
+    pub(super) fn of_quads<const FMA: bool, T: Measure>(
         &self,
         batch: PixelBatch<'_>,
         (unit, base): (&PlannedUnit, &BaseLevel<'_>),
@@ -205,7 +205,7 @@ impl Setup<'_> {
             (known.of, known.each[0]) = (None, T::behind(unit));
             return Spread::First;
         }
-        if !ROW {
+        if !batch.is_row() {
             of_box::<FMA, T>((unit, base), exact, quads, known);
             return Spread::Rows;
         }

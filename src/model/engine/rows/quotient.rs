@@ -290,6 +290,7 @@ impl Reciprocals {
             for n in 0..lanes {
                 to_x[n] = if iota[n] < last { iota[n] } else { last };
             }
+            self.y[..lanes].fill(0.0);
             if denominator.x == 0.0 {
                 to_r.fill(1.0 / denominator.c);
                 return;
@@ -308,7 +309,7 @@ impl Reciprocals {
         }
     }
 
-    /// Returns columns, rows (unused on a single row) and reciprocals of the first lanes.
+    /// Returns columns, rows and reciprocals of the first lanes.
     #[inline(always)]
     pub(super) fn lanes(&self, count: usize) -> [&[f64]; 3] {
         [&self.x[..count], &self.y[..count], &self.r[..count]]

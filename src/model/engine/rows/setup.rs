@@ -51,7 +51,7 @@ pub(super) struct PixelBatch<'a> {
 
 /// First and number of pixels of a batch that the triangle covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Covered(pub(super) usize, pub(super) usize);
+pub(crate) struct Covered(pub(super) usize, pub(super) usize);
 
 static ZEROS: [i16; LANES] = [0; LANES];
 
@@ -63,6 +63,12 @@ impl PixelBatch<'_> {
         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
         let covered = Covered(0, count);
         PixelBatch { first, at, count, lane, extent: (last, 0), runs: &[], covered, inside: [&[]; 2] }
+    }
+
+    /// Returns whether its pixels lie side by side.
+    #[inline(always)]
+    pub(super) fn is_row(&self) -> bool {
+        self.runs.is_empty()
     }
 
     /// Returns whether it has pixels that the triangle does not cover.

@@ -78,8 +78,6 @@ pub(super) struct Shader {
     pub(super) moved: Vec<Bump>,
     /// For each remapped colour: the earlier unit, the channels whose registers hold twice the byte, and the mapping.
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
-    /// Whether stages drop fragments.
-    pub(super) kills: bool,
 }
 
 /// Largest distance by which rows move coordinates, 1/256 texel. It is beyond the limit of coordinates.
@@ -111,7 +109,6 @@ impl Shader {
             same: Vec::new(),
             moved: Vec::new(),
             vectors: Vec::new(),
-            kills: draw.kills(),
         };
         for index in 0..TEXTURE_UNITS {
             let stage = shader.stage(draw, &planned.stages, index, samplers, scale)?;

@@ -11,7 +11,7 @@ use super::color::{colors, narrow_weights};
 use super::compiled::{Sampler, Third};
 use super::fog::BoxFog;
 use super::kernels::PerLane;
-use super::levels::fetches;
+use super::levels::Fetches;
 use super::quotient::{QuotientEstimate, Reciprocals, SLACK, break_ties, proof, whole};
 use super::ratios::{BoxNumber, Ratios, References, Weights};
 use super::setup::PixelBatch;
@@ -28,7 +28,7 @@ use crate::texture::planned::PlannedUnit;
 
 /// Boxes of small triangles that are set up at a time.
 #[derive(Debug, Default)]
-pub(super) struct Boxes {
+pub(crate) struct Boxes {
     /// Corners of triangles.
     pub(super) corners: Corners,
     /// Rows and columns of each, and the index of the triangle among the contexts, in the order in which they are drawn.
@@ -418,10 +418,10 @@ impl Boxes {
     /// Computes the fetches of samplers with levels for the pixels of the current box, whose other attributes are proved. Returns `false` if something
     /// is not.
     #[inline(always)]
-    pub(super) fn interpolate_levels<const FMA: bool>(
+    pub(super) fn interpolate_levels(
         &self,
-        context: &TriangleContext<'_>,
-        compiled: &CompiledDraw,
+        (context, compiled): (&TriangleContext<'_>, &CompiledDraw),
+        fetches: Fetches,
         batch: PixelBatch<'_>,
         Varying { reads, quads, placing, short, reciprocals, .. }: &mut Varying,
     ) -> bool {
@@ -429,8 +429,8 @@ impl Boxes {
         for (index, sampler) in own(compiled).filter(|(_, sampler)| sampler.mixes) {
             let base = self.levels[index].of(self.current, self.edges.denominator.of(self.current), sampler);
             let of = (&context.draw.units[sampler.index], sampler, &base);
-            let work = (&mut **quads, &mut **placing);
-            if !fetches::<FMA, false>(batch, of, None, None, reciprocals, short, work, &mut reads[index]) {
+            let work = (&mut **short, &mut **quads, &mut **placing);
+            if !fetches(batch, of, None, (reciprocals, None), work, &mut reads[index]) {
                 return false;
             }
         }

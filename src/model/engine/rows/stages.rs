@@ -6,7 +6,7 @@
 
 use super::dependent::{BlockQuads, DefinedTriangle};
 use super::dot::{self, Floats};
-use super::fetch::{self, Workspace};
+use super::fetch::Workspace;
 use super::kernels::{Lanes, PerLane};
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
@@ -303,9 +303,6 @@ pub(super) fn run<const FMA: bool>(
     workshop.is_remapped.fill(false);
     let lanes = work.lanes;
     let mut dotted = [false; TEXTURE_UNITS];
-    if shader.kills {
-        varying.alive.fill(true);
-    }
     for (index, stage) in shader.stages.iter().enumerate().filter(|(_, stage)| stage.runs) {
         if stage.dots {
             dot_product((job.compiled, lanes), shader, index, &mut dotted, workshop, rows);
@@ -336,8 +333,7 @@ pub(super) fn run<const FMA: bool>(
             }
             ShaderOperation::Sample => {
                 let Some(at) = stage.sampler else { continue };
-                fetch::sample_unit(job, at, varying, work, rows);
-                fetch::drop_keyed(&job.compiled.samplers[at], work, &mut varying.alive);
+                (job.sample)(job, at, varying, work, rows);
             }
             operation => {
                 let Some(at) = stage.sampler else { continue };
@@ -423,8 +419,7 @@ pub(super) fn run<const FMA: bool>(
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
                     workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
                 }
-                fetch::sample_unit(job, at, varying, work, rows);
-                fetch::drop_keyed(sampler, work, &mut varying.alive);
+                (job.sample)(job, at, varying, work, rows);
                 if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), earlier[0]) {
                     let [products, ..] = &mut workshop.dot.scratch;
                     let red = rows[usize::from(red)].block();

@@ -181,29 +181,31 @@ fn pairs_of_near<const WIDE: bool>(deltas: &[[f64; STEP]; 4], limit: f64, out: &
     }
 }
 
-impl Setup<'_> {
-    /// Computes the taps of a batch.
-    #[inline(always)]
-    pub(super) fn taps<const FMA: bool, const ROW: bool>(
-        &self,
-        batch: PixelBatch<'_>,
-        (sampler, planes): (&Sampler, &Planes),
-        local: &BatchSetup,
-        quads: &mut Quads,
-        footprints: &mut Footprints,
-    ) {
-        let unit = &self.context.draw.units[sampler.index];
-        let Footprints { pairs, known } = footprints;
-        let Some(base) = self.base_level::<FMA, ROW>(batch, (sampler, planes), local) else {
-            for n in 0..batch.count {
-                let quad = self.defined_quad::<PairsOfQuad>(batch, unit, batch.pixel(n));
-                Footprints::set(pairs, batch.lane + n, &quad);
-            }
-            return;
-        };
-        let spread = self.of_quads::<FMA, ROW, PairsOfQuad>(batch, (unit, &base), &local.e, quads, known);
-        spread.each(quads, batch.count, |n, quad| Footprints::set(pairs, batch.lane + n, &known.each[quad]));
-    }
+/// [`taps`], compiled for an instruction set.
+pub(super) type FindTaps =
+    fn(&Setup<'_>, PixelBatch<'_>, (&Sampler, &Planes), &BatchSetup, &mut Quads, &mut Footprints);
+
+/// Computes the taps of a batch.
+#[inline(always)]
+pub(super) fn taps<const FMA: bool>(
+    setup: &Setup<'_>,
+    batch: PixelBatch<'_>,
+    (sampler, planes): (&Sampler, &Planes),
+    local: &BatchSetup,
+    quads: &mut Quads,
+    footprints: &mut Footprints,
+) {
+    let unit = &setup.context.draw.units[sampler.index];
+    let Footprints { pairs, known } = footprints;
+    let Some(base) = setup.base_level::<FMA>(batch, (sampler, planes), local) else {
+        for n in 0..batch.count {
+            let quad = setup.defined_quad::<PairsOfQuad>(batch, unit, batch.pixel(n));
+            Footprints::set(pairs, batch.lane + n, &quad);
+        }
+        return;
+    };
+    let spread = setup.of_quads::<FMA, PairsOfQuad>(batch, (unit, &base), &local.e, quads, known);
+    spread.each(quads, batch.count, |n, quad| Footprints::set(pairs, batch.lane + n, &known.each[quad]));
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::depth::{UNKNOWN, word};
+use super::direction::FindCoordinates;
 use super::direction::positive;
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
@@ -123,6 +124,7 @@ impl Setup<'_> {
     #[inline(always)]
     pub(super) fn thirds<const FMA: bool, const ROW: bool>(
         &self,
+        coordinates: FindCoordinates,
         batch: PixelBatch<'_>,
         (compiled, planes): (&CompiledDraw, &[ThirdPlanes]),
         (local, reciprocals): (&BatchSetup, &Reciprocals),
@@ -135,7 +137,7 @@ impl Setup<'_> {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
                     let work = (&mut *short, &mut *whole);
                     let local = (local, reciprocals);
-                    self.coordinates::<FMA, ROW>(batch, (counts, planes), local, (&mut *layers, &mut *faces), work);
+                    coordinates(self, batch, (counts, planes), local, (&mut *layers, &mut *faces), work);
                     let (layers, faces) = (&mut layers[0][batch.lanes()], &mut faces[batch.lanes()]);
                     axis.reduce(layers);
                     for (face, layer) in faces.iter_mut().zip(layers) {

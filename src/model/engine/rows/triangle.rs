@@ -5,15 +5,17 @@ use super::color::{colors, narrow, narrow_weights};
 use super::compiled::{CompiledDraw, Reason, Reasons, Sampler};
 use super::dda::{DdaRow, break_dda_ties, widen};
 use super::depth::Steps;
+use super::direction::FindCoordinates;
 use super::direction::{only_face, positive};
 use super::fog::Fog;
 use super::kernels::PerLane;
-use super::levels::{MipFetches, Placing};
+use super::levels::{Fetches, FindLevels, MipFetches, Placing};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
 use super::quotient::Reciprocals;
 use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
+use super::taps::FindTaps;
 use super::taps::Footprints;
 use super::third::{ThirdPlanes, set_thirds};
 use crate::engine::context::TriangleContext;
@@ -25,7 +27,7 @@ use crate::texture::planned::Image;
 pub(super) type Functions = (Vec<Planes>, Vec<ThirdPlanes>);
 
 /// The functions of all attributes of a triangle.
-pub(super) struct Interpolators<'a> {
+pub(crate) struct Interpolators<'a> {
     pub(super) setup: Setup<'a>,
     /// 256 b0 and 256 b2, if a colour varies.
     pub(super) weights: Option<[Plane; 2]>,
@@ -39,7 +41,7 @@ pub(super) struct Interpolators<'a> {
 
 /// Results of a block's batches, in its lanes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Varying {
+pub(crate) struct Varying {
     /// u and v of each sampler in 1/256 texel, less half a texel if it filters.
     pub(super) coordinates: [[PerLane<i32>; 2]; TEXTURE_UNITS],
     /// Faces of cube maps or layers of volumes.
@@ -79,6 +81,15 @@ impl Varying {
     }
 }
 
+/// Parts of the interpolators that other parts call, compiled for an instruction set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InterpolatorKernels {
+    pub(super) coordinates: FindCoordinates,
+    pub(super) levels: FindLevels,
+    pub(super) fetches: Fetches,
+    pub(super) taps: FindTaps,
+}
+
 /// Returns whether a sampler without levels needs more than quotients by D. `finite` says that planes lose the finite amount (INT-4t).
 #[inline(always)]
 fn is_general(sampler: &Sampler, planes: &Planes, finite: bool) -> bool {
@@ -87,9 +98,7 @@ fn is_general(sampler: &Sampler, planes: &Planes, finite: bool) -> bool {
 }
 
 impl<'a> Interpolators<'a> {
-    /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns. Not inlined: copies for each instruction set
-    /// and caller would not be faster.
-    #[inline(never)]
+    /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns.
     pub(super) fn new(
         context: &'a TriangleContext<'a>,
         compiled: &CompiledDraw,
@@ -207,7 +216,7 @@ impl<'a> Interpolators<'a> {
     pub(super) fn interpolate<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
-        compiled: &CompiledDraw,
+        (compiled, kernels): (&CompiledDraw, &InterpolatorKernels),
         textures: &[Image<'_, i32>],
         varying: &mut Varying,
         rows: &mut [PerLane<i16>],
@@ -219,7 +228,7 @@ impl<'a> Interpolators<'a> {
             }
         }
         if !(ROW && varying.dda.complete) {
-            self.estimated::<FMA, ROW>(batch, compiled, varying, rows);
+            self.estimated::<FMA, ROW>(batch, (compiled, kernels), varying, rows);
         }
         colors(self.setup.context, compiled, batch.inside::<ROW>(), &varying.narrow, rows);
         if compiled.samples_pixels {
@@ -244,7 +253,7 @@ impl<'a> Interpolators<'a> {
     fn estimated<const FMA: bool, const ROW: bool>(
         &self,
         batch: PixelBatch<'_>,
-        compiled: &CompiledDraw,
+        (compiled, kernels): (&CompiledDraw, &InterpolatorKernels),
         varying: &mut Varying,
         rows: &mut [PerLane<i16>],
     ) {
@@ -275,13 +284,13 @@ impl<'a> Interpolators<'a> {
             }
             if sampler.mixes {
                 let Varying { reads, quads, placing, short, coordinates, dda, reciprocals, .. } = &mut *varying;
-                let work = (&mut **quads, &mut **placing);
+                let work = (&mut **short, &mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
                 let lanes = || batch.lanes();
                 let floors =
                     (ROW && dda.samplers[n].1).then(|| [&coordinates[n][0][lanes()], &coordinates[n][1][lanes()]]);
-                let local = (local, &*reciprocals);
-                setup.levels::<FMA, ROW>(batch, (sampler, planes), floors, local, short, work, reads);
+                let known = (local, &*reciprocals, floors);
+                (kernels.levels)(setup, kernels.fetches, batch, (sampler, planes), known, work, reads);
             } else if let (Planes::Plane(planes), false) = (planes, finite || ROW && varying.dda.samplers[n].1) {
                 let Varying { coordinates, whole, reciprocals, .. } = &mut *varying;
                 let lanes = batch.lanes();
@@ -297,20 +306,20 @@ impl<'a> Interpolators<'a> {
             if is_general(sampler, planes, finite) {
                 let Varying { coordinates, faces, whole, short, reciprocals, .. } = &mut *varying;
                 let (out, work) = ((&mut coordinates[n], &mut faces[n]), (&mut **short, &mut whole[0]));
-                setup.coordinates::<FMA, ROW>(batch, (sampler, planes), (local, reciprocals), out, work);
+                (kernels.coordinates)(setup, batch, (sampler, planes), (local, reciprocals), out, work);
             }
         }
         if compiled.estimates {
             let Varying { quads, footprints, .. } = &mut *varying;
             for ((sampler, planes), taps) in compiled.samplers.iter().zip(&self.samplers).zip(footprints) {
                 if sampler.pairs > 0 {
-                    setup.taps::<FMA, ROW>(batch, (sampler, planes), local, quads, taps);
+                    (kernels.taps)(setup, batch, (sampler, planes), local, quads, taps);
                 }
             }
             let Varying { faces, references, layers, whole, short, reciprocals, .. } = &mut *varying;
             let (planes, local) = ((compiled, &*self.thirds), (local, &*reciprocals));
             let (out, work) = (([&mut faces[..], &mut references[..]], layers), (&mut **short, &mut whole[0]));
-            setup.thirds::<FMA, ROW>(batch, planes, local, out, work);
+            setup.thirds::<FMA, ROW>(kernels.coordinates, batch, planes, local, out, work);
         }
         // What stages of a texture shader do not read is computed for covered pixels only.
         let inside;
