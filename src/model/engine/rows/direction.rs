@@ -177,7 +177,12 @@ impl CubeDirection {
         let lanes = batch.lanes();
         let [u, v] = numbers;
         let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
-        directions::<FMA>(batch.at, self.lines, (self.error, size, offset), u, v, faces)
+        let about = (self.error, size, offset);
+        if batch.is_row() {
+            directions::<FMA, true>(batch.at, self.lines, about, u, v, faces)
+        } else {
+            directions::<FMA, false>(batch.at, self.lines, about, u, v, faces)
+        }
     }
 }
 
@@ -419,7 +424,7 @@ impl Setup<'_> {
 /// The loop of [`CubeDirection::directions`]. It takes the largest error of a component, half the face's size in 1/256 texel, and what is
 /// subtracted from coordinates.
 #[inline(always)]
-fn directions<const FMA: bool>(
+fn directions<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     lines: [Line; 3],
     (error, size, offset): (f64, f64, f64),
@@ -432,9 +437,9 @@ fn directions<const FMA: bool>(
     let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
     for n in 0..lanes {
         let (column, row) = (f64::from(i32::from(columns[n]).min(at.last)), f64::from(rows[n]));
-        let x = lines[0].at::<FMA, false>(column, row);
-        let y = lines[1].at::<FMA, false>(column, row);
-        let z = lines[2].at::<FMA, false>(column, row);
+        let x = lines[0].at::<FMA, ROW>(column, row);
+        let y = lines[1].at::<FMA, ROW>(column, row);
+        let z = lines[2].at::<FMA, ROW>(column, row);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let (more, less) = (if ax > ay { ax } else { ay }, if ax > ay { ay } else { ax });
         let (magnitude, rest) = (if more > az { more } else { az }, if more > az { az } else { more });

@@ -1,6 +1,6 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
-use super::filter::{Footprint, Vectors, filter, filter_half, filter_one};
+use super::filter::{Filter, Footprint, filter_half, filter_one};
 use super::kernels::{LANES, Lanes, PerLane};
 use super::levels::MipFetches;
 use super::store;
@@ -59,16 +59,16 @@ pub(super) fn sample_unit(
     let at = sampler.shares.unwrap_or(n);
     if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
         let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
-        sample_levels(job.vectors, table, reads, both, signed, wanted, work, rows);
+        sample_levels(job.filter, table, reads, both, signed, wanted, work, rows);
         return;
     }
     if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
-        sample_taps(job.vectors, table, &varying.coordinates[n], &footprints.pairs, signed, wanted, work, rows);
+        sample_taps(job.filter, table, &varying.coordinates[n], &footprints.pairs, signed, wanted, work, rows);
         return;
     }
     let faces = sampler.has_images().then_some(&varying.faces[n]);
     locate(table, &mut varying.coordinates[at], faces, work);
-    sample(job.vectors, table, &varying.coordinates[at], &varying.references[n], signed, wanted, work, rows);
+    sample(job.filter, table, &varying.coordinates[at], &varying.references[n], signed, wanted, work, rows);
 }
 
 /// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
@@ -97,7 +97,7 @@ pub(super) fn locate(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
-    vectors: Vectors,
+    filter: Filter,
     table: &Table,
     at: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
@@ -106,7 +106,7 @@ pub(super) fn sample(
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
 ) {
-    if texels(vectors, table, at, references, signed, wanted, work, rows) {
+    if texels(filter, table, at, references, signed, wanted, work, rows) {
         load(work.lanes, signed, wanted, rows);
     }
 }
@@ -115,7 +115,7 @@ pub(super) fn sample(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn texels(
-    vectors: Vectors,
+    filter: Filter,
     table: &Table,
     [u, v]: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
@@ -168,7 +168,7 @@ fn texels(
         }
         Texels::Footprints(texels) => {
             fetch_footprints(lanes, texels, entries, footprints);
-            filter((vectors, lanes), footprints, u, v, red, green, blue, alpha);
+            filter(lanes, footprints, u, v, [red, green, blue, alpha]);
         }
     }
     true
@@ -178,7 +178,7 @@ fn texels(
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn sample_taps(
-    vectors: Vectors,
+    filter: Filter,
     table: &Table,
     at: &[PerLane<i32>; 2],
     pairs: &[Pair],
@@ -208,7 +208,7 @@ fn sample_taps(
     let mut sums = [[0_u16; BLOCK]; 4];
     for (pair, side) in taps {
         let at = tap(table, at, (pair, side), work);
-        texels(vectors, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
+        texels(filter, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
         let weights = pair.weights.block();
         for (sums, wanted) in sums.iter_mut().zip(wanted) {
             let Some(wanted) = wanted else { continue };
@@ -266,7 +266,7 @@ pub(super) fn drop_keyed(sampler: &Sampler, work: &Workspace, alive: &mut [bool]
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn sample_levels(
-    vectors: Vectors,
+    filter: Filter,
     table: &Table,
     reads: &MipFetches,
     both: bool,
@@ -304,12 +304,11 @@ fn sample_levels(
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let (u, v) = reads.of_level(0, lanes, entries);
     fetch_footprints(lanes, texels, entries, footprints);
-    filter((vectors, lanes), footprints, u, v, red, green, blue, alpha);
+    filter(lanes, footprints, u, v, [red, green, blue, alpha]);
     if both {
         let (u, v) = reads.of_level(1, lanes, entries);
         fetch_footprints(lanes, texels, entries, footprints);
-        let [next_red, next_green, next_blue, next_alpha] = next;
-        filter((vectors, lanes), footprints, u, v, next_red, next_green, next_blue, next_alpha);
+        filter(lanes, footprints, u, v, next.each_mut());
         for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
             if wanted.is_some() {
                 mix(lanes, channel, next, weights);

@@ -8,45 +8,18 @@ use crate::texture::filter::{bilinear, lerp};
 /// The upper and the lower left texel, and the upper and the lower right one.
 pub(super) type Footprint = [u32; 4];
 
-/// The vectors that the filter of several channels uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Vectors {
-    /// Those that the compiler finds.
-    #[default]
-    Portable,
-    /// Those of AVX2, if the machine has them.
-    Avx2,
-    /// Those of AVX-512, if the machine has them.
-    Avx512,
-}
+/// TEX-6 of four channels, compiled for an instruction set: footprints, u and v, and the channels.
+pub(super) type Filter = fn(Lanes, &[Footprint; BLOCK], &[i32; BLOCK], &[i32; BLOCK], [&mut [i16; BLOCK]; 4]);
 
-/// TEX-6 of four channels.
+/// TEX-6 of four channels by the vectors that the compiler finds.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "each result apart, so that the compiler sees that none overlaps another")]
-pub(super) fn filter(
-    (vectors, lanes): (Vectors, Lanes),
+pub(super) fn filter<const FMA: bool>(
+    lanes: Lanes,
     footprints: &[Footprint; BLOCK],
     u: &[i32; BLOCK],
     v: &[i32; BLOCK],
-    red: &mut [i16; BLOCK],
-    green: &mut [i16; BLOCK],
-    blue: &mut [i16; BLOCK],
-    alpha: &mut [i16; BLOCK],
+    [red, green, blue, alpha]: [&mut [i16; BLOCK]; 4],
 ) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        let channels = [&mut *red, &mut *green, &mut *blue, &mut *alpha];
-        let done = match vectors {
-            Vectors::Portable => false,
-            Vectors::Avx2 => x86::filter_256(lanes, footprints, u, v, channels),
-            Vectors::Avx512 => x86::filter_512(lanes, footprints, u, v, channels),
-        };
-        if done {
-            return;
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = vectors;
     two_at_a_time(lanes, footprints, u, v, red, green, blue, alpha);
 }
 
@@ -120,12 +93,11 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 /// The filter of four channels in 16-bit lanes. A step is a + (b - a) w / 256, rounded, and there is an instruction that multiplies and
 /// rounds 16-bit numbers, which compilers do not find.
 #[cfg(target_arch = "x86_64")]
-mod x86 {
+pub(super) mod x86 {
     use super::BLOCK;
     use crate::engine::rows::filter::Footprint;
     use crate::engine::rows::kernels::Lanes;
-    use multiversion::multiversion;
-    use multiversion::target::match_target;
+    use multiversion::target;
     use std::arch::x86_64::*;
 
     /// Number of footprints that are filtered at a time.
@@ -134,34 +106,24 @@ mod x86 {
     /// For each pair of weights: the low bytes of four numbers, twice each, as high bytes.
     const TWICE: [i8; 16] = [-1, 0, -1, 0, -1, 4, -1, 4, -1, 8, -1, 8, -1, 12, -1, 12];
 
-    /// Defines a filter, which returns `false` and writes nothing if the machine lacks the instruction set.
+    /// Defines a [filter](super::Filter).
     macro_rules! filter {
         ($name:ident, $target:literal, $steps:ident) => {
-            #[multiversion(targets($target))]
-            pub(super) fn $name(
+            #[target($target)]
+            pub(in crate::engine::rows) fn $name(
                 lanes: Lanes,
                 footprints: &[Footprint; BLOCK],
                 u: &[i32; BLOCK],
                 v: &[i32; BLOCK],
-                channels: [&mut [i16; BLOCK]; 4],
-            ) -> bool {
-                match_target! {
-                    $target => {
-                        let [red, green, blue, alpha] = channels;
-                        let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
-                        let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
-                        let footprints = footprints.as_chunks::<STEP>().0;
-                        let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
-                        for n in 0..lanes.count() / STEP {
-                            let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
-                            $steps(&footprints[n], &u[n], &v[n], outs);
-                        }
-                        true
-                    }
-                    _ => {
-                        let _ = (lanes, footprints, u, v, channels);
-                        false
-                    }
+                [red, green, blue, alpha]: [&mut [i16; BLOCK]; 4],
+            ) {
+                let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
+                let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
+                let footprints = footprints.as_chunks::<STEP>().0;
+                let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
+                for n in 0..lanes.count() / STEP {
+                    let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
+                    $steps(&footprints[n], &u[n], &v[n], outs);
                 }
             }
         };
@@ -321,6 +283,8 @@ mod x86 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Isa;
+    use crate::state::Named;
 
     /// Filters of all kinds against the rule: every weight, with corners of which many are 0 or 255.
     #[test]
@@ -336,18 +300,20 @@ mod tests {
             let footprints = std::array::from_fn::<_, BLOCK, _>(|_| [texel(), texel(), texel(), texel()]);
             let u = std::array::from_fn(|n| n as i32 + 256 * (round - 1000));
             let v = std::array::from_fn(|n| (n as i32 + round) ^ 0x55);
-            let out = [Vectors::Portable, Vectors::Avx2, Vectors::Avx512].map(|vectors| {
+            let out = Isa::ALL.iter().filter_map(|isa| isa.kernels()).map(|kernels| {
                 let mut out = [[0; BLOCK]; 4];
-                let [r, g, b, a] = &mut out;
-                filter((vectors, Lanes::default()), &footprints, &u, &v, r, g, b, a);
-                out
+                (kernels.filter)(Lanes::default(), &footprints, &u, &v, out.each_mut());
+                (kernels.isa, out)
             });
+            let out: Vec<_> = out.collect();
             for n in 0..BLOCK {
                 let [a, c, b, d] = footprints[n];
                 for channel in 0..4 {
                     let byte = |texel: u32| i32::from(texel.to_le_bytes()[channel]);
                     let wanted = bilinear([a, b, c, d].map(byte), u[n] & 255, v[n] & 255, |v| v) as i16;
-                    assert_eq!(out.map(|channels| channels[channel][n]), [wanted; 3], "{n} {channel}");
+                    for (isa, channels) in &out {
+                        assert_eq!(channels[channel][n], wanted, "{isa:?} {n} {channel}");
+                    }
                 }
             }
         }

@@ -1,13 +1,14 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
+use super::BLOCK;
 use super::band::{self, Block};
 use super::base_level::BaseLevel;
 use super::compiled::{CompiledDraw, Sampler};
 use super::direction;
 use super::fetch::Workspace;
-use super::filter::Vectors;
+use super::filter::{self, Footprint};
 use super::job::Job;
-use super::kernels::PerLane;
+use super::kernels::{Lanes, PerLane};
 use super::levels::{self, Fetches, Floors, MipFetches, Placing};
 use super::quads::{Exact, Quads};
 use super::quotient::Reciprocals;
@@ -70,36 +71,34 @@ impl Kernels {
         textures: &'a [Image<'a, i32>],
         triangles: &'a [u32],
     ) -> Job<'a> {
-        let Kernels { vectors, sample, coordinates, levels, fetches, taps, .. } = *self;
+        let Kernels { filter, sample, coordinates, levels, fetches, taps, .. } = *self;
         let interpolators = InterpolatorKernels { coordinates, levels, fetches, taps };
-        Job { plan, draw, compiled, textures, triangles, vectors, sample, interpolators }
+        Job { plan, draw, compiled, textures, triangles, filter, sample, interpolators }
     }
 }
 
 /// Defines the engine's parts for each instruction set. They are separate functions, so that the code of one loop does not depend on the
 /// number of loops in the same function, and so that those with several callers are compiled once for each set. The constant tells each
-/// part whether the set has fused multiply-add.
+/// part whether the set has fused multiply-add, and the path names its filter.
 macro_rules! kernels {
-    ({ $($version:ident: $isa:ident, $target:literal, $wide:literal, $vectors:ident;)* } $parts:tt) => {
+    ({ $($version:ident: $isa:ident, $target:literal, $wide:literal, $filter:path;)* } $parts:tt) => {
         kernels!(@parts $parts);
-        $(kernels!(@version $version, $isa, $target, $wide, $vectors, $parts);)*
+        $(kernels!(@version $version, $isa, $target, $wide, $filter, $parts);)*
     };
     (@parts { $(fn $module:ident::$part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
         /// The engine's parts, compiled for an instruction set that this machine has. What calls them is compiled once.
         #[derive(Clone, Copy, Debug)]
         pub(crate) struct Kernels {
             pub(crate) isa: Isa,
-            /// Vectors that the instruction set has.
-            pub(super) vectors: Vectors,
             $(pub(super) $part: fn($($type),*) $(-> $out)?,)*
         }
 
         impl Kernels {
             pub(crate) const BASELINE: Kernels =
-                Kernels { isa: Isa::Baseline, vectors: Vectors::Portable, $($part: $module::$part::<false>,)* };
+                Kernels { isa: Isa::Baseline, $($part: $module::$part::<false>,)* };
         }
     };
-    (@version $version:ident, $isa:ident, $target:literal, $wide:literal, $vectors:ident,
+    (@version $version:ident, $isa:ident, $target:literal, $wide:literal, $filter:path,
         { $(fn $module:ident::$part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
         mod $version {
             use super::*;
@@ -112,7 +111,7 @@ macro_rules! kernels {
             #[multiversion(targets($target))]
             pub(super) fn kernels() -> Option<Kernels> {
                 match_target! {
-                    $target => Some(Kernels { isa: Isa::$isa, vectors: Vectors::$vectors, $($part,)* }),
+                    $target => Some(Kernels { filter: $filter, ..Kernels { isa: Isa::$isa, $($part,)* } }),
                     _ => None,
                 }
             }
@@ -122,9 +121,9 @@ macro_rules! kernels {
 
 kernels! {
     {
-        v2: V2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false, Portable;
-        v3: V3, "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, Avx2;
-        v4: V4, "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, Avx512;
+        v2: V2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false, filter;
+        v3: V3, "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, filter::x86::filter_256;
+        v4: V4, "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true, filter::x86::filter_512;
     }
     {
         fn band::begin(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>);
@@ -145,6 +144,7 @@ kernels! {
         fn band::box_attributes(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         fn band::row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         fn band::box_depths(first: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
+        fn filter::filter(lanes: Lanes, footprints: &[Footprint; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], channels: [&mut [i16; BLOCK]; 4]);
         fn band::sample(job: &Job<'_>, sampler: usize, varying: &mut Varying, work: &mut Workspace, rows: &mut [PerLane<i16>]);
         fn band::shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }

@@ -2,7 +2,7 @@
 
 use super::compiled::CompiledDraw;
 use super::fetch::SampleUnit;
-use super::filter::Vectors;
+use super::filter::Filter;
 use super::triangle::InterpolatorKernels;
 use crate::plan::{Plan, PlannedDraw};
 use crate::texture::planned::Image;
@@ -16,8 +16,7 @@ pub(crate) struct Job<'a> {
     pub(crate) textures: &'a [Image<'a, i32>],
     /// Numbers of the triangles that may cover pixels, in order.
     pub(crate) triangles: &'a [u32],
-    /// Vectors that the instruction set has.
-    pub(super) vectors: Vectors,
+    pub(super) filter: Filter,
     pub(super) sample: SampleUnit,
     pub(super) interpolators: InterpolatorKernels,
 }
