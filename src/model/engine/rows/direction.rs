@@ -335,11 +335,8 @@ impl Setup<'_> {
         if !proves {
             return false;
         }
-        if batch.is_row() {
-            short.keep::<FMA, true>(batch.at, lines, losses);
-        } else {
-            short.keep::<FMA, false>(batch.at, lines, losses);
-        }
+        let [at_u, at_v] = &mut short.at;
+        short.dominance.divide_batch::<FMA>(batch, lines, losses, -0.5, [at_u, at_v]);
         let (lanes, [u, v], Short { at, close, .. }) = (batch.at.x.len(), &mut *numbers, short);
         close[..lanes].fill(0);
         if smallest > 0.0 {
@@ -391,7 +388,7 @@ impl Setup<'_> {
         widest: f64,
         margin: f64,
         local: &BatchSetup,
-        Short { reciprocals: divided, .. }: &mut Short,
+        short: &mut Short,
         numbers: &mut [PerLane<i32>; 2],
         faces: &mut PerLane<u32>,
     ) -> bool {
@@ -403,11 +400,8 @@ impl Setup<'_> {
             return false;
         };
         let [u, v] = numbers;
-        if batch.is_row() {
-            divided.set::<FMA, true>(batch.at, m);
-        } else {
-            divided.set::<FMA, false>(batch.at, m);
-        }
+        short.set_reciprocals::<FMA>(batch, m);
+        let divided = &short.reciprocals;
         let close = divided.estimate::<FMA, false>([along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
         if close[0] | close[1] {
             for n in 0..batch.count {

@@ -128,7 +128,7 @@ impl Drawing<'_, '_> {
     /// Draws a triangle by two rows at a time, with all pixels of the quads that it meets.
     fn quads(&mut self, window: Window, interpolators: &Interpolators<'_>) {
         let (kernels, job, context) = (self.kernels, self.job, interpolators.setup.context);
-        interpolators.begin_row((window.1.0, window.0.0), 0, job.compiled, &mut self.block.varying);
+        (kernels.begin_row)((window.1.0, window.0.0), 0, interpolators, job, self.block);
         for top in (window.0.0 & !1..window.0.1).step_by(2) {
             let spans = spans_of_quads(&context.triangle, top, window);
             let (mut low, high) = columns_of_quads(spans);

@@ -216,24 +216,14 @@ pub(super) fn fetches<const FMA: bool>(
             Some(losses) => {
                 let [at_u, at_v] = at;
                 let out: [&mut [f64]; 2] = [&mut *at_u, &mut *at_v];
-                if batch.is_row() {
-                    short.dominance.divide::<FMA, true>(batch.at, lines, losses, 0.0, out);
-                } else {
-                    short.dominance.divide::<FMA, false>(batch.at, lines, losses, 0.0, out);
-                }
+                short.dominance.divide_batch::<FMA>(batch, lines, losses, 0.0, out);
                 settle(&at_u[..lanes], &at_v[..lanes], settled, u, v, close);
             }
             None => {
-                let reciprocals = if base.by_d {
-                    reciprocals
-                } else {
-                    if batch.is_row() {
-                        short.reciprocals.set::<FMA, true>(batch.at, base.denominator);
-                    } else {
-                        short.reciprocals.set::<FMA, false>(batch.at, base.denominator);
-                    }
-                    &short.reciprocals
-                };
+                if !base.by_d {
+                    short.set_reciprocals::<FMA>(batch, base.denominator);
+                }
+                let reciprocals = if base.by_d { reciprocals } else { &short.reciprocals };
                 quotients::<FMA>(reciprocals.lanes(lanes), [base.along, base.down], settled, u, v, close);
             }
         }

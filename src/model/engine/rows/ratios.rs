@@ -137,7 +137,9 @@ impl Ratios {
     ) -> bool {
         let lines = [self.lines[0].of(n), self.lines[1].of(n), self.lines[2].of(n)];
         let of = |losses: &[Each<f64>; 2]| [losses[0][n], losses[1][n]];
-        short.keep::<FMA, false>(at, lines, [of(&self.losses[0]), of(&self.losses[1]), of(&self.losses[2])]);
+        let losses = [of(&self.losses[0]), of(&self.losses[1]), of(&self.losses[2])];
+        let [at_u, at_v] = &mut short.at;
+        short.dominance.divide::<FMA, false>(at, lines, losses, -0.5, [at_u, at_v]);
         let (lanes, Short { at, close, .. }) = (u.len(), short);
         close[..lanes].fill(0);
         floors(&at[0][..lanes], self.margin[n], bias, close, u);

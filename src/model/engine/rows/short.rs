@@ -266,17 +266,34 @@ impl Dominance {
     }
 }
 
-impl Short {
-    /// Computes [`Dominance::divide`] less a half and keeps the results in [`at`](Self::at).
+impl Dominance {
+    /// Computes [`divide`](Self::divide) for a row or a box.
     #[inline(always)]
-    pub(super) fn keep<const FMA: bool, const ROW: bool>(
-        &mut self,
-        at: Positions<'_>,
+    pub(super) fn divide_batch<const FMA: bool>(
+        &self,
+        batch: PixelBatch<'_>,
         functions: [Line; 3],
         losses: [Losses; 3],
+        plus: f64,
+        out: [&mut [f64]; 2],
     ) {
-        let [u, v] = &mut self.at;
-        self.dominance.divide::<FMA, ROW>(at, functions, losses, -0.5, [u, v]);
+        if batch.is_row() {
+            self.divide::<FMA, true>(batch.at, functions, losses, plus, out);
+        } else {
+            self.divide::<FMA, false>(batch.at, functions, losses, plus, out);
+        }
+    }
+}
+
+impl Short {
+    /// Sets its reciprocals to those of a row or a box.
+    #[inline(always)]
+    pub(super) fn set_reciprocals<const FMA: bool>(&mut self, batch: PixelBatch<'_>, denominator: Line) {
+        if batch.is_row() {
+            self.reciprocals.set::<FMA, true>(batch.at, denominator);
+        } else {
+            self.reciprocals.set::<FMA, false>(batch.at, denominator);
+        }
     }
 }
 

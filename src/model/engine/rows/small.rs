@@ -100,8 +100,8 @@ impl Boxes {
         }
     }
 
-    /// Finds the pixels of the boxes, and sets up their depths and, for a plain draw, all other functions. `width` is as in [`cover`](Self::cover). Contexts need not be
-    /// [placed](TriangleContext::place).
+    /// Finds the pixels of the boxes, and sets up their depths and, for a plain draw, all other functions. `width` is as in
+    /// [`cover`](Self::cover). Contexts need not be [placed](TriangleContext::place).
     #[inline(always)]
     pub(super) fn set_up<const FMA: bool>(
         &mut self,

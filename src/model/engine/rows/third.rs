@@ -3,8 +3,7 @@
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
 use super::depth::{UNKNOWN, word};
-use super::direction::FindCoordinates;
-use super::direction::positive;
+use super::direction::{FindCoordinates, positive};
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
 use super::quotient::{IOTA_REAL, Line, Positions, Reciprocals, SLACK, floor, nearest, position};

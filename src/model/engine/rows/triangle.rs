@@ -5,8 +5,7 @@ use super::color::{colors, narrow, narrow_weights};
 use super::compiled::{CompiledDraw, Reason, Reasons, Sampler};
 use super::dda::{DdaRow, break_dda_ties, widen};
 use super::depth::Steps;
-use super::direction::FindCoordinates;
-use super::direction::{only_face, positive};
+use super::direction::{FindCoordinates, only_face, positive};
 use super::fog::Fog;
 use super::kernels::PerLane;
 use super::levels::{Fetches, FindLevels, MipFetches, Placing};
@@ -15,8 +14,7 @@ use super::quads::Quads;
 use super::quotient::Reciprocals;
 use super::setup::{PixelBatch, Planes, Setup};
 use super::short::Short;
-use super::taps::FindTaps;
-use super::taps::Footprints;
+use super::taps::{FindTaps, Footprints};
 use super::third::{ThirdPlanes, set_thirds};
 use crate::engine::context::TriangleContext;
 use crate::state::TEXTURE_UNITS;
@@ -53,7 +51,7 @@ pub(crate) struct Varying {
     /// Depths, if they are tested.
     pub(super) depth: PerLane<u32>,
     pub(super) depth_steps: Box<Steps>,
-    /// Whether the texture shader keeps the pixel.
+    /// Whether the texture units keep the pixel. They keep all between two blocks.
     pub(super) alive: PerLane<bool>,
     /// Fetches of samplers with levels, as many as needed.
     pub(super) reads: Vec<MipFetches>,
