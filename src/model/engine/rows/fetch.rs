@@ -1,6 +1,6 @@
 //! TEX-5, TEX-7 to TEX-9 on rows: addresses of table entries, and fetches of texels.
 
-use super::filter::{Filter, Footprint, filter_half, filter_one};
+use super::filter::{Filter, Footprint, GROUP, fetch_footprints, filter_half, filter_one};
 use super::kernels::{LANES, Lanes, PerLane};
 use super::levels::MipFetches;
 use super::store;
@@ -167,8 +167,7 @@ fn texels(
             filter_one(lanes, found, u, v, out);
         }
         Texels::Footprints(texels) => {
-            fetch_footprints(lanes, texels, entries, footprints);
-            filter(lanes, footprints, u, v, [red, green, blue, alpha]);
+            filter(lanes, texels, entries, [u, v], footprints, [red, green, blue, alpha]);
         }
     }
     true
@@ -248,12 +247,12 @@ static NO_REFERENCES: PerLane<u32> = PerLane([0; LANES]);
 /// KEY-1: drops lanes whose single texel, on the only level that is read, equals the sampler's key in the compared bits.
 #[inline(always)]
 pub(super) fn drop_keyed(sampler: &Sampler, work: &Workspace, alive: &mut [bool]) {
-    let Some((key, mask)) = sampler.key else { return };
+    let (Some((key, mask)), Some(table)) = (sampler.key, &sampler.table) else { return };
     let differs = |texel: u32| texel & mask != key;
     // Separate loops, because compilers do not take the choice out of one.
-    if sampler.mixes {
-        for (alive, [texel, ..]) in alive.iter_mut().zip(&work.footprints) {
-            *alive &= differs(*texel);
+    if let Texels::Levels(columns) | Texels::WideLevels(columns) = &table.texels {
+        for (alive, entry) in alive.iter_mut().zip(&work.entries[..work.lanes.count()]) {
+            *alive &= differs(columns[*entry as usize][0]);
         }
     } else {
         for (alive, texel) in alive.iter_mut().zip(&work.texels) {
@@ -303,12 +302,10 @@ fn sample_levels(
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let (u, v) = reads.of_level(0, lanes, entries);
-    fetch_footprints(lanes, texels, entries, footprints);
-    filter(lanes, footprints, u, v, [red, green, blue, alpha]);
+    filter(lanes, texels, entries, [u, v], footprints, [red, green, blue, alpha]);
     if both {
         let (u, v) = reads.of_level(1, lanes, entries);
-        fetch_footprints(lanes, texels, entries, footprints);
-        filter(lanes, footprints, u, v, next.each_mut());
+        filter(lanes, texels, entries, [u, v], footprints, next.each_mut());
         for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
             if wanted.is_some() {
                 mix(lanes, channel, next, weights);
@@ -379,25 +376,6 @@ fn fetch(lanes: Lanes, texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32;
     for (entries, found) in entries.as_chunks::<GROUP>().0.iter().zip(found.as_chunks_mut::<GROUP>().0) {
         for n in 0..GROUP {
             found[n] = texels[entries[n] as usize];
-        }
-    }
-}
-
-/// Number of texels or footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
-const GROUP: usize = 4;
-
-/// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
-#[inline(never)]
-fn fetch_footprints(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], found: &mut [Footprint; BLOCK]) {
-    let (entries, found) = (&entries[..lanes.count()], &mut found[..lanes.count()]);
-    let Some(count) = columns.len().checked_sub(1) else { return };
-    let (left, right) = (&columns[..count], &columns[1..]);
-    let (entries, found) = (entries.as_chunks::<GROUP>().0, found.as_chunks_mut::<GROUP>().0);
-    for (entries, found) in entries.iter().zip(found) {
-        for n in 0..GROUP {
-            let at = entries[n] as usize;
-            let ([a, c], [b, d]) = (left[at], right[at]);
-            found[n] = [a, c, b, d];
         }
     }
 }

@@ -1,25 +1,53 @@
-//! TEX-6 on rows: the filter of footprints.
+//! TEX-6 on rows: footprints and their filter.
 
 use super::BLOCK;
 use super::kernels::Lanes;
+use super::table::Column;
 use crate::number::Swar2;
 use crate::texture::filter::{bilinear, lerp};
 
 /// The upper and the lower left texel, and the upper and the lower right one.
 pub(super) type Footprint = [u32; 4];
 
-/// TEX-6 of four channels, compiled for an instruction set: footprints, u and v, and the channels.
-pub(super) type Filter = fn(Lanes, &[Footprint; BLOCK], &[i32; BLOCK], &[i32; BLOCK], [&mut [i16; BLOCK]; 4]);
+/// TEX-6 of four channels, compiled for an instruction set: columns of texels, the entries that are read, u and v, scratch space, and the channels.
+pub(super) type Filter =
+    fn(Lanes, &[Column], &[u32; BLOCK], [&[i32; BLOCK]; 2], &mut [Footprint; BLOCK], [&mut [i16; BLOCK]; 4]);
+
+/// Number of texels or footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
+pub(super) const GROUP: usize = 4;
+
+/// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
+#[inline(never)]
+pub(super) fn fetch_footprints(
+    lanes: Lanes,
+    columns: &[Column],
+    entries: &[u32; BLOCK],
+    found: &mut [Footprint; BLOCK],
+) {
+    let (entries, found) = (&entries[..lanes.count()], &mut found[..lanes.count()]);
+    let Some(count) = columns.len().checked_sub(1) else { return };
+    let (left, right) = (&columns[..count], &columns[1..]);
+    let (entries, found) = (entries.as_chunks::<GROUP>().0, found.as_chunks_mut::<GROUP>().0);
+    for (entries, found) in entries.iter().zip(found) {
+        for n in 0..GROUP {
+            let at = entries[n] as usize;
+            let ([a, c], [b, d]) = (left[at], right[at]);
+            found[n] = [a, c, b, d];
+        }
+    }
+}
 
 /// TEX-6 of four channels by the vectors that the compiler finds.
 #[inline(always)]
 pub(super) fn filter<const FMA: bool>(
     lanes: Lanes,
-    footprints: &[Footprint; BLOCK],
-    u: &[i32; BLOCK],
-    v: &[i32; BLOCK],
+    columns: &[Column],
+    entries: &[u32; BLOCK],
+    [u, v]: [&[i32; BLOCK]; 2],
+    footprints: &mut [Footprint; BLOCK],
     [red, green, blue, alpha]: [&mut [i16; BLOCK]; 4],
 ) {
+    fetch_footprints(lanes, columns, entries, footprints);
     two_at_a_time(lanes, footprints, u, v, red, green, blue, alpha);
 }
 
@@ -94,8 +122,7 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 /// rounds 16-bit numbers, which compilers do not find.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
-    use super::BLOCK;
-    use crate::engine::rows::filter::Footprint;
+    use super::{BLOCK, Column, Footprint};
     use crate::engine::rows::kernels::Lanes;
     use multiversion::target;
     use std::arch::x86_64::*;
@@ -112,18 +139,21 @@ pub(super) mod x86 {
             #[target($target)]
             pub(in crate::engine::rows) fn $name(
                 lanes: Lanes,
-                footprints: &[Footprint; BLOCK],
-                u: &[i32; BLOCK],
-                v: &[i32; BLOCK],
+                columns: &[Column],
+                entries: &[u32; BLOCK],
+                [u, v]: [&[i32; BLOCK]; 2],
+                _: &mut [Footprint; BLOCK],
                 [red, green, blue, alpha]: [&mut [i16; BLOCK]; 4],
             ) {
                 let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
                 let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
-                let footprints = footprints.as_chunks::<STEP>().0;
+                let Some(count) = columns.len().checked_sub(1) else { return };
+                let columns = (&columns[..count], &columns[1..]);
+                let entries = entries.as_chunks::<STEP>().0;
                 let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
                 for n in 0..lanes.count() / STEP {
                     let outs = [&mut red[n], &mut green[n], &mut blue[n], &mut alpha[n]];
-                    $steps(&footprints[n], &u[n], &v[n], outs);
+                    $steps(columns, &entries[n], &u[n], &v[n], outs);
                 }
             }
         };
@@ -135,7 +165,8 @@ pub(super) mod x86 {
     #[target_feature(enable = "avx2")]
     #[inline]
     fn step_256(
-        footprints: &[Footprint; STEP],
+        columns: (&[Column], &[Column]),
+        entries: &[u32; STEP],
         u: &[i32; STEP],
         v: &[i32; STEP],
         [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
@@ -149,11 +180,8 @@ pub(super) mod x86 {
             // Four vectors of the texels at the same corner.
             // The first four pixels fill the lower half.
             let two = |n: usize| {
-                let [one, other] = [n, n + 4].map(|n| {
-                    let [left, right] = columns(footprints[8 * half + n]);
-                    _mm_set_epi64x(right, left)
-                });
-                _mm256_set_m128i(other, one)
+                let n = 8 * half + n;
+                _mm256_set_m128i(fetch(columns, entries[n + 4]), fetch(columns, entries[n]))
             };
             let pairs = [0, 1, 2, 3].map(two);
             let left = [0, 2].map(|n| _mm256_unpacklo_epi32(pairs[n], pairs[n + 1]));
@@ -183,25 +211,17 @@ pub(super) mod x86 {
     #[target_feature(enable = "avx512f,avx512bw")]
     #[inline]
     fn step_512(
-        footprints: &[Footprint; STEP],
+        columns: (&[Column], &[Column]),
+        entries: &[u32; STEP],
         u: &[i32; STEP],
         v: &[i32; STEP],
         [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
     ) {
-        // Unpacking leaves pixels in the order 0 4 8 12 1 5 9 13 2 ..., in which this finds their weights; then their low and their high words.
-        const PIXELS: [i64; 8] = {
-            let (mut pixels, mut n) = ([0; 8], 0);
-            while n < 16 {
-                pixels[n / 2] |= ((n / 4 + n % 4 * 4) as i64) << (32 * (n % 2));
-                n += 1;
-            }
-            pixels
-        };
+        // Where the low and the high words of the pixels are.
         const WORDS: [i64; 8] = {
             let (mut words, mut n) = ([0; 8], 0);
             while n < 32 {
-                let pixel = n % 16;
-                let at = 2 * (pixel / 4 + pixel % 4 * 4) + n / 16;
+                let at = 2 * (n % 16) + n / 16;
                 words[n / 4] |= (at as i64) << (16 * (n % 4));
                 n += 1;
             }
@@ -210,10 +230,11 @@ pub(super) mod x86 {
         let (bytes, words) = (_mm512_set1_epi32(0x00ff_00ff), load_512(WORDS));
         let twice = _mm512_broadcast_i32x4(load_128(TWICE));
         let step = |a, b, weight| _mm512_add_epi16(a, _mm512_mulhrs_epi16(_mm512_sub_epi16(b, a), weight));
-        // Four vectors of the texels at the same corner.
+        // Four vectors of the texels at the same corner. Each quarter holds one of four pixels side by side.
         let four = |n: usize| {
-            let [[a, b], [c, d], [e, f], [g, h]] = footprints.as_chunks::<4>().0[n].map(columns);
-            load_512([a, b, c, d, e, f, g, h])
+            let [low, high] =
+                [n, n + 8].map(|n| _mm256_set_m128i(fetch(columns, entries[n + 4]), fetch(columns, entries[n])));
+            _mm512_inserti64x4::<1>(_mm512_castsi256_si512(low), high)
         };
         let fours = [0, 1, 2, 3].map(four);
         let left = [0, 2].map(|n| _mm512_unpacklo_epi32(fours[n], fours[n + 1]));
@@ -223,8 +244,7 @@ pub(super) mod x86 {
         // In 32,768ths.
         let weights = |of: &[i32; STEP]| {
             let two = |n: usize| pair(of.as_chunks::<2>().0[n].map(|n| n as u32));
-            let of = _mm512_permutexvar_epi32(load_512(PIXELS), load_512([0, 1, 2, 3, 4, 5, 6, 7].map(two)));
-            _mm512_srli_epi16::<1>(_mm512_shuffle_epi8(of, twice))
+            _mm512_srli_epi16::<1>(_mm512_shuffle_epi8(load_512([0, 1, 2, 3, 4, 5, 6, 7].map(two)), twice))
         };
         let (along, down) = (weights(u), weights(v));
         let filtered = |[a, b, c, d]: [__m512i; 4]| {
@@ -238,9 +258,12 @@ pub(super) mod x86 {
         }
     }
 
-    /// Returns both columns of a footprint.
-    fn columns([a, c, b, d]: Footprint) -> [i64; 2] {
-        [pair([a, c]), pair([b, d])]
+    /// Returns the footprint at an entry.
+    #[target_feature(enable = "sse2")]
+    #[inline]
+    fn fetch((left, right): (&[Column], &[Column]), entry: u32) -> __m128i {
+        let at = entry as usize;
+        _mm_set_epi64x(pair(right[at]), pair(left[at]))
     }
 
     /// Joins two words, the first of which becomes the lower.
@@ -298,11 +321,13 @@ mod tests {
                 (bits as u32 & !(extreme * 255)) | ((extreme & chosen) * 255)
             };
             let footprints = std::array::from_fn::<_, BLOCK, _>(|_| [texel(), texel(), texel(), texel()]);
+            let columns: Vec<Column> = footprints.iter().flat_map(|[a, c, b, d]| [[*a, *c], [*b, *d]]).collect();
+            let entries = std::array::from_fn(|n| 2 * n as u32);
             let u = std::array::from_fn(|n| n as i32 + 256 * (round - 1000));
             let v = std::array::from_fn(|n| (n as i32 + round) ^ 0x55);
             let out = Isa::ALL.iter().filter_map(|isa| isa.kernels()).map(|kernels| {
-                let mut out = [[0; BLOCK]; 4];
-                (kernels.filter)(Lanes::default(), &footprints, &u, &v, out.each_mut());
+                let (mut scratch, mut out) = ([[0; 4]; BLOCK], [[0; BLOCK]; 4]);
+                (kernels.filter)(Lanes::default(), &columns, &entries, [&u, &v], &mut scratch, out.each_mut());
                 (kernels.isa, out)
             });
             let out: Vec<_> = out.collect();

@@ -15,6 +15,7 @@ use super::quotient::Reciprocals;
 use super::setup::{BatchSetup, Covered, PixelBatch, Planes, Setup};
 use super::short::Short;
 use super::small::Boxes;
+use super::table::Column;
 use super::taps::{self, Footprints};
 use super::triangle::{InterpolatorKernels, Interpolators, Varying};
 use crate::engine::context::TriangleContext;
@@ -144,7 +145,7 @@ kernels! {
         fn band::box_attributes(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
         fn band::row_depths(pixel: (i64, i64), count: usize, lane: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
         fn band::box_depths(first: usize, context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block, band: &mut Band<'_>) -> bool;
-        fn filter::filter(lanes: Lanes, footprints: &[Footprint; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], channels: [&mut [i16; BLOCK]; 4]);
+        fn filter::filter(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], at: [&[i32; BLOCK]; 2], footprints: &mut [Footprint; BLOCK], channels: [&mut [i16; BLOCK]; 4]);
         fn band::sample(job: &Job<'_>, sampler: usize, varying: &mut Varying, work: &mut Workspace, rows: &mut [PerLane<i16>]);
         fn band::shade(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }
