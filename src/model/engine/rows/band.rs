@@ -154,7 +154,10 @@ pub(super) fn begin_row<const FMA: bool>(
     job: &Job<'_>,
     block: &mut Block,
 ) {
-    interpolators.begin_row(pixel, columns, job.compiled, &mut block.varying);
+    interpolators.begin_row::<FMA>(pixel, columns, job.compiled, &mut block.varying);
+    if job.compiled.shader.is_some() {
+        block.workshop.begin_row::<FMA>(&interpolators.setup, pixel, columns);
+    }
 }
 
 /// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just

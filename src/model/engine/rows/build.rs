@@ -12,6 +12,7 @@ use crate::plan::PlannedDraw;
 use crate::raster::assemble::Corner;
 use crate::rop::{blend, surface};
 use crate::state::{AddressMode, Policies, Register, TextureFormat, TextureKind};
+use crate::texture::chain::holds_double;
 use crate::texture::planned::PlannedUnit;
 
 /// The graph of a draw's pixels.
@@ -81,7 +82,8 @@ fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -
         registers[register as usize] = match (unit, sampler) {
             (Some(unit), Some(sampler)) => texture(unit, sampler, graph),
             _ if draw.shader.is_some() || unit.is_some() => {
-                [0, 1, 2, 3].map(|channel| graph.input(Input::Texture(n, channel), (-256, 255)))
+                let signed = |channel: usize| unit.is_some_and(|unit| holds_double(unit, channel));
+                [0, 1, 2, 3].map(|channel| graph.input(Input::Texture(n, channel), range(signed(channel))))
             }
             _ => registers[register as usize],
         };
@@ -108,7 +110,7 @@ fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Inp
 /// Returns the texel of a unit. Channels that are equal in all texels share a value, and channels that do not vary are constants.
 fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 4] {
     let signed = sampler.signed;
-    let range = |channel: usize| if signed[channel] { (-256, 254) } else { (0, 255) };
+    let range = |channel: usize| range(signed[channel]);
     if let Some(table) = &sampler.table {
         return [0, 1, 2, 3].map(|channel: usize| match table.channels[channel] {
             Channel::Constant(byte) if signed[channel] => graph.constant((i32::from(byte) - 128).signed_texel() as i16),
@@ -127,6 +129,11 @@ fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 
             Source::Channel(source) => graph.input(Input::Texture(unit.index, source), range(channel)),
         }
     })
+}
+
+/// Returns the range of a channel of a texture register.
+fn range(signed: bool) -> (i16, i16) {
+    if signed { (-256, 254) } else { (0, 255) }
 }
 
 /// The source of a channel of a texel.

@@ -579,7 +579,7 @@ fn rows_interpolate(seed: u64) {
                     if i == end {
                         continue;
                     }
-                    interpolators.begin_row((i, j), end - i, compiled, &mut varying);
+                    interpolators.begin_row::<false>((i, j), end - i, compiled, &mut varying);
                     while i < end {
                         let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
                         let batch = PixelBatch::row((i, j), count, 0);

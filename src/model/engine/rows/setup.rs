@@ -237,7 +237,7 @@ impl<'a> Setup<'a> {
         if divides {
             BatchSetup::new::<FMA, ROW>(triangle, batch, denominator, self.widest)
         } else {
-            BatchSetup::undivided(triangle, batch, denominator)
+            BatchSetup::undivided(triangle, batch.first, batch.extent, denominator)
         }
     }
 
@@ -447,12 +447,17 @@ pub(super) struct BatchSetup {
 }
 
 impl BatchSetup {
-    /// Sets up a batch in which nothing is divided by D.
+    /// Sets up pixels of which nothing is divided by D: the first, and the largest distance from it.
     #[inline(always)]
-    fn undivided(triangle: &Triangle, batch: PixelBatch<'_>, denominator: &RealPlane) -> BatchSetup {
-        let e = triangle.edges(batch.first.0, batch.first.1);
+    pub(super) fn undivided(
+        triangle: &Triangle,
+        first: (i64, i64),
+        extent: (i32, i32),
+        denominator: &RealPlane,
+    ) -> BatchSetup {
+        let e = triangle.edges(first.0, first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
-        let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
+        let (columns, rows) = (f64::from(extent.0), f64::from(extent.1));
         BatchSetup { e, real, denominator: denominator.line(&real), columns, rows, ..BatchSetup::default() }
     }
 
@@ -474,7 +479,7 @@ impl BatchSetup {
         denominator: &RealPlane,
         widest: f64,
     ) -> BatchSetup {
-        let undivided = BatchSetup::undivided(triangle, batch, denominator);
+        let undivided = BatchSetup::undivided(triangle, batch.first, batch.extent, denominator);
         let BatchSetup { real, denominator: line, columns, rows, .. } = undivided;
         // Upper bounds of the terms of D and of 1 / D.
         let (largest, widest) = if ROW {

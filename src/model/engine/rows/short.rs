@@ -2,14 +2,13 @@
 //! `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::BLOCK;
 use super::kernels::PerLane;
-use super::planes::{Plane, inverse};
+use super::planes::{Plane, RealPlane, inverse};
 use super::quotient::{
     IOTA_REAL, Line, Positions, Reciprocals, SLACK, any_negative, multiply_add, nearest, position, whole,
 };
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
-use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, most_dominant};
+use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, Sample, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
 
@@ -39,6 +38,8 @@ pub(super) struct Dominance {
     functions: [Line; 2],
     /// Parts of a row; none if lanes are classified one by one.
     parts: Parts,
+    /// The first column of a row that is divided as a whole, before its batches.
+    row: Option<i64>,
     /// N_0 and N_2 of lanes that are classified one by one, or 0 where the weights do not fall short.
     first: PerLane<f64>,
     third: PerLane<f64>,
@@ -79,36 +80,59 @@ impl Setup<'_> {
 /// Parts of a row in which the same weights fall short.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Parts {
-    /// First lane of each part, and whether the weights 0 and 2 fall short.
+    /// First pixel of each part, and whether the weights 0 and 2 fall short.
     all: [(usize, [bool; 2]); PARTS],
     count: usize,
+    /// Number of pixels of the row before the batch.
+    before: usize,
 }
 
 impl Parts {
     /// Returns the parts of a row of a triangle; none if it cannot be divided.
     pub(super) fn new(triangle: &Triangle, batch: PixelBatch<'_>, local: &BatchSetup) -> Parts {
         let (functions, error) = numerators(triangle, local);
-        Parts::of_row::<false>(triangle, batch, functions, error)
+        Parts::of_batch::<false>(triangle, batch, functions, error)
     }
 
-    /// Returns the lanes of each part, up to the given end, and whether the weights 0 and 2 fall short.
+    /// Returns the lanes of each part of the batch, up to the given end, and whether the weights 0 and 2 fall short.
     #[inline(always)]
-    pub(super) fn ranges(&self, end: usize) -> impl ExactSizeIterator<Item = (Range<usize>, [bool; 2])> {
-        let all = &self.all[..self.count];
+    pub(super) fn ranges(&self, end: usize) -> impl Iterator<Item = (Range<usize>, [bool; 2])> {
+        let (all, before) = (&self.all[..self.count], self.before);
         all.iter()
             .enumerate()
-            .map(move |(n, (first, short))| (*first..all.get(n + 1).map_or(end, |next| next.0), *short))
+            .map(move |(n, (first, short))| {
+                let next = all.get(n + 1).map_or(end, |next| next.0.saturating_sub(before).min(end));
+                (first.saturating_sub(before)..next, *short)
+            })
+            .filter(|(lanes, _)| !lanes.is_empty())
+    }
+
+    /// Divides a batch. There are no parts if it reaches beyond the triangle.
+    #[inline(always)]
+    fn of_batch<const FMA: bool>(
+        triangle: &Triangle,
+        batch: PixelBatch<'_>,
+        functions: [Line; 3],
+        error: f64,
+    ) -> Parts {
+        if batch.reaches_beyond() {
+            return Parts::default();
+        }
+        Parts::of_row::<FMA>(triangle, batch.first, batch.at.last, functions, error)
     }
 
     /// Divides a row where four times or twice a weight's numerator passes D: everything is linear, so all pixels between two such places
     /// have the same classes. A pixel that is too close is a part of its own. There are no parts if a numerator passes D so slowly that
-    /// several pixels are too close, or if the row reaches beyond the triangle. `error` is as in [`numerators`].
+    /// several pixels are too close. `functions` and `error` are as in [`numerators`].
     #[inline(always)]
-    fn of_row<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>, functions: [Line; 3], error: f64) -> Parts {
+    fn of_row<const FMA: bool>(
+        triangle: &Triangle,
+        (i, j): (i64, i64),
+        last: i32,
+        functions: [Line; 3],
+        error: f64,
+    ) -> Parts {
         let mut parts = Parts::default();
-        if batch.reaches_beyond() {
-            return parts;
-        }
         let [first, third, denominator] = functions;
         let middle = denominator.less(1.0, first).less(1.0, third);
         // One line comes twice, because vectors are filled.
@@ -119,7 +143,7 @@ impl Parts {
             }
         }
         // For each place: the first pixel that may be too close, and the first beyond. One too many does no harm.
-        let (end, mut starts, mut longest) = (f64::from(batch.at.last + 1), [[0; PLACES]; 2], 0);
+        let (end, mut starts, mut longest) = (f64::from(last + 1), [[0; PLACES]; 2], 0);
         for n in 0..PLACES {
             // The slopes of N_k and D are whole numbers, so that this one is 0 or at least a quarter.
             let slope = if slopes[n].abs() > 0.125 { slopes[n].abs() } else { 0.125 };
@@ -136,17 +160,19 @@ impl Parts {
             return parts;
         }
         let mut start = 0;
-        while start <= batch.at.last && parts.count < PARTS {
+        while start <= last && parts.count < PARTS {
             let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
-            let short =
-                if close >> 63 != 0 { batch.sample(start as usize, triangle).short() } else { [!is_first, !is_third] };
+            let short = if close >> 63 != 0 {
+                Sample::new(triangle, triangle.edges(i + i64::from(start), j)).short()
+            } else {
+                [!is_first, !is_third]
+            };
             // A pixel that is too close belongs to the part before it or after it.
             if parts.count == 0 || parts.all[parts.count - 1].1 != short {
                 parts.all[parts.count] = (start as usize, short);
                 parts.count += 1;
             }
-            start =
-                starts.as_flattened().iter().fold(BLOCK as i32, |next, n| if *n > start { next.min(*n) } else { next });
+            start = starts.as_flattened().iter().fold(i32::MAX, |next, n| if *n > start { next.min(*n) } else { next });
         }
         parts
     }
@@ -165,6 +191,24 @@ fn numerators(triangle: &Triangle, local: &BatchSetup) -> ([Line; 3], f64) {
 }
 
 impl Dominance {
+    /// Divides a row of so many pixels, of which batches follow; none if their number is 0.
+    #[inline(always)]
+    pub(super) fn begin_row<const FMA: bool>(
+        &mut self,
+        triangle: &Triangle,
+        first: (i64, i64),
+        columns: i64,
+        denominator: &RealPlane,
+    ) {
+        self.row = (columns > 0).then_some(first.0);
+        if columns > 0 && !triangle.exact_reciprocal {
+            let last = columns as i32 - 1;
+            let (functions, error) =
+                numerators(triangle, &BatchSetup::undivided(triangle, first, (last, 0), denominator));
+            self.parts = Parts::of_row::<FMA>(triangle, first, last, functions, error);
+        }
+    }
+
     /// Sets the dominance of a batch.
     #[inline(always)]
     pub(super) fn set<const FMA: bool, const ROW: bool>(
@@ -183,7 +227,11 @@ impl Dominance {
         }
         let (functions, error) = numerators(triangle, local);
         self.functions = [functions[0], functions[1]];
-        self.parts = if ROW { Parts::of_row::<FMA>(triangle, batch, functions, error) } else { Parts::default() };
+        match self.row {
+            Some(first) if ROW => self.parts.before = (batch.first.0 - first) as usize,
+            _ if ROW => self.parts = Parts::of_batch::<FMA>(triangle, batch, functions, error),
+            _ => self.parts = Parts::default(),
+        }
         if self.parts.count == 0 && self.classify::<FMA, ROW>(batch.at, functions, error) {
             self.correct(triangle, batch);
         }

@@ -12,7 +12,7 @@ use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
 use super::ratios::BoxNumber;
-use super::setup::{BatchSetup, PixelBatch, Run};
+use super::setup::{BatchSetup, PixelBatch, Run, Setup};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Dominance;
 use super::triangle::Varying;
@@ -177,6 +177,15 @@ impl Workshop {
                 Some(value) => out.fill(constant(*purpose, value)),
                 None => number_of::<FMA, false>(*purpose, reciprocals, number.of(n), out, open),
             }
+        }
+    }
+
+    /// Begins a row of so many pixels, of which batches follow; none if their number is 0.
+    #[inline(always)]
+    pub(super) fn begin_row<const FMA: bool>(&mut self, setup: &Setup<'_>, first: (i64, i64), columns: i64) {
+        if !self.moved.is_empty() {
+            let (triangle, denominator) = (&setup.context.triangle, &setup.denominator.real);
+            self.dominance.begin_row::<FMA>(triangle, first, columns, denominator);
         }
     }
 
@@ -433,7 +442,16 @@ pub(super) fn run<const FMA: bool>(
             }
         }
     }
-    define(job, runs, &mut varying.alive, workshop, rows, band)
+    let used = runs.last().map_or(0, |run| run.lane() + run.count());
+    // Most blocks have no open lanes.
+    let count = if workshop.open[..used].iter().fold(0, |all, open| all | open) != 0 {
+        define(job, runs, &mut varying.alive, workshop, rows, band)
+    } else {
+        0
+    };
+    workshop.triangles.clear();
+    workshop.quads.clear();
+    count
 }
 
 /// Returns a number of the block's pixels.
@@ -508,10 +526,6 @@ fn define(
     band: &Band<'_>,
 ) -> u64 {
     let mut count = 0;
-    let lanes = runs.last().map_or(0, |run| run.lane() + run.count());
-    // Most blocks have no open lanes.
-    let any = work.open[..lanes].iter().fold(0, |all, open| all | open) != 0;
-    let runs = if any { runs } else { &[] };
     let mut triangle = DefinedTriangle::default();
     for run in runs {
         for n in (0..run.count()).filter(|n| work.open[run.lane() + n] != 0) {
@@ -533,7 +547,5 @@ fn define(
             job.compiled.put_textures(&registers, lane, rows);
         }
     }
-    work.triangles.clear();
-    work.quads.clear();
     count
 }

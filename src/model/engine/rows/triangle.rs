@@ -142,7 +142,17 @@ impl<'a> Interpolators<'a> {
 
     /// Sets up the DDAs of a row, from its first pixel on. Batches use the DDAs only after this has been called.
     #[inline(always)]
-    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &CompiledDraw, varying: &mut Varying) {
+    pub(super) fn begin_row<const FMA: bool>(
+        &self,
+        (i, j): (i64, i64),
+        columns: i64,
+        compiled: &CompiledDraw,
+        varying: &mut Varying,
+    ) {
+        if self.loses() {
+            let (triangle, denominator) = (&self.setup.context.triangle, &self.setup.denominator.real);
+            varying.short.dominance.begin_row::<FMA>(triangle, (i, j), columns, denominator);
+        }
         let DdaRow { samplers, weights, fog, complete, undivided } = &mut varying.dda;
         (*fog, *complete, *undivided) = (None, false, false);
         weights.1 = false;
@@ -234,6 +244,18 @@ impl<'a> Interpolators<'a> {
         }
     }
 
+    /// Returns whether some coordinates lose something because weights fall short.
+    #[inline(always)]
+    fn loses(&self) -> bool {
+        let finite = self.setup.context.triangle.loses_on_planes();
+        let loses = |planes: &Planes| match planes {
+            Planes::Plane(_) => finite,
+            _ => matches!(planes, Planes::Ratio(..)),
+        };
+        self.samplers.iter().any(loses)
+            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if loses(of)))
+    }
+
     /// Returns whether something is divided by D that the DDAs of a row, if there are any, do not divide.
     #[inline(always)]
     fn divides(&self, compiled: &CompiledDraw, dda: Option<&DdaRow>) -> bool {
@@ -258,13 +280,7 @@ impl<'a> Interpolators<'a> {
         let setup = &self.setup;
         let local = &setup.local::<FMA, ROW>(batch, !(ROW && varying.dda.undivided));
         let finite = setup.context.triangle.loses_on_planes();
-        let loses = |planes: &Planes| match planes {
-            Planes::Plane(_) => finite,
-            _ => matches!(planes, Planes::Ratio(..)),
-        };
-        if self.samplers.iter().any(loses)
-            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if loses(of)))
-        {
+        if self.loses() {
             varying.short.dominance.set::<FMA, ROW>(&setup.context.triangle, batch, local);
         }
         if !ROW && compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0) {
