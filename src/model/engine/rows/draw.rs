@@ -128,7 +128,6 @@ impl Drawing<'_, '_> {
     /// Draws a triangle by two rows at a time, with all pixels of the quads that it meets.
     fn quads(&mut self, window: Window, interpolators: &Interpolators<'_>) {
         let (kernels, job, context) = (self.kernels, self.job, interpolators.setup.context);
-        (kernels.begin_row)((window.1.0, window.0.0), 0, interpolators, job, self.block);
         for top in (window.0.0 & !1..window.0.1).step_by(2) {
             let spans = spans_of_quads(&context.triangle, top, window);
             let (mut low, high) = columns_of_quads(spans);
@@ -163,6 +162,8 @@ impl Drawing<'_, '_> {
                     let batch = &if is_known { whole } else { whole.inside::<true>() };
                     if batch.count > 0 {
                         let PixelBatch { first, count, lane, covered, .. } = *batch;
+                        let columns = if batch.reaches_beyond() { 0 } else { count as i64 };
+                        (kernels.begin_row)(first, columns, interpolators, job, block);
                         (kernels.row)(first, count, lane, covered, interpolators, job, block);
                         (kernels.row_attributes)(first, count, lane, covered, context, job, block);
                     }

@@ -38,8 +38,8 @@ pub(super) struct Dominance {
     functions: [Line; 2],
     /// Parts of a row; none if lanes are classified one by one.
     parts: Parts,
-    /// The first column of a row that is divided as a whole, before its batches.
-    row: Option<i64>,
+    /// The first column of the row.
+    row: i64,
     /// N_0 and N_2 of lanes that are classified one by one, or 0 where the weights do not fall short.
     first: PerLane<f64>,
     third: PerLane<f64>,
@@ -88,10 +88,13 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Returns the parts of a row of a triangle; none if it cannot be divided.
+    /// Returns the parts of a row of a triangle; none if it cannot be divided or reaches beyond the triangle.
     pub(super) fn new(triangle: &Triangle, batch: PixelBatch<'_>, local: &BatchSetup) -> Parts {
         let (functions, error) = numerators(triangle, local);
-        Parts::of_batch::<false>(triangle, batch, functions, error)
+        if batch.reaches_beyond() {
+            return Parts::default();
+        }
+        Parts::of_row::<false>(triangle, batch.first, batch.at.last, functions, error)
     }
 
     /// Returns the lanes of each part of the batch, up to the given end, and whether the weights 0 and 2 fall short.
@@ -105,20 +108,6 @@ impl Parts {
                 (first.saturating_sub(before)..next, *short)
             })
             .filter(|(lanes, _)| !lanes.is_empty())
-    }
-
-    /// Divides a batch. There are no parts if it reaches beyond the triangle.
-    #[inline(always)]
-    fn of_batch<const FMA: bool>(
-        triangle: &Triangle,
-        batch: PixelBatch<'_>,
-        functions: [Line; 3],
-        error: f64,
-    ) -> Parts {
-        if batch.reaches_beyond() {
-            return Parts::default();
-        }
-        Parts::of_row::<FMA>(triangle, batch.first, batch.at.last, functions, error)
     }
 
     /// Divides a row where four times or twice a weight's numerator passes D: everything is linear, so all pixels between two such places
@@ -191,7 +180,7 @@ fn numerators(triangle: &Triangle, local: &BatchSetup) -> ([Line; 3], f64) {
 }
 
 impl Dominance {
-    /// Divides a row of so many pixels, of which batches follow; none if their number is 0.
+    /// Divides a row of so many pixels, of which batches follow. If their number is 0, lanes are classified one by one.
     #[inline(always)]
     pub(super) fn begin_row<const FMA: bool>(
         &mut self,
@@ -200,7 +189,7 @@ impl Dominance {
         columns: i64,
         denominator: &RealPlane,
     ) {
-        self.row = (columns > 0).then_some(first.0);
+        (self.row, self.parts) = (first.0, Parts::default());
         if columns > 0 && !triangle.exact_reciprocal {
             let last = columns as i32 - 1;
             let (functions, error) =
@@ -227,10 +216,10 @@ impl Dominance {
         }
         let (functions, error) = numerators(triangle, local);
         self.functions = [functions[0], functions[1]];
-        match self.row {
-            Some(first) if ROW => self.parts.before = (batch.first.0 - first) as usize,
-            _ if ROW => self.parts = Parts::of_batch::<FMA>(triangle, batch, functions, error),
-            _ => self.parts = Parts::default(),
+        if ROW {
+            self.parts.before = (batch.first.0 - self.row) as usize;
+        } else {
+            self.parts = Parts::default();
         }
         if self.parts.count == 0 && self.classify::<FMA, ROW>(batch.at, functions, error) {
             self.correct(triangle, batch);
