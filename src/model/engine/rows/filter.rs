@@ -119,7 +119,7 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 }
 
 /// The filter of four channels in 16-bit lanes. A step is a + (b - a) w / 256, rounded, and there is an instruction that multiplies and
-/// rounds 16-bit numbers, which compilers do not find.
+/// rounds 16-bit numbers, which compilers do not find. Its loop also fetches the texels: some pixels wait for memory while others are computed.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
     use super::{BLOCK, Column, Footprint};
