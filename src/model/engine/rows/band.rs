@@ -145,7 +145,7 @@ pub(super) fn in_box<const FMA: bool>(interpolators: &Interpolators<'_>, job: &J
     );
 }
 
-/// Begins a row of so many pixels.
+/// Begins a row of so many pixels, or of an unknown number if it is 0.
 #[inline(always)]
 pub(super) fn begin_row<const FMA: bool>(
     pixel: (i64, i64),
@@ -155,9 +155,6 @@ pub(super) fn begin_row<const FMA: bool>(
     block: &mut Block,
 ) {
     interpolators.begin_row::<FMA>(pixel, columns, job.compiled, &mut block.varying);
-    if job.compiled.shader.is_some() {
-        block.workshop.begin_row::<FMA>(&interpolators.setup, pixel, columns);
-    }
 }
 
 /// Interpolates all attributes along a batch of a row. What says where it is comes one by one, in registers: from memory, where it has just
@@ -190,7 +187,8 @@ pub(super) fn row_attributes<const FMA: bool>(
 ) {
     if let Some(shader) = &job.compiled.shader {
         let batch = PixelBatch { covered, ..PixelBatch::row(pixel, count, lane) };
-        block.workshop.attributes::<FMA, true>(context, batch, shader);
+        let Block { workshop, varying, .. } = block;
+        workshop.attributes::<FMA, true>(context, batch, shader, &mut varying.short.dominance);
     }
 }
 
@@ -198,11 +196,9 @@ pub(super) fn row_attributes<const FMA: bool>(
 #[inline(always)]
 pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block) {
     if let Some(shader) = &job.compiled.shader {
-        block.workshop.attributes::<FMA, false>(
-            context,
-            batch::<HALF_STEP>(block.boxes.coverage(), block.used),
-            shader,
-        );
+        let Block { workshop, varying, boxes, used, .. } = block;
+        let batch = batch::<HALF_STEP>(boxes.coverage(), *used);
+        workshop.attributes::<FMA, false>(context, batch, shader, &mut varying.short.dominance);
     }
 }
 

@@ -16,7 +16,13 @@ pub(super) type Filter =
 /// Number of texels or footprints that are fetched at a time. The speed of a loop over one or two depends on its place in memory.
 pub(super) const GROUP: usize = 4;
 
-/// Fetches footprints. Both slices have the same length, so that one bounds check serves both.
+/// Returns the left and the right columns of all footprints. Both slices have the same length, so that one bounds check serves both.
+fn sides(columns: &[Column]) -> Option<(&[Column], &[Column])> {
+    let count = columns.len().checked_sub(1)?;
+    Some((&columns[..count], &columns[1..]))
+}
+
+/// Fetches footprints.
 #[inline(never)]
 pub(super) fn fetch_footprints(
     lanes: Lanes,
@@ -25,8 +31,7 @@ pub(super) fn fetch_footprints(
     found: &mut [Footprint; BLOCK],
 ) {
     let (entries, found) = (&entries[..lanes.count()], &mut found[..lanes.count()]);
-    let Some(count) = columns.len().checked_sub(1) else { return };
-    let (left, right) = (&columns[..count], &columns[1..]);
+    let Some((left, right)) = sides(columns) else { return };
     let (entries, found) = (entries.as_chunks::<GROUP>().0, found.as_chunks_mut::<GROUP>().0);
     for (entries, found) in entries.iter().zip(found) {
         for n in 0..GROUP {
@@ -122,7 +127,7 @@ pub(super) fn weight(coordinate: i32) -> u32 {
 /// rounds 16-bit numbers, which compilers do not find. Its loop also fetches the texels: some pixels wait for memory while others are computed.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
-    use super::{BLOCK, Column, Footprint};
+    use super::{BLOCK, Column, Footprint, sides};
     use crate::engine::rows::kernels::Lanes;
     use multiversion::target;
     use std::arch::x86_64::*;
@@ -147,8 +152,7 @@ pub(super) mod x86 {
             ) {
                 let (red, green) = (red.as_chunks_mut::<STEP>().0, green.as_chunks_mut::<STEP>().0);
                 let (blue, alpha) = (blue.as_chunks_mut::<STEP>().0, alpha.as_chunks_mut::<STEP>().0);
-                let Some(count) = columns.len().checked_sub(1) else { return };
-                let columns = (&columns[..count], &columns[1..]);
+                let Some(columns) = sides(columns) else { return };
                 let entries = entries.as_chunks::<STEP>().0;
                 let (u, v) = (u.as_chunks::<STEP>().0, v.as_chunks::<STEP>().0);
                 for n in 0..lanes.count() / STEP {

@@ -375,8 +375,11 @@ impl<'a> Setup<'a> {
         if !self.may_lower(&batch, plane) {
             return;
         }
-        let parts =
-            if ROW { Parts::new(triangle, batch, &self.local::<false, ROW>(batch, false)) } else { Parts::default() };
+        let parts = if ROW && !batch.reaches_beyond() {
+            Parts::of_row::<false>(triangle, batch.first, batch.at.last, &self.denominator.real)
+        } else {
+            Parts::default()
+        };
         let mut parts = parts.ranges(batch.count).peekable();
         if parts.peek().is_none() {
             for k in (0..batch.count).filter(|k| whole[*k] != 0) {

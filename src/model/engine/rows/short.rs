@@ -88,15 +88,6 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Returns the parts of a row of a triangle; none if it cannot be divided or reaches beyond the triangle.
-    pub(super) fn new(triangle: &Triangle, batch: PixelBatch<'_>, local: &BatchSetup) -> Parts {
-        let (functions, error) = numerators(triangle, local);
-        if batch.reaches_beyond() {
-            return Parts::default();
-        }
-        Parts::of_row::<false>(triangle, batch.first, batch.at.last, functions, error)
-    }
-
     /// Returns the lanes of each part of the batch, up to the given end, and whether the weights 0 and 2 fall short.
     #[inline(always)]
     pub(super) fn ranges(&self, end: usize) -> impl Iterator<Item = (Range<usize>, [bool; 2])> {
@@ -112,16 +103,17 @@ impl Parts {
 
     /// Divides a row where four times or twice a weight's numerator passes D: everything is linear, so all pixels between two such places
     /// have the same classes. A pixel that is too close is a part of its own. There are no parts if a numerator passes D so slowly that
-    /// several pixels are too close. `functions` and `error` are as in [`numerators`].
+    /// several pixels are too close.
     #[inline(always)]
-    fn of_row<const FMA: bool>(
+    pub(super) fn of_row<const FMA: bool>(
         triangle: &Triangle,
         (i, j): (i64, i64),
         last: i32,
-        functions: [Line; 3],
-        error: f64,
+        denominator: &RealPlane,
     ) -> Parts {
         let mut parts = Parts::default();
+        let local = BatchSetup::undivided(triangle, (i, j), (last, 0), denominator);
+        let (functions, error) = numerators(triangle, &local);
         let [first, third, denominator] = functions;
         let middle = denominator.less(1.0, first).less(1.0, third);
         // One line comes twice, because vectors are filled.
@@ -191,10 +183,7 @@ impl Dominance {
     ) {
         (self.row, self.parts) = (first.0, Parts::default());
         if columns > 0 && !triangle.exact_reciprocal {
-            let last = columns as i32 - 1;
-            let (functions, error) =
-                numerators(triangle, &BatchSetup::undivided(triangle, first, (last, 0), denominator));
-            self.parts = Parts::of_row::<FMA>(triangle, first, last, functions, error);
+            self.parts = Parts::of_row::<FMA>(triangle, first, columns as i32 - 1, denominator);
         }
     }
 

@@ -12,7 +12,7 @@ use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
 use super::quotient::{Line, Reciprocals, floor_of_factor};
 use super::ratios::BoxNumber;
-use super::setup::{BatchSetup, PixelBatch, Run, Setup};
+use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Dominance;
 use super::triangle::Varying;
@@ -117,7 +117,6 @@ pub(super) struct Workshop {
     moved: Vec<Moved>,
     attributes: Attributes,
     reciprocals: Box<Reciprocals>,
-    dominance: Box<Dominance>,
     /// Not 0 for lanes that are left open: the definition computes them.
     open: PerLane<i32>,
     /// First lane and number of each triangle of the block.
@@ -180,24 +179,16 @@ impl Workshop {
         }
     }
 
-    /// Begins a row of so many pixels, of which batches follow; none if their number is 0.
-    #[inline(always)]
-    pub(super) fn begin_row<const FMA: bool>(&mut self, setup: &Setup<'_>, first: (i64, i64), columns: i64) {
-        if !self.moved.is_empty() {
-            let (triangle, denominator) = (&setup.context.triangle, &setup.denominator.real);
-            self.dominance.begin_row::<FMA>(triangle, first, columns, denominator);
-        }
-    }
-
-    /// Interpolates the inputs of a texture shader for a batch.
+    /// Interpolates the inputs of a texture shader for a batch. If coordinates are moved, sets the dominance of the batch.
     #[inline(always)]
     pub(super) fn attributes<const FMA: bool, const ROW: bool>(
         &mut self,
         context: &TriangleContext<'_>,
         batch: PixelBatch<'_>,
         shader: &Shader,
+        dominance: &mut Dominance,
     ) {
-        let Workshop { numbers, moved, attributes, reciprocals, dominance, open, triangles, .. } = self;
+        let Workshop { numbers, moved, attributes, reciprocals, open, triangles, .. } = self;
         let triangle = &context.triangle;
         if attributes.triangle != Some(context.number) {
             attributes.set(context, shader);

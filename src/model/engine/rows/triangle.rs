@@ -32,6 +32,8 @@ pub(crate) struct Interpolators<'a> {
     pub(super) samplers: Vec<Planes>,
     /// Whether [`is_general`] holds for a sampler.
     is_general: bool,
+    /// Whether some coordinates [lose](loses) something.
+    loses: bool,
     /// The functions of r of samplers, if any use it.
     pub(super) thirds: Vec<ThirdPlanes>,
     fog: Option<Box<Fog>>,
@@ -95,6 +97,12 @@ fn is_general(sampler: &Sampler, planes: &Planes, finite: bool) -> bool {
     !(sampler.mixes || is_done || matches!(planes, Planes::Shared))
 }
 
+/// Returns whether coordinates lose something because weights fall short. `finite` is as in [`is_general`].
+#[inline(always)]
+fn loses(planes: &Planes, finite: bool) -> bool {
+    matches!(planes, Planes::Plane(_)) && finite || matches!(planes, Planes::Ratio(..))
+}
+
 impl<'a> Interpolators<'a> {
     /// Sets up a triangle. The lists are scratch space that [`given_back`](Self::given_back) returns.
     pub(super) fn new(
@@ -126,6 +134,8 @@ impl<'a> Interpolators<'a> {
         let mut pairs = compiled.samplers.iter().zip(&samplers);
         Interpolators {
             is_general: pairs.any(|(sampler, planes)| is_general(sampler, planes, finite)),
+            loses: samplers.iter().any(|planes| loses(planes, finite))
+                || thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if loses(of, finite))),
             setup: Setup::new(context, &inverse),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
@@ -140,7 +150,8 @@ impl<'a> Interpolators<'a> {
         (self.samplers, self.thirds)
     }
 
-    /// Sets up the DDAs of a row, from its first pixel on. Batches use the DDAs only after this has been called.
+    /// Divides a row by dominance if that is needed, and sets up its DDAs, from its first pixel on. Batches use the DDAs only after this has been
+    /// called.
     #[inline(always)]
     pub(super) fn begin_row<const FMA: bool>(
         &self,
@@ -149,7 +160,8 @@ impl<'a> Interpolators<'a> {
         compiled: &CompiledDraw,
         varying: &mut Varying,
     ) {
-        if self.loses() {
+        let moves = compiled.shader.as_ref().is_some_and(|shader| !shader.moved.is_empty());
+        if self.loses || moves {
             let (triangle, denominator) = (&self.setup.context.triangle, &self.setup.denominator.real);
             varying.short.dominance.begin_row::<FMA>(triangle, (i, j), columns, denominator);
         }
@@ -244,18 +256,6 @@ impl<'a> Interpolators<'a> {
         }
     }
 
-    /// Returns whether some coordinates lose something because weights fall short.
-    #[inline(always)]
-    fn loses(&self) -> bool {
-        let finite = self.setup.context.triangle.loses_on_planes();
-        let loses = |planes: &Planes| match planes {
-            Planes::Plane(_) => finite,
-            _ => matches!(planes, Planes::Ratio(..)),
-        };
-        self.samplers.iter().any(loses)
-            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if loses(of)))
-    }
-
     /// Returns whether something is divided by D that the DDAs of a row, if there are any, do not divide.
     #[inline(always)]
     fn divides(&self, compiled: &CompiledDraw, dda: Option<&DdaRow>) -> bool {
@@ -280,7 +280,7 @@ impl<'a> Interpolators<'a> {
         let setup = &self.setup;
         let local = &setup.local::<FMA, ROW>(batch, !(ROW && varying.dda.undivided));
         let finite = setup.context.triangle.loses_on_planes();
-        if self.loses() {
+        if self.loses {
             varying.short.dominance.set::<FMA, ROW>(&setup.context.triangle, batch, local);
         }
         if !ROW && compiled.samplers.iter().any(|sampler| sampler.mixes || sampler.pairs > 0) {
