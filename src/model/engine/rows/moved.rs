@@ -128,7 +128,7 @@ impl Moved {
 }
 
 /// TSH-7: writes the floors of coordinates, less the sampler's bias, that are moved by so many 128ths of the image. Lanes are left open whose
-/// floors are not proved, or not those on smaller levels, which are the same shifted by up to `shift` bits.
+/// floors are not proved, or not those on smaller levels, which are the same shifted by up to `shift` bits. Returns whether there may be any.
 #[inline(always)]
 pub(super) fn place<const FMA: bool>(
     of: (&Sampler, Lanes),
@@ -136,11 +136,11 @@ pub(super) fn place<const FMA: bool>(
     by: [&Floats; 2],
     at: &mut [PerLane<i32>; 2],
     open: &mut [i32],
-) {
+) -> bool {
     if moved.has_exact {
-        place_by::<FMA, true>(of, (moved, shift), by, at, open);
+        place_by::<FMA, true>(of, (moved, shift), by, at, open)
     } else {
-        place_by::<FMA, false>(of, (moved, shift), by, at, open);
+        place_by::<FMA, false>(of, (moved, shift), by, at, open)
     }
 }
 
@@ -152,7 +152,8 @@ fn place_by<const FMA: bool, const EXACT: bool>(
     [along, down]: [&Floats; 2],
     [u, v]: &mut [PerLane<i32>; 2],
     open: &mut [i32],
-) {
+) -> bool {
+    let mut any = false;
     let (open, bias) = (&mut open[..BLOCK], sampler.bias());
     let place = |n: usize| {
         let [at_u, at_v] = by::<FMA, EXACT>(&moved.at, sampler.sides, [along[n], down[n]], n);
@@ -169,6 +170,7 @@ fn place_by<const FMA: bool, const EXACT: bool>(
             v[n] = nearest(at_v).wrapping_sub(bias);
         }
         if close >> 63 != 0 {
+            any = true;
             // An integer is a border on the levels whose steps it is a multiple of.
             let is_proved = |at: f64| {
                 let near = nearest(at + 0.5);
@@ -181,6 +183,7 @@ fn place_by<const FMA: bool, const EXACT: bool>(
             }
         }
     }
+    any
 }
 
 /// TSH-7: returns u and v of a lane, moved by so many 128ths of the image. `FLOORS` says whether offsets are floored.

@@ -375,11 +375,10 @@ impl<'a> Setup<'a> {
         if !self.may_lower(&batch, plane) {
             return;
         }
-        let parts = if ROW && !batch.reaches_beyond() {
-            Parts::of_row::<false>(triangle, batch.first, batch.at.last, &self.denominator.real)
-        } else {
-            Parts::default()
-        };
+        let mut parts = Parts::default();
+        if ROW && !batch.reaches_beyond() {
+            parts.set_row::<false>(triangle, batch.first, batch.at.last, &self.denominator.real);
+        }
         let mut parts = parts.ranges(batch.count).peekable();
         if parts.peek().is_none() {
             for k in (0..batch.count).filter(|k| whole[*k] != 0) {

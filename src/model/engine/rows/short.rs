@@ -105,13 +105,14 @@ impl Parts {
     /// have the same classes. A pixel that is too close is a part of its own. There are no parts if a numerator passes D so slowly that
     /// several pixels are too close.
     #[inline(always)]
-    pub(super) fn of_row<const FMA: bool>(
+    pub(super) fn set_row<const FMA: bool>(
+        &mut self,
         triangle: &Triangle,
         (i, j): (i64, i64),
         last: i32,
         denominator: &RealPlane,
-    ) -> Parts {
-        let mut parts = Parts::default();
+    ) {
+        (self.count, self.before) = (0, 0);
         let local = BatchSetup::undivided(triangle, (i, j), (last, 0), denominator);
         let (functions, error) = numerators(triangle, &local);
         let [first, third, denominator] = functions;
@@ -138,10 +139,10 @@ impl Parts {
             longest = (starts[1][n] - starts[0][n]).max(longest);
         }
         if longest > 1 {
-            return parts;
+            return;
         }
         let mut start = 0;
-        while start <= last && parts.count < PARTS {
+        while start <= last && self.count < PARTS {
             let ([is_first, is_third], close, _) = classify::<FMA, true>(functions, (f64::from(start), 0.0), error);
             let short = if close >> 63 != 0 {
                 Sample::new(triangle, triangle.edges(i + i64::from(start), j)).short()
@@ -149,13 +150,12 @@ impl Parts {
                 [!is_first, !is_third]
             };
             // A pixel that is too close belongs to the part before it or after it.
-            if parts.count == 0 || parts.all[parts.count - 1].1 != short {
-                parts.all[parts.count] = (start as usize, short);
-                parts.count += 1;
+            if self.count == 0 || self.all[self.count - 1].1 != short {
+                self.all[self.count] = (start as usize, short);
+                self.count += 1;
             }
             start = starts.as_flattened().iter().fold(i32::MAX, |next, n| if *n > start { next.min(*n) } else { next });
         }
-        parts
     }
 }
 
@@ -181,9 +181,9 @@ impl Dominance {
         columns: i64,
         denominator: &RealPlane,
     ) {
-        (self.row, self.parts) = (first.0, Parts::default());
+        (self.row, self.parts.count) = (first.0, 0);
         if columns > 0 && !triangle.exact_reciprocal {
-            self.parts = Parts::of_row::<FMA>(triangle, first, columns as i32 - 1, denominator);
+            self.parts.set_row::<FMA>(triangle, first, columns as i32 - 1, denominator);
         }
     }
 
@@ -197,7 +197,7 @@ impl Dominance {
     ) {
         if triangle.exact_reciprocal {
             if ROW {
-                self.parts = Parts { count: 1, ..Parts::default() };
+                (self.parts.all[0], self.parts.count) = ((0, [false; 2]), 1);
             } else {
                 self.set_none(batch.at);
             }
@@ -208,7 +208,7 @@ impl Dominance {
         if ROW {
             self.parts.before = (batch.first.0 - self.row) as usize;
         } else {
-            self.parts = Parts::default();
+            self.parts.count = 0;
         }
         if self.parts.count == 0 && self.classify::<FMA, ROW>(batch.at, functions, error) {
             self.correct(triangle, batch);
@@ -218,7 +218,7 @@ impl Dominance {
     /// Declares that no weight falls short in a box.
     #[inline(always)]
     pub(super) fn set_none(&mut self, at: Positions<'_>) {
-        self.parts = Parts::default();
+        self.parts.count = 0;
         self.first[..at.x.len()].fill(0.0);
         self.third[..at.x.len()].fill(0.0);
     }
@@ -231,7 +231,7 @@ impl Dominance {
         functions: [Line; 3],
         error: f64,
     ) -> bool {
-        self.parts = Parts::default();
+        self.parts.count = 0;
         let lanes = at.x.len();
         let last = f64::from(at.last);
         let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);

@@ -119,6 +119,8 @@ pub(super) struct Workshop {
     reciprocals: Box<Reciprocals>,
     /// Not 0 for lanes that are left open: the definition computes them.
     open: PerLane<i32>,
+    /// Whether there may be such lanes.
+    has_open: bool,
     /// First lane and number of each triangle of the block.
     triangles: Vec<(usize, usize)>,
     /// The quads of the block, if stages need them.
@@ -132,6 +134,7 @@ impl Workshop {
     /// Leaves lanes to the definition.
     pub(super) fn leave_open(&mut self, lanes: Range<usize>) {
         self.open[lanes].fill(1);
+        self.has_open = true;
     }
 
     /// Makes room for the shader of a draw.
@@ -143,6 +146,7 @@ impl Workshop {
         self.attributes.triangle = None;
         self.attributes.numbers.resize(shader.varying.len().div_ceil(FOUR), Numbers::default());
         self.open.fill(0);
+        self.has_open = false;
         self.triangles.clear();
         self.quads.clear();
         self.vectors.resize(shader.vectors.len(), Default::default());
@@ -169,12 +173,11 @@ impl Workshop {
     ) {
         self.triangles.push((batch.lane, triangle));
         let open = &mut self.open[batch.lanes()];
-        open.fill(0);
         for ((out, number), (_, _, purpose)) in self.numbers.iter_mut().zip(boxes).zip(&shader.varying) {
             let out = &mut out[batch.lanes()];
             match number.same(n) {
                 Some(value) => out.fill(constant(*purpose, value)),
-                None => number_of::<FMA, false>(*purpose, reciprocals, number.of(n), out, open),
+                None => self.has_open |= number_of::<FMA, false>(*purpose, reciprocals, number.of(n), out, open),
             }
         }
     }
@@ -188,7 +191,7 @@ impl Workshop {
         shader: &Shader,
         dominance: &mut Dominance,
     ) {
-        let Workshop { numbers, moved, attributes, reciprocals, open, triangles, .. } = self;
+        let Workshop { numbers, moved, attributes, reciprocals, open, has_open, triangles, .. } = self;
         let triangle = &context.triangle;
         if attributes.triangle != Some(context.number) {
             attributes.set(context, shader);
@@ -196,7 +199,6 @@ impl Workshop {
         let begins = triangles.is_empty();
         triangles.push((batch.lane, context.number));
         let open = &mut open[batch.lanes()];
-        open.fill(0);
         let local = BatchSetup::new::<FMA, ROW>(triangle, batch, &attributes.denominator, attributes.widest);
         if !attributes.numbers.is_empty() {
             reciprocals.set::<FMA, ROW>(batch.at, local.denominator);
@@ -215,7 +217,7 @@ impl Workshop {
                 // Hardly beyond the triangle no number has more bits.
                 let is_exact = is_exact[n] && (!batch.reaches_beyond() || local.ratio < 2.0);
                 let off = if is_exact { 0.0 } else { margin + floors[n] * local.ratio };
-                number_of::<FMA, ROW>(*purpose, reciprocals, (lines[n], off), out, open);
+                *has_open |= number_of::<FMA, ROW>(*purpose, reciprocals, (lines[n], off), out, open);
             }
         }
         if !attributes.moved.is_empty() {
@@ -227,6 +229,7 @@ impl Workshop {
             }
             if !planes.interpolate::<FMA, ROW>(batch, bump, &local, dominance, moved) {
                 open.fill(1);
+                *has_open = true;
             }
         }
     }
@@ -238,7 +241,7 @@ fn constant(purpose: Purpose, value: f32) -> f32 {
     if purpose == Purpose::Byte { byte_of(f64::from(value)) } else { value + 0.0 }
 }
 
-/// Computes quotients of a line, whose error is less than the number beside it, for a purpose.
+/// Computes quotients of a line, whose error is less than the number beside it, for a purpose. Returns whether lanes are left open.
 #[inline(always)]
 fn number_of<const FMA: bool, const ROW: bool>(
     purpose: Purpose,
@@ -246,7 +249,7 @@ fn number_of<const FMA: bool, const ROW: bool>(
     (line, off): (Line, f64),
     out: &mut [f32],
     open: &mut [i32],
-) {
+) -> bool {
     match purpose {
         Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(reciprocals, line, off, out, open),
         Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, line, off, out, open),
@@ -254,7 +257,7 @@ fn number_of<const FMA: bool, const ROW: bool>(
 }
 
 /// Computes quotients, rounded to single precision, or as `BYTE`s (TSH-9). Lanes that are not proved are left open, and so are zeros in
-/// single precision.
+/// single precision. Returns whether there are any.
 #[inline(always)]
 fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     reciprocals: &Reciprocals,
@@ -262,7 +265,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     off: f64,
     out: &mut [f32],
     open: &mut [i32],
-) {
+) -> bool {
     let lanes = out.len();
     let ([xs, ys, rs], open) = (reciprocals.lanes(lanes), &mut open[..lanes]);
     let estimate = |n: usize| {
@@ -287,6 +290,7 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     for n in 0..if any { lanes } else { 0 } {
         open[n] |= i32::from(estimate(n).1);
     }
+    any
 }
 
 /// Runs the stages of a block's pixels, which write their registers to rows. Returns the number of pixels that the definition computed.
@@ -351,16 +355,11 @@ pub(super) fn run<const FMA: bool>(
                             let [along, down, _] = &mut workshop.dot.scratch;
                             dot::moved(lanes, matrix, blue, green, along, down);
                             let shift = shader.moved[stage.moved].shift;
-                            place::<FMA>((sampler, lanes), (moved, shift), [along, down], numbers, &mut workshop.open);
+                            let (of, open) = ((sampler, lanes), &mut workshop.open);
+                            workshop.has_open |= place::<FMA>(of, (moved, shift), [along, down], numbers, open);
                             if sampler.mixes {
                                 let quads = &mut workshop.quads;
-                                if place_finely::<FMA>(
-                                    (sampler, lanes),
-                                    moved,
-                                    [along, down],
-                                    &mut quads.fine,
-                                    &mut quads.close,
-                                ) {
+                                if place_finely::<FMA>(of, moved, [along, down], &mut quads.fine, &mut quads.close) {
                                     quads.settle(job, &job.draw.units[sampler.index], [along, down]);
                                 }
                                 quads.take_lanes();
@@ -418,6 +417,7 @@ pub(super) fn run<const FMA: bool>(
                     let of = (&job.draw.units[sampler.index], &**table, lanes);
                     let faces = sampler.has_images().then_some(&varying.faces[at]);
                     workshop.quads.fetches::<FMA>(of, u, v, faces, open, reads);
+                    workshop.has_open |= open.iter().fold(0, |all, open| all | open) != 0;
                 }
                 (job.sample)(job, at, varying, work, rows);
                 if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), earlier[0]) {
@@ -433,13 +433,12 @@ pub(super) fn run<const FMA: bool>(
             }
         }
     }
-    let used = runs.last().map_or(0, |run| run.lane() + run.count());
     // Most blocks have no open lanes.
-    let count = if workshop.open[..used].iter().fold(0, |all, open| all | open) != 0 {
-        define(job, runs, &mut varying.alive, workshop, rows, band)
-    } else {
-        0
-    };
+    let mut count = 0;
+    if std::mem::take(&mut workshop.has_open) {
+        count = define(job, runs, &mut varying.alive, workshop, rows, band);
+        workshop.open.fill(0);
+    }
     workshop.triangles.clear();
     workshop.quads.clear();
     count
