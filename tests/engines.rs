@@ -393,3 +393,78 @@ fn engines_agree_on_stages_with_equal_coordinates() {
         }
     }
 }
+
+/// A colour key changes channels that are constants of the format. The scene draws the image, so that its texels are not known before.
+#[test]
+fn engines_agree_on_colour_keys_of_drawn_images() {
+    let corners = "(position: (0, 0), t0: (0, 0)), (position: (64, 0), t0: (64, 0)), (position: (64, 64), t0: (64, 64)), (position: (0, 64), t0: (0, 64))";
+    for (format, key) in [("A8", "(255, 255, 255, 0)"), ("L8", "(255, 255, 255, 255)"), ("L8", "(0, 0, 0, 255)")] {
+        for mode in ["Alpha", "Color", "Texel"] {
+            let text = format!(
+                r#"(version: 1, profile: Nv2a,
+                  targets: [(name: "picture", width: 64, height: 64, format: B8), (name: "frame", width: 64, height: 64)],
+                  textures: {{ "picture": (kind: Rectangle, format: {format}, source: Target("picture")) }},
+                  draws: [
+                    (target: "picture", vertices: Window([(position: (3, 5), diffuse: (255, 255, 255)), (position: (60, 9), diffuse: (255, 255, 255)),
+                       (position: (30, 61), diffuse: (255, 255, 255))]), program: Combiners(stages: [()], final_combiner: (d: PrimaryColor))),
+                    (target: "frame", vertices: Window([{corners}]), topology: Quads,
+                      textures: [(texture: "picture", min_filter: Nearest, mag_filter: Nearest, color_key: (color: {key}, mode: {mode}))],
+                      program: Combiners(stages: [()], final_combiner: (d: Texture0, g: (Texture0, Alpha)))),
+                  ])"#
+            );
+            let loaded =
+                scene::parse(&text, Path::new("key.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+                panic!("{format} {key} {mode}: {difference}");
+            }
+        }
+    }
+}
+
+/// q is 0 along an edge, because the numbers of both vertices vanish beside that of the third. One pixel lies on the edge, alone or in a row.
+#[test]
+fn engines_agree_on_coordinates_over_zero() {
+    for (right, t) in [(4, "1e20, -2.5e19"), (9, "1e20, -2.5e19"), (4, "3e19, 1e20"), (90, "3e19, 1e20")] {
+        let text = format!(
+            r#"(version: 1, profile: Nv2a, targets: [(width: 96, height: 64)],
+              textures: {{ "a": (source: Checker(width: 16, height: 16, colors: ((10, 200, 90), (70, 30, 120)))) }},
+              draws: [(vertices: Window([(position: (4, 3), t0: (1, -0.25, 0, -1)), (position: (-4, 43), t0: (1, -0.25, 0, -1)),
+                (position: ({right}, 43), t0: ({t}, 0, -1e20))]),
+                textures: [(texture: "a", min_filter: Nearest, mag_filter: Nearest, address_t: ClampToBorder, border_color: (0, 0, 135, 0))],
+                program: Combiners(stages: [()], final_combiner: (d: Texture0)))])"#
+        );
+        let loaded =
+            scene::parse(&text, Path::new("zero.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+            panic!("{right} {t}: {difference}");
+        }
+    }
+}
+
+/// One pixel, for which decoding a texture would not pay. The other lanes hold what a pixel may hold, so that nothing overflows in them.
+#[test]
+fn engines_agree_on_signed_texels_beside_lanes_without_a_pixel() {
+    // The last vertex makes the colour vary, but its triangle covers no pixel.
+    let white = |at| format!("(position: {at}, diffuse: (255, 255, 255), specular: (255, 255, 255))");
+    let vertices = ["(-1, 1)", "(-1, 2)", "(9, 4)", "(9, 4)"].map(white).join(", ");
+    let vertices = vertices.replacen("(9, 4), diffuse: (255, 255, 255)", "(9, 4), diffuse: (255, 255, 128)", 2);
+    for constant in 120..136 {
+        let text = format!(
+            r#"(version: 1, profile: Nv2a, targets: [(width: 4, height: 4)],
+              textures: {{ "a": (source: Checker(width: 64, height: 64, colors: ((10, 200, 90), (70, 30, 120)))) }},
+              draws: [(vertices: Window([{vertices}]), topology: TriangleStrip,
+                textures: ["a", (texture: "a", signed: (false, false, false, true)), "a", "a"],
+                texture_shader: [Sample, Sample, Sample, (operation: BumpEnvironment(matrix: (0, 0, 0, 0)), previous: 0)],
+                program: Combiners(
+                  stages: [(constants: ((0, 0, 0), (0, 0, {constant})), alpha: (a: (PrimaryColor, Alpha), b: (ConstantColor1, Blue),
+                    c: (PrimaryColor, Alpha), d: HalfBiasNormal(Texture1, Alpha), sum: Texture3))],
+                  final_combiner: (a: PrimaryColor, b: Invert(Texture3, Alpha), c: Spare0PlusSecondary))
+              )])"#
+        );
+        let loaded =
+            scene::parse(&text, Path::new("lanes.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+            panic!("{constant}: {difference}");
+        }
+    }
+}

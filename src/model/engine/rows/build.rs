@@ -121,7 +121,9 @@ fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 
     let stays_inside = unit.kind == TextureKind::Cube
         || unit.border
         || [unit.state.address_s, unit.state.address_t].iter().all(|mode| *mode != AddressMode::ClampToBorder);
-    let plain = signed == [false; 4] && stays_inside && !unit.is_wide();
+    // KEY-1: a key that drops no fragment changes channels.
+    let keeps_texels = unit.state.color_key.is_none() || unit.state.kills();
+    let plain = signed == [false; 4] && stays_inside && keeps_texels && !unit.is_wide();
     [0, 1, 2, 3].map(|channel: usize| {
         let from = if plain { source(unit.format, channel) } else { Source::Channel(channel) };
         match from {

@@ -63,9 +63,10 @@ pub(super) fn positive(mut g: [[i64; 3]; 3]) -> ([[i64; 3]; 3], f64) {
 /// The error that is accepted of a quotient by a divisor that changes its sign.
 const BY_ANY_SIGN: f64 = 1.0 / 1024.0;
 
-/// Returns the magnitude of a divisor d down to which a quotient's error, `first` / d + `second` / d^2, is accepted.
+/// Returns the magnitude of a divisor d down to which a quotient's error, `first` / d + `second` / d^2, is accepted. It is not 0, even if the divisor
+/// is known to be: TEX-15 says what a quotient by 0 is.
 fn smallest_divisor(first: f64, second: f64) -> f64 {
-    larger(2.0 * first / BY_ANY_SIGN, (2.0 * second / BY_ANY_SIGN).sqrt())
+    larger(larger(2.0 * first / BY_ANY_SIGN, (2.0 * second / BY_ANY_SIGN).sqrt()), f64::MIN_POSITIVE)
 }
 
 /// Returns whether coordinates of that magnitude, in images, may reach their limit (TEX-15).

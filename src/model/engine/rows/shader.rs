@@ -243,10 +243,12 @@ impl Shader {
     }
 }
 
-/// Returns the constant channels of a stage's register that are read but not computed (TEX-16, TSH-4).
+/// Returns what the channels of a stage's register that are read begin with: their constants if the stage does not compute them (TEX-16, TSH-4), and
+/// otherwise what lanes without a pixel may hold, which for a signed texel is not 255.
 pub(super) fn initial(stage: &PlannedShaderStage) -> [Option<i16>; 4] {
-    let dot = stage.runs() && stage.state.operation == ShaderOperation::DotProduct;
-    [0, 1, 2, 3].map(|n: usize| (stage.live >> n & 1 != 0).then_some(if n == 3 && !dot { 255 } else { 0 }))
+    let is_dot = stage.runs() && stage.state.operation == ShaderOperation::DotProduct;
+    let alpha = if is_dot || stage.unit.is_some() { 0 } else { 255 };
+    [0, 1, 2, 3].map(|n: usize| (stage.live >> n & 1 != 0).then_some(if n == 3 { alpha } else { 0 }))
 }
 
 /// TSH-9 of a number that is the same at all vertices.
