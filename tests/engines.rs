@@ -161,6 +161,15 @@ fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
     println!("{count} scenes, digest {sum:016x}");
 }
 
+/// Draws a scene in RON with both engines.
+fn agree_on(text: &str, what: &str) {
+    let loaded = scene::parse(text, Path::new("scene.ron"), &Limits::default())
+        .unwrap_or_else(|error| panic!("{what}: {error}"));
+    if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+        panic!("{what}: {difference}");
+    }
+}
+
 /// Frames that do not belong to a plan are replaced by its own.
 #[test]
 fn foreign_frames_are_replaced() {
@@ -312,11 +321,7 @@ fn engines_agree_on_textures_that_states_share() {
                       draws: [{both}, {}])",
                     one.replacen('(', "(target: \"b\", ", 1)
                 );
-                let loaded = scene::parse(&text, Path::new("shared.ron"), &Limits::default())
-                    .unwrap_or_else(|error| panic!("{error}"));
-                if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
-                    panic!("{first} | {second} | {third}: {difference}");
-                }
+                agree_on(&text, &format!("{first} | {second} | {third}"));
             }
         }
     }
@@ -385,11 +390,7 @@ fn engines_agree_on_stages_with_equal_coordinates() {
                 vertices.join(", "),
                 [r#"(texture: "a")"#; 4].join(", "),
             );
-            let loaded = scene::parse(&text, Path::new("stages.ron"), &Limits::default())
-                .unwrap_or_else(|error| panic!("{error}"));
-            if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
-                panic!("{stages} | {a} + {b}: {difference}");
-            }
+            agree_on(&text, &format!("{stages} | {a} + {b}"));
         }
     }
 }
@@ -412,32 +413,33 @@ fn engines_agree_on_colour_keys_of_drawn_images() {
                       program: Combiners(stages: [()], final_combiner: (d: Texture0, g: (Texture0, Alpha)))),
                   ])"#
             );
-            let loaded =
-                scene::parse(&text, Path::new("key.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-            if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
-                panic!("{format} {key} {mode}: {difference}");
-            }
+            agree_on(&text, &format!("{format} {key} {mode}"));
         }
     }
 }
 
 /// q is 0 along an edge, because the numbers of both vertices vanish beside that of the third. One pixel lies on the edge, alone or in a row.
 #[test]
-fn engines_agree_on_coordinates_over_zero() {
-    for (right, t) in [(4, "1e20, -2.5e19"), (9, "1e20, -2.5e19"), (4, "3e19, 1e20"), (90, "3e19, 1e20")] {
+fn engines_agree_on_quotients_by_zero() {
+    let pairs = [
+        ("1, -0.25, 1, -1", "1e20, -2.5e19, 1e19, -1e20"),
+        ("1, -0.25, 1, -1", "3e19, 1e20, -1e20, -1e20"),
+        ("0, 0, 0, 0", "1, -0.25, 0.5, 1"),
+    ];
+    for ((small, large), right) in pairs.iter().flat_map(|pair| [4, 9, 90].map(|right| (pair, right))) {
+        let corner = |at: &str, numbers: &str| format!("(position: ({at}), t0: ({numbers}), t1: ({numbers}))");
+        let corners = [corner("4, 3", small), corner("-4, 43", small), corner(&format!("{right}, 43"), large)];
         let text = format!(
-            r#"(version: 1, profile: Nv2a, targets: [(width: 96, height: 64)],
-              textures: {{ "a": (source: Checker(width: 16, height: 16, colors: ((10, 200, 90), (70, 30, 120)))) }},
-              draws: [(vertices: Window([(position: (4, 3), t0: (1, -0.25, 0, -1)), (position: (-4, 43), t0: (1, -0.25, 0, -1)),
-                (position: ({right}, 43), t0: ({t}, 0, -1e20))]),
-                textures: [(texture: "a", min_filter: Nearest, mag_filter: Nearest, address_t: ClampToBorder, border_color: (0, 0, 135, 0))],
-                program: Combiners(stages: [()], final_combiner: (d: Texture0)))])"#
+            r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 96, height: 64), (name: "lamp", width: 16, height: 16, depth: Z16)],
+              textures: {{ "a": (source: Checker(width: 16, height: 16, colors: ((10, 200, 90), (70, 30, 120)))),
+                "depths": (kind: Rectangle, source: Depth("lamp")) }},
+              draws: [(vertices: Window([{}]), textures: [
+                  (texture: "a", min_filter: Nearest, mag_filter: Nearest, address_t: ClampToBorder, border_color: (0, 0, 135, 0)),
+                  (texture: "depths", address: ClampToEdge, min_filter: Nearest, mag_filter: Nearest, shadow: (function: LessOrEqual))],
+                program: Combiners(stages: [()], final_combiner: (d: Texture0, g: (Texture1, Alpha))))])"#,
+            corners.join(", ")
         );
-        let loaded =
-            scene::parse(&text, Path::new("zero.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
-            panic!("{right} {t}: {difference}");
-        }
+        agree_on(&text, &format!("{right} {large}"));
     }
 }
 
@@ -461,10 +463,6 @@ fn engines_agree_on_signed_texels_beside_lanes_without_a_pixel() {
                   final_combiner: (a: PrimaryColor, b: Invert(Texture3, Alpha), c: Spare0PlusSecondary))
               )])"#
         );
-        let loaded =
-            scene::parse(&text, Path::new("lanes.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-        if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
-            panic!("{constant}: {difference}");
-        }
+        agree_on(&text, &constant.to_string());
     }
 }
