@@ -19,14 +19,14 @@ fn wild(r: &mut Random) -> f32 {
     }
 }
 
-/// Returns the halves of a square that faces the viewer, whose coordinates are whole at pixels.
-fn square(r: &mut Random) -> [Vertex; 6] {
+/// Returns the halves of a square that faces the viewer, whose coordinates are 1 for each `scale` pixels.
+fn square(r: &mut Random, scale: f32) -> [Vertex; 6] {
     let (x, y, side) = (r.below(128) as f32, r.below(64) as f32, r.of(&[16.0, 64.0, 128.0]));
     [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(right, down)| {
         let (x, y) = (x + right * side, y + down * side);
         let [mut vertex, ..] = triangle(r, true);
         vertex.position = [x, y, 0.5, 1.0];
-        vertex.texture_coordinates = [[x / 64.0, y / 64.0, 0.0, 1.0]; 4];
+        vertex.texture_coordinates = [[x / scale, y / scale, 0.0, 1.0]; 4];
         vertex
     })
 }
@@ -53,7 +53,9 @@ fn texture_shaders_take_what_the_definition_takes() {
             (0..if small { 1024 } else { 6 }).flat_map(|_| triangle(&mut random, small)).collect();
         let squares = round % 3 == 1;
         if squares {
-            vertices = (0..6).flat_map(|_| square(&mut random)).collect();
+            // With the larger scale, 4096ths are odd.
+            let scale = random.of(&[64.0, 2048.0]);
+            vertices = (0..6).flat_map(|_| square(&mut random, scale)).collect();
         }
         let program = programs[round / 2 % programs.len()];
         let tame = random.below(2) == 0;
@@ -121,7 +123,7 @@ fn dependent_reads_with_levels_are_those_of_the_definition() {
         let count = if small { 256 } else { 3 };
         let mut vertices: Vec<Vertex> = (0..count).flat_map(|_| triangle(&mut random, small)).collect();
         if squares {
-            vertices = (0..4).flat_map(|_| square(&mut random)).collect();
+            vertices = (0..4).flat_map(|_| square(&mut random, 64.0)).collect();
         }
         // Normals come from layers of a volume in some rounds, or from comparisons of depths.
         let third = match round % 7 {
