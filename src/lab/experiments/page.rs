@@ -86,19 +86,13 @@ impl Measured {
     }
 }
 
+/// Returns the points of all curves. What a sweep changes and the unit of its errors stand in `thresholds.json`.
 fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
-    let mut rows = vec![["sweep", "method", "parameter", "value", "error", "unit"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["sweep", "method", "value", "error"].map(str::to_owned).to_vec()];
     for Measured { experiment, curves, .. } in all {
         for (method, curve) in experiment.methods.iter().zip(curves) {
             for (value, error) in experiment.shown.iter().zip(curve) {
-                let cells = [
-                    experiment.name,
-                    &method.name,
-                    experiment.parameter,
-                    &plain(*value),
-                    &number(*error),
-                    experiment.error,
-                ];
+                let cells = [experiment.name, &method.name, &plain(*value), &number(*error)];
                 rows.push(cells.map(str::to_owned).to_vec());
             }
         }
