@@ -447,9 +447,9 @@ fn engines_agree_on_quotients_by_zero() {
 #[test]
 fn engines_agree_on_signed_texels_beside_lanes_without_a_pixel() {
     // The last vertex makes the colour vary, but its triangle covers no pixel.
-    let white = |at| format!("(position: {at}, diffuse: (255, 255, 255), specular: (255, 255, 255))");
-    let vertices = ["(-1, 1)", "(-1, 2)", "(9, 4)", "(9, 4)"].map(white).join(", ");
-    let vertices = vertices.replacen("(9, 4), diffuse: (255, 255, 255)", "(9, 4), diffuse: (255, 255, 128)", 2);
+    let vertex = |at, blue| format!("(position: {at}, diffuse: (255, 255, {blue}), specular: (255, 255, 255))");
+    let vertices = [("(-1, 1)", 255), ("(-1, 2)", 255), ("(9, 4)", 255), ("(9, 4)", 128)];
+    let vertices = vertices.map(|(at, blue)| vertex(at, blue)).join(", ");
     for constant in 120..136 {
         let text = format!(
             r#"(version: 1, profile: Nv2a, targets: [(width: 4, height: 4)],

@@ -318,7 +318,8 @@ fn linear<const FMA: bool, const ROW: bool>(
         let size = argument.abs();
         let argument = sign.map_or(argument, |sign| size * sign);
         let (value, error) = (start + argument, size * TRUNCATED + off + rounding);
-        let (low, high) = (factor(floor_of_factor(value - error)), factor(floor_of_factor(value + error)));
+        let low = factor(floor_of_factor::<FMA>(value - error));
+        let high = factor(floor_of_factor::<FMA>(value + error));
         (bytes[n], unknown[n]) = (low, low ^ high);
         close |= unknown[n];
     }

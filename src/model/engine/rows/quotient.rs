@@ -258,11 +258,11 @@ pub(super) fn nearest(q: f64) -> i32 {
     (q + MAGIC).to_bits() as i32
 }
 
-/// Returns the floor of a factor in 4096ths, limited to 0..=4096. If the factor is a whole number, the result may be one less.
+/// Returns the floor of a factor in 4096ths, limited to 0..=4096; 0 for NaN.
 #[inline(always)]
-pub(super) fn floor_of_factor(v: f64) -> i32 {
+pub(super) fn floor_of_factor<const WIDE: bool>(v: f64) -> i32 {
     let v = if v > 0.0 { v } else { 0.0 };
-    nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
+    nearest(floor::<WIDE>(if v < 4096.0 { v } else { 4096.0 }))
 }
 
 /// Rounds to the nearest integer in single precision.

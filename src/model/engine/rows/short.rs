@@ -112,7 +112,7 @@ impl Parts {
         last: i32,
         denominator: &RealPlane,
     ) {
-        (self.count, self.before) = (0, 0);
+        self.count = 0;
         let local = BatchSetup::undivided(triangle, (i, j), (last, 0), denominator);
         let (functions, error) = numerators(triangle, &local);
         let [first, third, denominator] = functions;

@@ -10,7 +10,7 @@ use super::fetch::Workspace;
 use super::kernels::{Lanes, PerLane};
 use super::moved::{Moved, MovedPlanes, place, place_finely};
 use super::planes::{FOUR, FourPlanes, RealPlane, fraction_bits, inverse};
-use super::quotient::{Line, Reciprocals, floor, nearest};
+use super::quotient::{Line, Reciprocals, floor_of_factor};
 use super::ratios::BoxNumber;
 use super::setup::{BatchSetup, PixelBatch, Run};
 use super::shader::{Number, Purpose, Shader, byte_of};
@@ -271,12 +271,8 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     let estimate = |n: usize| {
         let value = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
         if BYTE {
-            // Exact numbers may be whole.
-            let byte = |v: f64| {
-                let v = if v > 0.0 { v * 4096.0 } else { 0.0 };
-                factor(nearest(floor::<FMA>(if v < 4096.0 { v } else { 4096.0 })))
-            };
-            let (low, high) = (byte(value - off), byte(value + off));
+            let (low, high) = ((value - off) * 4096.0, (value + off) * 4096.0);
+            let (low, high) = (factor(floor_of_factor::<FMA>(low)), factor(floor_of_factor::<FMA>(high)));
             // NaN is left open too.
             (low as f32, (low != high) | value.is_nan() | off.is_nan())
         } else {
