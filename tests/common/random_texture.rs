@@ -26,9 +26,16 @@ pub(super) fn palette(c: &mut Choices<'_>, n: u32) -> Palette {
 }
 
 /// Returns word `k` of a sequence whose neighbouring words are unrelated.
-fn scrambled(seed: u32, k: u32) -> u32 {
+pub(super) fn scrambled(seed: u32, k: u32) -> u32 {
     let x = (seed ^ k.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
     (x ^ x >> 15).wrapping_mul(0xc2b2_ae35) ^ x >> 13
+}
+
+/// Returns the words of a texture, which run evenly or have nothing to do with each other.
+pub(super) fn words(format: TextureFormat, count: u32, even: bool, seed: u32, step: u32) -> Arc<[u32]> {
+    let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
+    let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
+    (0..count).map(|k| word(k) & mask).collect()
 }
 
 /// Returns a texture with texels of its own.
@@ -52,13 +59,11 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let levels = if c.once_in(3) { c.size(1, most) } else { most };
     let may = profile == Profile::Nv2a && kind == TextureKind::TwoDimensional && !format.is_compressed();
     let border = may && c.once_in(4);
-    let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
     let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    let (_, face_words) = Level::chain(format, width, height, levels, border);
+    let face = Level::chain(format, width, height, levels, border).1;
     // A texture takes few words of the tape. All of its texels are derived from them.
     let (even, seed, step) = (c.once_in(2), c.word(), c.word());
-    let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
-    let words: Arc<[u32]> = (0..faces * face_words as u32).map(|k| word(k) & mask).collect();
+    let words = words(format, faces * face as u32, even, seed, step);
     let image = TextureImage::Texels(Texels { width, height, levels, layers: 1, border, words });
     Texture { name: format!("texture{n}"), kind, format, image }
 }

@@ -1,6 +1,8 @@
 //! Wider random scenes. A plain random scene is changed: draws share meshes, textures and programs, use extreme numbers and programs of
 //! other languages, and pass the viewer. A change that the chip does not allow is undone.
 
+#[path = "random_broad.rs"]
+pub mod broad;
 #[path = "random_front_end.rs"]
 mod front_end;
 
