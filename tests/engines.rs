@@ -309,12 +309,13 @@ fn engines_agree_on_textures_that_states_share() {
     };
     let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
     let faces = (0..6).map(|n| format!("{}: {}", faces[n], image(n as u32))).collect::<Vec<_>>().join(", ");
-    let sources = [
-        (image(7), "(0, 0)", "(24, 0)", "(0, 24)"),
-        (format!("Faces({faces})"), "(1, -1, -1)", "(1, -1, 1)", "(-0.2, 1, 0.4)"),
-    ];
-    for (source, a, b, c) in sources {
-        let texture = format!(r#""a": (source: {source}, levels: All)"#);
+    let faces = format!("Faces({faces})");
+    let flat = (image(7), "(0, 0)", "(24, 0)", "(0, 24)");
+    let cube = (faces, "(1, -1, -1)", "(1, -1, 1)", "(-0.2, 1, 0.4)");
+    for (format, (source, a, b, c)) in
+        ["A8R8G8B8", "R16B16"].into_iter().flat_map(|format| [(format, &flat), (format, &cube)])
+    {
+        let texture = format!(r#""a": (source: {source}, format: {format}, levels: All)"#);
         for (n, first) in states.iter().enumerate() {
             for second in &states {
                 let third = states[(n + 5) % states.len()];
@@ -335,7 +336,7 @@ fn engines_agree_on_textures_that_states_share() {
                       draws: [{both}, {}])",
                     one.replacen('(', "(target: \"b\", ", 1)
                 );
-                agree_on(&text, &format!("{first} | {second} | {third}"));
+                agree_on(&text, &format!("{format} | {first} | {second} | {third}"));
             }
         }
     }

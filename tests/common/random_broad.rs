@@ -30,9 +30,14 @@ fn broadened(tape: &[u32]) -> Scene {
         let c = &mut c.part(8);
         attempt(&mut scene, |scene| stretch(c, scene, target));
     }
+    // Half of the scenes have textures of a single format, because most formats are rare otherwise.
+    let format: Option<TextureFormat> = c.once_in(2).then(|| c.any());
     for texture in 0..scene.textures.len() {
         let c = &mut c.part(8);
         attempt(&mut scene, |scene| enlarge(c, &mut scene.textures[texture]));
+        if let Some(format) = format {
+            attempt(&mut scene, |scene| remake(scene, texture, format));
+        }
     }
     for index in 0..scene.draws.len() {
         let c = &mut tape.part(BROAD_DRAW);
@@ -80,16 +85,33 @@ fn enlarge(c: &mut Choices<'_>, texture: &mut Texture) {
     if x * y == 1 || width.max(height) > 4096 || width * height * texels.layers > MOST_TEXELS {
         return;
     }
-    let most = if texture.kind == TextureKind::TwoDimensional || texture.kind == TextureKind::Cube {
-        Level::most(width, height)
-    } else {
-        1
-    };
-    let levels = if same { texels.levels } else { most };
+    let has_levels = matches!(texture.kind, TextureKind::TwoDimensional | TextureKind::Cube);
+    let most = if has_levels { Level::most(width, height) } else { 1 };
+    let texels = Texels { width, height, levels: if same { texels.levels } else { most }, ..texels.clone() };
+    fill(texture, texels, even, seed, step);
+}
+
+/// Gives a texture other texels of a format.
+fn remake(scene: &mut Scene, index: usize, format: TextureFormat) {
+    let texture = &mut scene.textures[index];
+    let TextureImage::Texels(texels) = &texture.image else { return };
+    let (seed, texels) = (texels.words[0], texels.clone());
+    texture.format = format;
+    fill(texture, texels, false, seed, 0);
+    for unit in scene.draws.iter_mut().flat_map(|draw| draw.textures.iter_mut().flatten()) {
+        if unit.texture == index {
+            unit.palette = (format == TextureFormat::P8).then_some(unit.palette.unwrap_or(0));
+        }
+    }
+}
+
+/// Sets the words of texels and puts them into a texture.
+fn fill(texture: &mut Texture, texels: Texels, even: bool, seed: u32, step: u32) {
+    let Texels { width, height, levels, layers, border, .. } = texels;
     let faces = if texture.kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    let face = texels.layers * Level::chain(texture.format, width, height, levels, texels.border).1 as u32;
+    let face = layers * Level::chain(texture.format, width, height, levels, border).1 as u32;
     let words = texture::words(texture.format, faces * face, even, seed, step);
-    texture.image = TextureImage::Texels(Texels { width, height, levels, words, ..*texels });
+    texture.image = TextureImage::Texels(Texels { words, ..texels });
 }
 
 /// Returns the point at (u, v) of a patch whose corners are given in the order of a quad.

@@ -197,8 +197,8 @@ pub(super) struct Key {
     modes: [AddressMode; 2],
     /// Address mode along the layers of a volume.
     layers: Option<AddressMode>,
-    /// Whether it reads footprints instead of single texels.
-    linear: bool,
+    /// Whether it filters, on some level at least.
+    filters: bool,
     /// Number of levels that any level of detail of the unit can reach, if it needs one.
     levels: Option<usize>,
     /// Whether constant and equal channels are left out.
@@ -217,7 +217,7 @@ impl Key {
             palette: state.palette,
             modes: unit.modes(),
             layers: is_volume(unit).then_some(state.address_r),
-            linear: linear(unit),
+            filters: filters(unit),
             levels: unit.needs_lod().then_some(unit.levels.len()),
             folds,
             border_color: state.border_color,
@@ -228,9 +228,9 @@ impl Key {
     }
 }
 
-/// Returns whether a unit reads footprints, on some level at least.
-fn linear(unit: &PlannedUnit) -> bool {
-    unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
+/// Returns whether a unit filters, on some level at least.
+fn filters(unit: &PlannedUnit) -> bool {
+    unit.needs_lod() || unit.state.mag_filter == Filter::Linear
 }
 
 fn is_volume(unit: &PlannedUnit) -> bool {
@@ -300,7 +300,9 @@ impl Table {
         let axes = levels.first().copied().unwrap_or([none; 2]);
         let [columns, rows] = axes;
         let mixes = unit.needs_lod();
-        let linear = linear(unit);
+        // Halves are always read as footprints.
+        let filters = filters(unit);
+        let linear = filters || unit.is_wide();
         let beyond = i32::from(linear);
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
         let mut all = Vec::with_capacity(size(unit, levels) as usize);
@@ -354,8 +356,7 @@ impl Table {
         } else if let Some(comparison) = comparison {
             (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
-            let linear = unit.state.mag_filter == Filter::Linear;
-            (Texels::Wide(self::columns(&all, wide), linear), wide, wide * high)
+            (Texels::Wide(self::columns(&all, wide), filters), wide, wide * high)
         } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
         } else if more {
