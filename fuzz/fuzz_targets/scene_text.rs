@@ -1,8 +1,9 @@
-//! Checks that any text yields a scene or errors, never a panic, and that a small scene renders the same frame with and without pruning.
+//! Checks that any text yields a scene or errors, never a panic, and that a small scene renders the same frame with and without pruning, and
+//! with both engines.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::engine::{RenderOptions, render};
+use ninebit::engine::{Engine, RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use std::path::Path;
@@ -16,11 +17,16 @@ fuzz_target!(|text: &str| {
             if pixels > 4096 || loaded.scene.draws.len() > 8 {
                 return;
             }
-            let [pruned, whole] = [true, false].map(|prune| {
+            let frames = |prune, engine| {
                 let plan = Plan::compile(&loaded.scene, &PlanOptions { prune, ..PlanOptions::default() });
-                render(&plan.expect("a loaded scene can be planned"), &RenderOptions::default())
-            });
-            assert!(pruned == whole, "pruning changed a byte");
+                render(
+                    &plan.expect("a loaded scene can be planned"),
+                    &RenderOptions { engine, ..RenderOptions::default() },
+                )
+            };
+            let pruned = frames(true, Engine::Fast);
+            assert!(pruned == frames(false, Engine::Fast), "pruning changed a byte");
+            assert!(pruned == frames(true, Engine::Scalar), "the engines differ");
         }
     }
 });
