@@ -15,6 +15,8 @@ fuzz_target!(|text: &str| {
                 assert!(finding.span.is_none_or(|span| text.get(span).is_some()));
             }
         }
+        // What has no general stage reads back with one.
+        Ok(program) if program.combiners.stages.is_empty() => {}
         Ok(program) => {
             let normal = print(&program.combiners);
             assert!(read(&normal).expect("what is printed can be read").combiners == program.combiners);

@@ -43,6 +43,12 @@ fn broadened(tape: &[u32]) -> Scene {
         let c = &mut tape.part(BROAD_DRAW);
         attempt(&mut scene, |scene| mesh(c, scene, index));
     }
+    // What draws leave behind must not matter to any other.
+    let more = if c.once_in(3) { c.size(1, 8) } else { 0 };
+    for _ in 0..more {
+        let again = scene.draws[c.below(scene.draws.len() as u32) as usize].clone();
+        scene.draws.push(again);
+    }
     scene
 }
 
