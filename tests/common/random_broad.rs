@@ -84,7 +84,7 @@ fn stretch(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
 /// Makes a texture larger.
 fn enlarge(c: &mut Choices<'_>, texture: &mut Texture) {
     let (more, same) = (c.pick(&[[1, 1], [2, 2], [8, 8], [16, 4], [4, 32], [64, 64]]), c.once_in(2));
-    let (even, seed, step) = (c.once_in(2), c.word(), c.word());
+    let of_words = (c.once_in(2), c.word(), c.word());
     let TextureImage::Texels(texels) = &texture.image else { return };
     let [x, y] = if texture.kind == TextureKind::Cube { [more[0]; 2] } else { more };
     let (width, height) = (texels.width * x, texels.height * y);
@@ -94,7 +94,7 @@ fn enlarge(c: &mut Choices<'_>, texture: &mut Texture) {
     let has_levels = matches!(texture.kind, TextureKind::TwoDimensional | TextureKind::Cube);
     let most = if has_levels { Level::most(width, height) } else { 1 };
     let texels = Texels { width, height, levels: if same { texels.levels } else { most }, ..texels.clone() };
-    fill(texture, texels, even, seed, step);
+    texture.image = texture::filled(texture.kind, texture.format, texels, of_words);
 }
 
 /// Gives a texture other texels of a format.
@@ -103,21 +103,12 @@ fn remake(scene: &mut Scene, index: usize, format: TextureFormat) {
     let TextureImage::Texels(texels) = &texture.image else { return };
     let (seed, texels) = (texels.words[0], texels.clone());
     texture.format = format;
-    fill(texture, texels, false, seed, 0);
+    texture.image = texture::filled(texture.kind, format, texels, (false, seed, 0));
     for unit in scene.draws.iter_mut().flat_map(|draw| draw.textures.iter_mut().flatten()) {
         if unit.texture == index {
             unit.palette = (format == TextureFormat::P8).then_some(unit.palette.unwrap_or(0));
         }
     }
-}
-
-/// Sets the words of texels and puts them into a texture.
-fn fill(texture: &mut Texture, texels: Texels, even: bool, seed: u32, step: u32) {
-    let Texels { width, height, levels, layers, border, .. } = texels;
-    let faces = if texture.kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    let face = layers * Level::chain(texture.format, width, height, levels, border).1 as u32;
-    let words = texture::words(texture.format, faces * face, even, seed, step);
-    texture.image = TextureImage::Texels(Texels { words, ..texels });
 }
 
 /// Returns the point at (u, v) of a patch whose corners are given in the order of a quad.

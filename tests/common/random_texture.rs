@@ -31,11 +31,19 @@ pub(super) fn scrambled(seed: u32, k: u32) -> u32 {
     (x ^ x >> 15).wrapping_mul(0xc2b2_ae35) ^ x >> 13
 }
 
-/// Returns the words of a texture, which run evenly or have nothing to do with each other.
-pub(super) fn words(format: TextureFormat, count: u32, even: bool, seed: u32, step: u32) -> Arc<[u32]> {
+/// Returns texels of the given sides with words that run evenly or have nothing to do with each other.
+pub(super) fn filled(
+    kind: TextureKind,
+    format: TextureFormat,
+    sides: Texels,
+    (even, seed, step): (bool, u32, u32),
+) -> TextureImage {
+    let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
+    let (_, face_words) = Level::chain(format, sides.width, sides.height, sides.levels, sides.border);
     let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
     let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
-    (0..count).map(|k| word(k) & mask).collect()
+    let words = (0..faces * sides.layers * face_words as u32).map(|k| word(k) & mask).collect();
+    TextureImage::Texels(Texels { words, ..sides })
 }
 
 /// Returns a texture with texels of its own.
@@ -55,16 +63,14 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
         (TextureKind::Rectangle, Profile::Nv10) => width += width & 1,
         _ => {}
     }
-    let most = if kind == TextureKind::Rectangle { 1 } else { u32::max(width, height).ilog2() + 1 };
+    let most = if kind == TextureKind::Rectangle { 1 } else { Level::most(width, height) };
     let levels = if c.once_in(3) { c.size(1, most) } else { most };
     let may = profile == Profile::Nv2a && kind == TextureKind::TwoDimensional && !format.is_compressed();
     let border = may && c.once_in(4);
-    let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    let face = Level::chain(format, width, height, levels, border).1;
     // A texture takes few words of the tape. All of its texels are derived from them.
-    let (even, seed, step) = (c.once_in(2), c.word(), c.word());
-    let words = words(format, faces * face as u32, even, seed, step);
-    let image = TextureImage::Texels(Texels { width, height, levels, layers: 1, border, words });
+    let of_words = (c.once_in(2), c.word(), c.word());
+    let sides = Texels { width, height, levels, layers: 1, border, words: Arc::default() };
+    let image = filled(kind, format, sides, of_words);
     Texture { name: format!("texture{n}"), kind, format, image }
 }
 

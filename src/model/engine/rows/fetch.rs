@@ -54,21 +54,21 @@ pub(super) fn sample_unit(
 ) {
     let sampler = &job.compiled.samplers[n];
     let Some(table) = &sampler.table else { return };
-    let (signed, wanted) = (sampler.signed, job.compiled.textures[sampler.unit]);
+    let wanted = job.compiled.textures[sampler.unit];
     // Samplers that share coordinates also have the same axes.
     let at = sampler.shares.unwrap_or(n);
     if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
         let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
-        sample_levels(job.filter, table, reads, both, signed, wanted, work, rows);
+        sample_levels(job.filter, table, reads, both, sampler.signed, wanted, work, rows);
         return;
     }
     if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
-        sample_taps(job.filter, table, &varying.coordinates[n], &footprints.pairs, signed, wanted, work, rows);
+        sample_taps(job.filter, table, &varying.coordinates[n], &footprints.pairs, sampler, wanted, work, rows);
         return;
     }
     let faces = sampler.has_images().then_some(&varying.faces[n]);
     locate(table, &mut varying.coordinates[at], faces, work);
-    sample(job.filter, table, &varying.coordinates[at], &varying.references[n], signed, wanted, work, rows);
+    sample(job.filter, table, &varying.coordinates[at], &varying.references[n], sampler, wanted, work, rows);
 }
 
 /// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
@@ -96,18 +96,18 @@ pub(super) fn locate(
 /// with.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-pub(super) fn sample(
+fn sample(
     filter: Filter,
     table: &Table,
     at: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
-    signed: [bool; 4],
+    sampler: &Sampler,
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
 ) {
-    if texels(filter, table, at, references, signed, wanted, work, rows) {
-        load(work.lanes, signed, wanted, rows);
+    if texels(filter, table, at, references, sampler, wanted, work, rows) {
+        load(work.lanes, sampler.signed, wanted, rows);
     }
 }
 
@@ -119,15 +119,15 @@ fn texels(
     table: &Table,
     [u, v]: &[PerLane<i32>; 2],
     references: &PerLane<u32>,
-    signed: [bool; 4],
+    sampler: &Sampler,
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
 ) -> bool {
     let (u, v) = (u.block(), v.block());
-    if let Texels::Wide(texels, linear) = &table.texels {
-        work.filter_halves(texels, *linear, (u, v));
-        bytes_of_halves((work.lanes, &work.halves), signed, wanted, rows);
+    if let Texels::Wide(texels) = &table.texels {
+        work.filter_halves(texels, sampler.filters, (u, v));
+        bytes_of_halves((work.lanes, &work.halves), sampler.signed, wanted, rows);
         return false;
     }
     let Workspace { lanes, entries, texels: found, footprints, .. } = work;
@@ -181,18 +181,18 @@ fn sample_taps(
     table: &Table,
     at: &[PerLane<i32>; 2],
     pairs: &[Pair],
-    signed: [bool; 4],
+    sampler: &Sampler,
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [PerLane<i16>],
 ) {
     // Not closures: compilers do not inline them, and they lack the caller's instruction set.
     let taps = pairs.iter().flat_map(|pair| [(pair, 1), (pair, -1)]);
-    if let Texels::Wide(texels, linear) = &table.texels {
+    if let Texels::Wide(texels) = &table.texels {
         let mut sums = [[0_i32; BLOCK]; 2];
         for (pair, side) in taps {
             let [u, v] = tap(table, at, (pair, side), work);
-            work.filter_halves(texels, *linear, (u.block(), v.block()));
+            work.filter_halves(texels, sampler.filters, (u.block(), v.block()));
             let weights = pair.weights.block();
             for (sums, half) in sums.iter_mut().zip(&work.halves) {
                 for n in 0..work.lanes.count() {
@@ -201,13 +201,13 @@ fn sample_taps(
             }
         }
         let halves = sums.map(|sums| sums.map(|sum| (sum + 128) >> 8));
-        bytes_of_halves((work.lanes, &halves), signed, wanted, rows);
+        bytes_of_halves((work.lanes, &halves), sampler.signed, wanted, rows);
         return;
     }
     let mut sums = [[0_u16; BLOCK]; 4];
     for (pair, side) in taps {
         let at = tap(table, at, (pair, side), work);
-        texels(filter, table, &at, &NO_REFERENCES, signed, wanted, work, rows);
+        texels(filter, table, &at, &NO_REFERENCES, sampler, wanted, work, rows);
         let weights = pair.weights.block();
         for (sums, wanted) in sums.iter_mut().zip(wanted) {
             let Some(wanted) = wanted else { continue };
@@ -224,7 +224,7 @@ fn sample_taps(
             out[n] = ((sums[n] + 128) >> 8) as i16;
         }
     }
-    load(work.lanes, signed, wanted, rows);
+    load(work.lanes, sampler.signed, wanted, rows);
 }
 
 /// Locates a tap of all pixels, on one side of their centres. Returns its coordinates.

@@ -113,9 +113,8 @@ pub(super) enum Texels {
     Levels(Vec<Column>),
     /// Footprints of every level of 16-bit halves.
     WideLevels(Vec<Column>),
-    /// Footprints of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. The flag tells whether the unit
-    /// filters.
-    Wide(Vec<Column>, bool),
+    /// Footprints of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. Units that do not filter read them, too.
+    Wide(Vec<Column>),
     /// Single depths, and the comparison with a reference.
     Depths(Vec<u32>, CompareFunction),
 }
@@ -197,8 +196,8 @@ pub(super) struct Key {
     modes: [AddressMode; 2],
     /// Address mode along the layers of a volume.
     layers: Option<AddressMode>,
-    /// Whether it filters, on some level at least.
-    filters: bool,
+    /// Whether it reads footprints instead of single texels.
+    linear: bool,
     /// Number of levels that any level of detail of the unit can reach, if it needs one.
     levels: Option<usize>,
     /// Whether constant and equal channels are left out.
@@ -217,7 +216,7 @@ impl Key {
             palette: state.palette,
             modes: unit.modes(),
             layers: is_volume(unit).then_some(state.address_r),
-            filters: filters(unit),
+            linear: linear(unit),
             levels: unit.needs_lod().then_some(unit.levels.len()),
             folds,
             border_color: state.border_color,
@@ -228,9 +227,9 @@ impl Key {
     }
 }
 
-/// Returns whether a unit filters, on some level at least.
-fn filters(unit: &PlannedUnit) -> bool {
-    unit.needs_lod() || unit.state.mag_filter == Filter::Linear
+/// Returns whether a unit reads footprints, on some level at least.
+fn linear(unit: &PlannedUnit) -> bool {
+    unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
 
 fn is_volume(unit: &PlannedUnit) -> bool {
@@ -286,7 +285,7 @@ impl Table {
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
             Texels::Single(all) | Texels::One(_, all) | Texels::Depths(all, _) => all.len() as u64,
-            Texels::Footprints(all) | Texels::Levels(all) | Texels::WideLevels(all) | Texels::Wide(all, _) => {
+            Texels::Footprints(all) | Texels::Levels(all) | Texels::WideLevels(all) | Texels::Wide(all) => {
                 all.len() as u64
             }
         }
@@ -300,9 +299,7 @@ impl Table {
         let axes = levels.first().copied().unwrap_or([none; 2]);
         let [columns, rows] = axes;
         let mixes = unit.needs_lod();
-        // Halves are always read as footprints.
-        let filters = filters(unit);
-        let linear = filters || unit.is_wide();
+        let linear = linear(unit);
         let beyond = i32::from(linear);
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
         let mut all = Vec::with_capacity(size(unit, levels) as usize);
@@ -356,7 +353,7 @@ impl Table {
         } else if let Some(comparison) = comparison {
             (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
-            (Texels::Wide(self::columns(&all, wide), filters), wide, wide * high)
+            (Texels::Wide(self::columns(&all, wide)), wide, wide * high)
         } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
         } else if more {
