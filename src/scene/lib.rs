@@ -95,8 +95,7 @@ pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Lo
         read::bytes(path, Kind::Stream, limits.scene_file())
     };
     let finding = |error| match error {
-        ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file")
-            .help("check the spelling and the folder; upper and lower case count"),
+        ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file").help(path::advice(path)),
         ReadError::TooLarge(limit) => too_large(limit),
         error => Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
             .help("name a regular file that may be read"),
