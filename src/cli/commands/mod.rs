@@ -56,7 +56,7 @@ use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
-use scene::{PolicyArguments, SceneArguments, chosen_target, load};
+use scene::{PolicyArguments, SceneArguments, WorkArguments, chosen_target, load_to_draw};
 use terminal::{ColorChoice, Level, Progress};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners

@@ -27,6 +27,8 @@ pub(crate) struct Arguments {
     target: Option<String>,
     #[command(flatten)]
     engine: EngineArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// Its depth buffer: NAME.png, grey of 16 bits, the upper 16 of each depth; any other name, words as the chip stores them, little-endian: two
     /// bytes of Z16, four of Z24S8, whose low byte is the stencil
     #[arg(long, value_name = "FILE", value_parser = picture::depths())]
@@ -62,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     }
     let options = arguments.engine.options()?;
     let mut clock = Clock::start();
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load_to_draw(arguments.work, context)?;
     destinations().try_for_each(Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let depth_buffer = scene.targets[target].depth;
@@ -92,8 +94,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         destination.write(&little_endian(&surface.words, surface.format.bytes() as usize))?;
     }
     clock.lap("write");
-
-    if statistics_wanted {
     let clear = pixels.iter().filter(|pixel| pixel[3] < 255).count() as u64;
     if clear > 0 && !arguments.alpha {
         let message = format!(
@@ -103,6 +103,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let help = "`--opaque` writes the colours alone; `--alpha` says that alpha is wanted";
         terminal::print(Level::Note, &Report::message(None, &message, help), context.color);
     }
+
+    if statistics_wanted {
         let target = |(target, surface): (&Target, &Surface)| {
             json!({
                 "name": target.name, "width": surface.width, "height": surface.height,
