@@ -96,6 +96,7 @@ const PLACES: &[(&str, &str)] = &[
     ("Fog", "draw: fog: (@ mode: Linear)"),
     ("Fog", "draw: fog: (@ mode: Exp)"),
     ("Grid", "vertices: Matrix(matrix: Identity, mesh: Grid(@ columns: 1, rows: 1))"),
+    ("Cuboid", "vertices: Matrix(matrix: Identity, mesh: Box(@))"),
     ("Sphere", "vertices: Matrix(matrix: Identity, mesh: Sphere(@ slices: 8, stacks: 4))"),
     ("Torus", "vertices: Matrix(matrix: Identity, mesh: Torus(@ slices: 8, sides: 4))"),
     ("Cylinder", "vertices: Matrix(matrix: Identity, mesh: Cylinder(@ slices: 8, stacks: 1))"),
@@ -536,6 +537,8 @@ fn matrices_multiply_column_vectors() {
     assert_eq!(position("Rows((0, 1, 0, 0), (1, 0, 0, 0), (0, 0, 1, 3), (0, 0, 0, 2))"), [0.5, 0.25, 3.0, 2.0]);
     assert_eq!(position("Rotate(0, 0, 1, 1)"), [-0.5, 0.25, 0.0, 1.0]);
     assert_eq!(position("LookAt(eye: (0, 0, 4), center: (0, 0, 0))"), [0.25, 0.5, -4.0, 1.0]);
+    let perspective = "Perspective(fov: 90, aspect: 0.5, near: 1, far: 3)";
+    assert_eq!(position(&format!("{perspective}, Translate(0, 0, -3)")), [0.5, 0.5, 3.0, 3.0]);
     let frustum = "Frustum(left: -1, right: 1, bottom: -1, top: 1, near: 1, far: 3)";
     assert_eq!(position(&format!("{frustum}, Translate(0, 0, -3)")), [0.25, 0.5, 3.0, 3.0]);
 }

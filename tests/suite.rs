@@ -43,6 +43,7 @@ mod cli_compare;
 mod cli_measure;
 mod cli_names;
 mod cli_outputs;
+mod cli_scenes;
 mod cli_texture;
 mod clipping;
 mod combiner_language;

@@ -363,6 +363,7 @@ pub unsafe extern "C" fn ninebit_render(
             let words = if words.is_null() { None } else { Some(array_mut(words, pixels, "the place of the words")?) };
             (words, if rgba.is_null() { None } else { Some(array_mut(rgba, bytes, "the place of the bytes")?) })
         };
+        loaded.affordable(Limits::default().shaded_pixels)?;
         let frames = engine::render(&loaded.plan, &RenderOptions { threads, ..RenderOptions::default() });
         let surface = &frames.surfaces[target];
         if let Some(words) = words {
@@ -398,6 +399,7 @@ pub unsafe extern "C" fn ninebit_trace(
         if json.is_null() {
             return Err(Failure::argument("there is no place for the document"));
         }
+        loaded.affordable(Limits::default().shaded_pixels)?;
         let trace =
             engine::trace(&loaded.plan, target, (x, y), None).map_err(|error| Failure::argument(error.to_string()))?;
         // SAFETY: the caller promises that it may be written.

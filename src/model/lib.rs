@@ -34,6 +34,8 @@
 //! ```
 #![doc = include_str!("examples/pixel.rs")]
 //! ```
+//!
+//! [`state::Draw::texture`] has the same with a texture.
 
 pub mod algebra;
 pub mod combiner;

@@ -26,6 +26,14 @@ pub fn count(number: u64, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
+/// Puts the indefinite article before a name: `a mesh`, `an input`, `a unit`.
+pub fn a(thing: &str) -> String {
+    let begins = |with: &str| thing.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    let vowel = ["a", "e", "i", "o", "u"].into_iter().any(begins);
+    let article = if vowel && !["uni", "use", "eu"].into_iter().any(begins) { "an" } else { "a" };
+    format!("{article} {thing}")
+}
+
 /// Escapes a name or another text of one line. Characters that must not be printed become `\n`, `\t`, `\u{1b}` and so
 /// on.
 pub fn name(text: &str) -> Cow<'_, str> {
@@ -136,6 +144,15 @@ mod tests {
         assert_eq!(name("a\n::error::b\u{1b}[31m"), r"a\n::error::b\u{1b}[31m");
         assert_eq!(name("::error::b"), r"\u{3a}:error::b");
         assert_eq!(name("##[error]b"), r"#\u{23}[error]b");
+    }
+
+    #[test]
+    fn articles_go_by_the_sound() {
+        let things = ["mesh", "input", "alpha test", "portion", "unit", "uniform", "Orthographic", "error"];
+        assert_eq!(
+            things.map(a),
+            ["a mesh", "an input", "an alpha test", "a portion", "a unit", "a uniform", "an Orthographic", "an error"]
+        );
     }
 
     /// Generates texts of characters that names contain, among them many hostile ones.

@@ -86,18 +86,13 @@ pub fn steps_text(steps: &[Step]) -> String {
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     write!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
     match &draw.piece {
-        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, planes(piece.planes))?,
+        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, ClipPlane::names(piece.planes))?,
         None => writeln!(out)?,
     }
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
     writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
-}
-
-/// Returns the names of the clip planes in a set, separated by commas.
-pub(crate) fn planes(set: u8) -> String {
-    ClipPlane::in_set(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {

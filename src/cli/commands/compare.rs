@@ -11,6 +11,8 @@ use super::engine::MAXIMUM_THREADS;
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// What the ideal decides by itself
     #[arg(long, value_enum, value_name = "MODE", default_value_t = ModeArgument::Free)]
     mode: ModeArgument,
@@ -46,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ModeArgument::Follow => Mode::Follow,
         ModeArgument::PerOp => Mode::PerOp,
     };
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load_to_draw(arguments.work, context)?;
     destination.map_or(Ok(()), Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let comparison =

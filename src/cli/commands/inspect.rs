@@ -23,6 +23,8 @@ pub(crate) struct Arguments {
     output: Destination,
     #[command(flatten)]
     policies: PolicyArguments,
+    #[command(flatten)]
+    work: WorkArguments,
 }
 
 /// Writes a page that shows the scene and computes it in the browser.
@@ -30,6 +32,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let policies = arguments.policies.policies()?;
     let gathered = Gathered::default();
     let loaded = load_with(&arguments.scene, &Limits::default(), &gathered).map_err(refused)?;
+    loaded.affordable(arguments.work.pixels).map_err(refused)?;
     if !loaded.warnings.is_empty() {
         terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
     }

@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::builder::PossibleValuesParser;
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::engine::RenderOptions;
 use ninebit::limits::Limits;
@@ -55,7 +56,7 @@ use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
-use scene::{PolicyArguments, SceneArguments, chosen_target, load};
+use scene::{PolicyArguments, SceneArguments, WorkArguments, chosen_target, load_to_draw};
 use terminal::{ColorChoice, Level, Progress};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
@@ -150,7 +151,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            let end = print_parser_message(&error, arguments);
+            let end = scene_as_command(&error).unwrap_or_else(|| print_parser_message(&error, arguments));
             return finish(end, color.on_stderr());
         }
     };
@@ -189,6 +190,19 @@ fn finish(result: Result<(), Failure>, color: bool) -> Exit {
             exit
         }
     }
+}
+
+/// Returns the failure of a command line that names a scene where a command belongs.
+fn scene_as_command(error: &clap::Error) -> Option<Result<(), Failure>> {
+    let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let path = Path::new(given);
+    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+    (is_scene || path.is_file()).then(|| {
+        let scene = shown::path(path);
+        let picture = shown::path(&path.with_extension("png"));
+        let help = format!("did you mean `ninebit render {scene} -o {picture}`? `ninebit --help` lists the commands");
+        Err(Failure::usage(format!("`{scene}` names a file, not a command"), help))
+    })
 }
 
 /// Prints the parser's message: help to stdout, errors to stderr.

@@ -177,7 +177,7 @@ export class Chain {
     const pairs = [["A", "B"], ["C", "D"]].map((pair) => boxes("inputs", (name) => pair.includes(name))).filter((pair) => pair.length);
     const flag = (label, field) => el("label", {}, el("input", { type: "checkbox", "aria-label": `${label} of stage ${number} ${portion}`, checked: state[field],
       onchange: (event) => this.page.edit(draw, [...path, field], event.target.checked) }), ` ${label}`);
-    const output = (label, field) => [el("span", { className: "quiet" }, `${label} → `), pick(`Output of ${label}`, "register", [field])];
+    const output = (label, field) => [el("span", { className: "quiet" }, `${label} → `), pick(`Output of ${label}`, "destination", [field])];
     const settings = el("div", { className: "field" },
       editable ? [el("span", { className: "quiet" }, "scale "), pick("Scale", "scale", ["scale"]), el("span", { className: "quiet" }, " bias "), pick("Bias", "bias", ["bias"]),
         output("AB", "ab_output"), output("CD", "cd_output"), output(state.mux ? "mux" : "sum", "sum_output"),

@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::replay::panels::GAP;
+use crate::replay::panels::{GAP, opaque};
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
 use ninebit_report::SideBySideLine;
@@ -77,7 +77,7 @@ fn difference(difference: &Difference) -> Markup {
             Some(known) => (pictures(known)),
             None => {
                 p { "Only the digest of the expected picture is known; this was drawn:" }
-                (image(&difference.picture, "panels", "drawn"))
+                (image(&opaque(&difference.picture), "panels", "drawn"))
             }
         }
         table {
