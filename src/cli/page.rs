@@ -28,11 +28,10 @@ const NUMERICS: &str = include_str!("../../docs/numerics.md");
 /// Returns the page with the given title and a scene's data.
 pub(crate) fn page(title: &str, data: &Value) -> String {
     let script = joined();
-    let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())));
     let policy = format!(
         "default-src 'none'; script-src {} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
-        hash(&script),
-        hash(STYLE)
+        source_hash(&script),
+        source_hash(STYLE)
     );
     let title = format!("{} - Ninebit", escaped(title));
     // Escaped so that no data can end its element.
@@ -54,6 +53,11 @@ pub(crate) fn page(title: &str, data: &Value) -> String {
         rest = after;
     }
     page + rest
+}
+
+/// Returns the hash of an inline script or style as a content security policy names it.
+pub(crate) fn source_hash(text: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
 /// Joins the modules to one script.

@@ -1,5 +1,5 @@
 //! Tests the page of `ninebit inspect`: in node the embedded module draws and finds the same as the program, and the page works in a
-//! browser.
+//! browser. So does the report of `ninebit replay`.
 //!
 //! Tests that need node, Chromium (`CHROMIUM` names it) or Firefox are *ignored* if these are missing. Forty scenes are drawn;
 //! `NINEBIT_WEB_SCENES=0` draws all of them.
@@ -38,6 +38,7 @@ fn main() {
         Trial::test("frames_are_the_programs", frames).with_ignored_flag(!node),
         Trial::test("findings_are_the_programs", findings).with_ignored_flag(!node),
         Trial::test("the_page_works_in_a_browser", page).with_ignored_flag(!browser),
+        Trial::test("the_report_works_in_a_browser", report).with_ignored_flag(!browser),
         Trial::test("the_page_opens_in_firefox", firefox).with_ignored_flag(!node || !runs("firefox", "--version")),
         Trial::test("requests_that_make_no_sense_are_refused", refused),
         Trial::test("places_count_as_scripts_do", places),
@@ -421,6 +422,52 @@ draws: [
         depth_test: (function: LessOrEqual), stencil_test: (function: Always, pass: IncrementSaturate)),
 ])"#;
 
+/// Runs a script of Chromium with a folder, further arguments, and perhaps a folder for pictures.
+fn chromium(script: &str, folder: &Path, arguments: &[PathBuf]) -> Result<(), Failed> {
+    let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));
+    let arguments = [folder.to_path_buf()].into_iter().chain(arguments.to_vec()).chain(pictures.map(PathBuf::from));
+    let run = Command::new("node").arg(script).args(arguments).output().unwrap();
+    print!("{}", String::from_utf8_lossy(&run.stdout));
+    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+}
+
+/// Replays three scenes: of one another value of a policy is expected, of one only a digest is known, one is broken.
+fn report() -> Result<(), Failed> {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir(at("scenes")).unwrap();
+    let copied = files(Path::new("vectors/scenes/dot3"), ".png").into_iter();
+    for path in
+        copied.chain(["constant-light.ron", "hemisphere.ron"].map(|name| Path::new("vectors/scenes/dot3").join(name)))
+    {
+        std::fs::copy(&path, at("scenes").join(path.file_name().unwrap())).unwrap();
+    }
+    let ninebit = |arguments: &str| {
+        let arguments = arguments.split(' ');
+        let run = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .env_remove("CI")
+            .output();
+        run.unwrap().status.code()
+    };
+    assert_eq!(ninebit("replay --bless scenes"), Some(0));
+    let plan = load(&at("scenes/constant-light.ron")).unwrap().0.plan;
+    let mut policies = Policies::default();
+    policies.set("CMB-8=each").unwrap();
+    for (name, digest) in
+        [("constant-light", digests(&plan.under(policies))[0].clone()), ("hemisphere", "0".repeat(64))]
+    {
+        let expectation = at(&format!("scenes/{name}.expect.ron"));
+        let text = std::fs::read_to_string(&expectation).unwrap();
+        let (before, rest) = text.split_once("sha256: \"").unwrap();
+        std::fs::write(&expectation, format!("{before}sha256: \"{digest}{}", &rest[64..])).unwrap();
+    }
+    std::fs::write(at("scenes/broken.ron"), "(version: 1, profile: Nv11)").unwrap();
+    assert_eq!(ninebit("replay scenes --report html=report.html"), Some(3));
+    chromium("tests/web/report.mjs", folder.path(), &[])
+}
+
 fn page() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -531,9 +578,5 @@ fn page() -> Result<(), Failed> {
         "same": png(&pixels), "other": STANDARD.encode(four_off(frame)), "differing": "4 pixels differ", "bad": bad,
     });
     std::fs::write(at("expected.json"), expected.to_string()).unwrap();
-    let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));
-    let arguments = [folder.path().to_path_buf(), at("expected.json")].into_iter().chain(pictures.map(PathBuf::from));
-    let run = Command::new("node").arg("tests/web/page.mjs").args(arguments).output().unwrap();
-    print!("{}", String::from_utf8_lossy(&run.stdout));
-    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+    chromium("tests/web/page.mjs", folder.path(), &[at("expected.json")])
 }
