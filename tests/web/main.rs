@@ -501,6 +501,15 @@ fn page() -> Result<(), Failed> {
     let mut native = Native::from_path(path);
     let ideal = native.differing(json!("ideal"), None);
     let against_literal = native.differing(json!({ "CMB-3": "literal" }), None);
+    let asked = native.ask(json!({ "do": "alternatives", "target": 0, "pixel": [pixel.0, pixel.1], "until": null }));
+    let differs = |rule: &&Value| {
+        let words: Vec<&Value> = rule["values"].as_array().unwrap().iter().map(|value| &value["word"]).collect();
+        words.iter().any(|word| *word != words[0])
+    };
+    let open: Vec<&str> =
+        asked["rules"].as_array().unwrap().iter().filter(differs).map(|rule| rule["rule"].as_str().unwrap()).collect();
+    let undecided = format!("Of the undecided rules {} would change this pixel.", open.join(", "));
+    assert!(!open.is_empty());
     let (text, edited) = native.edited(json!(["stages", 0, "rgb", "inputs", 0, "mapping"]), "UnsignedIdentity");
     let changed = parse(&text, path, &Limits::default()).unwrap();
     assert_eq!(digests(&changed.plan)[0], edited);
@@ -560,6 +569,7 @@ fn page() -> Result<(), Failed> {
             json!({ "page": page, "part": "Scale of stage 1 rgb", "value": "Two", "text": text, "digest": digest })
         })
         .to_vec();
+    inspect(Path::new("vectors/scenes/texture-shader/mirror-ball.ron"), &at("mirror-ball.html"));
     // One change after another.
     let mut twice = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
@@ -573,7 +583,7 @@ fn page() -> Result<(), Failed> {
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
         "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
-        "ideal": ideal, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
+        "ideal": ideal, "undecided": undecided, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
         "pasted": native.digest(None), "texture": texture, "edited": edited, "text": text, "literal": digests(&literal)[0],
         "same": png(&pixels), "other": STANDARD.encode(four_off(frame)), "differing": "4 pixels differ", "bad": bad,
     });
