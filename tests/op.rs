@@ -32,6 +32,30 @@ fn hexadecimal_numbers() {
     }
 }
 
+/// What an open rule would change is said of stages, programs and units that follow one; others say nothing.
+#[test]
+fn open_rules_that_would_change_a_result_are_named() {
+    let bench = Bench::new();
+    let text = bench.run(&format!("op {SUM}")).text();
+    let said = "Of the undecided rules CMB-7 would change this result.\n  CMB-7=each       spare0.r 156  spare0.g 156  spare0.b 156\n";
+    assert!(text.ends_with(said), "{text}");
+    let text = bench.run(&format!("op {SUM} --policy CMB-7=each")).text();
+    assert!(text.ends_with("  CMB-7=once       spare0.r 157  spare0.g 157  spare0.b 157\n"), "{text}");
+    assert!(bench.run(&format!("op {PRODUCT}")).text().ends_with("No undecided rule would change this result.\n"));
+    bench.write("sum.rc", "!!RC1.0\n{\n rgb {\n  spare0 = sum();\n  discard = tex0 * col0;\n  discard = tex0 * col0;\n }\n}\nout.rgb = spare0;\n");
+    let text = bench.run("op program sum.rc --in tex0=100 --in primary=200").text();
+    assert!(
+        text.contains("Of the undecided rules CMB-7 would change this result.\n  CMB-7=each       fragment.r 156"),
+        "{text}"
+    );
+    let document = bench.run("op unit sum --in a=100 --in b=200 --in c=100 --in d=200 --format json").text();
+    let document: Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(document["alternatives"][0]["policy"], "CMB-7=each");
+    assert_eq!(document["alternatives"][0]["results"]["out.sum"], 156);
+    let text = bench.run("op unit alpha-test --in function=Less --in reference=3 --in alpha=2").text();
+    assert!(!text.contains("undecided"), "no rule of the alpha test is open: {text}");
+}
+
 /// `op unit` takes the inputs of vector tables. An input that its column does not allow, or a unit that the chip lacks, is refused by name.
 #[test]
 fn units() {

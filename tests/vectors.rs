@@ -112,8 +112,8 @@ fn policies_change_the_units_of_their_rules() {
                 let mut results = vec![0; columns.len()];
                 let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
                 unit.evaluate(inputs, &conditions, &mut results);
-                for alternative in alternatives(unit, &columns, inputs, *profile, &results) {
-                    let rule = alternative.policy.split('=').next().unwrap();
+                for alternative in alternatives(unit, &columns, inputs, &conditions, &results) {
+                    let rule = alternative.rule;
                     assert!(unit.rules().contains(&rule), "{} does not name {rule}", unit.name());
                     if !found.contains(&(alternative.policy.clone(), unit.name())) {
                         found.push((alternative.policy, unit.name()));
