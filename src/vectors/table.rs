@@ -25,10 +25,10 @@ use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
 /// First line of a table: the version of the format.
-pub(crate) const FORMAT: &str = "# ninebit-vectors 1";
+pub const FORMAT: &str = "# ninebit-vectors 1";
 
 /// Names of the columns after those of the unit.
-pub(crate) const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
+pub const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 
 /// The unit, chip, level and seed that determine a table.
 #[derive(Clone, Copy, Debug)]

@@ -41,6 +41,13 @@ pub(super) struct Common {
     output: Option<OsString>,
 }
 
+impl Common {
+    /// Prints a list in the chosen format.
+    pub(super) fn list(&self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
+        self.format.print(text, json)
+    }
+}
+
 /// An input of a unit.
 #[derive(Clone, Debug)]
 pub(super) struct Column {
@@ -129,7 +136,7 @@ pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>)
 pub(super) type Results = Vec<(String, Value)>;
 
 /// A unit with the values of its inputs.
-pub(super) struct Setup<'u> {
+pub(in crate::commands) struct Setup<'u> {
     /// The unit.
     pub(super) unit: &'u dyn Unit,
     /// The chip and the policies.
@@ -144,6 +151,8 @@ pub(super) struct Setup<'u> {
     pub(super) known: String,
     /// Returns a result as it is printed.
     pub(super) written: fn(&Input, i64) -> Value,
+    /// Columns of a table that are no inputs and are passed over.
+    pub(super) passed_over: Vec<String>,
 }
 
 /// Returns a result as JSON has it: a number, or the text of tables.
@@ -160,7 +169,8 @@ impl<'u> Setup<'u> {
         let find =
             |columns: &[Column], name: &str| columns.iter().position(|c| c.input.name == name || c.short == name);
         let conditions = Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT };
-        Setup { unit, conditions, depends: false, columns, find, known: known.into(), written }
+        let passed_over = Vec::new();
+        Setup { unit, conditions, depends: false, columns, find, known: known.into(), written, passed_over }
     }
 
     /// Returns the results of a row. Columns of one name are one result, an array. The observer receives the steps.
@@ -219,7 +229,7 @@ impl<'u> Setup<'u> {
     }
 
     /// Computes a row: results, steps, and what open rules would change.
-    pub(super) fn told(&self, values: &[i64]) -> Told<'_> {
+    pub(in crate::commands) fn told(&self, values: &[i64]) -> Told<'_> {
         let mut recorder = Recorder::default();
         let results = self.results(values, &mut recorder);
         let mut steps = given(&self.columns, values, &recorder.steps);
@@ -229,7 +239,7 @@ impl<'u> Setup<'u> {
 }
 
 /// An operation that was run.
-pub(super) struct Told<'s> {
+pub(in crate::commands) struct Told<'s> {
     setup: &'s Setup<'s>,
     steps: Vec<Step>,
     results: Results,
@@ -238,7 +248,7 @@ pub(super) struct Told<'s> {
 
 impl Told<'_> {
     /// Returns it as JSON.
-    pub(super) fn value(&self) -> Value {
+    pub(in crate::commands) fn value(&self) -> Value {
         let Conditions { profile, policies } = &self.setup.conditions;
         let depends = self.setup.depends;
         json!({
@@ -271,12 +281,12 @@ impl Told<'_> {
     }
 
     /// Returns the steps as a table; nothing for a unit without steps.
-    pub(super) fn steps(&self) -> String {
+    pub(in crate::commands) fn steps(&self) -> String {
         if self.steps.is_empty() { String::new() } else { steps_text(&self.steps) }
     }
 
     /// Says which open rules would change the results, and to what.
-    pub(super) fn changes(&self) -> String {
+    pub(in crate::commands) fn changes(&self) -> String {
         let Some(all) = &self.changed else { return String::new() };
         let mut out = undecided::sentence(all.iter().map(|each| each.rule), "this result") + "\n";
         for Changed { policy, results, .. } in all {
