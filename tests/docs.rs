@@ -153,7 +153,7 @@ impl Words {
             let written = page == "docs/numerics.md" && line.starts_with("- Example: ")
                 || page == "docs/answers.md" && line.starts_with("- Rules: ");
             let checked = match page {
-                "docs/numerics.md" => &["- Code: ", "- Pinned by: ", "- Policy: "][..],
+                "docs/numerics.md" => &["- Code: ", "- Decided by: ", "- Pinned by: ", "- Policy: "][..],
                 "docs/answers.md" => &["- Vectors: "],
                 _ => &[],
             };

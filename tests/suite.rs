@@ -63,6 +63,7 @@ mod readme;
 mod registers;
 mod replay;
 mod results;
+mod rule;
 mod scene_format;
 mod scene_hostile;
 mod scene_in_code;

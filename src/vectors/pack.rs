@@ -263,6 +263,34 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     Ok(manifest)
 }
 
+/// Finds a row by its id, in a pack or in one of its tables. Returns the table with this row alone.
+///
+/// # Errors
+/// Returns an error if the pack's manifest or a table cannot be read, if there is no such row, or if it cannot be read or is not as its id says.
+pub fn find(place: &Path, id: &str) -> Result<(PathBuf, Table), VectorError> {
+    let tables = match place.extension().is_some_and(|extension| extension == "tsv") {
+        true => vec![place.to_path_buf()],
+        false => {
+            let files = manifest(place)?.files.into_iter().map(|file| place.join(file.path));
+            files.filter(|path| path.extension().is_some_and(|extension| extension == "tsv")).collect()
+        }
+    };
+    for path in tables {
+        let text = read_text(&path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?;
+        let Some(at) = text.find(&format!("\n{id}\t")).map(|newline| newline + 1) else { continue };
+        // The row is read behind the head of its table, and so held to it.
+        let names = text.find("\nid\t").map_or(0, |newline| newline + 1);
+        let head = text[..at].get(..names).unwrap_or_default();
+        let columns = text[names..].lines().next().unwrap_or_default();
+        let row = text[at..].lines().next().unwrap_or_default();
+        let mut table = parse(&format!("{head}{columns}\n{row}\n"), &path)?;
+        table.rows.iter_mut().for_each(|found| found.line = 1 + text[..at].matches('\n').count());
+        return Ok((path, table));
+    }
+    let help = "ids are the first column of tables: twelve hexadecimal digits";
+    Err(VectorError::file("NB1014", place, format!("there is no row `{:.40}`", ninebit::shown::name(id)), help))
+}
+
 /// Opens a pack: checks its files against the manifest, and reads its tables.
 ///
 /// # Errors

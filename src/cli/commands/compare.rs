@@ -60,8 +60,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let format = arguments.format.get();
     format.print(|| comparison_text(&plan, &comparison), || comparison_json(&plan, &comparison))?;
     if comparison.rules.iter().any(|rule| rule.exceeds()) {
-        let message = "a rule is further from the ideal than docs/numerics.md says";
-        let help = "the table above names it: please report it with the scene";
+        let message = "a rule is further from the ideal than it says";
+        let help = "the table above names it, and `ninebit rule ID` prints it: please report it with the scene";
         return Err(Failure { exit: Exit::Difference, report: Report::message(None, message, help) });
     }
     Ok(())

@@ -12,7 +12,7 @@ use ninebit_scene::load_with;
 use serde_json::Value;
 
 use super::scene::refused;
-use crate::page;
+use crate::{page, undecided};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         "chosen": chosen(&policies),
         "policies": alternatives(),
         "rules": page::rules(),
+        "undecided": { "none": undecided::sentence([], "this pixel"), "some": undecided::sentence(["{}"], "this pixel") },
     });
     Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
 }

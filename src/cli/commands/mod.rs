@@ -23,6 +23,7 @@ mod program_file;
 mod registers;
 mod render;
 mod replay;
+mod rule;
 mod scene;
 mod signals;
 mod terminal;
@@ -119,6 +120,8 @@ enum Command {
     /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
     /// missing, such as an expectation; 5: a limit; 6: an internal error in one; 7: a report or picture was not written.
     Replay(replay::Arguments),
+    /// Print a rule of the chip: formula, grade, source, code, units; or list all rules
+    Rule(rule::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -172,6 +175,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Vectors(command) => vectors::run(&command),
         Command::Captures(command) => captures::run(&command),
         Command::Replay(arguments) => replay::run(&arguments, context),
+        Command::Rule(arguments) => rule::run(&arguments),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Bench(arguments) => bench::run(&arguments, context),

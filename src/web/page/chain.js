@@ -15,8 +15,10 @@ function hex(step) {
 
 const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}`).join(", ")})`;
 
-// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r.
-function place(name) {
+// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r. The r of `unit3.r` is a coordinate where it is a number of its own or made of one, else red.
+function place({ name, per_one }) {
+  const coordinate = /^unit\d\.r(\.4096|\.drops)?$/.exec(name);
+  if (coordinate && (coordinate[1] || per_one === 0)) return { row: name, channel: "" };
   const parts = name.split(".");
   const at = parts.findIndex((part, n) => n > 0 && CHANNELS.includes(part));
   if (at < 0) return { row: name, channel: "" };
@@ -126,7 +128,7 @@ export class Chain {
   rows(steps) {
     const rows = new Map();
     for (const step of steps) {
-      const { row, channel } = place(step.name);
+      const { row, channel } = place(step);
       if (!rows.has(row)) rows.set(row, []);
       rows.get(row).push({ channel, step });
     }
@@ -146,7 +148,7 @@ export class Chain {
 
   box(row, cells, fragment, extra) {
     const { step } = cells[0];
-    const inputs = [...new Set(step.inputs.map((input) => short(place(input.name).row)))];
+    const inputs = [...new Set(step.inputs.map((input) => short(place(input).row)))];
     const from = inputs.length > 4 ? `${inputs.slice(0, 3).join(", ")}, …` : inputs.join(", ");
     const how = step.operation === "given" ? "" : `${step.operation.replaceAll("_", " ")}${from ? ` of ${from}` : ""}`;
     const rules = [...new Set(cells.map(({ step: each }) => each.rule).filter(Boolean))];
