@@ -57,6 +57,7 @@ mod engines;
 mod error_codes;
 mod explain;
 mod files;
+mod metamorphic;
 mod op;
 mod oracle;
 mod readme;

@@ -359,7 +359,7 @@ fn compare_small<const FMA: bool>(
             let got = varying.narrow.each_ref().map(|w| w[lane]);
             assert_eq!(got, weights, "{:?} of {:?}", batch.pixel(n), context.vertices());
         }
-        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
+        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
         assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", batch.pixel(n), context.vertices());
     }
     done
@@ -408,7 +408,7 @@ fn compare<const FMA: bool, const ROW: bool>(
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
         let lane = batch.lane + n;
         let weights = sample.weights().map(|w| w.value as u16);
-        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
+        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
         assert_eq!(varying.depth[lane], depth, "({i}, {j}) of {:?}", context.vertices());
         let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
         let slot = usize::from(compiled.fog.unwrap());

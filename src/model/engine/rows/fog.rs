@@ -352,3 +352,68 @@ fn steps<const FMA: bool, const ROW: bool>(
     }
     close < 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::lattice::{any, beside, pick, within};
+    use super::*;
+    use crate::number::convert::{factor_byte, split};
+    use crate::random::Random;
+    use crate::state::Named;
+
+    /// Bytes that are proved are those of the definition, for parameters and coordinates at the limits of binary32.
+    #[test]
+    fn proved_bytes_are_those_of_the_definition() {
+        let mut random = Random::seeded(0x1234_5678);
+        let next = &mut || random.bits() as u32;
+        let (mut proved, mut ends) = (0, [0; 3]);
+        for round in 0..200_000 {
+            let of = |next: &mut dyn FnMut() -> u32| {
+                let next = &mut || next();
+                if next().is_multiple_of(4) { any(next) } else { within(next, (-12, 3)) }
+            };
+            let (p0, p1) = (of(next), of(next));
+            let function =
+                FogFunction { mode: pick(next, FogMode::ALL), p0, p1, p2: 0.0, per_vertex: next().is_multiple_of(4) };
+            let Some(curve) = fog::Curve::new(&function) else { continue };
+            let (start, end) = ((1.0 - p0) / p1, (2.0 - p0) / p1);
+            let d = match next() % 6 {
+                0 => start,
+                1 => end,
+                // Beside the centre and the ends of the tables.
+                2 => pick(next, &[1.5, 2.0, 1.0, 1.515_625]),
+                3 => any(next),
+                _ => of(next),
+            };
+            let d = beside(next, d);
+            if !d.is_finite() {
+                continue;
+            }
+            let looked_up = Function::new(curve);
+            let line = Line { c: f64::from(d) * looked_up.scale, x: 0.0, y: 0.0 };
+            let off = line.c.abs() / (1_u64 << 51) as f64;
+            let (mut byte, mut unknown) = ([0; 16], [0; 16]);
+            let at = [&[0.0; 16][..], &[0.0; 16], &[1.0; 16]];
+            // NaN proves nothing either.
+            let proves = off < COARSEST;
+            if !proves {
+                continue;
+            }
+            let close = looked_up.look_up::<false, false>(at, line, off, &mut byte, &mut [0; 16], &mut unknown);
+            if close && unknown[0] != 0 {
+                continue;
+            }
+            let wanted = match curve {
+                fog::Curve::Line(line) => factor_byte(line.at(split(d))),
+                fog::Curve::Table(mode) => {
+                    exponential(mode, ((f64::from(d) * 4096.0).floor() as i64).saturating_sub(CENTRE))
+                }
+            };
+            assert_eq!(byte, [i16::from(wanted); 16], "{round}: {function:?} at {d}");
+            proved += 1;
+            ends[usize::from(wanted > 0) + usize::from(wanted == 255)] += 1;
+        }
+        println!("{proved} proved, {ends:?}");
+        assert!(proved > 60_000 && ends.iter().all(|count| *count > 2_000), "{proved} {ends:?}");
+    }
+}

@@ -37,6 +37,7 @@ mod dda;
 mod definition;
 mod dependent;
 mod depth;
+mod depth_words;
 mod direction;
 mod dot;
 mod draw;
@@ -49,7 +50,12 @@ mod graph;
 mod isa;
 mod job;
 mod kernels;
+#[cfg(test)]
+#[path = "../../../../tests/common/lattice.rs"]
+mod lattice;
 mod levels;
+#[cfg(test)]
+mod limit_tests;
 mod lods;
 mod moved;
 mod node;

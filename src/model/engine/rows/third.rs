@@ -2,7 +2,8 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::compiled::{CompiledDraw, Reason, Sampler, Third};
-use super::depth::{UNKNOWN, word};
+use super::depth::UNKNOWN;
+use super::depth_words::word;
 use super::direction::{FindCoordinates, positive};
 use super::kernels::PerLane;
 use super::planes::{FourPlanes, Plane};
