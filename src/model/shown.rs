@@ -28,6 +28,11 @@ pub fn count(number: u64, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
+/// Says that something is no whole number from 0 to `most`.
+pub fn not_up_to(most: usize) -> String {
+    format!("not a number from 0 to {most}")
+}
+
 /// Escapes a name or another text of one line. Characters that must not be printed become `\n`, `\t`, `\u{1b}` and so
 /// on.
 pub fn name(text: &str) -> Cow<'_, str> {
