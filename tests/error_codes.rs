@@ -94,6 +94,7 @@ fn exit(code: &str) -> u8 {
         "NB12" if ["NB1201", "NB1202", "NB1203"].contains(&code) => 4,
         "NB12" if code == "NB1207" => 5,
         "NB12" => 3,
+        "NB08" if code == "NB0802" => 5,
         "NB13" => 2,
         _ => 6,
     }

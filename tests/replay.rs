@@ -269,7 +269,8 @@ fn what_cannot_be_written_is_said_and_the_rest_is_written() {
     assert!(run.stderr.contains("NB0702") && run.stderr.contains("no/such"), "{}", run.stderr);
     let text = String::from_utf8(run.stdout).unwrap();
     assert!(
-        text.contains("`file/below/a` cannot be written") && text.contains("3 scenes: 1 as expected, 2 different"),
+        text.contains("NB0702 `file/below/a` cannot be written")
+            && text.contains("3 scenes: 1 as expected, 2 different"),
         "{text}"
     );
     let json: serde_json::Value = serde_json::from_slice(&fs::read(bench.path("r.json")).unwrap()).unwrap();

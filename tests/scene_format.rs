@@ -8,7 +8,6 @@ use std::path::Path;
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::{self, Limits};
-use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
     InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
@@ -27,23 +26,6 @@ fn draw(profile: &str, top: &str, fields: &str) -> Loaded {
         "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
          (position: (9, 9))]), {fields})])"
     ))
-}
-
-#[test]
-fn every_example_of_the_document_is_accepted_without_warnings() {
-    let document = fs::read_to_string(at("docs/scene-format.md")).unwrap();
-    let examples: Vec<&str> =
-        document.split("```ron\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
-    assert!(examples.len() >= 3);
-    for example in examples {
-        let loaded = parse(example);
-        assert_eq!(loaded.render_warnings(false), "");
-        // Every example draws something visible.
-        let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
-        let frames = engine::render(&plan, &RenderOptions::default());
-        let words = &frames.surfaces[0].words;
-        assert!(words.iter().any(|word| *word != words[0]) || words[0] != 0xff00_0000, "blank: {example}");
-    }
 }
 
 /// The tables of fields are generated from the declarations that the reader uses. The markers of a table name the structure, or several

@@ -35,6 +35,7 @@ mod assets_images;
 mod assets_output;
 mod assets_scenes;
 mod bad_scenes;
+mod blocks;
 mod captures;
 mod circles;
 mod cli;

@@ -41,6 +41,8 @@ pub mod algebra;
 pub mod combiner;
 pub mod diagnostic;
 pub mod engine;
+#[doc(hidden)]
+pub mod faults;
 pub mod frame;
 pub mod legality;
 pub mod limits;

@@ -5,7 +5,7 @@ use ninebit_report::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
 
-use super::engine::MAXIMUM_THREADS;
+use ninebit::threads::MAXIMUM as MAXIMUM_THREADS;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

@@ -11,8 +11,8 @@ mod sweep;
 
 use std::fmt::Write;
 
-use super::engine::MAXIMUM_THREADS;
 use super::*;
+use ninebit::threads::MAXIMUM as MAXIMUM_THREADS;
 use ninebit_vectors::error::VectorError;
 use ninebit_vectors::{BEHAVIOUR, Unit, pack, units};
 
