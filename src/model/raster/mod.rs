@@ -14,6 +14,7 @@ pub mod interpolate;
 pub mod project;
 pub mod setup;
 pub mod triangles;
+pub mod weights;
 
 /// RAS-0: limit of snapped window coordinates, which stay below it in magnitude: 4096 pixels in units of 1/16 pixel.
 pub(crate) const GUARD: i64 = 1 << 16;
