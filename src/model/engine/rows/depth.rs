@@ -10,8 +10,8 @@ use super::quotient::{EXPONENT, IOTA_REAL, Line, MAGIC, Positions, cut, floor, n
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::context::TriangleContext;
-use crate::raster::depth::{difference, largest_edge, w_ratio};
-use crate::raster::interpolate::most_dominant;
+use crate::raster::depth::{difference, largest_edge};
+use crate::raster::old::{most_dominant, w_ratio};
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 use std::ops::Range;
 
