@@ -134,7 +134,6 @@ impl<'a> TriangleContext<'a> {
         self.placed = true;
         self.triangle.place(x, y);
         self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
-        self.triangle.lose(plan.policies.plane_loss);
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {

@@ -4,7 +4,7 @@ use super::GUARD;
 use super::binary::Binary;
 use super::weights::ratio;
 use crate::number::convert::{align, snap, split, w_16_bits};
-use crate::state::{PlaneLoss, Profile};
+use crate::state::Profile;
 use std::ops::{Add, Mul, Shr, Sub};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
@@ -94,12 +94,6 @@ impl Triangle {
         let flat = is_flat(w, perspective, profile);
         self.ratios = (!flat).then(|| [ratio(taken[1], taken[0]), Binary::ONE, ratio(taken[1], taken[2])]);
         self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & flat;
-    }
-
-    /// INT-4t: sets what coordinates on planes lose.
-    #[inline(always)]
-    pub fn lose(&mut self, loss: PlaneLoss) {
-        self.finite_loss = loss == PlaneLoss::Finite;
     }
 
     /// INT-4t: returns whether coordinates on planes may lose a finite amount.
