@@ -40,7 +40,7 @@ impl PartialEq for Number {
 
 fn number(v: &Value) -> Number {
     let exponent = v.get("exponent").map_or(0, |exponent| exponent.as_i64().unwrap() as i32);
-    Number::new(v["value"].as_i64().unwrap().into(), v["per_one"].as_i64().unwrap().into(), exponent)
+    Number { exponent, ..Number::new(v["value"].as_i64().unwrap().into(), v["per_one"].as_i64().unwrap().into()) }
 }
 
 /// Returns whether a step states this operand itself, so that no earlier step yields it.

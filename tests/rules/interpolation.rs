@@ -69,7 +69,7 @@ fn examples_of_interpolation() {
     int4.shows("the real number", 16_384.0 * 2.5 / 96.0, 2, "426.67").gives("the part", 426 & 255, 170);
 
     let int6 = beside_rows("INT-6");
-    let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p();
+    let p = |w: f32, profile| at(&right_triangle(96.0, [w, 1.0, 1.0], profile), 10, 1).weights().b;
     let (small, large) = (1.0 + 2_f32.powi(-20), 1.0 + 2_f32.powi(-15));
     int6.gives("1 + 2^-20 counts as 1 on Nv10", p(small, Profile::Nv10), p(1.0, Profile::Nv10));
     int6.gives("1 + 2^-20 differs from 1 on Nv2a", p(small, Profile::Nv2a) != p(1.0, Profile::Nv2a), true);
