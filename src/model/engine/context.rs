@@ -4,6 +4,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Corner;
 use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
+use crate::raster::old;
 use crate::raster::setup::{Triangle, centres, clockwise_area};
 use crate::state::*;
 use crate::texture::coordinates::Coordinates;
@@ -144,7 +145,6 @@ impl<'a> TriangleContext<'a> {
         self.placed = true;
         self.triangle.place(x, y);
         self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
-        self.triangle.lose(plan.policies.plane_loss);
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
@@ -166,16 +166,15 @@ impl<'a> TriangleContext<'a> {
         }
         let draw = self.draw;
         if let Some(shader) = &draw.shader {
-            self.shader =
-                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), self.defines)));
+            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, self.vertices(), self.defines)));
         } else {
             for unit in &draw.units {
                 let sets = self.coordinate_set(unit.stage.coordinate_set);
-                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+                self.coordinates[unit.index] = Some(Coordinates::new(sets, unit));
             }
         }
         if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
+            self.fog = Some(FogPlane::new(draw.fog.function, self.vertices().fog()));
         }
     }
 
@@ -212,5 +211,24 @@ impl<'a> TriangleContext<'a> {
             None => self.coordinates[unit].as_ref(),
             Some(shader) => shader.coordinates(unit),
         }
+    }
+
+    /// Returns the coordinates of a unit as the fast engine's present text takes them.
+    pub(super) fn old_coordinates_of(&self, unit: usize) -> Option<old::Coordinates> {
+        self.coordinates_of(unit)?;
+        let planned = self.draw.units.iter().find(|planned| planned.index == unit)?;
+        let set = self.coordinate_set(planned.stage.coordinate_set);
+        if matches!(planned.stage.operation, ShaderOperation::BumpEnvironment { .. }) && self.shader.is_some() {
+            let sides = planned.scale(&planned.levels[0]);
+            let plane = |n: usize| self.triangle.coordinate(set.map(|vertex| vertex[n]), sides[n]);
+            return Some(old::Coordinates::Plane([plane(0), plane(1)]));
+        }
+        Some(old::Coordinates::new(&self.triangle, set, planned))
+    }
+
+    /// Returns the fog as the fast engine's present text takes it.
+    pub(super) fn old_fog(&self) -> Option<old::FogPlane> {
+        self.fog?;
+        Some(old::FogPlane::new(&self.triangle, self.draw.fog.function, self.vertices().fog()))
     }
 }

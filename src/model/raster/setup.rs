@@ -1,8 +1,10 @@
 //! Triangle set-up: RAS-1 to RAS-3, and the perspective weights of INT-1.
 
 use super::GUARD;
-use crate::number::convert::{align, scaled, snap, split, w_16_bits};
-use crate::state::{PlaneLoss, Profile};
+use super::binary::Binary;
+use super::weights::ratio;
+use crate::number::convert::{align, snap, split, w_16_bits};
+use crate::state::Profile;
 use std::ops::{Add, Mul, Shr, Sub};
 
 /// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
@@ -25,6 +27,8 @@ pub struct Triangle {
     /// P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
     /// Without perspective all are 2^27.
     pub(crate) p: [i64; 3],
+    /// WGT-1: r_k = w_1 / w_k, in perspective with w that differ.
+    pub(crate) ratios: Option<[Binary; 3]>,
     /// Twice the area in 1/256 square pixel, positive, below 2^34.
     pub(crate) doubled_area: i64,
     /// Half-open range of the rows that can be covered.
@@ -87,13 +91,9 @@ impl Triangle {
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
         let taken = significant(w, profile);
         self.p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
-        self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & is_flat(w, perspective, profile);
-    }
-
-    /// INT-4t: sets what coordinates on planes lose.
-    #[inline(always)]
-    pub fn lose(&mut self, loss: PlaneLoss) {
-        self.finite_loss = loss == PlaneLoss::Finite;
+        let flat = is_flat(w, perspective, profile);
+        self.ratios = (!flat).then(|| [ratio(taken[1], taken[0]), Binary::ONE, ratio(taken[1], taken[2])]);
+        self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & flat;
     }
 
     /// INT-4t: returns whether coordinates on planes may lose a finite amount.
@@ -130,42 +130,6 @@ impl Triangle {
             }
         }
         (low, high.max(low))
-    }
-
-    /// Returns G_k of a coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel
-    /// (INT-4).
-    #[inline(always)]
-    pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
-        let mut g = [0; 3];
-        for k in 0..3 {
-            let (m, e) = split(s[k]);
-            g[k] = scaled(m * self.p[k], i64::from(size), e + 8);
-        }
-        g
-    }
-
-    /// Returns G_k of a factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5n).
-    pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
-        std::array::from_fn(|k| {
-            let (m, e) = split(f[k]);
-            scaled(m, self.p[k], e + 12)
-        })
-    }
-
-    /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one common exponent and 28 bits.
-    /// They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
-    #[inline(always)]
-    pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let mut magnitudes = [(0, 0); 9];
-        for (n, magnitude) in magnitudes.iter_mut().enumerate() {
-            let (m, e) = split(x[n / 3][n % 3]);
-            *magnitude = (m.abs() * self.p[n % 3], e);
-        }
-        let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
-        for (n, g) in g.iter_mut().enumerate() {
-            *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
-        }
-        [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
     }
 }
 
@@ -294,14 +258,6 @@ mod tests {
         // Right, then down, which is clockwise on a screen whose y points down.
         assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
         assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
-    }
-
-    #[test]
-    fn opposite_directions_are_opposite() {
-        let t = Triangle::new([[0.0, 0.0, 0.0, 1.3], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 2.1]], true, Profile::Nv2a);
-        let x = [[0.1_f32, -0.003, 7.7], [-1.9, 0.0, 0.37], [1.0, 1.7, -0.3]];
-        let (there, back) = (t.expect("area").direction(x), t.expect("area").direction(x.map(|row| row.map(|c| -c))));
-        assert_eq!(there, back.map(|row| row.map(|g| -g)));
     }
 
     #[test]

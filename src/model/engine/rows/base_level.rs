@@ -8,7 +8,7 @@ use super::quotient::{Line, SLACK, larger};
 use super::setup::{BatchSetup, PixelBatch, Planes, Setup};
 use super::short::Losses;
 use crate::raster::interpolate::COORDINATE_LIMIT;
-use crate::texture::coordinates::Coordinates;
+use crate::raster::old::Coordinates;
 use crate::texture::cube::{Face, Signed};
 
 /// Bound of coordinates in 1/256 texel, so that their multiples are exact in double precision.
@@ -203,7 +203,7 @@ impl Setup<'_> {
                 }
                 let lines = [s.times(sides[0]), t.times(sides[1])];
                 // The signs of all three were changed if q was negative.
-                let behind = match self.context.coordinates_of(sampler.unit) {
+                let behind = match self.context.old_coordinates_of(sampler.unit) {
                     Some(Coordinates::Ratio(g)) if reach.is_finite() => g[2][0] < 0,
                     _ => sign < 0.0,
                 };

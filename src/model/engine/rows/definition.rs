@@ -40,7 +40,7 @@ impl Setup<'_> {
             _ => place.on(&unit.levels[0]),
         };
         let lane = batch.lane + n;
-        (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - sampler.bias(), v.value as i32 - sampler.bias());
+        (numbers[0][lane], numbers[1][lane]) = (u as i32 - sampler.bias(), v as i32 - sampler.bias());
         faces[lane] = place.face() as u32;
     }
 

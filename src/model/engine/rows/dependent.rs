@@ -11,9 +11,9 @@ use super::table::Table;
 use super::{BLOCK, Job};
 use crate::engine::context::TriangleContext;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
-use crate::texture::coordinates::Coordinates;
+use crate::raster::old::Coordinates;
+use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
-use crate::texture::{lod, shader};
 
 /// Quads side by side whose pixels are lanes of a block: the first lanes of their two rows, and their number.
 #[derive(Clone, Copy, Debug)]
@@ -135,11 +135,11 @@ impl BlockQuads {
             for (row, first) in [upper, lower].into_iter().enumerate() {
                 for n in (0..2 * count).filter(|n| self.close[first + n] != 0) {
                     let Some(context) = triangle.set_up(job, *number) else { continue };
-                    let Some(Coordinates::Plane(planes)) = context.coordinates_of(unit.index) else { continue };
+                    let Some(Coordinates::Plane(planes)) = context.old_coordinates_of(unit.index) else { continue };
                     let e = context.triangle.edges(i + n as i64, j + row as i64);
                     let sample = Sample::new(&context.triangle, e);
                     for axis in 0..2 {
-                        let offset = shader::offset_of(offsets[axis][first + n], sides[axis]);
+                        let offset = crate::raster::old::offset_of(offsets[axis][first + n], sides[axis]);
                         let at = if sample.d > 0 { sample.moved_quotient(&planes[axis], offset, 16).0 } else { 0 };
                         self.fine[axis][first + n] = at as f64;
                     }

@@ -4,16 +4,15 @@
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
 )]
 
-use super::depth_words::{OUTSIDE, Words};
 use super::kernels::{PerLane, STEP};
 use super::planes::edge_lines;
 use super::quotient::{EXPONENT, IOTA_REAL, Line, MAGIC, Positions, cut, floor, nearest, position};
 use super::reciprocal::{ReciprocalLine, bits_of_reciprocal, power_of_two};
 use super::setup::{PixelBatch, whole_steps};
 use crate::engine::context::TriangleContext;
-use crate::raster::depth::{difference, largest_edge, w_ratio};
-use crate::raster::interpolate::most_dominant;
-use crate::state::VertexDepths;
+use crate::raster::depth::{difference, largest_edge};
+use crate::raster::old::{most_dominant, w_ratio};
+use crate::state::{DepthFormat, DepthRange, VertexDepths};
 use std::ops::Range;
 
 /// Bits of a double below its first 24.
@@ -27,6 +26,9 @@ const ONE: u64 = 1023 << 52;
 
 /// Marks a depth that the definition has to compute. No buffer has it.
 pub(super) const UNKNOWN: u32 = u32::MAX;
+
+/// Marks a pixel outside the draw's depth range, which is dropped (DEP-4). No buffer has it.
+pub(super) const OUTSIDE: u32 = u32::MAX - 1;
 
 /// Number of lanes that run one step before the next step begins. A step has a long latency, which processors hide by the other lanes only
 /// if the step is short.
@@ -77,7 +79,10 @@ struct Depths<'a> {
     /// Factors of edge numbers in a w buffer (DEP-6). There `z` holds w.
     ratios: [f64; 3],
     full: f64,
-    words: Words<'a>,
+    /// Polygon offset as the sum of two numbers.
+    offset: [f64; 2],
+    range: Option<&'a DepthRange>,
+    format: DepthFormat,
 }
 
 /// Computes the depths of a batch's pixels. Returns how many of them the definition computed.
@@ -91,12 +96,16 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let Some(test) = &draw.depth_test else { return 0 };
     let e = triangle.edges(batch.first.0, batch.first.1);
     let format = draw.depth_format;
+    let unit = power_of_two(plane.offset.exponent);
+    let high = plane.offset.mantissa as f64;
+    let low = plane.offset.mantissa.wrapping_sub(high as i64) as f64;
+    let offset = [high * unit, low * unit];
     let full = f64::from(format.largest());
-    let words = Words::new(plane.offset, test.range.as_ref(), format);
+    let range = test.range.as_ref();
     let z = plane.w.unwrap_or(plane.z);
     let between = |a: usize, b: usize| f64::from(difference(z[a], z[b]));
     let differences = all_differences(between(1, 0), between(2, 0), between(2, 1));
-    let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, words };
+    let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
     let edges = edge_lines(triangle, &e);
     // The lanes after those of a row are not in use yet, so they may be overwritten.
     let out = if ROW { &mut out[batch.lane..] } else { &mut out[batch.lanes()] };
@@ -105,9 +114,10 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     // Far from the limits of binary32, so that ratios are.
     let moderate = |w: &f32| (1e-18..1e30).contains(w);
     // Whether depths are floored and nothing else.
-    let is_plain = words.are_floors();
+    let is_plain = range.is_none() && plane.offset.mantissa == 0 && !format.is_float();
+    let moderate_offset = offset[0] == 0.0 || (1e-250..1e250).contains(&offset[0].abs());
     let unknown = if let Some(w) = plane.w {
-        if words.can_add_offset() && w.iter().all(moderate) {
+        if moderate_offset && w.iter().all(moderate) {
             let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { ratios, ..depths };
@@ -122,7 +132,7 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
         depths.along::<FMA, ROW, false, false>(batch.at, edges, along_row, steps, out)
-    } else if words.can_add_offset() && differences.as_flattened().iter().all(|difference| difference.is_finite()) {
+    } else if moderate_offset && differences.as_flattened().iter().all(|difference| difference.is_finite()) {
         depths.along::<FMA, ROW, true, false>(batch.at, edges, along_row, steps, out)
     } else {
         out.fill(UNKNOWN);
@@ -398,16 +408,37 @@ impl Depths<'_> {
             }
             out[n] = floored_word::<FMA>(terms, self.full);
         }
-        if GENERAL && self.words.has_offset() {
+        if GENERAL && self.offset != [0.0; 2] {
             for (sum, lost) in sums.iter_mut().zip(&mut *lost) {
-                (*sum, *lost) = self.words.with_offset(*sum);
+                // The definition has more bits than a double, so the rounding error of the sum counts.
+                let (high, rest) = two_sum(*sum, self.offset[0]);
+                let (rest, least) = two_sum(rest, self.offset[1]);
+                let (high, rest) = two_sum(high, rest);
+                (*sum, *lost) = (high, if rest == 0.0 { least } else { rest });
             }
         }
         if GENERAL {
             for ((out, sum), lost) in out.iter_mut().zip(sums).zip(lost) {
-                *out = self.words.word(*sum, *lost);
+                *out = self.word(*sum, *lost);
             }
         }
+    }
+
+    /// DEP-3 to DEP-5: returns the word of a depth that is the sum of a double and a number below its last bit.
+    #[inline(always)]
+    fn word(&self, sum: f64, lost: f64) -> u32 {
+        if let Some(range) = self.range {
+            let (lowest, highest) = (f64::from(range.lowest), f64::from(range.highest));
+            let below = sum < lowest || sum == lowest && lost < 0.0;
+            let above = sum > highest || sum == highest && lost > 0.0;
+            if below || above {
+                return if range.clamps { word(self.format, if below { lowest } else { highest }) } else { OUTSIDE };
+            }
+        }
+        // A number between a double and the one before it yields the same word as the latter, because words begin at doubles. Only positive
+        // numbers are depths.
+        let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
+        word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
 }
 
@@ -497,6 +528,33 @@ const LEAST_TERM: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// An upper bound of the relative error of terms.
 const NEARLY: f64 = 1.0 / (1 << 20) as f64;
+
+/// Returns a sum and its exact rounding error.
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let other = sum - a;
+    (sum, (a - (sum - other)) + (b - other))
+}
+
+/// DEP-3: returns the word of a depth.
+#[inline(always)]
+pub(super) fn word(format: DepthFormat, depth: f64) -> u32 {
+    if depth <= 0.0 {
+        return 0;
+    }
+    if !format.is_float() {
+        return depth.min(f64::from(format.largest())) as u32;
+    }
+    let (kept, bias) = if format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
+    let word = (depth.to_bits() >> (52 - kept)) as i64 - ((1023 - bias) << kept);
+    match word {
+        ..0 => 0,
+        tiny if tiny >> kept == 0 => 0,
+        huge if huge >= if kept == 12 { 1 << 16 } else { 255 << 16 } => format.largest(),
+        word => word as u32,
+    }
+}
 
 /// DEP-6: returns the first and the third weight, of which the dominant one is 1 less the others, and whether the choice was too close to a
 /// border.

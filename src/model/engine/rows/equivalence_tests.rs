@@ -342,7 +342,7 @@ fn compare_small<const FMA: bool>(
                 continue;
             }
             let place = context.sample_coordinates(unit, &sample, batch.pixel(n)).unwrap();
-            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
+            let wanted = place.on(&unit.levels[0]).map(|c| c as i32 - sampler.bias());
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
             if let Some(super::compiled::Third::Reference(format)) = sampler.third {
@@ -355,11 +355,11 @@ fn compare_small<const FMA: bool>(
         let slot = usize::from(plain.fog.unwrap());
         assert_eq!(rows[slot].0[lane], fog, "{:?} {:?} of {:?}", batch.pixel(n), context.draw.fog, context.vertices());
         if plain.varies(context) {
-            let weights = sample.weights().map(|w| w.value as u16);
+            let weights = sample.color_weights().map(|w| w as u16);
             let got = varying.narrow.each_ref().map(|w| w[lane]);
             assert_eq!(got, weights, "{:?} of {:?}", batch.pixel(n), context.vertices());
         }
-        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
+        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
         assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", batch.pixel(n), context.vertices());
     }
     done
@@ -407,8 +407,8 @@ fn compare<const FMA: bool, const ROW: bool>(
         let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
         let lane = batch.lane + n;
-        let weights = sample.weights().map(|w| w.value as u16);
-        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
+        let weights = sample.color_weights().map(|w| w as u16);
+        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
         assert_eq!(varying.depth[lane], depth, "({i}, {j}) of {:?}", context.vertices());
         let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
         let slot = usize::from(compiled.fog.unwrap());
@@ -422,7 +422,7 @@ fn compare<const FMA: bool, const ROW: bool>(
                 continue;
             }
             let bias = if compiled.samplers[index].filters { 128 } else { 0 };
-            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
+            let wanted = place.on(&unit.levels[0]).map(|c| c as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
             if sampler.pairs > 0 {
@@ -439,7 +439,7 @@ fn compare<const FMA: bool, const ROW: bool>(
                 Some(super::compiled::Third::Layer(_, axis)) => {
                     let layer = |texel: i64| address(unit.state.address_r, texel, unit.layers, false);
                     let entry = i64::from(axis.first) + i64::from(varying.faces[index][lane]);
-                    let wanted = layer(place.layer(unit.layers).value >> 8);
+                    let wanted = layer(place.layer(unit.layers) >> 8);
                     assert_eq!(layer(entry), wanted, "layers of unit {index} ({i}, {j}) of {:?}", context.vertices());
                 }
                 Some(super::compiled::Third::Reference(format)) => {

@@ -12,8 +12,9 @@ use super::setup::{BatchSetup, PixelBatch, Setup};
 use super::shapes::{Each, Edges, GROUP, Lines};
 use crate::engine::context::TriangleContext;
 use crate::number::convert::factor;
-use crate::raster::fog::{self, CENTRE, FogPlane, TABLE_END, exponential};
+use crate::raster::fog::{self, CENTRE, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;
+use crate::raster::old::FogPlane;
 use crate::state::{FogFunction, FogMode};
 
 /// The fog factor of a triangle's pixels.
@@ -107,7 +108,8 @@ impl Fog {
         let triangle = &context.triangle;
         let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
         let fog = context.fog.as_ref()?;
-        let (attribute, curve) = match fog {
+        let old = context.old_fog()?;
+        let (attribute, curve) = match &old {
             FogPlane::Factor(g) => return Some(Fog::Factor(plane(*g))),
             FogPlane::NotFinite(byte) => return Some(Fog::Same(i16::from(*byte))),
             FogPlane::Linear(line, attribute) => (attribute, fog::Curve::Line(*line)),

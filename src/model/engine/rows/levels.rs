@@ -79,7 +79,7 @@ impl Setup<'_> {
         let (level, next, weight) = lod::levels(unit, lod.max(0));
         let filters = Taken::of_unit(unit);
         for (which, level) in [level as usize, next as usize].into_iter().enumerate() {
-            let at = place.on(&unit.levels[level]).map(|c| c.value as i32);
+            let at = place.on(&unit.levels[level]).map(|c| c as i32);
             reads.place(which, lane, &table.placed(level, place.face() as u32), filters, lod, at);
         }
         reads.weights[lane] = weight as u16;

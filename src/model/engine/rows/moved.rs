@@ -10,8 +10,8 @@ use super::shader::Bump;
 use super::short::{Dominance, Losses, losses};
 use super::{BLOCK, Sampler};
 use crate::raster::interpolate::COORDINATE_LIMIT;
+use crate::raster::old::OFFSET_BITS;
 use crate::raster::setup::Triangle;
-use crate::texture::shader::OFFSET_BITS;
 
 /// The coordinates of a stage that moves them, across a triangle.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::{LANES, PerLane};
-use crate::raster::interpolate::most_dominant;
+use crate::raster::old::most_dominant;
 
 /// 1.5 2^52: adding it to a small number leaves the nearest integer in the low bits.
 pub(super) const MAGIC: f64 = 6_755_399_441_055_744.0;

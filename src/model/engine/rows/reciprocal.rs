@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "each value is compared with the definition's before it is used")]
 
 use super::quotient::{multiply_add, whole};
-use crate::raster::depth::reciprocal;
+use crate::raster::old::reciprocal;
 
 /// DEP-1's reciprocals of a triangle as a linear function. The three edge numbers add up to the doubled area, less the few last bits that
 /// each loses when it is cut to 24 bits. So the reciprocal is a function of a sum that hardly varies.

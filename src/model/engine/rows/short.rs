@@ -8,7 +8,8 @@ use super::quotient::{
     IOTA_REAL, Line, Positions, Reciprocals, SLACK, any_negative, multiply_add, nearest, position, whole,
 };
 use super::setup::{BatchSetup, PixelBatch, Setup, whole_steps};
-use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, Sample, most_dominant};
+use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
+use crate::raster::old::{SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
 use std::ops::Range;
 

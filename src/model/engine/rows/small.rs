@@ -22,7 +22,7 @@ use crate::engine::context::TriangleContext;
 use crate::engine::walk::Window;
 use crate::number::convert::factor;
 use crate::raster::fog::limited;
-use crate::state::{PlaneLoss, TEXTURE_UNITS, Vertices};
+use crate::state::{TEXTURE_UNITS, Vertices};
 use crate::texture::coordinates::wrapped_axis;
 use crate::texture::planned::PlannedUnit;
 
@@ -146,7 +146,7 @@ impl Boxes {
     ) {
         self.edges.set::<FMA>(&self.shapes);
         let (shapes, edges) = (&self.shapes, &self.edges);
-        let may_lose = context.plan.policies.plane_loss == PlaneLoss::Finite;
+        let may_lose = false;
         let mut proves = [-1; GROUP];
         self.projects = [false; TEXTURE_UNITS];
         for (n, sampler) in own(compiled) {

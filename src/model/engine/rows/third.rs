@@ -14,8 +14,9 @@ use super::table;
 use crate::engine::context::TriangleContext;
 use crate::raster::depth;
 use crate::raster::interpolate::Sample;
+use crate::raster::old::layer_planes;
 use crate::state::DepthFormat;
-use crate::texture::coordinates::{SampleCoordinates, layer_planes};
+use crate::texture::coordinates::SampleCoordinates;
 use crate::texture::planned::PlannedUnit;
 
 /// Returns the use of r in a sampler that is complete otherwise.
@@ -74,9 +75,9 @@ fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -
     let unit = &context.draw.units[sampler.index];
     let (vertices, set) = (context.vertices(), unit.stage.coordinate_set);
     let (r, q) = (vertices.coordinate(set, 2), vertices.coordinate(set, 3));
-    match (&sampler.third, context.coordinates_of(sampler.unit)) {
+    match (&sampler.third, context.old_coordinates_of(sampler.unit)) {
         (Some(Third::Layer(..)), Some(coordinates)) => {
-            ThirdPlanes::Layer(match layer_planes(triangle, coordinates, [r, q], unit.layers) {
+            ThirdPlanes::Layer(match layer_planes(triangle, &coordinates, [r, q], unit.layers) {
                 (r, None) => Planes::Plane([Plane::new(triangle, inverse, r); 2]),
                 (r, Some(q)) => {
                     let (g, reach) = positive([r, r, q]);

@@ -17,8 +17,8 @@ use super::short::Short;
 use super::taps::{FindTaps, Footprints};
 use super::third::{ThirdPlanes, set_thirds};
 use crate::engine::context::TriangleContext;
+use crate::raster::old::Coordinates;
 use crate::state::TEXTURE_UNITS;
-use crate::texture::coordinates::Coordinates;
 use crate::texture::planned::Image;
 
 /// Lists of the functions of samplers and of their r.
@@ -115,15 +115,17 @@ impl<'a> Interpolators<'a> {
         let inverse = inverse(triangle);
         samplers.clear();
         for sampler in &compiled.samplers {
-            let coordinates = context.coordinates_of(sampler.unit);
+            let coordinates = context.old_coordinates_of(sampler.unit);
             samplers.push(match coordinates {
                 _ if sampler.shares.is_some() || sampler.depends => Planes::Shared,
                 Some(Coordinates::Plane(g)) => {
                     Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
-                Some(Coordinates::Direction(g)) => Planes::Direction(Plane::three(triangle, &inverse, g), only_face(g)),
+                Some(Coordinates::Direction(g)) => {
+                    Planes::Direction(Plane::three(triangle, &inverse, &g), only_face(&g))
+                }
                 Some(Coordinates::Ratio(g)) => {
-                    let (g, reach) = positive(*g);
+                    let (g, reach) = positive(g);
                     Planes::Ratio(Plane::three(triangle, &inverse, &g), reach)
                 }
                 None => Planes::Other,
@@ -360,8 +362,8 @@ impl<'a> Interpolators<'a> {
             } else {
                 setup.count_defined(Reason::Weights, batch.count);
                 for n in 0..batch.count {
-                    let [first, third] = setup.sample(batch, n).weights();
-                    (w0[n], w2[n]) = (first.value as i32, third.value as i32);
+                    let [first, third] = setup.sample(batch, n).color_weights();
+                    (w0[n], w2[n]) = (first as i32, third as i32);
                 }
                 false
             };
