@@ -238,7 +238,11 @@ impl Number for Binary {
 impl Binary {
     /// Returns the number of the bit above the highest, or the least for 0.
     pub(crate) fn top(self) -> i32 {
-        if self.mantissa == 0 { i32::MIN } else { 64 - self.mantissa.unsigned_abs().leading_zeros() as i32 + self.exponent }
+        if self.mantissa == 0 {
+            i32::MIN
+        } else {
+            64 - self.mantissa.unsigned_abs().leading_zeros() as i32 + self.exponent
+        }
     }
 
     /// Returns the number toward zero to its first `bits` significant bits.
@@ -490,7 +494,10 @@ mod tests {
                 continue;
             }
             // mantissa <= 2^s / sum - 3/16 < mantissa + 1
-            assert!((16 * mantissa + 3) * sum <= 16 << -exponent && (16 * mantissa + 19) * sum > 16 << -exponent, "{sum}");
+            assert!(
+                (16 * mantissa + 3) * sum <= 16 << -exponent && (16 * mantissa + 19) * sum > 16 << -exponent,
+                "{sum}"
+            );
             assert!((1 << 28..1 << 29).contains(&mantissa), "{sum}");
         }
     }
@@ -508,11 +515,9 @@ mod tests {
     #[test]
     fn equal_weights_go_round() {
         let of = |n: [i64; 3]| dominance(n.map(Binary::from_edge));
-        assert_eq!([of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])], [
-            [true, false],
-            [false, false],
-            [false, true],
-            [false, true]
-        ]);
+        assert_eq!(
+            [of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])],
+            [[true, false], [false, false], [false, true], [false, true]]
+        );
     }
 }
