@@ -11,7 +11,7 @@
 //! The text is generic over [`Number`]. [`Binary`] is the definition, in integers; `f64` holds every number exactly, so
 //! that loops over it are the fast engine's; [`Real`] cuts nothing and is the ideal.
 
-use super::depth::Binary;
+use super::binary::Binary;
 use crate::number::convert::split;
 
 /// A number of the interpolator. Products of two are exact, and nothing is rounded but where a method says so.
@@ -76,8 +76,9 @@ impl<N: Number> Weights<N> {
 /// WGT-1: returns w_1 / w_k, cut to 24 bits, of two positive w.
 pub fn ratio(first: f32, w: f32) -> Binary {
     let ((a, exponent_a), (b, exponent_b)) = (split(first), split(w));
-    let quotient = ((i128::from(a) << 62) / i128::from(b.max(1))) as i64;
-    Binary { mantissa: quotient, exponent: exponent_a - exponent_b - 62 }.cut()
+    // The quotient has more than 24 bits.
+    let up = a.leading_zeros().saturating_sub(1);
+    Binary { mantissa: (a << up) / b.max(1), exponent: exponent_a - up as i32 - exponent_b }.cut()
 }
 
 /// WGT-1: returns the edge numbers e_k.
@@ -232,33 +233,6 @@ impl Number for Binary {
     #[inline]
     fn or(self, condition: bool, other: Binary) -> Binary {
         if condition { self } else { other }
-    }
-}
-
-impl Binary {
-    /// Returns the number of the bit above the highest, or the least for 0.
-    pub(crate) fn top(self) -> i32 {
-        if self.mantissa == 0 {
-            i32::MIN
-        } else {
-            64 - self.mantissa.unsigned_abs().leading_zeros() as i32 + self.exponent
-        }
-    }
-
-    /// Returns the number toward zero to its first `bits` significant bits.
-    pub(crate) fn first_bits(self, bits: i32) -> Binary {
-        let dropped = (64 - self.mantissa.unsigned_abs().leading_zeros() as i32 - bits).max(0);
-        let magnitude = (self.mantissa.unsigned_abs() >> dropped) as i64;
-        Binary { mantissa: if self.mantissa < 0 { -magnitude } else { magnitude }, exponent: self.exponent + dropped }
-    }
-
-    /// Returns the number in steps of 2^`unit`, toward zero. It must fit.
-    fn steps(self, unit: i32) -> i64 {
-        match self.exponent - unit {
-            // A zero may have any exponent.
-            up if up >= 0 => self.mantissa << up.min(63),
-            down => self.mantissa.signum() * (self.mantissa.unsigned_abs() >> (-down).min(63)) as i64,
-        }
     }
 }
 

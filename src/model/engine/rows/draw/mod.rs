@@ -38,15 +38,12 @@ pub(crate) fn run(kernels: &Kernels, job: &Job<'_>, band: &mut Band<'_>, block: 
         return 0;
     }
     (kernels.begin)(compiled, block, band);
-    let mut context = TriangleContext::vacant(plan, draw, false);
+    let mut context = TriangleContext::vacant(plan, draw);
     let mut drawing = Drawing { kernels, job, band, block, shaded: 0 };
     for window in walk::windows(draw, rows) {
         for number in job.triangles {
-            if TriangleContext::may_cover(draw, *number as usize, window.0) {
-                context.begin(*number as usize);
-                if context.place() {
-                    drawing.triangle(window, &context);
-                }
+            if context.set_up(*number as usize, window.0) {
+                drawing.triangle(window, &context);
             }
         }
     }
