@@ -131,7 +131,7 @@ impl Passes {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::raster::depth::Binary;
+    use crate::raster::binary::Binary;
     use crate::raster::setup::Triangle;
     use crate::raster::weights::{Weights, ratio};
     use crate::state::Profile;
