@@ -12,9 +12,9 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-const PREFIXES: [&str; 17] = [
-    "NUM", "RAS", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL", "SHD",
-    "CYL",
+const PREFIXES: [&str; 18] = [
+    "NUM", "RAS", "WGT", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL",
+    "SHD", "CYL",
 ];
 
 /// Path of the handbook.
@@ -90,6 +90,14 @@ fn entries() -> Vec<Entry> {
         }
     }
     entries
+}
+
+/// Returns the ids of rules that were replaced, from the table of the section "Superseded".
+pub fn superseded() -> BTreeSet<String> {
+    let page = read(PAGE);
+    let (_, section) = page.split_once("\n## Superseded\n").unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    section.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | ")).flat_map(|(id, _)| ids(id)).collect()
 }
 
 /// Returns the rules that are built.

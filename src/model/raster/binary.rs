@@ -31,7 +31,7 @@ impl Binary {
 
     /// Returns the number toward zero to its first `bits` significant bits.
     #[inline(always)]
-    pub(crate) fn first_bits(self, kept: i32) -> Binary {
+    pub fn first_bits(self, kept: i32) -> Binary {
         let dropped = (bits(self.mantissa) - kept).max(0);
         Binary { mantissa: toward_zero(self.mantissa, dropped), exponent: self.exponent + dropped }
     }
@@ -156,7 +156,7 @@ impl Binary {
 
     /// Returns the nearest single-precision number, with ties to even. Too large values become infinite, and zero is positive. The mantissa must
     /// have at most 53 bits, and the exponent must be that of a double.
-    pub(crate) fn nearest_f32(self) -> f32 {
+    pub fn nearest_f32(self) -> f32 {
         if self.mantissa == 0 {
             return 0.0;
         }

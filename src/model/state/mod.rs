@@ -25,7 +25,7 @@ pub use combiner::{
 pub use named::Named;
 pub use policy::{
     DependentScale, DotRounding, ExpandCentre, HalfBiasConstant, LerpRounding, MuxNegative, OutputRounding, POLICIES,
-    PlaneLoss, Policies, Policy, PolicyError, RegisterFloor, SumRounding,
+    Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
     ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology,
