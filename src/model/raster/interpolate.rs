@@ -22,9 +22,6 @@ pub struct Sample<'a> {
     /// The ideal's weights of the vertices, if they differ from those of this triangle, whose vertices are snapped.
     pub ideal: Option<[f64; 3]>,
     weights: OnceCell<Weights<Binary>>,
-    /// N_k = P_k E_k and their sum, for [`old`](super::old).
-    pub(crate) n: [i64; 3],
-    pub(crate) d: i64,
 }
 
 /// Largest magnitude of a texel coordinate, in 1/256 texel (RAS-0, TEX-15).
@@ -34,8 +31,7 @@ impl<'a> Sample<'a> {
     /// Returns the sample whose edge functions are `e`.
     #[inline]
     pub fn new(triangle: &'a Triangle, e: [i64; 3]) -> Self {
-        let n: [i64; 3] = std::array::from_fn(|k| triangle.p[k] * e[k]);
-        Sample { triangle, e, ideal: None, weights: OnceCell::new(), n, d: n[0] + n[1] + n[2] }
+        Sample { triangle, e, ideal: None, weights: OnceCell::new() }
     }
 
     /// WGT-1: returns the weights of the vertices, perspective-corrected where the triangle is.

@@ -11,7 +11,6 @@ pub mod depth;
 pub mod fog;
 pub mod ideal;
 pub mod interpolate;
-pub(crate) mod old;
 pub mod project;
 pub(crate) mod report;
 pub mod setup;

@@ -1,14 +1,11 @@
-//! Triangle set-up: RAS-1 to RAS-3, and the perspective weights of INT-1.
+//! Triangle set-up: RAS-1 to RAS-3, and the ratios of w of WGT-1.
 
 use super::GUARD;
 use super::binary::Binary;
 use super::weights::ratio;
-use crate::number::convert::{align, snap, split, w_16_bits};
+use crate::number::convert::{snap, w_16_bits};
 use crate::state::Profile;
 use std::ops::{Add, Mul, Shr, Sub};
-
-/// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
-pub(crate) const PERSPECTIVE_BITS: i32 = 28;
 
 /// A triangle that is set up for drawing.
 ///
@@ -24,9 +21,6 @@ pub struct Triangle {
     pub(crate) c: [i64; 3],
     /// Whether a sample exactly on edge k belongs to the triangle: left edges and horizontal top edges (RAS-3).
     pub(crate) owns: [bool; 3],
-    /// P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
-    /// Without perspective all are 2^27.
-    pub(crate) p: [i64; 3],
     /// WGT-1: r_k = w_1 / w_k, in perspective with w that differ.
     pub(crate) ratios: Option<[Binary; 3]>,
     /// Twice the area in 1/256 square pixel, positive, below 2^34.
@@ -37,18 +31,9 @@ pub struct Triangle {
     pub(crate) columns: (i64, i64),
     /// Whether it turns counter-clockwise as seen on the screen.
     pub(crate) counter_clockwise: bool,
-    /// INT-3's exception: whether the reciprocal of the weights' sum is exact, so that no tie is lowered.
-    pub(crate) exact_reciprocal: bool,
-    /// INT-4t's policy: whether coordinates on planes lose the finite amount.
-    finite_loss: bool,
 }
 
 impl Triangle {
-    /// Returns P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
-    pub fn p(&self) -> [i64; 3] {
-        self.p
-    }
-
     /// Returns twice the area in 1/256 square pixel, positive, below 2^34.
     pub fn doubled_area(&self) -> i64 {
         self.doubled_area
@@ -90,16 +75,8 @@ impl Triangle {
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
         let taken = significant(w, profile);
-        self.p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
         let flat = is_flat(w, perspective, profile);
         self.ratios = (!flat).then(|| [ratio(taken[1], taken[0]), Binary::ONE, ratio(taken[1], taken[2])]);
-        self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & flat;
-    }
-
-    /// INT-4t: returns whether coordinates on planes may lose a finite amount.
-    #[inline(always)]
-    pub(crate) fn loses_on_planes(&self) -> bool {
-        self.finite_loss && !self.exact_reciprocal
     }
 
     /// Returns the three edge functions at the centre of pixel (i, j).
@@ -172,7 +149,7 @@ impl<T: Whole> EdgeFunctions<T> {
     }
 }
 
-/// Returns whether a triangle has a single w, so that all P_k are equal.
+/// Returns whether a triangle has a single w, so that it needs no ratios.
 #[inline(always)]
 pub(crate) fn is_flat(w: [f32; 3], perspective: bool, profile: Profile) -> bool {
     let w = significant(w, profile);
@@ -199,14 +176,6 @@ pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
 pub(crate) fn centres<T: Whole>(n: [T; 3]) -> (T, T) {
     let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
     ((low + T::from(7)) >> 4, ((high - T::from(8)) >> 4) + T::from(1))
-}
-
-/// Returns P_k: the exact products of the other two w, floored to one common exponent, each at least 1.
-#[inline(always)]
-fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
-    let ((m0, e0), (m1, e1), (m2, e2)) = (split(w[0]), split(w[1]), split(w[2]));
-    let ([p0, p1, p2], _) = align([(m1 * m2, e1 + e2), (m2 * m0, e2 + e0), (m0 * m1, e0 + e1)], PERSPECTIVE_BITS);
-    [p0.max(1), p1.max(1), p2.max(1)]
 }
 
 #[cfg(test)]
@@ -258,12 +227,5 @@ mod tests {
         // Right, then down, which is clockwise on a screen whose y points down.
         assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
         assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
-    }
-
-    #[test]
-    fn equal_w_keeps_weights_equal() {
-        let t = Triangle::new([[0.0, 0.0, 0.0, 3.7], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 3.7]], true, Profile::Nv2a);
-        let p = t.expect("area").p;
-        assert!(p[0] == p[1] && p[1] == p[2]);
     }
 }

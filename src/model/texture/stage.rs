@@ -66,8 +66,8 @@ impl ShaderSetup {
         }
     }
 
-    /// Sets up every stage that runs; those that sample nothing only if their `numbers` are wanted.
-    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], vertices: TriangleVertices<'_>, numbers: bool) -> Self {
+    /// Sets up every stage that runs.
+    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], vertices: TriangleVertices<'_>) -> Self {
         ShaderSetup(std::array::from_fn(|index| {
             let planned = &shader.stages[index];
             if !planned.runs() {
@@ -83,7 +83,7 @@ impl ShaderSetup {
                 (ShaderOperation::BumpEnvironment { .. }, Some(_)) => {
                     StageSetup::Places(Coordinates::Plane([component(0), component(1)]))
                 }
-                _ if numbers && of_numbers => StageSetup::Numbers([0, 1, 2, 3].map(component)),
+                _ if of_numbers => StageSetup::Numbers([0, 1, 2, 3].map(component)),
                 _ => StageSetup::Nothing,
             }
         }))

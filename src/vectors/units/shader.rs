@@ -95,7 +95,7 @@ impl CoordinateStage {
         let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
         let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
         let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {
-            let setup = &ShaderSetup::new(shader, &[], vertices, true);
+            let setup = &ShaderSetup::new(shader, &[], vertices);
             let scale = conditions.policies.dependent_scale;
             let chain = Chain { shader, units: &[], setup, textures: &[], vertices, perspective: false, scale };
             chain.run(at, (8, 8), observer)
