@@ -203,8 +203,10 @@ fn scene_as_command(error: &clap::Error) -> Option<Result<(), Failure>> {
     let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
     (is_scene || path.is_file()).then(|| {
         let scene = shown::path(path);
-        let picture = shown::path(&path.with_extension("png"));
-        let help = format!("did you mean `ninebit render {scene} -o {picture}`? `ninebit --help` lists the commands");
+        let help = match is_scene {
+            true => format!("did you mean `ninebit render {scene} -o {}`?", shown::path(&path.with_extension("png"))),
+            false => "`ninebit --help` lists the commands".to_owned(),
+        };
         Err(Failure::usage(format!("`{scene}` names a file, not a command"), help))
     })
 }

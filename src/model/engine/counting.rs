@@ -184,6 +184,7 @@ mod tests {
     use crate::state::*;
 
     /// Returns a plan of one draw of triangles whose corners lie anywhere up to `reach` pixels around the target.
+    #[allow(clippy::float_arithmetic, reason = "corners in sixteenths of a pixel")]
     fn plan(count: u32, side: u32, reach: u32, change: impl FnOnce(&mut Draw)) -> Plan {
         let mut random = Random::seeded(u64::from(count + side + reach));
         let mut place = || random.below(u128::from(16 * (side + 2 * reach))) as f32 / 16.0 - reach as f32;

@@ -75,8 +75,7 @@ impl Draw {
     /// let image = TextureImage::Texels(Texels { width: 1, height: 1, levels: 1, layers: 1, border: false, words: [0xff80_4020].into() });
     /// let (name, kind) = ("brown".to_owned(), TextureKind::TwoDimensional);
     /// let texture = Texture { name, kind, format: TextureFormat::A8R8G8B8, image };
-    /// let mut combiners = Combiners::default();
-    /// combiners.final_combiner.inputs[3].register = FinalRegister::Texture0; // D
+    /// let combiners = Combiners::showing(FinalRegister::Texture0);
     /// let corner = |x: f32, y: f32| Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() };
     /// let vertices = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 2.0)].into();
     /// let draw = Draw { vertices, indices: [0, 1, 2].into(), combiners, ..Draw::default() }.texture(0, TextureUnit::new(0));

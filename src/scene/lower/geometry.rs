@@ -269,6 +269,10 @@ fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) ->
         let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
         reader.push(finding("NB0222", reader.span(attribute), message, "needs a mesh", help));
     }
+    // An unknown field may be one of the two, misspelt.
+    if !fields.faults.is_empty() && fields.vertices.is_none() && fields.mesh.is_none() {
+        return None;
+    }
     let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let of_mesh = fields.mesh.is_some() && fields.vertices.is_none();
     let outputs = of_mesh.then(|| outputs(reader, &fields));
