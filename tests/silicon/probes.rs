@@ -54,7 +54,7 @@ const UNITS: [(&str, &str); 8] = [
     ("w-buffer", "w-buffer"),
 ];
 
-/// A file whose rows are compared one by one.
+/// A file whose rows are compared one by one, here with the oracle.
 type Compared = (&'static str, fn(&Row) -> Option<String>);
 
 const COMPARED: [Compared; 1] = [("weights", |row| weights::difference(row, weights::by_oracle))];
