@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::io;
 
 /// Version of the document's format.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Returns the trace of a pixel as a JSON document that ends in a newline.
 pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {

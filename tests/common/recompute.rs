@@ -100,8 +100,7 @@ fn is_parameter(name: &str) -> bool {
         "B8",
     ];
     let slope = name.starts_with("dE");
-    let coefficient = name.len() == 2 && "abc".contains(&name[..1]) && "012".contains(&name[1..]);
-    parameters.contains(&name) || formats.contains(&name) || coefficient || slope
+    parameters.contains(&name) || formats.contains(&name) || slope || name.ends_with(".origin")
 }
 
 /// Recomputes one fragment under the document's `policies`. Returns the final value of each name.
@@ -199,8 +198,9 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     Some(match operation {
         // Rasteriser and interpolation.
         "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
-        "ratio_24" | "cut_24" | "cut_24_product" | "edge_sum" | "reciprocal" | "rest_24" | "number"
-        | "number_product" | "align_24" | "number_sum" | "float_difference" => weights::number(operation, inputs),
+        "ratio_24" | "cut_24" | "cut_24_product" | "edge_sum" | "reciprocal" => weights::number(operation, inputs),
+        "rest_24" | "number" | "number_product" | "align_24" | "number_sum" => weights::number(operation, inputs),
+        "float_difference" => weights::number(operation, inputs),
         "floor_weight" => weights::floor(&[n(0)], 256, 256, 256),
         "remainder_weight" => Number::new(256 - v(0) - v(1), 256),
         "interpolate" => byte((v(0) * v(3) + v(1) * v(4) + v(2) * v(5) + 128) >> 8),

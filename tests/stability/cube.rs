@@ -3,8 +3,8 @@
 use super::content::{directions, dot, unit};
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
-use ninebit::raster::binary::Binary;
 use ninebit::plan::Plan;
+use ninebit::raster::binary::Binary;
 use ninebit::state::{Scene, Texture, TextureImage};
 use ninebit::texture::coordinates::Coordinates;
 use ninebit::texture::cube::Face;
@@ -54,8 +54,7 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
     let mut map = vec![(Face::PositiveX, [0.0; 3]); 256 * 256];
     visit(plan, |covered| {
         if covered.draw == 1 {
-            let Coordinates::Direction(g) = Coordinates::new(covered.coordinates(), covered.unit)
-            else {
+            let Coordinates::Direction(g) = Coordinates::new(covered.coordinates(), covered.unit) else {
                 panic!("a cube map is sampled with a direction");
             };
             let at = covered.sample();

@@ -67,8 +67,7 @@ pub fn section() -> Section {
 
 /// Returns u of the model and the floor of the exact rational number, both in 1/256 texel.
 fn u(covered: &Covered<'_>) -> (i64, i64) {
-    let (sample, coordinates) =
-        (covered.sample(), Coordinates::new(covered.coordinates(), covered.unit));
+    let (sample, coordinates) = (covered.sample(), Coordinates::new(covered.coordinates(), covered.unit));
     let place = Interpolated {
         unit: covered.unit,
         coordinates: &coordinates,

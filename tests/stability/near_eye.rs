@@ -7,9 +7,9 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::raster::ideal;
 use ninebit::raster::interpolate::{Sample, coordinate};
-use ninebit::raster::weights::Linear;
 use ninebit::raster::project::ClipPlane;
 use ninebit::raster::setup::Triangle;
+use ninebit::raster::weights::Linear;
 use ninebit::state::{Profile, Scene};
 
 /// Width of the texture to which the coordinates refer, in texels.

@@ -23,6 +23,17 @@ impl Binary {
         Binary { mantissa, exponent }
     }
 
+    /// Converts a finite double that is no subnormal exactly.
+    pub(crate) fn from_double(n: f64) -> Binary {
+        let bits = n.to_bits();
+        let exponent = (bits >> 52 & 0x7ff) as i32;
+        if exponent == 0 {
+            return Binary::default();
+        }
+        let mantissa = (bits & ((1 << 52) - 1) | 1 << 52) as i64;
+        Binary { mantissa: if bits >> 63 == 1 { -mantissa } else { mantissa }, exponent: exponent - 1075 }
+    }
+
     /// Returns the number of the bit above the highest, or the least for 0.
     #[inline(always)]
     pub(crate) fn top(self) -> i32 {

@@ -43,9 +43,13 @@ pub(crate) fn edges<O: Observer>(
 ) {
     let e = triangle.edges(x, y);
     for k in 0..3 {
-        let slopes = [("a", triangle.a), ("b", triangle.b), ("c", triangle.c)];
-        let slopes = slopes.map(|(letter, of)| plain(format!("{letter}{k}"), of[k]));
-        let inputs = slopes.into_iter().chain([plain("x", x), plain("y", y)]).collect();
+        let inputs = vec![
+            plain(format!("dE{k}/dx"), triangle.a[k]),
+            plain(format!("dE{k}/dy"), triangle.b[k]),
+            plain(format!("E{k}.origin"), triangle.c[k]),
+            plain("x", x),
+            plain("y", y),
+        ];
         let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
         let on_edge = (rule == "RAS-3" && e[k] == 0).then(|| format!("exactly on a {owns}"));
         let step = Step::given(block, rule, format!("{prefix}E{k}"), e[k]);

@@ -576,7 +576,7 @@ pub(super) fn component<O: Observer>(
     at: &Sample<'_>,
     observer: &mut O,
 ) -> Operand {
-    let (block, name) = (block(index), format!("unit{index}.{}", COORDINATES[n]));
+    let (block, name) = (block(index), format!("unit{index}.coordinate.{}", COORDINATES[n]));
     let place = raster::Place { block: &block, rule: "INT-4", name: &name, prefix };
     raster::linear(place, values, at.weights().b, observer)
 }

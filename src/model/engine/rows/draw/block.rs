@@ -98,36 +98,41 @@ pub(crate) fn interpolate<const FMA: bool>(
     triangle::interpolate(context, shape, job, block, lanes);
 }
 
-/// Computes the depths of some lanes, whose pixels are those of the runs from the given one on, and tests them if nothing else drops
-/// fragments. Returns `false` if the test drops all its pixels.
+/// Computes the depths of the lanes from the first one on, whose pixels are those of the runs from the first one on, and tests them if nothing
+/// else drops fragments. Runs that the test drops whole are taken out of the block, unless quads need them.
 #[inline(always)]
 pub(crate) fn test_depths<const FMA: bool>(
     context: &TriangleContext<'_>,
     shape: &Shape,
     job: &Job<'_>,
     block: &mut Block,
-    (lanes, first): (Range<usize>, usize),
+    (lane, first): (usize, usize),
     band: &mut Band<'_>,
-) -> bool {
-    let Block { pixels, incoming, alive, runs, depth, .. } = block;
+) {
+    let Block { pixels, incoming, alive, runs, depth, used, .. } = &mut *block;
+    let lanes = lane..lane + (*used - lane).next_multiple_of(8);
     depths::depths(context, shape, lanes.clone(), pixels, incoming);
     let runs = &runs[first..];
     if job.compiled.drops_late {
-        return runs.iter().any(|run| store::may_pass(job.draw, &incoming[run.lanes()], &band.depth[run.at()..]));
+        let may_pass = |run: &Run| store::may_pass(job.draw, &incoming[run.lanes()], &band.depth[run.at()..]);
+        if !runs.iter().any(may_pass) {
+            block.take_out(job.compiled, first, |_| false);
+        }
+        return;
     }
     store::read_runs(band.depth, runs, depth.block_mut());
-    let (memory, lanes_alive) = (&mut depth[lanes.clone()], &mut alive[lanes.clone()]);
-    store::test_early(job.draw, &incoming[lanes.clone()], memory, lanes_alive);
-    let is_visible = runs.iter().any(|run| alive[run.lanes()].contains(&true));
-    if is_visible {
-        store::write_runs(depth.block(), runs, band.depth);
-        // Lanes past the end are those of the next triangle.
-        let end = runs.last().map_or(lanes.start, |run| run.lanes().end);
-        alive[end..].fill(true);
-    } else {
-        alive[lanes].fill(true);
+    let (memory, of_lanes) = (&mut depth[lanes.clone()], &mut alive[lanes.clone()]);
+    store::test_early(job.draw, &incoming[lanes], memory, of_lanes);
+    store::write_runs(depth.block(), runs, band.depth);
+    let alive = alive.clone();
+    let is_visible = |run: &Run| alive[run.lanes()].contains(&true);
+    let takes_quads = job.compiled.takes_quads;
+    if !runs.iter().all(is_visible) && (!takes_quads || !runs.iter().any(is_visible)) {
+        block.take_out(job.compiled, first, is_visible);
     }
-    is_visible
+    // Lanes past the end are those of the next triangle.
+    let end = if block.runs.len() == first { lane } else { block.used };
+    block.alive[end..].fill(true);
 }
 
 /// Samples a unit.
@@ -212,6 +217,28 @@ impl Block {
         }
         self.pixels.y[beyond].fill(j as f64);
         self.used = lanes.end;
+    }
+
+    /// Takes runs from the first one on out of the block, of which a function says whether they stay.
+    fn take_out(&mut self, compiled: &CompiledDraw, first: usize, stays: impl Fn(&Run) -> bool) {
+        let mut kept = first;
+        let mut lane = self.runs[first].lane();
+        for n in first..self.runs.len() {
+            let run = self.runs[n];
+            if !stays(&run) {
+                if compiled.reads_surface {
+                    store::mark(&mut self.taken, &[run]);
+                }
+                continue;
+            }
+            self.pixels.x.copy_within(run.lanes(), lane);
+            self.pixels.y.copy_within(run.lanes(), lane);
+            self.alive.copy_within(run.lanes(), lane);
+            self.runs[kept] = Run::new(lane, run.at() as u32, run.count());
+            (kept, lane) = (kept + 1, lane + run.count());
+        }
+        self.runs.truncate(kept);
+        self.used = lane;
     }
 
     /// Returns whether the block has lanes for some of these pixels already.

@@ -122,7 +122,7 @@ kernels! {
         fn block::begin(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>);
         fn block::find_spans(shape: &Shape, top: i64, columns: (i64, i64), spans: &mut Spans);
         fn block::set_up(context: &TriangleContext<'_>, job: &Job<'_>, block: &mut Block);
-        fn block::test_depths(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (Range<usize>, usize), band: &mut Band<'_>) -> bool;
+        fn block::test_depths(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (usize, usize), band: &mut Band<'_>);
         fn block::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, lanes: Range<usize>);
         fn block::sample(reader: Reader<'_>, pixels: &Pixels, place: &mut Place, quads: &mut Quads, work: &mut Workspace, alive: &mut [bool], rows: &mut [PerLane<i16>]);
         fn filter::filter(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], at: [&[i32; BLOCK]; 2], footprints: &mut [Footprint; BLOCK], channels: [&mut [i16; BLOCK]; 4]);

@@ -164,29 +164,25 @@ impl Drawing<'_, '_> {
         self.shaded += count as u64;
     }
 
-    /// Computes what a triangle's lanes in the block read, or takes them back if none of them can be seen.
+    /// Computes what a triangle's lanes in the block read, but those that the depth test takes out.
     fn close(&mut self, drawn: &mut Drawn<'_>) {
         let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
         let Drawn { context, shape, lane, run, quads, is_set_up } = drawn;
         if block.used == *lane {
             return;
         }
-        // Whole vectors, of which the next triangle overwrites what is too much.
-        let lanes = *lane..*lane + (block.used - *lane).next_multiple_of(8);
-        let is_visible = job.draw.depth_test.is_none()
-            || (kernels.test_depths)(context, shape, job, block, (lanes.clone(), *run), self.band);
-        if !is_visible {
-            if job.compiled.reads_surface {
-                store::mark(&mut block.taken, &block.runs[*run..]);
+        if job.draw.depth_test.is_some() {
+            (kernels.test_depths)(context, shape, job, block, (*lane, *run), self.band);
+            if block.runs.len() == *run {
+                (block.used, _) = (*lane, block.quads.truncate(*quads));
+                return;
             }
-            block.runs.truncate(*run);
-            block.quads.truncate(*quads);
-            block.used = *lane;
-            return;
         }
         if !std::mem::replace(is_set_up, true) {
             (kernels.set_up)(context, job, block);
         }
+        // Whole vectors, of which the next triangle overwrites what is too much.
+        let lanes = *lane..*lane + (block.used - *lane).next_multiple_of(8);
         (kernels.interpolate)(context, shape, job, block, lanes);
     }
 

@@ -15,7 +15,7 @@ use crate::raster::weights::{Number, completed, edge_numbers, shares};
 use std::ops::Range;
 
 /// Number of lanes of which a pass is done before the next pass begins, so that what it hands on stays in the nearest cache.
-const CHUNK: usize = 128;
+pub(crate) const CHUNK: usize = 128;
 
 /// What the passes hand on. Aligned, because vectors are stored and loaded.
 #[derive(Clone, Debug)]
@@ -62,17 +62,18 @@ impl Pixels {
         }
     }
 
-    /// Calls a function with the [passes](Passes::run) of lanes without perspective, a part at a time, and with its lanes.
+    /// Calls a function with the edge numbers and reciprocals of lanes, a part at a time, and with its lanes.
     #[inline(always)]
     pub(crate) fn each_part(
         &mut self,
         shape: &Shape,
+        ratios: Option<[f64; 3]>,
         lanes: Range<usize>,
         mut call: impl FnMut(&Passes, Range<usize>),
     ) {
         for first in lanes.clone().step_by(CHUNK) {
             let part = first..(first + CHUNK).min(lanes.end);
-            self.passes.run(shape, None, &self.x[part.clone()], &self.y[part.clone()]);
+            self.passes.run(shape, ratios, &self.x[part.clone()], &self.y[part.clone()]);
             call(&self.passes, part);
         }
     }
