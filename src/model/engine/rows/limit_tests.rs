@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::lanes::{BLOCK, Lanes, PerLane};
+use super::lattice::{self, pick};
 use super::shading::graph::Graph;
 use super::shading::kernels::run;
-use super::lattice::{self, pick};
 use super::shading::node::{Input, Node, Value};
 use crate::algebra::Algebra;
 use crate::combiner::direct::Direct;
