@@ -232,13 +232,13 @@ mod tests {
             let length = random.bits() % 27;
             let (mantissa, up) = ((random.bits() >> (37 + length)) as i64, random.bits() % 40);
             let mut n = mantissa << up;
-            if random.bits() % 2 == 0 {
+            if random.bits().is_multiple_of(2) {
                 // Hardly below or above a multiple.
                 let multiple = (random.bits() >> (40 + random.bits() % 20)) as i64;
                 n = multiple * by + (random.bits() % 3) as i64 - 1;
                 n = if n.unsigned_abs() < 1 << 27 { n } else { n & !0 << (64 - n.leading_zeros() - 27) };
             }
-            let n = if random.bits() % 2 == 0 { n } else { -n };
+            let n = if random.bits().is_multiple_of(2) { n } else { -n };
             if (n / by).unsigned_abs() >= 1 << 52 {
                 continue;
             }
