@@ -355,19 +355,6 @@ fn sample_levels(
     load(lanes, signed, wanted, rows);
 }
 
-impl MipFetches {
-    /// Writes the entries of one of two levels. Returns the coordinates for its weights.
-    #[inline(always)]
-    fn of_level(&self, which: usize, lanes: Lanes, entries: &mut [u32; BLOCK]) -> (&[i32; BLOCK], &[i32; BLOCK]) {
-        let found = self.entries[which].block();
-        for n in 0..lanes.count() {
-            entries[n] = found[n] as u32;
-        }
-        let [u, v] = &self.coordinates[which];
-        (u.block(), v.block())
-    }
-}
-
 /// TEX-9: mixes two levels of a channel.
 #[inline(always)]
 fn mix(lanes: Lanes, channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[u16; BLOCK]) {
