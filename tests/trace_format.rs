@@ -146,7 +146,7 @@ impl Seen {
         let long = word >> 31 != 0;
         fields(document, &page.document, &[("left_out", false), ("word_text", long)]);
         assert!(!long || document["word_text"] == format!("{word:#010x}"));
-        assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
+        assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &2.into()));
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
             // Only pieces of clipped triangles have this field.

@@ -221,10 +221,13 @@ pub(super) fn expression(step: &Step) -> String {
         "quad_coordinate" => format!("floor(65536 * {} * {})", value(1), name(0)),
         "floor_ratio" => format!("floor(256 * {} * {} / {})", value(2), name(0), name(1)),
         "quad_ratio" => format!("floor(65536 * {} * {} / {})", value(2), name(0), name(1)),
-        "cube_face" => format!("largest of ({}, {}, {})", name(0), name(1), name(2)),
+        "cube_face" => {
+            let [x, y, z] = [0, 1, 2].map(|n| step.inputs.get(n).map_or(0.0, real));
+            format!("largest of ({}, {}, {})", decimal(x), decimal(y), decimal(z))
+        }
         "floor_face_u" | "floor_face_v" | "quad_face_u" | "quad_face_v" => {
             let ((s, m), steps) = (on_face(step), if step.operation.starts_with("quad") { 32768 } else { 128 });
-            format!("floor({steps} * {} * ({s} + {m}) / {m})", value(4))
+            format!("floor({steps} * {} * ({} + {}) / {})", value(4), decimal(s), decimal(m), decimal(m))
         }
         "log2_ratio" => {
             let moved = |pixel: usize, n: usize| {
@@ -287,14 +290,24 @@ pub(super) fn expression(step: &Step) -> String {
     }
 }
 
-/// Returns the names of the minor component for u or v and of the major one, with their signs, for a step on a face.
-fn on_face(step: &Step) -> (String, String) {
-    let name = |n: usize| step.inputs.get(n).map_or("", |input| input.name.rsplit('.').next().unwrap_or_default());
+/// Returns the number of an operand that has a power of two.
+#[allow(clippy::float_arithmetic, reason = "display of a number")]
+fn real(operand: &Operand) -> f64 {
+    operand.value as f64 * 2.0_f64.powi(operand.exponent)
+}
+
+/// Formats a number with at most six decimals.
+fn decimal(number: f64) -> String {
+    let text = format!("{number:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Returns the minor component for u or v, and the magnitude of the major one, for a step on a face.
+fn on_face(step: &Step) -> (f64, f64) {
     let face = step.inputs.get(3).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
-    let [s, t, m] = face
-        .copied()
-        .unwrap_or(Face::PositiveX)
-        .components()
-        .map(|c| format!("{}{}", if c.negative { "-" } else { "" }, name(c.axis)));
+    let [s, t, m] = face.copied().unwrap_or(Face::PositiveX).components().map(|c| {
+        let component = step.inputs.get(c.axis).map_or(0.0, real);
+        if c.negative { -component } else { component }
+    });
     (if step.operation.ends_with('u') { s } else { t }, m)
 }

@@ -417,7 +417,7 @@ mod tests {
             0 => random.bits() % 255,
             1 => 100 + random.bits() % 50,
             2 => 126 + random.bits() % 3,
-            _ => return if random.bits() % 2 == 0 { 0.0 } else { -0.0 },
+            _ => return if random.bits().is_multiple_of(2) { 0.0 } else { -0.0 },
         };
         f32::from_bits(((random.bits() % 2) as u32) << 31 | (exponent as u32) << 23 | boundary(random, 23) as u32)
     }

@@ -238,7 +238,7 @@ mod tests {
                 n = multiple * by + (random.bits() % 3) as i64 - 1;
                 n = if n.unsigned_abs() < 1 << 27 { n } else { n & !0 << (64 - n.leading_zeros() - 27) };
             }
-            let n = if random.bits() % 2 == 0 { n } else { -n };
+            let n = if random.bits().is_multiple_of(2) { n } else { -n };
             if (n / by).unsigned_abs() >= 1 << 52 {
                 continue;
             }

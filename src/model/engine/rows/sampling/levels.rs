@@ -4,7 +4,7 @@
 use super::place::limited;
 use super::table::{Placed, Table};
 use super::taps::PairsOfQuad;
-use crate::engine::rows::lanes::PerLane;
+use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane};
 use crate::state::Filter;
 use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
@@ -32,6 +32,22 @@ pub(crate) struct Placing {
 }
 
 impl MipFetches {
+    /// Writes the entries of one of two levels. Returns the coordinates for its weights.
+    #[inline(always)]
+    pub(crate) fn of_level(
+        &self,
+        which: usize,
+        lanes: Lanes,
+        entries: &mut [u32; BLOCK],
+    ) -> (&[i32; BLOCK], &[i32; BLOCK]) {
+        let found = self.entries[which].block();
+        for n in 0..lanes.count() {
+            entries[n] = found[n] as u32;
+        }
+        let [u, v] = &self.coordinates[which];
+        (u.block(), v.block())
+    }
+
     /// Computes the fetches of the first lanes from their levels of detail, which become biased, and from their coordinates on level 0 in 1/65536
     /// texel. `images` are faces.
     #[inline(always)]

@@ -176,8 +176,8 @@ impl Quads {
         for (directions, [u, v]) in self.directions.iter().zip(&self.at) {
             let (q, u, v) = (&directions[2][..rounded], &u[..rounded], &v[..rounded]);
             for n in 0..rounded {
-                behind[n] |= i32::from(!(q[n] > 0.0));
-                far[n] |= i32::from(!(larger(u[n].abs(), v[n].abs()) < EXACT));
+                behind[n] |= i32::from(q[n] <= 0.0);
+                far[n] |= i32::from(larger(u[n].abs(), v[n].abs()) >= EXACT);
             }
         }
     }
@@ -208,11 +208,11 @@ impl Quads {
                 let by = if ahead { m } else { 1.0 };
                 behind[n] |= i32::from(!ahead);
                 let (along, down) = (floor_of_quotient(s * scale, by), floor_of_quotient(t * scale, by));
-                let is_far = !(larger(along.abs(), down.abs()) < EXACT);
+                let is_far = larger(along.abs(), down.abs()) >= EXACT;
                 let largest = larger(larger(x[n].abs(), y[n].abs()), z[n].abs());
                 let (x, y, z) = (x[n], y[n], z[n]);
-                // What is not finite less itself is no number.
-                let finite = (x - x) + (y - y) + (z - z) == 0.0;
+                // What is not finite times 0 is no number.
+                let finite = x * 0.0 + y * 0.0 + z * 0.0 == 0.0;
                 let coarse = of_vector & (loses_bits([s, t, m], largest, pixel == 0) | !finite);
                 far[n] |= i32::from(is_far | coarse);
                 (u[n], v[n]) = (scale + along, scale + down);

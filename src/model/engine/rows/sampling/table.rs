@@ -215,7 +215,7 @@ impl Key {
             texture: state.texture,
             palette: state.palette,
             modes: unit.modes(),
-            layers: is_volume(unit).then_some(state.address_r),
+            layers: (unit.kind == TextureKind::ThreeDimensional).then_some(state.address_r),
             linear: linear(unit),
             levels: unit.needs_lod().then_some(unit.levels.len()),
             folds,
@@ -232,13 +232,9 @@ fn linear(unit: &PlannedUnit) -> bool {
     unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
 
-fn is_volume(unit: &PlannedUnit) -> bool {
-    unit.kind == TextureKind::ThreeDimensional
-}
-
 /// Returns the axis of a volume's layers.
 pub(crate) fn layers(unit: &PlannedUnit) -> Option<Axis> {
-    is_volume(unit).then(|| Axis::new(unit.state.address_r, unit.layers, false))
+    (unit.kind == TextureKind::ThreeDimensional).then(|| Axis::new(unit.state.address_r, unit.layers, false))
 }
 
 /// Returns the comparison of a unit's depths with r.
@@ -259,7 +255,7 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
 /// Returns the axes of the levels of a unit: of level 0, or of all levels if it needs a level of detail. Returns `None` if rows cannot
 /// sample it (levels or several taps of a volume or of depths).
 pub(crate) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    let single = is_volume(unit) || unit.state.shadow.is_some();
+    let single = (unit.kind == TextureKind::ThreeDimensional) || unit.state.shadow.is_some();
     if single && (unit.needs_lod() || unit.state.anisotropy > 1) {
         return None;
     }
@@ -283,12 +279,12 @@ pub(crate) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
 impl Table {
     /// Returns the number of entries.
     pub(crate) fn entries(&self) -> u64 {
-        match &self.texels {
-            Texels::Single(all) | Texels::One(_, all) | Texels::Depths(all, _) => all.len() as u64,
-            Texels::Footprints(all) | Texels::Levels(all) | Texels::WideLevels(all) | Texels::Wide(all) => {
-                all.len() as u64
-            }
-        }
+        use Texels::{Depths, Footprints, Levels, One, Single, Wide, WideLevels};
+        let count = match &self.texels {
+            Single(all) | One(_, all) | Depths(all, _) => all.len(),
+            Footprints(all) | Levels(all) | WideLevels(all) | Wide(all) => all.len(),
+        };
+        count as u64
     }
 
     /// Decodes the levels of a unit. `folds` tells whether the reader handles constant and equal channels itself.
