@@ -34,18 +34,6 @@ impl Binary {
         Binary { mantissa: if bits >> 63 == 1 { -mantissa } else { mantissa }, exponent: exponent - 1075 }
     }
 
-    /// Converts a double whose first 27 bits are all it has.
-    #[inline(always)]
-    pub(crate) fn from_double(n: f64) -> Binary {
-        let bits = n.to_bits();
-        let magnitude = ((bits >> 26 & 0x3ff_ffff) | 1 << 26) as i64;
-        let mantissa = if n == 0.0 { 0 } else { magnitude };
-        Binary {
-            mantissa: if n < 0.0 { -mantissa } else { mantissa },
-            exponent: (bits >> 52 & 0x7ff) as i32 - (1023 + 26),
-        }
-    }
-
     /// Converts the number to a double. The mantissa must have at most 53 bits, and the exponent must be that of a double.
     #[inline(always)]
     pub(crate) fn double(self) -> f64 {
@@ -194,7 +182,11 @@ impl Binary {
     /// Returns the nearest single-precision number, with ties to even. Too large values become infinite, and zero is positive. The mantissa must
     /// have at most 53 bits, and the exponent must be that of a double.
     pub fn nearest_f32(self) -> f32 {
-        self.double() as f32
+        if self.mantissa == 0 {
+            return 0.0;
+        }
+        let double = (self.mantissa as f64).to_bits();
+        f64::from_bits(double.wrapping_add_signed(i64::from(self.exponent) << 52)) as f32
     }
 }
 
