@@ -5,7 +5,7 @@ use super::place::limited;
 use super::table::{Placed, Table};
 use super::taps::PairsOfQuad;
 use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane};
-use crate::state::Filter;
+use crate::state::{Filter, MipFilter};
 use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
 
@@ -62,7 +62,9 @@ impl MipFetches {
         let Placing { lods, levels, .. } = placing;
         let ranges = choose(unit, lods, levels, &mut self.weights[..count]);
         let (filters, most) = (Taken::of_unit(unit), unit.largest_shifts());
-        for (which, [low, high]) in ranges.into_iter().enumerate() {
+        // The second level is read only where two are mixed.
+        let count_of_levels = if unit.state.mip_filter == MipFilter::Linear { 2 } else { 1 };
+        for (which, [low, high]) in ranges.into_iter().enumerate().take(count_of_levels) {
             let ([u, v], entries) = (&mut self.coordinates[which], &mut self.entries[which]);
             let (u, v, entries) = (&mut u[..count], &mut v[..count], &mut entries[..count]);
             let (lods, levels) = (&lods[..count], &levels[which][..count]);
