@@ -34,13 +34,6 @@ impl Binary {
         Binary { mantissa: if bits >> 63 == 1 { -mantissa } else { mantissa }, exponent: exponent - 1075 }
     }
 
-    /// Converts the number to a double. The mantissa must have at most 53 bits, and the exponent must be that of a double.
-    #[inline(always)]
-    pub(crate) fn double(self) -> f64 {
-        let bits = (self.mantissa as f64).to_bits();
-        f64::from_bits(if self.mantissa == 0 { 0 } else { bits.wrapping_add_signed(i64::from(self.exponent) << 52) })
-    }
-
     /// Returns the number of the bit above the highest, or the least for 0.
     #[inline(always)]
     pub(crate) fn top(self) -> i32 {
