@@ -286,6 +286,7 @@ fn decimal(number: f64) -> String {
 }
 
 /// Returns the minor component for u or v, and the magnitude of the major one, for a step on a face.
+#[allow(clippy::float_arithmetic, reason = "display of a number")]
 fn on_face(step: &Step) -> (f64, f64) {
     let face = step.inputs.get(3).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
     let [s, t, m] = face.copied().unwrap_or(Face::PositiveX).components().map(|c| {

@@ -30,7 +30,7 @@ pub(super) fn setup<O: Observer>(
     let triangle = sample.triangle;
     raster::edges(RASTER, ("RAS-3", ""), triangle, pixel, observer);
     raster::ratios(INTERPOLATION, triangle, w, observer);
-    raster::weights(INTERPOLATION, "", (sample.e, triangle.ratios), &sample.weights(), Some(ideal), observer);
+    raster::weights(INTERPOLATION, "", (sample.e, triangle.ratios), sample.weights(), Some(ideal), observer);
 }
 
 /// CMB-13: reports registers that are read before they are written.

@@ -23,8 +23,8 @@ impl Binary {
         Binary { mantissa, exponent }
     }
 
-    /// Converts a finite double exactly, with all of its 53 bits; subnormal ones are 0.
-    pub(crate) fn from_all_bits(n: f64) -> Binary {
+    /// Converts a finite double exactly; subnormal ones are 0.
+    pub(crate) fn from_double(n: f64) -> Binary {
         let bits = n.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as i32;
         if exponent == 0 {
@@ -32,25 +32,6 @@ impl Binary {
         }
         let mantissa = (bits & ((1 << 52) - 1) | 1 << 52) as i64;
         Binary { mantissa: if bits >> 63 == 1 { -mantissa } else { mantissa }, exponent: exponent - 1075 }
-    }
-
-    /// Converts a double whose first 27 bits are all it has.
-    #[inline(always)]
-    pub(crate) fn from_double(n: f64) -> Binary {
-        let bits = n.to_bits();
-        let magnitude = ((bits >> 26 & 0x3ff_ffff) | 1 << 26) as i64;
-        let mantissa = if n == 0.0 { 0 } else { magnitude };
-        Binary {
-            mantissa: if n < 0.0 { -mantissa } else { mantissa },
-            exponent: (bits >> 52 & 0x7ff) as i32 - (1023 + 26),
-        }
-    }
-
-    /// Converts the number to a double. The mantissa must have at most 53 bits, and the exponent must be that of a double.
-    #[inline(always)]
-    pub(crate) fn double(self) -> f64 {
-        let bits = (self.mantissa as f64).to_bits();
-        f64::from_bits(if self.mantissa == 0 { 0 } else { bits.wrapping_add_signed(i64::from(self.exponent) << 52) })
     }
 
     /// Returns the number of the bit above the highest, or the least for 0.
@@ -187,7 +168,11 @@ impl Binary {
     /// Returns the nearest single-precision number, with ties to even. Too large values become infinite, and zero is positive. The mantissa must
     /// have at most 53 bits, and the exponent must be that of a double.
     pub fn nearest_f32(self) -> f32 {
-        self.double() as f32
+        if self.mantissa == 0 {
+            return 0.0;
+        }
+        let double = (self.mantissa as f64).to_bits();
+        f64::from_bits(double.wrapping_add_signed(i64::from(self.exponent) << 52)) as f32
     }
 }
 

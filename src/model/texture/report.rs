@@ -53,7 +53,7 @@ impl Report<'_> {
     pub(crate) fn weights<O: Observer>(&self, prefix: &str, at: &Sample<'_>, pixel: (i64, i64), observer: &mut O) {
         let (block, triangle) = (self.block(), at.triangle);
         raster::edges(&block, ("TEX-11", prefix), triangle, pixel, observer);
-        raster::weights(&block, prefix, (at.e, triangle.ratios), &at.weights(), None, observer);
+        raster::weights(&block, prefix, (at.e, triangle.ratios), at.weights(), None, observer);
     }
 
     /// Reports a component of the coordinate set, whose values at the vertices are given, and returns it as an operand.

@@ -200,8 +200,8 @@ impl Unit for LinearNumber {
         let bits = |row: [f32; 5]| row.map(|n| i64::from(n.to_bits())).to_vec();
         let tiny = 2.0_f32.powi(-23);
         let rows = [
-            [124.0 / 128.0, 0.0, 0.9, 1.1, 1.1],
-            [0.0, 4.0 / 128.0, 0.9, 0.9, 1.1],
+            [0.96875, 0.0, 0.9, 1.1, 1.1],
+            [0.0, 0.03125, 0.9, 0.9, 1.1],
             [0.5, 0.25, 1.0, 1.0, 1.0],
             [0.5, 0.25, 0.0, 0.0, 0.0],
             [1.0, 0.0, 3.0, -1.0, 7.0],
@@ -295,9 +295,11 @@ impl Unit for DepthInterpolation {
 
 const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
 
-/// Returns a column of w as bits: powers of two, which yield ties, and others.
+/// Returns a column of w as bits: powers of two, numbers that nv10 cuts and does not cut, and others.
 fn w(name: &str) -> Column {
-    let bits = [1.0_f32, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0].map(|w| i64::from(w.to_bits()));
+    let near_one = [0x3f80_0008, 0x3f80_0100].map(f32::from_bits);
+    let others = [1.0, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0];
+    let bits: Vec<i64> = others.into_iter().chain(near_one).map(|w| w.to_bits().into()).collect();
     Column::listed(name, Kind::Hex(32), &bits)
 }
 
