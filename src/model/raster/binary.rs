@@ -23,8 +23,8 @@ impl Binary {
         Binary { mantissa, exponent }
     }
 
-    /// Converts a finite double exactly, with all of its 53 bits; subnormal ones are 0.
-    pub(crate) fn from_all_bits(n: f64) -> Binary {
+    /// Converts a finite double exactly; subnormal ones are 0.
+    pub(crate) fn from_double(n: f64) -> Binary {
         let bits = n.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as i32;
         if exponent == 0 {

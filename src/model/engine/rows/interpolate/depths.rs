@@ -11,7 +11,7 @@ use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::geometry::weights::{CHUNK, Passes, Pixels};
 use crate::engine::rows::lanes::{PerLane, floor_within, larger};
 use crate::raster::binary::Binary;
-use crate::raster::depth::{self, DepthPlane, difference};
+use crate::raster::depth::{self, difference};
 use crate::raster::weights::{Number, dominance, shares};
 use crate::state::DepthFormat;
 use std::ops::Range;
@@ -89,42 +89,23 @@ pub(crate) fn depths(
     out: &mut PerLane<u32>,
 ) {
     let plane = &context.depth;
+    let vertices = Vertices::new(plane.w.unwrap_or(plane.z));
+    let [w0, w1, w2] = vertices.z;
+    let ratios = plane.w.map(|_| [(w1 / w0).cut(), 1.0, (w1 / w2).cut()]);
     let mut found = [0.0; CHUNK];
-    let write = |found: &[f64], lanes: Range<usize>| words(context, found, &mut out[lanes]);
-    each_part(plane, shape, lanes, pixels, &mut found, write);
-}
-
-/// Calls a function with the depths of lanes before offset and range, a part at a time, and with its lanes.
-#[inline(always)]
-fn each_part(
-    plane: &DepthPlane,
-    shape: &Shape,
-    lanes: Range<usize>,
-    pixels: &mut Pixels,
-    found: &mut [f64; CHUNK],
-    mut call: impl FnMut(&[f64], Range<usize>),
-) {
-    if let Some(w) = plane.w {
-        let (vertices, [w0, w1, w2]) = (Vertices::new(w), w.map(f64::from));
-        let ratios = Some([(w1 / w0).cut(), 1.0, (w1 / w2).cut()]);
-        pixels.each_part(shape, ratios, lanes, |passes, lanes| {
-            let found = &mut found[..lanes.len()];
-            let Passes { edges: [e0, e1, e2], reciprocals } = passes;
+    // One call of one function: compilers inline no closure that is called twice.
+    pixels.each_part(shape, ratios, lanes, |Passes { edges: [e0, e1, e2], reciprocals }, lanes| {
+        let found = &mut found[..lanes.len()];
+        if ratios.is_some() {
             for n in 0..found.len() {
                 found[n] = vertices.w([e0[n], e1[n], e2[n]], reciprocals[n]);
             }
-            call(found, lanes);
-        });
-        return;
-    }
-    let vertices = Vertices::new(plane.z);
-    pixels.each_part(shape, None, lanes, |passes, lanes| {
-        let found = &mut found[..lanes.len()];
-        let Passes { edges: [e0, e1, e2], reciprocals } = passes;
-        for n in 0..found.len() {
-            found[n] = vertices.depth([e0[n], e1[n], e2[n]], reciprocals[n]);
+        } else {
+            for n in 0..found.len() {
+                found[n] = vertices.depth([e0[n], e1[n], e2[n]], reciprocals[n]);
+            }
         }
-        call(found, lanes);
+        words(context, found, &mut out[lanes]);
     });
 }
 
@@ -135,7 +116,7 @@ fn words(context: &TriangleContext<'_>, depths: &[f64], out: &mut [u32]) {
     let range = context.draw.depth_test.as_ref().and_then(|test| test.range.as_ref());
     if plane.offset.mantissa != 0 || range.is_some() {
         for n in 0..out.len() {
-            let depth = plane.with_offset(Binary::from_all_bits(depths[n]));
+            let depth = plane.with_offset(Binary::from_double(depths[n]));
             out[n] = depth::ranged(range, depth).map_or(OUTSIDE, |depth| depth::word(format, depth));
         }
     } else if format.is_float() {
