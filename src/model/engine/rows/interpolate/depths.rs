@@ -93,9 +93,10 @@ pub(crate) fn depths(
     let [w0, w1, w2] = vertices.z;
     let ratios = plane.w.map(|_| [(w1 / w0).cut(), 1.0, (w1 / w2).cut()]);
     let mut found = [0.0; CHUNK];
-    // One call of one function: compilers inline no closure that is called twice.
-    pixels.each_part(shape, ratios, lanes, |Passes { edges: [e0, e1, e2], reciprocals }, lanes| {
-        let found = &mut found[..lanes.len()];
+    for first in lanes.clone().step_by(CHUNK) {
+        let part = first..(first + CHUNK).min(lanes.end);
+        let found = &mut found[..part.len()];
+        let Passes { edges: [e0, e1, e2], reciprocals } = pixels.part(shape, ratios, part.clone());
         if ratios.is_some() {
             for n in 0..found.len() {
                 found[n] = vertices.w([e0[n], e1[n], e2[n]], reciprocals[n]);
@@ -105,8 +106,8 @@ pub(crate) fn depths(
                 found[n] = vertices.depth([e0[n], e1[n], e2[n]], reciprocals[n]);
             }
         }
-        words(context, found, &mut out[lanes]);
-    });
+        words(context, found, &mut out[part]);
+    }
 }
 
 /// DEP-3 to DEP-5: writes the words of depths.
