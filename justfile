@@ -31,11 +31,15 @@ charts:
 dependencies:
     .ci/check-dependencies
 
+# Run each fuzz target for some seconds, with a corpus if one is named
+fuzz SECONDS *CORPUS:
+    fuzz/run {{ SECONDS }} {{ CORPUS }}
+
 # What readers of vectors in other languages need, then the readers
 readers:
     vectors/harness/install
     vectors/harness/check
 
-# The thirteen workloads beside llvmpipe
+# The workloads beside llvmpipe
 peers *OPTIONS:
     benches/peers/compare.sh {{ OPTIONS }}

@@ -17,7 +17,7 @@ fi
 scene() {
     printf '(version: 1, profile: Nv2a, targets: [(name: "frame", width: %s, height: %s)],\n' "$1" "$2"
     printf 'textures: {"checks": (source: Checker(width: 64, height: 64, cell: 8, colors: ((200, 40, 40), (220, 220, 200))))},\n'
-    printf 'names: (programs: {"dot": Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true))], '
+    printf 'names: (programs: {"dot": Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot_product: true))], '
     printf 'final_combiner: (d: Spare0))}),\ndraws: [\n'
     awk -v draws="$3" '{ all = all $0 } END { for (n = 0; n < draws; n++) { one = all; gsub("%X%", n % 64 * 10, one); gsub("%Y%", int(n / 64) % 48 * 10, one);
         print "(name: \"" n "\", " one ", textures: [(texture: \"checks\", min_filter: Linear, mag_filter: Linear)], program: \"dot\")," } }'

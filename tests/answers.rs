@@ -1,4 +1,4 @@
-//! Checks `docs/answers.md`: grades are those of the handbook, commands run and end as the page says, and vectors exist.
+//! Checks `docs/answers.md`: grades are those of the handbook, and vectors exist.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench::Bench;
@@ -38,21 +38,6 @@ fn grades_are_those_of_the_handbook() {
     for (line, graded) in page.lines().zip(&graded) {
         assert_eq!(line, graded, "BLESS=1 writes the grades");
     }
-}
-
-/// Runs every command of the page and compares the last line of its output with the line below the command.
-#[test]
-fn commands_end_as_the_page_says() {
-    let (page, bench) = (read("docs/answers.md"), Bench::new());
-    let lines: Vec<&str> = page.lines().collect();
-    let mut held = 0;
-    for (n, line) in lines.iter().enumerate() {
-        let Some(arguments) = line.strip_prefix("$ ninebit ") else { continue };
-        let text = bench.run(arguments).text();
-        assert_eq!(text.lines().last().unwrap().trim(), lines[n + 1].trim(), "{arguments}");
-        held += 1;
-    }
-    assert!(held > 5, "{held} commands");
 }
 
 #[test]

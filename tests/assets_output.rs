@@ -103,7 +103,7 @@ mod unix {
 /// Neither a folder that is abandoned nor one that cannot be moved to its place leaves anything behind.
 #[test]
 fn folders_arrive_whole_or_not_at_all() {
-    use ninebit_files::output::PendingFolder;
+    use ninebit_files::pending::PendingFolder;
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("around/made");
     let begin = || {
@@ -121,15 +121,41 @@ fn folders_arrive_whole_or_not_at_all() {
     PendingFolder::create(&folder.path().join("file/made")).expect_err("no folder can be made there");
 }
 
+/// A folder that takes another one's place has the files that it takes over, and is never absent. Nothing of the other one is left beside it.
+#[test]
+fn folders_are_replaced_as_a_whole() {
+    use ninebit_files::pending::PendingFolder;
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("pack");
+    fs::create_dir_all(place.join("below/deeper")).unwrap();
+    for name in ["old", "kept", "both", "below/kept", "below/deeper/kept", "below/.ninebit-x.part"] {
+        fs::write(place.join(name), b"old").unwrap();
+    }
+    let begin = || {
+        let pending = PendingFolder::replacing(&place).unwrap().expect("it can be renamed");
+        write_file(&pending.path().join("both"), b"new").unwrap();
+        pending
+    };
+    drop(begin());
+    assert_eq!(fs::read(place.join("both")).unwrap(), b"old");
+    let pending = begin();
+    pending.take_over(&|path| !path.ends_with("old")).unwrap();
+    pending.commit().unwrap();
+    assert_eq!(listing(folder.path()), ["pack"]);
+    assert_eq!(listing(&place), ["below", "both", "kept"]);
+    assert_eq!(fs::read(place.join("both")).unwrap(), b"new");
+    assert_eq!(
+        (listing(&place.join("below")), listing(&place.join("below/deeper"))),
+        (vec!["deeper".into(), "kept".into()], vec!["kept".into()])
+    );
+    // Where the program works, no other folder can come.
+    assert!(PendingFolder::replacing(Path::new(".")).unwrap().is_none());
+    assert_eq!(PendingFolder::replacing(&folder.path().join("none")).expect_err("none").code(), "NB0702");
+}
+
 #[test]
 fn leftovers_are_known_by_their_names() {
-    use ninebit_files::output::{is_leftover, remove_leftovers};
-    let folder = tempfile::tempdir().unwrap();
-    for name in [".ninebit-a1B2c3.part", "ninebit-a.part", ".ninebit-a.png", "a.part"] {
-        write_file(&folder.path().join(name), b"x").unwrap();
-    }
-    fs::create_dir(folder.path().join(".ninebit-folder.part")).unwrap();
+    use ninebit_files::leftover::is_leftover;
     assert!(is_leftover(OsStr::new(".ninebit-x.part")) && !is_leftover(OsStr::new("x.part")));
-    remove_leftovers(folder.path()).unwrap();
-    assert_eq!(listing(folder.path()), [".ninebit-a.png", "a.part", "ninebit-a.part"]);
+    assert!(!is_leftover(OsStr::new(".ninebit-x.png")) && !is_leftover(OsStr::new("ninebit-x.part")));
 }

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 #[test]
 fn every_frame_is_exact() {
     let frames = captures::frames(&[]).unwrap_or_else(|unmatched| panic!("{unmatched:#?}"));
-    assert_eq!((captures::suites().count(), frames.len()), (48, 4088));
     let frames = captures::sample(frames, 300);
     let wrong: Vec<String> = frames
         .par_iter()

@@ -230,7 +230,8 @@ fn reports_hold_hostile_names_as_text() {
 
     let html = read("h.html");
     harmless("html", &html, "");
-    assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
+    // The page's own script, which its policy allows.
+    assert!(html.matches("<script").count() == 1 && html.contains("&lt;script&gt;"));
 
     let summary = read("summary.md");
     harmless("summary", &summary.replace("### ninebit replay", ""), "");

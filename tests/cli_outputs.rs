@@ -150,6 +150,78 @@ fn what_a_killed_run_left_harms_nobody() {
     assert!(files(&bench.path("pack")).iter().all(|name| !name.ends_with(".part")), "{:?}", files(&bench.path("pack")));
 }
 
+/// Starts an export over the pack of [`export`], and waits until it writes beside it.
+#[cfg(target_os = "linux")]
+fn begun_export(bench: &Bench) -> std::process::Child {
+    use std::time::{Duration, Instant};
+    let before = parts(bench);
+    let mut command = bench.command("vectors export -o pack --level L1");
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while parts(bench).iter().all(|name| before.contains(name)) {
+        assert!(start.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(), "it began nothing");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
+}
+
+/// Returns the names of temporary files and folders beside the pack.
+#[cfg(target_os = "linux")]
+fn parts(bench: &Bench) -> Vec<String> {
+    let names = fs::read_dir(bench.path("")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".part")).collect()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_export_that_is_killed_leaves_the_old_pack_whole() {
+    let bench = bench();
+    export(&bench);
+    bench.write("pack/notes.txt", "mine").write("pack/units/notes.txt", "mine");
+    let before = files(&bench.path("pack"));
+    for _ in 0..3 {
+        let mut child = begun_export(&bench);
+        std::thread::sleep(std::time::Duration::from_millis(30));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(files(&bench.path("pack")), before);
+    }
+    fs::remove_file(bench.path("pack/units/notes.txt")).unwrap();
+    assert!(bench.run("vectors check pack").text().contains("all as the model has them"));
+    // An export that is not killed takes its place, and leaves alone what is no file of a pack.
+    bench.run("vectors export -o pack --unit sum").text();
+    assert!(bench.run("vectors check pack").text().contains("all as the model has them"));
+    let after = files(&bench.path("pack"));
+    assert!(after.contains(&"notes.txt".to_owned()) && after.contains(&"units/sum.tsv".to_owned()), "{after:?}");
+    assert!(!after.contains(&"units/input-mapping.tsv".to_owned()), "{after:?}");
+    assert_eq!(parts(&bench), [""; 0], "the next export has cleared what the killed ones left");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_next_writer_clears_what_a_killed_one_left_and_nothing_else() {
+    let bench = bench();
+    export(&bench);
+    let mut child = begun_export(&bench);
+    let begun = parts(&bench);
+    bench.write(".ninebit-of-another-machine.part", "half a file");
+    // While it lives, what it writes is its own.
+    let stopped = std::process::Command::new("kill").args(["-STOP", &child.id().to_string()]).status();
+    assert!(stopped.unwrap().success());
+    bench.run("render a.ron -o frame.png").data();
+    assert!(begun.iter().all(|name| bench.path(name).exists()), "{begun:?}");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    bench.run("render a.ron -o frame.png").data();
+    assert_eq!(parts(&bench), [".ninebit-of-another-machine.part"]);
+    // Of that one only its age tells.
+    let week = std::time::SystemTime::now() - std::time::Duration::from_secs(7 * 24 * 3600);
+    let file = fs::File::options().write(true).open(bench.path(".ninebit-of-another-machine.part")).unwrap();
+    file.set_times(fs::FileTimes::new().set_modified(week)).unwrap();
+    bench.run("render a.ron -o frame.png").data();
+    assert_eq!(parts(&bench), [""; 0]);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_run_that_is_told_to_end_leaves_no_temporary_file() {

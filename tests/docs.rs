@@ -1,67 +1,13 @@
-//! Checks that the pages show what the commands print.
+//! Checks the documents: their links, their length, and what they count and list.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use crate::bench;
+use crate::blocks::blocks;
 use crate::pages;
 use crate::repository::{at, name};
 
-use bench::Bench;
+use ninebit_vectors::captures;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
-
-/// Runs the `$ ninebit` lines of a page's console blocks in order, in one folder, and compares the output with the lines that follow each.
-/// `...` on a line of its own stands for any lines.
-fn commands_print_what_is_shown(page: &str) {
-    let bench = Bench::new();
-    copy(&at("vectors/scenes"), &bench.path("vectors/scenes"));
-    let text = fs::read_to_string(at(page)).unwrap();
-    for block in text.split("```console\n").skip(1) {
-        let block = block.split("```").next().unwrap();
-        for part in block.split("$ ").skip(1) {
-            let (command, shown) = part.split_once('\n').unwrap();
-            if let Some(file) = command.strip_prefix("cat ") {
-                bench.write(file, shown);
-                continue;
-            }
-            let run = bench.run(command.strip_prefix("ninebit ").unwrap());
-            let printed = String::from_utf8(run.stdout).unwrap() + &run.stderr;
-            snapbox::assert_data_eq!(printed.trim_end(), shown.trim_end().to_owned());
-        }
-    }
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        if entry.file_type().unwrap().is_dir() {
-            copy(&entry.path(), &to.join(entry.file_name()));
-        } else {
-            fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
-        }
-    }
-}
-
-#[test]
-fn commands() {
-    commands_print_what_is_shown("docs/commands.md");
-}
-
-#[test]
-fn compare() {
-    commands_print_what_is_shown("docs/compare.md");
-}
-
-#[test]
-fn diff() {
-    commands_print_what_is_shown("docs/diff.md");
-}
-
-#[test]
-fn op() {
-    commands_print_what_is_shown("docs/op.md");
-}
 
 /// The page on testing lists exactly the variables that the tests read.
 #[test]
@@ -93,14 +39,11 @@ fn variables_of_tests_are_listed() {
 /// checks row by row.
 const MAX_WORDS: usize = 45_000;
 
-/// Pages whose console blocks are run, so that the text after a command is its output.
-const RUN: [&str; 5] = ["docs/answers.md", "docs/commands.md", "docs/compare.md", "docs/diff.md", "docs/op.md"];
-
 /// Templates that programs fill in. They count as written by hand.
 const TEMPLATES: [&str; 2] = ["src/lab/chart/page.md", "src/lab/experiments/page.md"];
 
 /// Returns the pages in a folder and below it, sorted.
-fn pages_below(folder: &str) -> Vec<String> {
+pub fn pages_below(folder: &str) -> Vec<String> {
     let (mut found, mut folders) = (Vec::new(), vec![at(folder)]);
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
@@ -116,7 +59,7 @@ fn pages_below(folder: &str) -> Vec<String> {
 }
 
 /// Returns the paths of the documents.
-fn documents() -> Vec<String> {
+pub fn documents() -> Vec<String> {
     let top = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"].map(Into::into);
     top.into_iter().chain(pages_below("docs")).collect()
 }
@@ -132,8 +75,9 @@ struct Words {
 impl Words {
     fn from_page(page: &str) -> Words {
         let text = fs::read_to_string(at(page)).unwrap();
-        let (mut words, mut inside, mut console) = (Words::default(), None, false);
-        for line in text.lines() {
+        let (mut words, mut inside, mut run) = (Words::default(), None, None);
+        let blocks = blocks(page);
+        for (n, line) in text.lines().enumerate() {
             if TEMPLATES.contains(&page) {
                 words.by_hand += line.split_whitespace().count();
                 continue;
@@ -146,14 +90,18 @@ impl Words {
                 assert!(inside.take().is_some(), "{page}: {line} ends nothing");
                 continue;
             }
-            if line.starts_with("```") {
-                console = line == "```console" && RUN.contains(&page);
+            let fence = line.trim_start().starts_with("```");
+            if fence {
+                run = blocks.iter().find(|block| block.line == n + 2 && block.reason.is_none());
             }
-            let output = console && !line.starts_with("```") && !line.starts_with("$ ");
+            let language = run.filter(|_| !fence).map(|block| block.language.as_str());
+            // What commands print is compared, and code is read, by `tests/blocks.rs`.
+            let output = language == Some("console") && !line.starts_with("$ ");
+            let code = language.is_some_and(|language| !["console", "text"].contains(&language));
             let written = page == "docs/numerics.md" && line.starts_with("- Example: ")
                 || page == "docs/answers.md" && line.starts_with("- Rules: ");
             let checked = match page {
-                "docs/numerics.md" => &["- Code: ", "- Pinned by: ", "- Policy: "][..],
+                "docs/numerics.md" => &["- Code: ", "- Decided by: ", "- Pinned by: ", "- Policy: "][..],
                 "docs/answers.md" => &["- Vectors: "],
                 _ => &[],
             };
@@ -162,6 +110,7 @@ impl Words {
                 Some("held") => words.held += count,
                 Some(_) => words.generated += count,
                 None if output || written => words.generated += count,
+                None if code => words.held += count,
                 None if checked.iter().any(|start| line.starts_with(start)) => words.held += count,
                 None => words.by_hand += count,
             }
@@ -185,6 +134,44 @@ fn words() {
     table += &format!("{:>8} {:>8} {:>9} together", all.by_hand, all.held, all.generated);
     println!("{table}");
     assert!(all.by_hand <= MAX_WORDS, "{} words by hand, {MAX_WORDS} are allowed:\n{table}", all.by_hand);
+}
+
+/// Writes a number with commas between its thousands.
+fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let parts: Vec<&str> = digits.as_bytes().rchunks(3).rev().map(|part| std::str::from_utf8(part).unwrap()).collect();
+    parts.join(",")
+}
+
+/// What is counted in a sentence has been counted. Other counts belong into generated parts, or nowhere.
+#[test]
+fn counts_in_sentences_are_those_of_today() {
+    let mut rows = 0;
+    for path in fs::read_dir(at("vectors/silicon")).unwrap().map(|entry| entry.unwrap().path()) {
+        if path.extension().is_some_and(|extension| extension == "tsv") {
+            rows += fs::read_to_string(path).unwrap().lines().filter(|line| !line.starts_with('#')).count() as u64;
+        }
+    }
+    let frames = captures::frames(&[]).unwrap();
+    let open: Vec<u64> = frames.iter().filter_map(|frame| Some(frame.open?.pixels)).collect();
+    let compared: u64 = frames.iter().map(captures::Frame::compared).sum();
+    let (all, exact) = (frames.len() as u64, (frames.len() - open.len()) as u64);
+    let (rows, all, exact) = (thousands(rows), thousands(all), thousands(exact));
+    let (suites, compared, open) = (captures::suites().count(), thousands(compared), thousands(open.iter().sum()));
+    for (page, sentence) in [
+        ("README.md", format!("family): {rows} measured rows,")),
+        ("README.md", format!("draws {all} more frames.")),
+        ("vectors/silicon/README.md", format!("{rows} pixels of which every input is known")),
+        (
+            "docs/captures.md",
+            format!("Of {suites} suites {all} frames are drawn, {compared} pixels; {exact} frames are exact."),
+        ),
+        ("docs/captures.md", format!("pixels that differ for it, {open} in all.")),
+    ] {
+        let text = fs::read_to_string(at(page)).unwrap();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(&sentence), "{page} does not say: {sentence}");
+    }
 }
 
 /// Returns the anchors of a page's headings as GitHub forms them.

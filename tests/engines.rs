@@ -1,7 +1,7 @@
 //! Compares the fast engine with the definition. Both yield the same words and depths in every scene of the repository and in random
 //! scenes, with every instruction set, number of threads and policy.
 //!
-//! A normal run draws the first 2,000 scenes of two random sequences, a plain and a wider one, and 100 of a third, broad one.
+//! A normal run draws the first 2,000 scenes of three random sequences, a plain, a wider and an extreme one, and 100 of a fourth, broad one.
 //! `NINEBIT_ENGINE_SCENES` sets this number; a twentieth of it are broad scenes.
 //! `NINEBIT_ENGINE_SHARD=k/n` draws every n-th scene, beginning with scene k (from 0). `NINEBIT_ENGINE_MATRIX` is the number of first
 //! scenes that are drawn with every instruction set, with 1, 2, 3 and 8 threads, and with bands of several sizes. `NINEBIT_ENGINE_SEED`
@@ -10,6 +10,7 @@ use crate::repository::at;
 use crate::scene_files;
 use crate::settings::number;
 use ninebit_test_support::changed_scene::change;
+use ninebit_test_support::frames::difference;
 use ninebit_test_support::random_scene;
 
 use ninebit::engine::{Engine, Isa, RenderOptions, Renderer, cleared, render, trace};
@@ -24,29 +25,6 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// Describes the first pixel at which two renders differ, or returns `None`.
-fn difference(got: &Frames, expected: &Frames) -> Option<String> {
-    for (target, (got, expected)) in got.surfaces.iter().zip(&expected.surfaces).enumerate() {
-        for (what, got, expected, width) in
-            [("word", &got.words, &expected.words, got.width), ("depth", &got.depth, &expected.depth, got.width)]
-        {
-            // Comparing whole buffers first is faster, since they are nearly always equal.
-            if got == expected {
-                continue;
-            }
-            let differing = (0..got.len()).filter(|at| got[*at] != expected[*at]);
-            if let Some(at) = differing.clone().next() {
-                let (x, y) = (at as u32 % width, at as u32 / width);
-                let (got, expected, count) = (got[at], expected[at], differing.count());
-                return Some(format!(
-                    "target {target} ({x}, {y}): {what} {got:#010x}, scalar {expected:#010x}; {count} differ"
-                ));
-            }
-        }
-    }
-    None
-}
-
 /// Renders with the definition and with the fast engine in several ways, each twice. Returns the frames of the definition, or the first
 /// difference.
 fn compare(plan: &Plan, ways: &[RenderOptions]) -> Result<Frames, String> {
@@ -54,10 +32,10 @@ fn compare(plan: &Plan, ways: &[RenderOptions]) -> Result<Frames, String> {
     for options in ways {
         let renderer = Renderer::new(plan, options);
         let (mut frames, _) = renderer.render();
-        let first = difference(&frames, &scalar);
+        let first = difference(&frames, &scalar, "scalar");
         renderer.clear(&mut frames);
         renderer.redraw(&mut frames);
-        if let Some(difference) = first.or_else(|| difference(&frames, &scalar)) {
+        if let Some(difference) = first.or_else(|| difference(&frames, &scalar, "scalar")) {
             return Err(format!("{options:?}: {difference}"));
         }
     }
@@ -100,7 +78,7 @@ fn every_way() -> Vec<RenderOptions> {
 }
 
 /// Returns a scene of a sequence in a form that can be shrunk.
-fn tree<S: Strategy<Value = Scene>>(sequence: &S, seed: u32, number: u32) -> S::Tree {
+pub(crate) fn tree<S: Strategy<Value = Scene>>(sequence: &S, seed: u32, number: u32) -> S::Tree {
     let mut bytes = [0; 32];
     bytes[..4].copy_from_slice(&seed.to_le_bytes());
     bytes[4..8].copy_from_slice(&number.to_le_bytes());
@@ -249,6 +227,36 @@ fn engines_agree_on_broad_random_scenes() {
     agree(&random_scene::wide::broad::scene(), number("NINEBIT_ENGINE_MATRIX", 12) / 4, 20);
 }
 
+/// Scenes whose numbers lie at limits, where roundings tie, or are copied from field to field.
+#[test]
+fn engines_agree_on_extreme_random_scenes() {
+    agree(&random_scene::wide::extreme::scene(), number("NINEBIT_ENGINE_MATRIX", 12), 1);
+}
+
+/// Depth and offset need more bits than the definition keeps, and a limit of the range is what their sum rounds to.
+#[test]
+fn engines_agree_on_sums_of_depths_at_a_limit() {
+    for (format, z, limit, bias) in [
+        ("Z24S8", "1e-12", "16777215", "16777215"),
+        ("Z24S8F", "1e-10", "1073741824", "1073741824"),
+        ("Z16", "-1e-30", "4096", "4096"),
+        ("Z16F", "1e-45", "65536", "65536"),
+    ] {
+        for (lowest, highest) in [("0", limit), (limit, "1e38")] {
+            for clamps in [false, true] {
+                let vertices =
+                    [(0, 0), (16, 0), (0, 16)].map(|(x, y)| format!("(position: ({x}, {y}, {z}))")).join(", ");
+                let text = format!(
+                    "(version: 1, profile: Nv2a, targets: [(width: 16, height: 16, depth: {format}, clear: (depth: 0))],
+                      draws: [(vertices: Window([{vertices}]), depth_test: (function: GreaterOrEqual, vertex_depths: Steps,
+                        range: (lowest: {lowest}, highest: {highest}, clamp: {clamps}), offset: (bias: {bias})))])"
+                );
+                agree_on(&text, &format!("{format} {z} + {bias} in {lowest} to {highest}, clamps {clamps}"));
+            }
+        }
+    }
+}
+
 /// Scenes of the repository, changed at random: each once, or as often as `NINEBIT_ENGINE_CHANGES` says.
 #[test]
 fn engines_agree_on_changed_scenes() {
@@ -276,7 +284,7 @@ fn engines_agree_on_changed_scenes() {
 }
 
 /// Shrinks a value as long as it still fails.
-fn simplify<T: ValueTree>(tree: &mut T, fails: impl Fn(&T::Value) -> bool) {
+pub(crate) fn simplify<T: ValueTree>(tree: &mut T, fails: impl Fn(&T::Value) -> bool) {
     for _ in 0..20_000 {
         if !tree.simplify() {
             return;

@@ -7,8 +7,8 @@ use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs and replays.
-const OTHERS: [&str; 4] = ["07", "08", "10", "12"];
+/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays and rules.
+const OTHERS: [&str; 5] = ["07", "08", "10", "12", "13"];
 
 /// A row of the page's tables.
 pub struct Row {
@@ -94,6 +94,8 @@ fn exit(code: &str) -> u8 {
         "NB12" if ["NB1201", "NB1202", "NB1203"].contains(&code) => 4,
         "NB12" if code == "NB1207" => 5,
         "NB12" => 3,
+        "NB08" if code == "NB0802" => 5,
+        "NB13" => 2,
         _ => 6,
     }
 }

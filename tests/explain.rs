@@ -145,7 +145,7 @@ fn a_blend_that_replaces_reads_nothing() {
 fn equations_are_in_the_extensions_terms() {
     let scene = quad(
         "program: Combiners(stages: [\
-         (rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true, scale: Four), \
+         (rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot_product: true, scale: Four), \
           alpha: (a: (Texture0, Alpha), b: (PrimaryColor, Alpha), ab: Spare0)), \
          (rgb: (a: (Spare0), b: (ConstantColor0), c: UnsignedInvert(SecondaryColor), d: (Spare0, Alpha), sum: Spare1, \
          bias: NegativeHalf))], \

@@ -32,6 +32,80 @@ fn hexadecimal_numbers() {
     }
 }
 
+/// What an open rule would change is said of stages, programs and units that follow one; others say nothing.
+#[test]
+fn open_rules_that_would_change_a_result_are_named() {
+    let bench = Bench::new();
+    let text = bench.run(&format!("op {SUM}")).text();
+    let said = "Of the undecided rules CMB-7 would change this result.\n  CMB-7=each       spare0.r 156  spare0.g 156  spare0.b 156\n";
+    assert!(text.ends_with(said), "{text}");
+    let text = bench.run(&format!("op {SUM} --policy CMB-7=each")).text();
+    assert!(text.ends_with("  CMB-7=once       spare0.r 157  spare0.g 157  spare0.b 157\n"), "{text}");
+    assert!(bench.run(&format!("op {PRODUCT}")).text().ends_with("No undecided rule would change this result.\n"));
+    bench.write("sum.rc", "!!RC1.0\n{\n rgb {\n  spare0 = sum();\n  discard = tex0 * col0;\n  discard = tex0 * col0;\n }\n}\nout.rgb = spare0;\n");
+    let text = bench.run("op program sum.rc --in tex0=100 --in primary=200").text();
+    assert!(
+        text.contains("Of the undecided rules CMB-7 would change this result.\n  CMB-7=each       fragment.r 156"),
+        "{text}"
+    );
+    let document = bench.run("op unit sum --in a=100 --in b=200 --in c=100 --in d=200 --format json").text();
+    let document: Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(document["alternatives"][0]["policy"], "CMB-7=each");
+    assert_eq!(document["alternatives"][0]["results"]["out.sum"], 156);
+    let text = bench.run("op unit alpha-test --in function=Less --in reference=3 --in alpha=2").text();
+    assert!(!text.contains("undecided"), "no rule of the alpha test is open: {text}");
+}
+
+/// A table of a pack is a table of cases: what is no input is passed over, but no misspelt name is.
+#[test]
+fn rows_of_packs_are_cases() {
+    let bench = Bench::new();
+    let table = crate::repository::at("vectors/packs/nv2a/units/general-stage.tsv");
+    let table = table.to_str().unwrap();
+    let text = bench.run(&format!("op unit general-stage --inputs {table}")).text();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split('\t').collect();
+    let mut rows = 0;
+    for line in lines {
+        rows += 1;
+        let fields: Vec<&str> = line.split('\t').collect();
+        for (name, value) in names.iter().zip(&fields) {
+            if let Some(own) = name.strip_prefix("result.") {
+                let told = names.iter().position(|name| *name == own).unwrap();
+                assert_eq!(fields[told], *value, "{own}: {line}");
+            }
+        }
+    }
+    assert!(rows > 900 && names.contains(&"result.out.ab.r"), "{rows} rows, {names:?}");
+    bench.run(&format!("op unit sum --inputs {table}")).failed(3, "is of unit general-stage, not sum");
+    let other = bench.run(&format!("op unit general-stage --profile nv10 --inputs {table}"));
+    other.failed(3, "is of profile Nv2a, not Nv10\n  help: `--profile` chooses the chip");
+    bench.write("misspelt.tsv", "in.a\tin.b\tout.abc\n1\t2\t3\n");
+    bench.run("op unit product --inputs misspelt.tsv").failed(3, "there is no input `out.abc`");
+}
+
+/// Columns that are not given have a default where one is sensible; `--columns` lists them.
+#[test]
+fn columns_have_defaults() {
+    let bench = Bench::new();
+    let short = "op unit general-stage --in mapping_a=SignedIdentity --in a.r=-100 --in b.r=255";
+    let text = bench.run(short).text();
+    assert!(text.contains("out.ab.r -100") && text.contains("out.cd.r 0"), "{text}");
+    let listed = bench.run("op unit general-stage --columns").text();
+    for line in [
+        "SignedNegate [default: UnsignedIdentity]",
+        "  cfg.ab_dot      a whole number from 0 to 1 [default: 0]",
+        "yields mid.A.r,",
+    ] {
+        assert!(listed.contains(line), "{line}: {listed}");
+    }
+    let document: Value = serde_json::from_str(&bench.run("op unit product --columns --format json").text()).unwrap();
+    assert_eq!((&document["columns"][0]["name"], &document["columns"][0]["default"]), (&"in.a".into(), &Value::Null));
+    bench.run("op unit product --in a=1").failed(2, "`in.b` is not given\n  help: write `--in b=VALUE`");
+    let written = bench.run("op unit write-mask --in format=A8R8G8B8 --in stored=0 --in word=12345678").text();
+    assert!(written.contains("12345678"), "every channel is written: {written}");
+}
+
 /// `op unit` takes the inputs of vector tables. An input that its column does not allow, or a unit that the chip lacks, is refused by name.
 #[test]
 fn units() {

@@ -6,6 +6,8 @@ use crate::bench;
 use std::fs;
 use std::path::Path;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::state::Policies;
@@ -15,6 +17,7 @@ use ninebit_cli::shard::Shard;
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene as scene;
 use ninebit_scene::image::{ImageLimits, load};
+use sha2::{Digest, Sha256};
 use snapbox::{assert_data_eq, file};
 
 use bench::{Bench, Run};
@@ -266,7 +269,8 @@ fn what_cannot_be_written_is_said_and_the_rest_is_written() {
     assert!(run.stderr.contains("NB0702") && run.stderr.contains("no/such"), "{}", run.stderr);
     let text = String::from_utf8(run.stdout).unwrap();
     assert!(
-        text.contains("`file/below/a` cannot be written") && text.contains("3 scenes: 1 as expected, 2 different"),
+        text.contains("NB0702 `file/below/a` cannot be written")
+            && text.contains("3 scenes: 1 as expected, 2 different"),
         "{text}"
     );
     let json: serde_json::Value = serde_json::from_slice(&fs::read(bench.path("r.json")).unwrap()).unwrap();
@@ -328,12 +332,26 @@ fn services_and_browsers_read_the_reports() {
     assert_eq!((cases, failures, errors), (4, 2, 1));
     assert!(xml.contains(r#"<testcase classname="a" name="one" file="./a/one.ron"/>"#), "{xml}");
 
+    // A failure has the trace from where it parts on.
+    let failure = xml.split_once("<failure").unwrap().1.split_once("</failure>").unwrap().0;
+    assert!(failure.contains("  &gt; stage0.rgb.AB.r") && failure.contains(" lines before, which"), "{failure}");
+    assert!(!failure.contains("rasteriser") && failure.len() < 8000, "{failure}");
+
     let html = fs::read_to_string(bench.path("h.html")).unwrap();
     assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 2, "panels of one, the picture of the other");
     let columns = "minmax(0, 24fr) minmax(0, 8fr) minmax(0, 24fr) minmax(0, 8fr) minmax(0, 24fr)";
     assert!(html.contains(columns), "each title is as wide as its panel");
-    assert_eq!(html.matches("src=").count() + html.matches("<link").count() + html.matches("<script").count(), 2);
-    assert!(html.contains("three &lt;&amp;&quot;&gt;") && html.contains("CMB-8=each draws what is expected"));
+    // Its own script is all that runs: the policy names it by its hash.
+    assert_eq!(html.matches("src=").count() + html.matches("<link").count(), 2);
+    assert_eq!((html.matches("<script>").count(), html.matches(" style=").count()), (1, 0));
+    for (source, end) in [("<script>", "</script>"), ("<style>", "</style>")] {
+        let text = html.split_once(source).unwrap().1.split_once(end).unwrap().0;
+        let hash = STANDARD.encode(Sha256::digest(text));
+        let kind = source.trim_matches(['<', '>']);
+        assert!(html.contains(&format!("{kind}-src 'sha256-{hash}'")), "{kind} {hash}");
+    }
+    assert!(html.contains("three &lt;&amp;&quot;&gt;"));
+    assert_eq!(html.matches("CMB-8=each draws what is expected").count(), 1, "what is said of a scene is said once");
 }
 
 #[test]

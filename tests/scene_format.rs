@@ -8,7 +8,6 @@ use std::path::Path;
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::{self, Limits};
-use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
     InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
@@ -27,23 +26,6 @@ fn draw(profile: &str, top: &str, fields: &str) -> Loaded {
         "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
          (position: (9, 9))]), {fields})])"
     ))
-}
-
-#[test]
-fn every_example_of_the_document_is_accepted_without_warnings() {
-    let document = fs::read_to_string(at("docs/scene-format.md")).unwrap();
-    let examples: Vec<&str> =
-        document.split("```ron\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
-    assert!(examples.len() >= 3);
-    for example in examples {
-        let loaded = parse(example);
-        assert_eq!(loaded.render_warnings(false), "");
-        // Every example draws something visible.
-        let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
-        let frames = engine::render(&plan, &RenderOptions::default());
-        let words = &frames.surfaces[0].words;
-        assert!(words.iter().any(|word| *word != words[0]) || words[0] != 0xff00_0000, "blank: {example}");
-    }
 }
 
 /// The tables of fields are generated from the declarations that the reader uses. The markers of a table name the structure, or several
@@ -96,6 +78,7 @@ const PLACES: &[(&str, &str)] = &[
     ("Fog", "draw: fog: (@ mode: Linear)"),
     ("Fog", "draw: fog: (@ mode: Exp)"),
     ("Grid", "vertices: Matrix(matrix: Identity, mesh: Grid(@ columns: 1, rows: 1))"),
+    ("Cuboid", "vertices: Matrix(matrix: Identity, mesh: Box(@))"),
     ("Sphere", "vertices: Matrix(matrix: Identity, mesh: Sphere(@ slices: 8, stacks: 4))"),
     ("Torus", "vertices: Matrix(matrix: Identity, mesh: Torus(@ slices: 8, sides: 4))"),
     ("Cylinder", "vertices: Matrix(matrix: Identity, mesh: Cylinder(@ slices: 8, stacks: 1))"),
@@ -536,6 +519,8 @@ fn matrices_multiply_column_vectors() {
     assert_eq!(position("Rows((0, 1, 0, 0), (1, 0, 0, 0), (0, 0, 1, 3), (0, 0, 0, 2))"), [0.5, 0.25, 3.0, 2.0]);
     assert_eq!(position("Rotate(0, 0, 1, 1)"), [-0.5, 0.25, 0.0, 1.0]);
     assert_eq!(position("LookAt(eye: (0, 0, 4), center: (0, 0, 0))"), [0.25, 0.5, -4.0, 1.0]);
+    let perspective = "Perspective(fov: 90, aspect: 0.5, near: 1, far: 3)";
+    assert_eq!(position(&format!("{perspective}, Translate(0, 0, -3)")), [0.5, 0.5, 3.0, 3.0]);
     let frustum = "Frustum(left: -1, right: 1, bottom: -1, top: 1, near: 1, far: 3)";
     assert_eq!(position(&format!("{frustum}, Translate(0, 0, -3)")), [0.25, 0.5, 3.0, 3.0]);
 }

@@ -583,3 +583,22 @@ fn a_texture_that_is_too_large_is_told_its_bound() {
     assert_eq!(error.rule, Some("TEX-7"));
     assert_eq!(error.help, "a side has at most 2048 texels on Nv10: scale it down; profile Nv2a allows 4096");
 }
+
+/// Without its stage a bound texture reads opaque black (TEX-16).
+#[test]
+fn a_texture_bound_by_the_builder_is_sampled() {
+    let word = |draw: Draw| {
+        let combiners = Combiners::showing(FinalRegister::Texture0);
+        let mut scene = plain(Profile::Nv2a);
+        let (vertices, indices) = (scene.draws[0].vertices.clone(), scene.draws[0].indices.clone());
+        scene.draws = vec![Draw { vertices, indices, combiners, ..draw }];
+        render(&compile(&scene).unwrap(), &RenderOptions::default()).surfaces[0].words[0]
+    };
+    let bound = [Some(TextureUnit::new(0)), None, None, None];
+    assert_eq!(word(Draw { textures: bound, ..Draw::default() }), 0xff00_0000);
+    assert_eq!(word(Draw::default().texture(0, TextureUnit::new(0))), 0xff80_4020);
+    // A stage that does something else goes on doing it.
+    let mut passes = Draw::default();
+    passes.texture_shader[0].operation = ShaderOperation::PassThrough;
+    assert_eq!(passes.texture(0, TextureUnit::new(0)).texture_shader[0].operation, ShaderOperation::PassThrough);
+}

@@ -112,7 +112,7 @@ fn errors_are_split_and_add_up() {
     let text = std::fs::read_to_string(folder.join("hemisphere.ron")).unwrap();
     assert!(text.contains("profile"), "the scene is there");
     let program = "textures: [(texture: \"ball\", address: ClampToEdge)], program: Combiners(constants: (Vector((0.48, 0.6, 0.64))), \
-        stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true))], final_combiner: (d: Spare0))";
+        stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot_product: true))], final_combiner: (d: Spare0))";
     let truth = "lights: [(direction: (0.48, 0.6, 0.64))], normal: Hemisphere(), shading_normal: (register: Texture0)";
     let text = square(truth, GRID, program)
         .replace("targets:", "textures: { \"ball\": (source: File(\"hemisphere-normal.png\")) }, targets:");

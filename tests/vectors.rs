@@ -1,6 +1,8 @@
 //! Tests packs of vectors: they survive writing and reading, changed files are refused, and rows that contradict the model are found.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use crate::bench;
+use crate::repository::at;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -112,8 +114,8 @@ fn policies_change_the_units_of_their_rules() {
                 let mut results = vec![0; columns.len()];
                 let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
                 unit.evaluate(inputs, &conditions, &mut results);
-                for alternative in alternatives(unit, &columns, inputs, *profile, &results) {
-                    let rule = alternative.policy.split('=').next().unwrap();
+                for alternative in alternatives(unit, &columns, inputs, &conditions, &results) {
+                    let rule = alternative.rule;
                     assert!(unit.rules().contains(&rule), "{} does not name {rule}", unit.name());
                     if !found.contains(&(alternative.policy.clone(), unit.name())) {
                         found.push((alternative.policy, unit.name()));
@@ -354,4 +356,55 @@ fn packed_rows_are_the_rows() {
             }
         });
     }
+}
+
+/// A row is found by its id, in a pack or in a table, and shown as the model computes it.
+#[test]
+fn a_row_is_shown_as_a_trace() {
+    let bench = bench::Bench::new();
+    let pack = at("vectors/packs/nv2a");
+    let (pack, table) = (pack.to_str().unwrap(), pack.join("units/scale-bias.tsv"));
+    let text = std::fs::read_to_string(&table).unwrap();
+    let (line, row) = (1..).zip(text.lines()).find(|(_, line)| line.contains("policy:CMB-9")).unwrap();
+    let id = row.split('\t').next().unwrap();
+    let shown = bench.run(&format!("vectors show {pack} {id}")).text();
+    assert!(shown.starts_with(&format!("row {id}, line {line} of `")), "{shown}");
+    for part in [
+        "\n  inputs         cfg.scale ",
+        "\n  intermediates  mid.product ",
+        "\n  outputs        out.value ",
+        "\n  rules          CMB-9  SC   Output\n",
+        "Of the undecided rules CMB-9 would change this result.\n  CMB-9=after ",
+    ] {
+        assert!(shown.contains(part), "{part}: {shown}");
+    }
+    let stage = std::fs::read_to_string(at("vectors/packs/nv2a/units/general-stage.tsv")).unwrap();
+    let stage = stage.lines().last().unwrap().split('\t').next().unwrap().to_uppercase();
+    assert!(bench.run(&format!("vectors show {pack} {stage}")).text().contains("stage0.rgb.AB.r"));
+    let document = bench.run(&format!("vectors show {} {id} --format json", table.to_str().unwrap())).text();
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert_eq!((&document["format"], &document["row"]), (&"ninebit-row-1".into(), &id.into()));
+    assert_eq!(document["results"], document["model"]);
+    bench.run(&format!("vectors show {pack} 000000000000")).failed(3, "error[NB1014]");
+    bench.run("vectors show nowhere 000000000000").failed(4, "error[NB1001]");
+    // A table that says something else than the model.
+    let fields: Vec<&str> = row.split('\t').collect();
+    let at = text
+        .lines()
+        .find(|line| line.starts_with("id\t"))
+        .unwrap()
+        .split('\t')
+        .position(|name| name == "out.value")
+        .unwrap();
+    let mut other = fields.clone();
+    let wrong = if fields[at] == "9" { "8" } else { "9" };
+    other[at] = wrong;
+    bench.write("scale-bias.tsv", text.replace(row, &other.join("\t")));
+    let run = bench.run(&format!("vectors show scale-bias.tsv {id}"));
+    assert_eq!(run.status, 1);
+    let said = String::from_utf8(run.stdout).unwrap();
+    assert!(said.ends_with(&format!("the table has out.value {wrong}, the model {}\n", fields[at])), "{said}");
+    // A row whose inputs were changed is not the row of that id.
+    bench.write("scale-bias.tsv", text.replace(row, &row.replacen(&format!("\t{}\t", fields[3]), "\t77\t", 1)));
+    bench.run(&format!("vectors show scale-bias.tsv {id}")).failed(3, "error[NB1008]");
 }

@@ -109,7 +109,7 @@ static void print_mesh(void)
     }
     printf("\n        ],\n        textures: [\"normals\"],\n        program: Combiners(\n"
            "            stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, "
-           "ab_dot: true))],\n            final_combiner: (d: Spare0),\n        ),\n    ),\n    ],\n)\n");
+           "ab_dot_product: true))],\n            final_combiner: (d: Spare0),\n        ),\n    ),\n    ],\n)\n");
 }
 
 static void send_mesh(void)

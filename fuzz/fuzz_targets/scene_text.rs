@@ -1,6 +1,11 @@
 //! Checks that any text yields a scene or errors, never a panic, and that a small scene renders the same frame with and without pruning, and
-//! with both engines.
+//! with both engines, and that the relations between pictures hold.
 #![no_main]
+
+#[path = "../../tests/common/frames.rs"]
+mod frames;
+#[path = "../../tests/common/metamorphic.rs"]
+mod metamorphic;
 
 use libfuzzer_sys::fuzz_target;
 use ninebit::engine::{Engine, RenderOptions, render};
@@ -21,10 +26,16 @@ fuzz_target!(|text: &str| {
                 let plan = Plan::compile(&loaded.scene, &PlanOptions { prune, ..PlanOptions::default() });
                 plan.expect("a loaded scene can be planned")
             });
-            let frames = |plan, engine| render(plan, &RenderOptions { engine, ..RenderOptions::default() });
-            let fast = frames(&pruned, Engine::Fast);
-            assert!(fast == frames(&whole, Engine::Fast), "pruning changed a byte");
-            assert!(fast == frames(&pruned, Engine::Scalar), "the engines differ");
+            let drawn = |plan, engine| render(plan, &RenderOptions { engine, ..RenderOptions::default() });
+            let fast = drawn(&pruned, Engine::Fast);
+            for (other, name) in [(drawn(&whole, Engine::Fast), "unpruned"), (drawn(&pruned, Engine::Scalar), "scalar")] {
+                assert!(fast == other, "{:?}", frames::difference(&fast, &other, name));
+            }
+            // Any text tells which change is made.
+            let seed = crc32fast::hash(text.as_bytes()).into();
+            if let Err(reason) = metamorphic::check(&loaded.scene, seed) {
+                panic!("{reason}");
+            }
         }
     }
 });

@@ -3,17 +3,21 @@
 //! `cbindgen` makes `include/ninebit.h` from this file; `docs/c.md` shows how it is used. Every function returns a status and writes its results
 //! through pointers. It checks pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the
 //! boundary. What one function allocates, another one frees. A scene never changes after it has been made, so any number of threads may use it at
-//! the same time.
+//! the same time. Whatever depends on a scene runs on a thread with a [stack of its own](STACK).
 
 use std::ffi::{CStr, CString, c_char};
 use std::path::Path;
 use std::ptr;
+use std::thread;
 
 use ninebit::combiner::registers::Registers;
 
 use ninebit::engine::{self, RenderOptions};
+use ninebit::faults::{self, Operation};
 use ninebit::limits::Limits;
+use ninebit::shown;
 use ninebit::state::{Policies, Profile, Register};
+use ninebit::threads;
 use ninebit_files::catch_panic::{Panic, catch_panic};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
@@ -31,7 +35,7 @@ pub enum NinebitStatus {
     Invalid = 3,
     /// A file is missing.
     Missing = 4,
-    /// A limit has been exceeded.
+    /// A limit has been exceeded, or the system has no thread left.
     Limit = 5,
     /// A fault of this library has occurred.
     Internal = 6,
@@ -98,6 +102,30 @@ impl From<SceneError> for Failure {
         };
         Failure { status, text: error.render(false) }
     }
+}
+
+/// Size of the stack on which scenes are read, drawn and traced, in bytes. The caller's may be small: threads of musl have 128 KiB. A render takes
+/// some 370 KiB of it, whatever it draws, and notation that is nested as deeply as it may be 50 KiB.
+const STACK: usize = 4 << 20;
+
+/// Code of the error that no thread can be started, which `docs/errors.md` lists.
+const NO_THREAD: &str = "NB0802";
+
+/// Runs `work` on a thread with [`STACK`], and waits for it.
+fn on_own_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    thread::scope(|scope| {
+        let started = faults::check(Operation::Start).and_then(|()| {
+            thread::Builder::new().name("ninebit".to_owned()).stack_size(STACK).spawn_scoped(scope, work)
+        });
+        let started = started.map_err(|error| Failure {
+            status: NinebitStatus::Limit,
+            text: format!(
+                "error[{NO_THREAD}]: a thread cannot be started: {error}\n  help: let the process have more threads or memory\n"
+            ),
+        })?;
+        // `call` makes a panic a status.
+        Ok(started.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
 }
 
 /// Runs a call. If it fails, returns its status and writes its message to `message`, unless that is null.
@@ -227,7 +255,7 @@ pub unsafe extern "C" fn ninebit_scene_load(
             let path = text_of(path, "the path")?;
             // `-` would be standard input, which is the calling program's.
             let path = if path == "-" { Path::new("./-") } else { Path::new(path) };
-            finish(scene, ninebit_scene::load(path, &Limits::default())?);
+            finish(scene, on_own_stack(|| ninebit_scene::load(path, &Limits::default()).map_err(Failure::from))??);
         }
         Ok(())
     })
@@ -252,7 +280,11 @@ pub unsafe extern "C" fn ninebit_scene_parse(
             begin(scene)?;
             let text = std::str::from_utf8(array(text.cast::<u8>(), length, "the text")?)
                 .map_err(|error| Failure::argument(format!("the text is not UTF-8: {error}")))?;
-            finish(scene, ninebit_scene::parse(text, Path::new(text_of(origin, "the origin")?), &Limits::default())?);
+            let origin = Path::new(text_of(origin, "the origin")?);
+            finish(
+                scene,
+                on_own_stack(|| ninebit_scene::parse(text, origin, &Limits::default()).map_err(Failure::from))??,
+            );
         }
         Ok(())
     })
@@ -333,7 +365,7 @@ fn target_of(loaded: &Loaded, target: usize) -> Result<&ninebit::state::Target, 
 }
 
 /// Renders the scene and writes the target with number `target`, row by row from the top: its stored words, and bytes R, G, B, A as a picture shows
-/// them. Either may be null. `threads` is the number of threads, or 0 for one on each core; the result does not depend on it.
+/// them. Either may be null. `threads` is the number of threads, at most 1024, or 0 for one on each core; the result does not depend on it.
 ///
 /// # Safety
 /// `scene` came from this library; `words` is null or has room for `pixels` words, `rgba` is null or has room for 4 times as many bytes; `message` is
@@ -352,6 +384,9 @@ pub unsafe extern "C" fn ninebit_render(
         // SAFETY: the caller promises what it asks for.
         let loaded = &unsafe { scene_of(scene) }?.loaded;
         let size = target_of(loaded, target)?;
+        if threads > threads::MAXIMUM {
+            return Err(Failure::argument(format!("threads are {threads}, {}", shown::not_up_to(threads::MAXIMUM))));
+        }
         let wanted = size.width as usize * size.height as usize;
         if pixels != wanted {
             return Err(Failure::argument(format!("the target has {wanted} pixels, and there is room for {pixels}")));
@@ -363,7 +398,9 @@ pub unsafe extern "C" fn ninebit_render(
             let words = if words.is_null() { None } else { Some(array_mut(words, pixels, "the place of the words")?) };
             (words, if rgba.is_null() { None } else { Some(array_mut(rgba, bytes, "the place of the bytes")?) })
         };
-        let frames = engine::render(&loaded.plan, &RenderOptions { threads, ..RenderOptions::default() });
+        loaded.affordable(Limits::default().shaded_pixels)?;
+        let options = RenderOptions { threads, ..RenderOptions::default() };
+        let frames = on_own_stack(|| engine::render(&loaded.plan, &options))?;
         let surface = &frames.surfaces[target];
         if let Some(words) = words {
             words.copy_from_slice(&surface.words);
@@ -398,10 +435,14 @@ pub unsafe extern "C" fn ninebit_trace(
         if json.is_null() {
             return Err(Failure::argument("there is no place for the document"));
         }
-        let trace =
-            engine::trace(&loaded.plan, target, (x, y), None).map_err(|error| Failure::argument(error.to_string()))?;
+        loaded.affordable(Limits::default().shaded_pixels)?;
+        let traced = on_own_stack(|| {
+            let trace = engine::trace(&loaded.plan, target, (x, y), None)?;
+            Ok(trace_json(&loaded.plan, &trace))
+        });
+        let document = traced?.map_err(|error: engine::TraceError| Failure::argument(error.to_string()))?;
         // SAFETY: the caller promises that it may be written.
-        unsafe { put(json, text(trace_json(&loaded.plan, &trace))) };
+        unsafe { put(json, text(document)) };
         Ok(())
     })
 }
@@ -481,10 +522,15 @@ const _: () = {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::{Mutex, PoisonError};
+
+    /// Held by tests that start threads, because a planted fault is the process's.
+    static STARTING: Mutex<()> = Mutex::new(());
 
     /// A panic becomes a status and a text, and the next call works as usual.
     #[test]
     fn panics_do_not_cross() {
+        let _alone = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
         let mut message = ptr::null_mut();
         assert_eq!(call(&raw mut message, || panic!("a fault that is planted")), NinebitStatus::Internal);
         // SAFETY: `call` has made the text.
@@ -494,5 +540,60 @@ mod tests {
         unsafe { ninebit_text_free(message) };
         assert_eq!(call(&raw mut message, || Ok(())), NinebitStatus::Ok);
         assert!(message.is_null());
+        assert_eq!(call(&raw mut message, || on_own_stack(|| panic!("on another thread"))), NinebitStatus::Internal);
+        // SAFETY: as above.
+        let text = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
+        assert!(
+            text.starts_with("error[NB0801]: internal error: src/c/lib.rs:") && text.contains("on another thread"),
+            "{text}"
+        );
+        // SAFETY: as above.
+        unsafe { ninebit_text_free(message) };
+    }
+
+    /// A system without threads left is a status: for the thread of the call. Helpers of a render are done without.
+    #[test]
+    fn a_thread_that_cannot_be_started_is_a_status() {
+        let _alone = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
+        let scene = c"(version: 1, profile: Nv2a, targets: [(width: 64, height: 48)], draws: [])";
+        for n in 1.. {
+            faults::plant(Operation::Start, n);
+            let (mut loaded, mut message, mut words) = (ptr::null_mut(), ptr::null_mut(), vec![0_u32; 64 * 48]);
+            // SAFETY: the text is as long as said, and what is written is there.
+            let status = unsafe {
+                let text = scene.to_bytes();
+                match ninebit_scene_parse(
+                    text.as_ptr().cast(),
+                    text.len(),
+                    c"x.ron".as_ptr(),
+                    &raw mut loaded,
+                    &raw mut message,
+                ) {
+                    NinebitStatus::Ok => {
+                        ninebit_render(loaded, 0, 3, words.as_mut_ptr(), ptr::null_mut(), words.len(), &raw mut message)
+                    }
+                    refused => refused,
+                }
+            };
+            let has_failed = !faults::is_due(Operation::Start);
+            faults::plant(Operation::Start, 0);
+            if n <= 2 {
+                assert_eq!(status, NinebitStatus::Limit);
+                // SAFETY: it has failed and made the text.
+                let text = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
+                assert!(text.starts_with("error[NB0802]: a thread cannot be started: "), "{text}");
+            } else {
+                assert_eq!((status, words[0]), (NinebitStatus::Ok, 0xff00_0000));
+            }
+            // SAFETY: both are null or were made above, and are freed once.
+            unsafe {
+                ninebit_scene_free(loaded);
+                ninebit_text_free(message);
+            }
+            if !has_failed {
+                assert!(n > 2, "the thread of a render is started");
+                return;
+            }
+        }
     }
 }

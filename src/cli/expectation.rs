@@ -154,17 +154,18 @@ impl ExpectationError {
     }
 
     /// Returns the advice to the user.
-    pub fn help(&self) -> &'static str {
-        match self {
+    pub fn help(&self) -> String {
+        let help = match self {
             ExpectationError::TooLarge(_) => "is it an expectation? `ninebit replay --bless` writes one",
             ExpectationError::Text(_) => {
                 "its fields are in `docs/scene-format.md`; `ninebit replay --bless` writes one"
             }
-            ExpectationError::Path(error) => error.help(),
+            ExpectationError::Path(error) => return error.help(),
             ExpectationError::Image(error) => error.help(),
             ExpectationError::Pixels { .. } => "take the mask that belongs to it, or mend `pixels`",
             ExpectationError::Size { .. } => "masks and pictures are of the size that the expectation states",
-        }
+        };
+        help.to_owned()
     }
 
     /// Returns the kind of the error, which determines the exit status.

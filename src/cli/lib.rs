@@ -8,6 +8,7 @@ pub mod expectation;
 mod page;
 pub mod replay;
 pub mod shard;
+mod undecided;
 
 use std::ffi::OsString;
 

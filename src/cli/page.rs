@@ -5,7 +5,8 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde_json::{Map, Value, json};
+use ninebit_handbook::{RULES, Rule};
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 /// The markup, with placeholders for the other parts.
@@ -22,17 +23,14 @@ const MODULES: [&str; 6] = [
 ];
 /// The WebAssembly module that `src/web/build` makes from `src/web`.
 const MODULE: &[u8] = include_bytes!("../web/module.wasm.gz");
-/// The handbook of rules.
-const NUMERICS: &str = include_str!("../../docs/numerics.md");
 
 /// Returns the page with the given title and a scene's data.
 pub(crate) fn page(title: &str, data: &Value) -> String {
     let script = joined();
-    let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())));
     let policy = format!(
         "default-src 'none'; script-src {} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
-        hash(&script),
-        hash(STYLE)
+        source_hash(&script),
+        source_hash(STYLE)
     );
     let title = format!("{} - Ninebit", escaped(title));
     // Escaped so that no data can end its element.
@@ -56,6 +54,11 @@ pub(crate) fn page(title: &str, data: &Value) -> String {
     page + rest
 }
 
+/// Returns the hash of an inline script or style as a content security policy names it.
+pub(crate) fn source_hash(text: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
+}
+
 /// Joins the modules to one script.
 fn joined() -> String {
     let mut script = String::from("\"use strict\";\n");
@@ -75,41 +78,24 @@ fn escaped(text: &str) -> String {
 
 /// Returns the rules of the handbook by their ids: title, grade, and text.
 pub(crate) fn rules() -> Value {
-    let mut rules = Map::new();
-    for section in NUMERICS.split("\n### ").skip(1) {
-        let mut lines = section.lines();
-        let Some((id, title)) = lines.next().and_then(|heading| heading.split_once(' ')) else { continue };
-        let formula = section.split("\n```text\n").nth(1).and_then(|rest| rest.split("```").next()).map(str::trim_end);
-        let said = lines
-            .take_while(|line| !line.starts_with("## "))
-            .filter_map(|line| line.strip_prefix("- ")?.split_once(": "))
-            .filter(|(term, _)| !["Code", "Pinned by", "Vectors"].contains(term))
-            .map(|(term, text)| [term, text]);
-        let said: Vec<[&str; 2]> = formula.map(|text| ["Formula", text]).into_iter().chain(said).collect();
-        let Some([_, grade]) = said.iter().find(|[term, _]| *term == "Grade") else { continue };
-        let grade = grade.split(|c: char| !c.is_ascii_uppercase()).next().unwrap_or_default();
-        rules.insert(id.to_owned(), json!({ "title": title, "grade": grade, "lines": said }));
-    }
-    Value::Object(rules)
+    let rule = |rule: &Rule<'_>| {
+        // Files and tests of the repository say nothing to the reader of a page.
+        let lines: Vec<_> = rule.fields.iter().filter(|(label, _)| !["Code", "Pinned by"].contains(label)).collect();
+        json!({ "title": rule.title, "grade": rule.grades().first(), "lines": lines })
+    };
+    Value::Object(RULES.iter().map(|each| (each.id.to_owned(), rule(each))).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::Map;
 
     #[test]
     fn every_rule_of_the_handbook_has_its_text() {
         let rules = rules();
-        let headings = NUMERICS.lines().filter(|line| line.starts_with("### ")).filter(|line| {
-            line.split(' ')
-                .nth(1)
-                .is_some_and(|id| id.contains('-') && id.ends_with(|c: char| c.is_ascii_alphanumeric()))
-        });
-        for heading in headings {
-            let id = heading.split(' ').nth(1).unwrap_or_default();
-            let grade = rules[id]["grade"].as_str().unwrap_or_else(|| panic!("{id} has no text"));
-            assert!(["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"].contains(&grade), "{id}: {grade}");
-        }
+        assert_eq!(rules.as_object().map(Map::len), Some(RULES.len()));
+        assert_eq!(rules["NUM-2"]["grade"], json!("SILICON"), "the first of its grades");
         assert!(rules["CMB-3"]["lines"].as_array().is_some_and(|lines| lines.len() > 2));
         assert_eq!(
             rules["FIN-4"]["lines"][0],

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::output::OutputError;
+use crate::error::OutputError;
 
 /// The files of this run: canonical paths, and the names under which they were used.
 #[derive(Debug, Default)]

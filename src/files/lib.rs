@@ -2,8 +2,11 @@
 //! the program.
 
 pub mod catch_panic;
+mod error;
 pub mod files;
+pub mod leftover;
 pub mod output;
+pub mod pending;
 pub mod picture;
 pub mod read;
 pub mod texels;

@@ -10,6 +10,7 @@ use std::path::Path;
 use thiserror::Error;
 
 use crate::files;
+use ninebit::faults::{self, Operation};
 use ninebit::limits::{FileLimit, PAGE};
 
 /// The kinds of file that may be read.
@@ -82,6 +83,7 @@ pub fn all(reader: impl Read, limit: FileLimit) -> Result<Vec<u8>, ReadError> {
 }
 
 fn open(path: &Path, kind: Kind, limit: FileLimit) -> Result<(File, Metadata), ReadError> {
+    faults::check(Operation::Read)?;
     let metadata = path.metadata()?;
     if metadata.is_dir() || kind == Kind::Regular && !metadata.is_file() {
         return Err(ReadError::NotRegular);
@@ -98,7 +100,7 @@ fn within(mut reader: impl Read, limit: FileLimit, mut take: impl FnMut(&[u8])) 
     let mut part = vec![0; 64 << 10];
     let mut taken = 0_u64;
     loop {
-        let read = match reader.read(&mut part) {
+        let read = match faults::check(Operation::Read).and_then(|()| reader.read(&mut part)) {
             Ok(0) => return Ok(taken),
             Ok(read) => read,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,

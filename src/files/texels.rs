@@ -70,28 +70,65 @@ pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
 /// 2 x 2 texels, or of two if one side is 1 already, with halves rounded up, and is [packed](pack) again. Formats of 16 bits a channel keep
 /// 16 bits. This prepares textures: no chip makes levels.
 pub fn halve(words: &[u32], width: u32, height: u32, format: TextureFormat) -> Vec<u32> {
-    let (right, down) = (usize::from(width > 1), if height > 1 { width as usize } else { 0 });
-    let mut smaller = Vec::with_capacity(words.len().div_ceil(4));
-    for y in 0..(height / 2).max(1) {
-        for x in 0..(width / 2).max(1) {
-            let at = 2 * (y as usize * width as usize + x as usize);
-            // If a side is 1, texels count twice, which does not change the mean.
-            smaller.push(mean([at, at + right, at + down, at + right + down].map(|at| words[at]), format));
+    // A loop for each way of a mean, because most textures are large.
+    match format {
+        TextureFormat::Y16 => smaller(words, width, height, mean),
+        TextureFormat::R16B16 => {
+            let halves = |texels: [u32; 4]| mean(texels.map(|t| t >> 16)) << 16 | mean(texels.map(|t| t & 0xffff));
+            smaller(words, width, height, halves)
         }
+        // Channels are whole bytes, wherever they lie.
+        TextureFormat::A8R8G8B8
+        | TextureFormat::A8B8G8R8
+        | TextureFormat::B8G8R8A8
+        | TextureFormat::R8G8B8A8
+        | TextureFormat::L8
+        | TextureFormat::I8
+        | TextureFormat::A8
+        | TextureFormat::A8L8
+        | TextureFormat::G8B8
+        | TextureFormat::R8B8 => smaller(words, width, height, mean_of_bytes),
+        TextureFormat::X8R8G8B8 => smaller(words, width, height, |texels| mean_of_bytes(texels) & 0x00ff_ffff),
+        format => smaller(words, width, height, |texels| mean_as_read(texels, format)),
+    }
+}
+
+/// Applies `of` to the 2 x 2 texels below each of the next level.
+fn smaller(words: &[u32], width: u32, height: u32, of: impl Fn([u32; 4]) -> u32) -> Vec<u32> {
+    let (width, has_rows) = (width as usize, height > 1);
+    let mut smaller = Vec::with_capacity(words.len().div_ceil(4));
+    for rows in words.chunks_exact(width * (1 + usize::from(has_rows))) {
+        // If a side is 1, texels count twice, which does not change the mean.
+        let (upper, lower) = if has_rows { rows.split_at(width) } else { (rows, rows) };
+        if let ([upper], [lower]) = (upper, lower) {
+            smaller.push(of([*upper, *upper, *lower, *lower]));
+            continue;
+        }
+        let pairs = upper.as_chunks::<2>().0.iter().zip(lower.as_chunks::<2>().0);
+        smaller.extend(pairs.map(|([a, b], [c, d])| of([*a, *b, *c, *d])));
     }
     smaller
 }
 
-fn mean(texels: [u32; 4], format: TextureFormat) -> u32 {
-    let of = |values: [u32; 4]| (values.iter().sum::<u32>() + 2) >> 2;
-    match format {
-        TextureFormat::Y16 => of(texels),
-        TextureFormat::R16B16 => of(texels.map(|t| t >> 16)) << 16 | of(texels.map(|t| t & 0xffff)),
-        format => {
-            let channels = texels.map(|texel| expand(format, texel));
-            word([0, 1, 2, 3].map(|n| of(channels.map(|channel| u32::from(channel[n]))) as u8), format)
-        }
-    }
+/// Returns the mean of numbers of at most 16 bits, with halves rounded up.
+#[inline(always)]
+fn mean([a, b, c, d]: [u32; 4]) -> u32 {
+    (a + b + c + d + 2) >> 2
+}
+
+/// Returns the mean of each byte.
+#[inline(always)]
+fn mean_of_bytes(texels: [u32; 4]) -> u32 {
+    // Two bytes at a time, in 16 bits each.
+    const EVEN: u32 = 0x00ff_00ff;
+    let sum = |[a, b, c, d]: [u32; 4]| ((a + b + c + d + 0x0002_0002) >> 2) & EVEN;
+    sum(texels.map(|texel| texel & EVEN)) | sum(texels.map(|texel| texel >> 8 & EVEN)) << 8
+}
+
+/// Returns the mean of each channel as it is read, packed again.
+fn mean_as_read(texels: [u32; 4], format: TextureFormat) -> u32 {
+    let channels = texels.map(|texel| expand(format, texel));
+    word([0, 1, 2, 3].map(|n| mean(channels.map(|channel| u32::from(channel[n]))) as u8), format)
 }
 
 #[cfg(test)]
@@ -120,6 +157,39 @@ mod tests {
         assert_eq!(from_bytes(&bytes, TextureFormat::A8R8G8B8), [0x8403_0201]);
         assert_eq!(from_bytes(&bytes, TextureFormat::X8R8G8B8), [0x0003_0201]);
         assert_eq!(from_bytes(&[1, 2, 3, 4, 5, 6, 7, 8], TextureFormat::Dxt1), [0x0403_0201, 0x0807_0605]);
+    }
+
+    /// Levels of all formats by the definition: channels as they are read, of all shapes.
+    #[test]
+    fn levels_are_means_of_channels() {
+        let mut random = ninebit::random::Random::seeded(11);
+        for format in TextureFormat::ALL.iter().copied().filter(|format| can_pack(*format)) {
+            for (width, height) in [(8, 8), (16, 1), (1, 16), (2, 64), (1, 1)] {
+                // Many bytes are 0 or 255.
+                let mut word = || {
+                    let [bits, ends, which] = [0; 3].map(|_| random.bits() as u32);
+                    let ends = (ends & 0x0101_0101) * 255;
+                    (bits & !ends | ends & ((which & 0x0101_0101) * 255)) & used_bits(format)
+                };
+                let words: Vec<u32> = (0..width * height).map(|_| word()).collect();
+                let at = |x: u32, y: u32| words[(y.min(height - 1) * width + x.min(width - 1)) as usize];
+                let wanted =
+                    (0..(height / 2).max(1)).flat_map(|y| (0..(width / 2).max(1)).map(move |x| (2 * x, 2 * y)));
+                let wanted = wanted.map(|(x, y)| {
+                    let texels = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+                    match format {
+                        TextureFormat::Y16 => mean(texels),
+                        TextureFormat::R16B16 => mean(texels.map(|t| t >> 16)) << 16 | mean(texels.map(|t| t & 0xffff)),
+                        _ => mean_as_read(texels, format),
+                    }
+                });
+                assert_eq!(
+                    halve(&words, width, height, format),
+                    wanted.collect::<Vec<_>>(),
+                    "{format:?} {width} x {height}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -34,11 +34,15 @@
 //! ```
 #![doc = include_str!("examples/pixel.rs")]
 //! ```
+//!
+//! [`state::Draw::texture`] has the same with a texture.
 
 pub mod algebra;
 pub mod combiner;
 pub mod diagnostic;
 pub mod engine;
+#[doc(hidden)]
+pub mod faults;
 pub mod frame;
 pub mod legality;
 pub mod limits;

@@ -82,6 +82,9 @@ pub struct Limits {
     pub vertices: usize,
     /// Number of indices of all draws together.
     pub indices: usize,
+    /// Number of pixels that all draws together may shade, once for each triangle that covers them. Plans may have more;
+    /// [`engine::affordable`](crate::engine::affordable) compares.
+    pub shaded_pixels: u64,
 }
 
 impl Default for Limits {
@@ -101,6 +104,7 @@ impl Default for Limits {
             draws: 4096,
             vertices: 1 << 20,
             indices: 6 << 20,
+            shaded_pixels: 100_000_000_000,
         }
     }
 }
@@ -145,6 +149,11 @@ pub fn table(limits: &Limits) -> Vec<(&'static str, u64, &'static str)> {
         ("draws", limits.draws as u64, "draws"),
         ("vertices", limits.vertices as u64, "vertices of all draws"),
         ("indices", limits.indices as u64, "indices of all draws"),
+        (
+            "shaded_pixels",
+            limits.shaded_pixels,
+            "pixels that are shaded; `--work` of the commands that draw allows others",
+        ),
     ];
     table.extend(FILES.map(file));
     table

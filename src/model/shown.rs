@@ -12,18 +12,33 @@ use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Returns whether a character is shown as its number: controls, marks of bidirectional text, line separators,
-/// invisible marks, and characters that XML 1.0 cannot hold.
+/// Returns whether a character is shown as its number: controls, line separators, whatever Unicode calls
+/// `Default_Ignorable_Code_Point`, marks of bidirectional text among it, and characters that XML 1.0 cannot hold.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c,
-            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
-            | '\u{fff9}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}' | '\u{e0000}'..='\u{e007f}')
+            '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
+            | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{3164}'
+            | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{fff0}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}'
+            | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}')
 }
 
 /// Formats a number of things: `1 pixel`, `2 pixels`.
 pub fn count(number: u64, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
+/// Puts the indefinite article before a name: `a mesh`, `an input`, `a unit`.
+pub fn a(thing: &str) -> String {
+    let begins = |with: &str| thing.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    let vowel = ["a", "e", "i", "o", "u"].into_iter().any(begins);
+    let article = if vowel && !["uni", "use", "eu"].into_iter().any(begins) { "an" } else { "a" };
+    format!("{article} {thing}")
+}
+
+/// Says that something is no whole number from 0 to `most`.
+pub fn not_up_to(most: usize) -> String {
+    format!("not a number from 0 to {most}")
 }
 
 /// Escapes a name or another text of one line. Characters that must not be printed become `\n`, `\t`, `\u{1b}` and so
@@ -136,6 +151,24 @@ mod tests {
         assert_eq!(name("a\n::error::b\u{1b}[31m"), r"a\n::error::b\u{1b}[31m");
         assert_eq!(name("::error::b"), r"\u{3a}:error::b");
         assert_eq!(name("##[error]b"), r"#\u{23}[error]b");
+    }
+
+    #[test]
+    fn articles_go_by_the_sound() {
+        let things = ["mesh", "input", "alpha test", "portion", "unit", "uniform", "Orthographic", "error"];
+        assert_eq!(
+            things.map(a),
+            ["a mesh", "an input", "an alpha test", "a portion", "a unit", "a uniform", "an Orthographic", "an error"]
+        );
+    }
+
+    /// Names that look the same are printed so that they can be told apart.
+    #[test]
+    fn characters_without_ink_are_numbers() {
+        for c in "\u{ad}\u{34f}\u{115f}\u{17b4}\u{180e}\u{200b}\u{200d}\u{2060}\u{206a}\u{3164}\u{fe0f}\u{ffa0}\u{1d173}\u{e0100}".chars() {
+            assert_eq!(name(&format!("wa{c}ll")), format!("wa{}ll", c.escape_unicode()));
+            assert!(!excerpt(&format!("wa{c}ll")).contains(c), "{}", c.escape_unicode());
+        }
     }
 
     /// Generates texts of characters that names contain, among them many hostile ones.

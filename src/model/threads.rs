@@ -3,14 +3,31 @@
 #[cfg(feature = "threads")]
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Runs `work`, whose parallel iterators use `threads` threads. 0 means one for each core.
+#[cfg(feature = "threads")]
+use crate::faults::{self, Operation};
+
+/// The largest number of threads that a caller may ask for.
+pub const MAXIMUM: usize = 1024;
+
+/// Runs `work`, whose parallel iterators use `threads` threads, or the caller's alone if the system refuses them. 0 means one for each core.
 #[cfg(feature = "threads")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = (threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
-    match pool.flatten() {
+    let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
+    match pool(threads).or_else(alone) {
         Some(pool) => pool.install(work),
+        // The caller's thread is one of another pool, which does it.
         None => work(),
     }
+}
+
+/// Starts a pool of threads, where 0 means one for each core; `None` if the system refuses one of them.
+#[cfg(feature = "threads")]
+fn pool(threads: usize) -> Option<rayon::ThreadPool> {
+    let start = |thread: rayon::ThreadBuilder| {
+        faults::check(Operation::Start)?;
+        std::thread::Builder::new().spawn(|| thread.run()).map(drop)
+    };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(start).build().ok()
 }
 
 /// Runs `work` on the caller's thread.
@@ -41,7 +58,6 @@ impl Team {
             0 => std::thread::available_parallelism().map_or(1, usize::from),
             threads => threads,
         };
-        let pool = |helpers| rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
         Team { helpers: (threads > 1).then(|| pool(threads - 1)).flatten() }
     }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use similar::{Algorithm, DiffTag, capture_diff_slices};
 
-use super::text::{expression, held};
+use super::text::{expression, graded, held, legend};
 use ninebit::engine::{DrawTrace, PixelTrace};
 use ninebit::shown;
 use ninebit::trace::Step;
@@ -85,7 +85,7 @@ fn write(out: &mut String, titles: [&str; 2], lines: &[SideBySideLine]) -> std::
     let name = widest(&|line| line.name.chars().count(), 4);
     let a = widest(&|line| integer(&line.first).len(), titles[0].len());
     let b = widest(&|line| integer(&line.second).len(), titles[1].len());
-    writeln!(out, "    {:name$}  {:>a$}  {:>b$}  {:8}how", "what", titles[0], titles[1], "rule")?;
+    writeln!(out, "    {:name$}  {:>a$}  {:>b$}  {:11}how", "what", titles[0], titles[1], "rule")?;
     for line in lines {
         if let Some(heading) = &line.heading {
             writeln!(out, "  {}", shown::name(heading))?;
@@ -97,13 +97,13 @@ fn write(out: &mut String, titles: [&str; 2], lines: &[SideBySideLine]) -> std::
             _ => String::new(),
         };
         let row = format!(
-            "  {mark} {:name$}  {:>a$}  {:>b$}  {:8}{how}",
+            "  {mark} {:name$}  {:>a$}  {:>b$}  {:11}{how}",
             line.name,
             integer(&line.first),
             integer(&line.second),
-            line.rule
+            graded(line.rule)
         );
         writeln!(out, "{}", row.trim_end())?;
     }
-    Ok(())
+    if lines.is_empty() { Ok(()) } else { writeln!(out, "{}", legend()) }
 }

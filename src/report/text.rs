@@ -7,6 +7,7 @@ use ninebit::shown;
 use ninebit::state::{Named, POLICIES, Policies};
 use ninebit::texture::cube::Face;
 use ninebit::trace::{Operand, SINGLE, Step};
+use ninebit_handbook::{GRADES, mark};
 use std::fmt::Write;
 use std::io;
 
@@ -62,7 +63,25 @@ fn write_end(out: &mut String, empty: bool, end: &TraceEnd) -> std::fmt::Result 
         writeln!(out, "\nno triangle covers this pixel")?;
     }
     let [r, g, b, a] = end.shown;
-    writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", end.word)
+    writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", end.word)?;
+    writeln!(out, "{}", legend())
+}
+
+/// Returns a rule's id with the letters of its grades, for a column.
+pub(super) fn graded(rule: &str) -> String {
+    match mark(rule) {
+        "" => rule.to_owned(),
+        mark => format!("{rule:6} {mark}"),
+    }
+}
+
+/// Returns the line that says what letters beside rules mean.
+pub(super) fn legend() -> String {
+    let letters: Vec<String> = GRADES.iter().map(|grade| format!("{} {grade}", &grade[..1])).collect();
+    format!(
+        "grades beside rules: {} (further letters are of parts); `ninebit rule ID` prints a rule",
+        letters.join(", ")
+    )
 }
 
 /// Returns the policies that differ from the default, one per line.
@@ -80,24 +99,22 @@ pub fn policies_text(policies: &Policies) -> String {
 
 /// Returns steps as a table: one line each, under the name of their hardware block.
 pub fn steps_text(steps: &[Step]) -> String {
-    written(|out| write_steps(out, steps, |_| None))
+    written(|out| {
+        write_steps(out, steps, |_| None)?;
+        if steps.iter().any(|step| !step.rule.is_empty()) { writeln!(out, "  {}", legend()) } else { Ok(()) }
+    })
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     write!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
     match &draw.piece {
-        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, planes(piece.planes))?,
+        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, ClipPlane::names(piece.planes))?,
         None => writeln!(out)?,
     }
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
     writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
-}
-
-/// Returns the names of the clip planes in a set, separated by commas.
-pub(crate) fn planes(set: u8) -> String {
-    ClipPlane::in_set(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {
@@ -137,7 +154,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         let line = format!(
             "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
             held(step),
-            step.rule
+            graded(step.rule)
         );
         match &step.note {
             Some(note) => writeln!(out, "{line:<8}  {note}")?,

@@ -173,18 +173,18 @@ macro_rules! read_field {
     };
     ($field:ident $type:ty, [required]) => {
         pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<Raw<'a, $type>> {
-            reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))
+            reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening), &self.faults)
         }
     };
     ($field:ident $type:ty, [required value]) => {
         pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<<$type as Valued<'a>>::Value> {
-            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))?;
+            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening), &self.faults)?;
             Valued::value(reader, &raw)
         }
     };
     ($field:ident $type:ty, [required numbers $range:expr, $what:literal]) => {
         pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<[f32; 4]> {
-            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))?;
+            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening), &self.faults)?;
             reader.numbers(&raw, $what, $range, [0.0; 4])
         }
     };

@@ -48,6 +48,12 @@ pub enum Kind {
     Other,
 }
 
+/// Returns advice for a word that stands in place of a structure: the first of its fields that takes the word.
+pub(super) fn field_of(fields: &[Entry], word: &str) -> Option<String> {
+    let takes = |(_, form): &&Entry| matches!(form(), Form::Value(Kind::Choice(words)) if words.contains(&word));
+    fields.iter().find(takes).map(|(name, _)| format!("write `({name}: {word})`"))
+}
+
 /// A type whose values have a known form.
 pub(super) trait Described {
     /// Returns the form of the type's values.

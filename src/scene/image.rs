@@ -209,6 +209,11 @@ impl ImageError {
         self.fault.told().1
     }
 
+    /// Returns the path of the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Returns whether the file exceeds a limit, without another fault having been found.
     pub fn is_limit(&self) -> bool {
         matches!(self.fault, ImageFault::FileBytes(_) | ImageFault::Side { .. } | ImageFault::DecodedBytes { .. })

@@ -37,6 +37,7 @@ pub use error::SceneError;
 pub use lower::{DrawSpans, ProgramLanguage, VertexSpans};
 use ninebit::diagnostic;
 pub use ninebit::diagnostic::{Diagnostic, ErrorKind, Severity, Source};
+use ninebit::engine;
 use ninebit::limits::{FileLimit, Limits};
 use ninebit::plan::Plan;
 use ninebit::shown;
@@ -63,6 +64,17 @@ pub struct Loaded {
 }
 
 impl Loaded {
+    /// Checks that drawing the scene takes no more than `most` shaded pixels; [`Limits::shaded_pixels`] is what programs allow by themselves.
+    ///
+    /// # Errors
+    /// It takes more.
+    pub fn affordable(&self, most: u64) -> Result<(), SceneError> {
+        let Err(error) = engine::affordable(&self.plan, most) else { return Ok(()) };
+        let place = error.draw.and_then(|draw| self.draw_spans.get(draw)).map(|spans| spans.draw.clone());
+        let finding = error.diagnostic(place).label("most of them in this draw");
+        Err(SceneError { diagnostics: vec![finding], suppressed: 0, source: self.source.clone() })
+    }
+
     /// Returns the warnings as text for a terminal; empty if there are none.
     pub fn render_warnings(&self, color: bool) -> String {
         render(&self.warnings, &self.source, color)
@@ -95,8 +107,7 @@ pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Lo
         read::bytes(path, Kind::Stream, limits.scene_file())
     };
     let finding = |error| match error {
-        ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file")
-            .help("check the spelling and the folder; upper and lower case count"),
+        ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file").help(path::advice(path)),
         ReadError::TooLarge(limit) => too_large(limit),
         error => Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
             .help("name a regular file that may be read"),

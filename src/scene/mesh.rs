@@ -15,6 +15,7 @@ mod wavefront;
 
 use std::sync::Arc;
 
+use ninebit::shown;
 use thiserror::Error;
 
 pub(crate) use round::{cylinder, torus};
@@ -71,7 +72,7 @@ fn across(at: [u32; 2], cells: [u32; 2], repeat: [f32; 2]) -> [f32; 2] {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(crate) enum MeshError {
     /// The shape needs more divisions.
-    #[error("a {shape} needs at least {minimum} {what}, not {given}")]
+    #[error("{} needs at least {minimum} {what}, not {given}", shown::a(shape))]
     TooCoarse {
         /// Name of the shape in messages.
         shape: &'static str,
@@ -83,7 +84,7 @@ pub(crate) enum MeshError {
         given: u32,
     },
     /// The mesh would have more than [`MAXIMUM_VERTICES`].
-    #[error("a {shape} of {vertices} vertices is too fine; {MAXIMUM_VERTICES} are allowed")]
+    #[error("{} of {vertices} vertices is too fine; {MAXIMUM_VERTICES} are allowed", shown::a(shape))]
     TooFine {
         /// Name of the shape in messages.
         shape: &'static str,
@@ -113,6 +114,39 @@ pub(crate) fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) ->
     }
     mesh.indices = cells(columns, rows).collect();
     Ok(mesh)
+}
+
+/// Makes a box about the origin, whose edges run along the axes. Each of its six faces has four vertices of its own.
+///
+/// The texture is repeated on each face. Its first row lies at the top of the sides, and at the back of the top face and the front of the bottom
+/// face.
+pub(crate) fn cuboid(size: [f32; 3], repeat: [f32; 2]) -> Mesh {
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0_f32, 0.0, 1.0]];
+    let minus = |v: [f32; 3]| v.map(|c| 0.0 - c);
+    // Tangent and normal of each face.
+    let faces = [(x, z), (minus(z), x), (minus(x), minus(z)), (z, minus(x)), (x, y), (x, minus(y))];
+    let mut mesh = Mesh::default();
+    for (tangent, normal) in faces {
+        let [n, t] = [normal, tangent];
+        let binormal =
+            [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]].map(|c| c + 0.0);
+        for (right, up) in [(0.0, 1.0), (1.0, 1.0), (0.0, 0.0), (1.0, 0.0)] {
+            let at = |k: usize| normal[k] + (2.0 * right - 1.0) * tangent[k] + (2.0 * up - 1.0) * binormal[k];
+            let position = [0, 1, 2].map(|k| at(k) * (size[k] / 2.0));
+            mesh.push(position, [tangent, binormal, normal], [right * repeat[0], (1.0 - up) * repeat[1]]);
+        }
+    }
+    let face = |first: u32| [0, 2, 3, 0, 3, 1].map(|corner| first + corner);
+    mesh.indices = (0..6).flat_map(|number| face(4 * number)).collect();
+    mesh
+}
+
+/// Returns the tangent of half an angle in degrees, which is above 0 and below 180.
+pub(crate) fn half_tangent(degrees: f64) -> f64 {
+    let half = degrees / 2.0;
+    let eighth = if half <= 45.0 { half } else { 90.0 - half } / 45.0 * std::f64::consts::FRAC_PI_4;
+    let tangent = sin_eighth(eighth) / cos_eighth(eighth);
+    if half <= 45.0 { tangent } else { 1.0 / tangent }
 }
 
 /// Makes a sphere about the origin with its poles on the y axis. It has `slices` around the axis and `stacks` from pole to pole.
@@ -316,6 +350,33 @@ mod tests {
         assert_eq!(mesh.positions, [[-2.0, 1.0, 0.0], [2.0, 1.0, 0.0], [-2.0, -1.0, 0.0], [2.0, -1.0, 0.0]]);
         assert_eq!(mesh.texture_coordinates, [[0.0, 0.0], [3.0, 0.0], [0.0, 1.0], [3.0, 1.0]]);
         assert_eq!(mesh.indices[..], [0, 2, 3, 0, 3, 1]);
+    }
+
+    #[test]
+    fn a_box_has_six_faces() {
+        let mesh = cuboid([2.0, 4.0, 6.0], [3.0, 1.0]);
+        check(&mesh);
+        assert_eq!((mesh.positions.len(), mesh.indices.len()), (24, 36));
+        for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
+            assert_eq!(position.map(f32::abs), [1.0, 2.0, 3.0]);
+            assert_eq!(dot(position.map(|c| c.signum()), *normal), 1.0);
+        }
+        // The front face, seen from +z: its first row is the upper one.
+        assert_eq!(mesh.positions[..4], [[-1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [-1.0, -2.0, 3.0], [1.0, -2.0, 3.0]]);
+        assert_eq!(mesh.texture_coordinates[..4], [[0.0, 0.0], [3.0, 0.0], [0.0, 1.0], [3.0, 1.0]]);
+        // What a textured mesh says of itself is what VTX-4 computes.
+        let found = tangent::tests::again(&mesh);
+        assert_eq!((&found.tangents, &found.binormals), (&mesh.tangents, &mesh.binormals));
+    }
+
+    #[test]
+    fn tangents_of_half_angles_are_near_the_real_ones() {
+        assert_eq!(half_tangent(90.0), 1.0);
+        for n in 1..360 {
+            let degrees = f64::from(n) / 2.0;
+            let tangent = (degrees.to_radians() / 2.0).tan();
+            assert!((half_tangent(degrees) / tangent - 1.0).abs() < 1e-14, "{degrees}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub use super::form::Kind;
 use super::form::{Described, Entry, Form, described};
 use super::notation::Notation;
 use super::raw::Raw;
+use super::source::renamed;
 use ninebit::place::Span;
 
 /// Largest number of values in a tree: nobody wants a form for each vertex of a large mesh.
@@ -109,11 +110,11 @@ impl<'a> Walker<'a> {
 
     fn fields(&mut self, text: &'a str, fields: &[Entry]) -> Option<Content> {
         let written = self.notation.entries(text, b'(')?;
-        let missing = fields.iter().filter(|(name, _)| !written.iter().any(|(written, _)| written == name));
+        let missing = fields.iter().filter(|(name, _)| !written.iter().any(|(written, _)| renamed(written) == *name));
         let absent = values(missing.copied());
         let (open, rest) = text.split_at(1);
         let around = [open.to_owned(), if written.is_empty() { rest.to_owned() } else { format!(", {rest}") }];
-        let form = |name: &str| fields.iter().find(|(field, _)| *field == name).map(|(_, form)| *form);
+        let form = |name: &str| fields.iter().find(|(field, _)| *field == renamed(name)).map(|(_, form)| *form);
         let named = written.into_iter().map(|(name, value)| (name.to_owned(), value));
         let Content::Group { parts, .. } = self.group(named, form) else { return None };
         Some(Content::Group { parts, absent, around })

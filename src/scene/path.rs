@@ -6,6 +6,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use ninebit_program::spelling::closest;
 use thiserror::Error;
 
 /// The error that a name was not accepted.
@@ -69,13 +70,44 @@ impl PathError {
     }
 
     /// Returns what to do about it.
-    pub fn help(&self) -> &'static str {
-        self.fault.told().1
+    pub fn help(&self) -> String {
+        let meant = match &self.fault {
+            PathFault::Missing(folder) => similar(&folder.join(&self.name)),
+            _ => None,
+        };
+        // As a scene writes it: relative to the folder.
+        let written = |file: String| match self.name.rsplit_once('/') {
+            Some((inside, _)) => format!("did you mean `{inside}/{file}`?"),
+            None => format!("did you mean `{file}`?"),
+        };
+        meant.map_or_else(|| self.fault.told().1.to_owned(), written)
     }
 
     /// Returns whether the file does not exist; other errors concern files that may not be used.
     pub fn is_missing(&self) -> bool {
         matches!(self.fault, PathFault::Missing(_))
+    }
+}
+
+/// Most entries of a folder that are looked at for similar names.
+const MOST_ENTRIES: usize = 10_000;
+
+/// Returns the name of the file that is most like that of a missing one, in the same folder.
+fn similar(missing: &Path) -> Option<String> {
+    let name = missing.file_name()?.to_str()?;
+    let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).ok()?.take(MOST_ENTRIES);
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    // The order of a folder is the system's.
+    names.sort_unstable();
+    closest(name, names.iter().map(String::as_str).filter(|other| *other != name)).map(str::to_owned)
+}
+
+/// Returns advice for a missing file that the command line names: a similar name in its folder, if there is one.
+pub fn advice(missing: &Path) -> String {
+    match similar(missing) {
+        Some(name) => format!("did you mean `{}`?", ninebit::shown::path(&missing.with_file_name(name))),
+        None => "check the spelling and the folder; upper and lower case count".to_owned(),
     }
 }
 
@@ -187,6 +219,20 @@ mod tests {
             let error = resolve(folder.path(), name).expect_err(name);
             assert!(error.is_missing(), "{name}: {error}");
         }
+    }
+
+    #[test]
+    fn a_misspelt_file_has_a_similar_one() {
+        let folder = scene_folder();
+        let help = |name| resolve(folder.path(), name).expect_err(name).help();
+        assert_eq!(help("maps/rock.png"), "did you mean `maps/rocks.png`?");
+        assert_eq!(help("map"), "did you mean `maps`?");
+        assert!(help("maps/moss.png").starts_with("names are relative"), "{}", help("maps/moss.png"));
+        assert!(help("other/rocks.png").starts_with("names are relative"));
+        let meant = folder.path().join("maps/rocks.png");
+        assert_eq!(advice(&folder.path().join("maps/rucks.png")), format!("did you mean `{}`?", meant.display()));
+        assert!(advice(&folder.path().join("x.ron")).starts_with("check the spelling"));
+        assert!(advice(Path::new("/")).starts_with("check the spelling"));
     }
 
     #[test]

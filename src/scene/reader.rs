@@ -1,6 +1,7 @@
 //! Reads raw values, collects what is wrong with them, and reports it in the terms of the format.
 
 use ninebit::place::Span;
+use ninebit::shown;
 use std::collections::HashMap;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -146,9 +147,26 @@ impl<'a> Reader<'a> {
 
     /// Reads a value that is well formed. Returns `None` after recording what is wrong.
     pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
-        T::read(&self.notation, raw.text)
-            .map_err(|mismatch| self.push(self.mismatch(raw.text, &mismatch, T::EXPECTED)))
-            .ok()
+        let said = |reader: &Self, mismatch: &Mismatch<'a>| {
+            let finding = reader.mismatch(raw.text, mismatch, T::EXPECTED);
+            match T::meant(raw.text).filter(|_| matches!(mismatch, Mismatch::Kind)) {
+                Some(meant) => finding.help(meant),
+                None => finding,
+            }
+        };
+        match T::read(&self.notation, raw.text) {
+            Ok(value) => {
+                for fault in value.faults() {
+                    let finding = said(self, fault);
+                    self.push(finding);
+                }
+                Some(value)
+            }
+            Err(mismatch) => {
+                let finding = said(self, &mismatch);
+                self.refuse(finding)
+            }
+        }
     }
 
     /// Reads a value if possible; records nothing.
@@ -181,8 +199,10 @@ impl<'a> Reader<'a> {
         field: &str,
         owner: &str,
         place: Span,
+        faults: &[Mismatch<'a>],
     ) -> Option<Raw<'a, T>> {
-        if raw.is_none() {
+        // An unknown field beside it may be this one, misspelt.
+        if raw.is_none() && faults.is_empty() {
             let message = format!("this {owner} has no `{field}`");
             let help = format!("add `{field}: ...`; it has no default");
             self.push(finding(MISSING, place, message, format!("`{field}` is missing"), help));
@@ -248,7 +268,7 @@ impl<'a> Reader<'a> {
         let (head, rest) = raw.split();
         let list = quoted(known);
         let diagnostic = if head.is_empty() {
-            let message = format!("expected a {what}, found {}", describe(raw.text));
+            let message = format!("expected {}, found {}", shown::a(what), describe(raw.text));
             finding(KIND, self.span(raw), message, "wrong kind of value", format!("write one of {list}"))
         } else if known.contains(&head) {
             let message = format!("`{head}` takes nothing in parentheses");

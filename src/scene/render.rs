@@ -44,7 +44,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
         group = group.element(Origin::path(shown::name(&source.name)));
     }
     if let Some(rule) = diagnostic.rule {
-        group = group.element(Level::NOTE.message(format!("rule {rule} in docs/numerics.md")));
+        group = group.element(Level::NOTE.message(format!("rule {rule}: `ninebit rule {rule}` prints it")));
     }
     for note in &diagnostic.notes {
         group = group.element(Level::NOTE.message(shown::name(note)));

@@ -29,6 +29,16 @@ pub(super) trait Expected<'a>: Sized {
     /// # Errors
     /// The first reason that the text is not what is expected.
     fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>>;
+
+    /// Returns what is wrong with single fields of a value that is read all the same.
+    fn faults(&self) -> &[Mismatch<'a>] {
+        &[]
+    }
+
+    /// Returns what was probably meant by a text of the wrong kind, as advice.
+    fn meant(_text: &str) -> Option<String> {
+        None
+    }
 }
 
 macro_rules! expected {
@@ -51,11 +61,6 @@ expected! {
     <'a> f32: "a number", |_, text| number(text);
     <'a> Few<u8>: "one to four bytes in parentheses", |notation, text| few(notation, text);
     <'a> Numbers: "one to four numbers in parentheses", |notation, text| few(notation, text);
-    <'a> bool: "`true` or `false`", |_, text| match text {
-        "true" => Ok(true),
-        "false" => Ok(false),
-        _ => Err(Mismatch::Kind),
-    };
     <'a> Vec<u32>: "a list of whole numbers, such as `[0, 1, 2]`", |notation, text| {
         items(notation, text, b'[')?.into_iter().map(number).collect()
     };
@@ -69,6 +74,23 @@ expected! {
         let entries = notation.entries(text, b'{').ok_or(Mismatch::Kind)?;
         Ok(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
     };
+}
+
+impl<'a> Expected<'a> for bool {
+    const EXPECTED: &'static str = "`true` or `false`";
+
+    fn read(_: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>> {
+        text.parse().map_err(|_| Mismatch::Kind)
+    }
+
+    fn meant(text: &str) -> Option<String> {
+        let meant = match text.to_ascii_lowercase().as_str() {
+            "true" | "yes" | "on" | "1" => "true",
+            "false" | "no" | "off" | "0" => "false",
+            _ => return None,
+        };
+        Some(format!("did you mean `{meant}`?"))
+    }
 }
 
 fn items<'a>(notation: &Notation<'a>, text: &'a str, open: u8) -> Result<Vec<&'a str>, Mismatch<'a>> {
@@ -88,20 +110,37 @@ fn few<'a, N: Number>(notation: &Notation<'a>, text: &'a str) -> Result<Few<N>, 
     Ok(Few { values, count: items.len() })
 }
 
+/// Fields that were called otherwise: the old name, which is still read, and the new one.
+const RENAMED: [(&str, &str); 2] = [("ab_dot", "ab_dot_product"), ("cd_dot", "cd_dot_product")];
+
+/// Returns the name of a field that is written by its old name; other names stay.
+pub(super) fn renamed(name: &str) -> &str {
+    RENAMED.iter().find(|(old, _)| *old == name).map_or(name, |(_, new)| new)
+}
+
 /// Reads the written fields of a structure, and passes each to `field` with its index in `names`. `called` may stand before the parentheses.
+/// Returns the unknown fields and those that are given again.
+///
+/// # Errors
+/// It is no structure.
 pub(super) fn fields<'a>(
     notation: &Notation<'a>,
     text: &'a str,
     called: &str,
     names: &'static [&'static str],
     mut field: impl FnMut(usize, &'a str),
-) -> Result<(), Mismatch<'a>> {
+) -> Result<Vec<Mismatch<'a>>, Mismatch<'a>> {
+    let mut faults = Vec::new();
     let inside = text.strip_prefix(called).map_or(text, trim);
     let mut written = vec![false; names.len()];
     for (name, value) in notation.entries(inside, b'(').ok_or(Mismatch::Kind)? {
-        let index = names.iter().position(|known| *known == name).ok_or(Mismatch::Unknown(name, names))?;
+        let Some(index) = names.iter().position(|known| *known == renamed(name)) else {
+            faults.push(Mismatch::Unknown(name, names));
+            continue;
+        };
         if std::mem::replace(&mut written[index], true) {
-            return Err(Mismatch::Twice(name));
+            faults.push(Mismatch::Twice(name));
+            continue;
         }
         // As in RON, a value may be `None` or `Some(...)`.
         let some = value.strip_prefix("Some").and_then(|rest| notation.items(trim(rest), b'('));
@@ -111,7 +150,7 @@ pub(super) fn fields<'a>(
             _ => field(index, value),
         }
     }
-    Ok(())
+    Ok(faults)
 }
 
 /// Declares structures: their fields, how each is read, and its text in the document. [`fields`](super::fields) explains declarations.
@@ -129,6 +168,8 @@ macro_rules! source {
             pub(crate) opening: &'a str,
             /// Name of the structure in messages.
             pub(crate) called: &'static str,
+            /// Unknown fields, and fields that are given again.
+            pub(crate) faults: Vec<Mismatch<'a>>,
             $(pub(crate) $field: Option<Raw<'a, $type>>),*
         }
         impl<'a> $name<'a> {
@@ -144,7 +185,7 @@ macro_rules! source {
             /// Returns these fields; those that are not written are taken from `other`.
             #[allow(dead_code, reason = "asked of a few")]
             pub(crate) fn or(self, other: Self) -> Self {
-                $name { opening: self.opening, called: self.called, $($field: self.$field.or(other.$field)),* }
+                $name { opening: self.opening, called: self.called, faults: self.faults, $($field: self.$field.or(other.$field)),* }
             }
 
             /// Returns the names and texts of the fields that are written.
@@ -165,10 +206,16 @@ macro_rules! source {
             fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>> {
                 const NAMES: &[&str] = &[$(stringify!($field)),*];
                 let mut values = [None; NAMES.len()];
-                fields(notation, text, stringify!($name), NAMES, |index, value| values[index] = Some(value))?;
+                let faults = fields(notation, text, stringify!($name), NAMES, |index, value| values[index] = Some(value))?;
                 let [$($field),*] = values;
                 let (opening, called) = (text.get(..1).unwrap_or(text), concat!($($called)?));
-                Ok($name { opening, called, $($field: $field.map(Raw::new)),* })
+                Ok($name { opening, called, faults, $($field: $field.map(Raw::new)),* })
+            }
+            fn faults(&self) -> &[Mismatch<'a>] {
+                &self.faults
+            }
+            fn meant(text: &str) -> Option<String> {
+                form::field_of(&[$((stringify!($field), <$type as Described>::form)),*], text)
             }
         }
     )+ };

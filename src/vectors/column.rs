@@ -92,6 +92,24 @@ impl Kind {
     }
 }
 
+/// Beginnings of columns of configuration, and the word with which each does nothing.
+const NEUTRAL: [(&str, &str); 14] = [
+    ("mapping", "UnsignedIdentity"),
+    ("scale", "One"),
+    ("bias", "None"),
+    ("mux_select", "Msb"),
+    ("source", "Own"),
+    ("selector", "own"),
+    ("modifier", "plain"),
+    ("mask", "rgba"),
+    ("operand", "SourceColor"),
+    ("window_clip", "Off"),
+    ("mip_filter", "None"),
+    ("fail", "Keep"),
+    ("depth_fail", "Keep"),
+    ("pass", "Keep"),
+];
+
 /// The numbers that a column takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Domain {
@@ -126,6 +144,24 @@ impl Column {
     /// Returns a column of results, `mid.` or `out.`.
     pub fn result(name: &str, kind: Kind) -> Column {
         Column { name: name.to_owned(), kind, domain: None }
+    }
+
+    /// Returns the number of an input that is not given, where one is sensible: switches are off, settings do nothing, every
+    /// channel is written, and what a register or colour holds is 0.
+    pub fn default(&self) -> Option<i64> {
+        let parts: Vec<&str> = self.name.split('.').collect();
+        match (parts.as_slice(), self.kind) {
+            (["cfg", "writes", _], _) => Some(1),
+            (["cfg", ..], Kind::Unsigned(1)) => Some(0),
+            // The reading that the model follows.
+            (["cfg", "reading"], _) => Some(0),
+            (["cfg", name], Kind::Name(words)) => {
+                let of = NEUTRAL.iter().filter(|(column, _)| name.starts_with(column));
+                of.filter_map(|(_, word)| words.iter().position(|known| known == word)).map(|place| place as i64).next()
+            }
+            (["in", _, "r" | "g" | "b" | "a"], Kind::Unsigned(_) | Kind::Signed(_)) => Some(0),
+            _ => None,
+        }
     }
 
     /// Returns several columns of results of one kind.

@@ -74,6 +74,17 @@ impl VectorError {
         VectorError::Invalid { code, path: path.to_path_buf(), line, message, help }
     }
 
+    /// Names an output in a temporary folder by the path that it would have got.
+    pub(crate) fn named(self, temporary: &Path, folder: &Path) -> VectorError {
+        match self {
+            VectorError::Output(OutputError::Write { path, source }) => {
+                let path = path.strip_prefix(temporary).map(|below| folder.join(below)).unwrap_or(path);
+                VectorError::Output(OutputError::Write { path, source })
+            }
+            other => other,
+        }
+    }
+
     /// A file that does not say what it should.
     pub(crate) fn file(code: &'static str, path: &Path, message: impl Into<String>, help: &'static str) -> VectorError {
         VectorError::line(code, path, 0, message.into(), help)

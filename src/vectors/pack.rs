@@ -9,6 +9,7 @@
 //! units/UNIT.hex, .jsonl, .rows.h and others  views, where asked for
 //! ```
 
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,10 @@ use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Contents, Level, Table, Unit, VectorError, Writer, read_text};
 use ninebit::limits::{self, FileLimit};
 use ninebit::state::{Named, Profile};
-use ninebit_files::output::{OutputError, PendingFile, is_leftover, make_folder, remove_leftovers, write_file};
+use ninebit::threads::on_threads;
+use ninebit_files::leftover::is_leftover;
+use ninebit_files::output::{OutputError, make_folder, write_file};
+use ninebit_files::pending::{PendingFile, PendingFolder};
 use ninebit_files::picture::hexadecimal;
 use ninebit_files::read::{self, Kind, ReadError};
 
@@ -35,6 +39,9 @@ const FOLDERS: [&str; 2] = ["schema", "units"];
 
 /// File name of the manifest.
 const MANIFEST: &str = "MANIFEST.json";
+
+/// File name of the digests.
+const SUMS: &str = "SHA256SUMS";
 
 /// Manifest of a pack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -146,24 +153,51 @@ fn sums(files: &[File]) -> String {
     files.iter().map(|file| format!("{}  {}\n", file.sha256, file.path)).collect()
 }
 
-/// Writes a pack into `folder`, which is created. The manifest is written last, so an interrupted export leaves none.
+/// Writes a pack into `folder`, which is created.
+///
+/// A pack that is there is replaced as a whole when the new one is, and what it does not list stays. Where its folder
+/// [cannot be renamed](PendingFolder::replacing), its manifest is removed first. The new manifest is written last, so that an interrupted export
+/// leaves none.
 ///
 /// # Errors
 /// Returns an error if the folder or a file in it cannot be written.
 pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
-    for part in FOLDERS {
-        make_folder(&folder.join(part))?;
-        remove_leftovers(&folder.join(part))?;
-    }
-    remove_leftovers(folder)?;
     let manifest_path = folder.join(MANIFEST);
-    if manifest_path.exists() {
+    let earlier = manifest_path.is_file();
+    if let Some(beside) = if earlier { PendingFolder::replacing(folder)? } else { None } {
+        let listed = match manifest(folder) {
+            Ok(earlier) => earlier.files,
+            // Nothing says what else belongs to it.
+            Err(VectorError::Invalid { .. }) => Vec::new(),
+            Err(error) => return Err(error),
+        };
+        let listed: HashSet<&str> = listed.iter().map(|file| file.path.as_str()).chain([MANIFEST, SUMS]).collect();
+        let is_listed = |path: &Path| path.to_str().is_some_and(|path| listed.contains(&*path.replace('\\', "/")));
+        let fill = || {
+            let written = write(beside.path(), options)?;
+            beside.take_over(&|path| !is_listed(path))?;
+            Ok(written)
+        };
+        let written = fill().map_err(|error: VectorError| error.named(beside.path(), folder))?;
+        beside.commit()?;
+        return Ok(written);
+    }
+    if earlier {
         // From now on the files of an earlier export are no pack.
         std::fs::remove_file(&manifest_path)
             .map_err(|source| OutputError::Write { path: manifest_path.clone(), source })?;
     }
-    let written: Vec<Vec<File>> =
-        options.units.par_iter().map(|unit| export_unit(folder, *unit, options)).collect::<Result<_, _>>()?;
+    write(folder, options)
+}
+
+/// Writes the files of a pack into a folder, its manifest last.
+fn write(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
+    for part in FOLDERS {
+        make_folder(&folder.join(part))?;
+    }
+    let tables = || options.units.par_iter().map(|unit| export_unit(folder, *unit, options)).collect();
+    let written: Result<Vec<Vec<File>>, VectorError> = on_threads(0, tables);
+    let written = written?;
     let mut files: Vec<File> = written.into_iter().flatten().collect();
     for (path, text) in ALWAYS {
         let mut file = Hashing::create(folder, path.to_owned())?;
@@ -183,9 +217,9 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
         root: hexadecimal(&Sha256::digest(sums(&files))),
         files,
     };
-    write_file(&folder.join("SHA256SUMS"), sums(&manifest.files).as_bytes())?;
+    write_file(&folder.join(SUMS), sums(&manifest.files).as_bytes())?;
     let text = serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n";
-    write_file(&manifest_path, text.as_bytes())?;
+    write_file(&folder.join(MANIFEST), text.as_bytes())?;
     Ok(manifest)
 }
 
@@ -263,6 +297,34 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     Ok(manifest)
 }
 
+/// Finds a row by its id, in a pack or in one of its tables. Returns the table with this row alone.
+///
+/// # Errors
+/// Returns an error if the pack's manifest or a table cannot be read, if there is no such row, or if it cannot be read or is not as its id says.
+pub fn find(place: &Path, id: &str) -> Result<(PathBuf, Table), VectorError> {
+    let tables = match place.extension().is_some_and(|extension| extension == "tsv") {
+        true => vec![place.to_path_buf()],
+        false => {
+            let files = manifest(place)?.files.into_iter().map(|file| place.join(file.path));
+            files.filter(|path| path.extension().is_some_and(|extension| extension == "tsv")).collect()
+        }
+    };
+    for path in tables {
+        let text = read_text(&path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?;
+        let Some(at) = text.find(&format!("\n{id}\t")).map(|newline| newline + 1) else { continue };
+        // The row is read behind the head of its table, and so held to it.
+        let names = text.find("\nid\t").map_or(0, |newline| newline + 1);
+        let head = text[..at].get(..names).unwrap_or_default();
+        let columns = text[names..].lines().next().unwrap_or_default();
+        let row = text[at..].lines().next().unwrap_or_default();
+        let mut table = parse(&format!("{head}{columns}\n{row}\n"), &path)?;
+        table.rows.iter_mut().for_each(|found| found.line = 1 + text[..at].matches('\n').count());
+        return Ok((path, table));
+    }
+    let help = "ids are the first column of tables: twelve hexadecimal digits";
+    Err(VectorError::file("NB1014", place, format!("there is no row `{:.40}`", ninebit::shown::name(id)), help))
+}
+
 /// Opens a pack: checks its files against the manifest, and reads its tables.
 ///
 /// # Errors
@@ -298,21 +360,25 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
         let message = "the manifest does not list this file";
         return Err(VectorError::file("NB1012", path, message, "take it out of the pack"));
     }
-    let tables: Vec<Table> = listed
-        .par_iter()
-        .zip(&manifest.files)
-        .filter(|(path, _)| path.extension().is_some_and(|extension| extension == "tsv"))
-        .map(|(path, file)| {
-            let table = parse(&read_text(path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?, path)?;
-            let Contents { profile, level, seed, .. } = table.writer.contents();
-            let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
-            let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;
-            if own != (profile.as_str(), level.as_str(), *seed, *behaviour_rev, file.rows) {
-                let message = "its chip, level, seed, behaviour or number of rows is not the manifest's";
-                return Err(VectorError::file("NB1011", path, message, "it belongs to another pack: export again"));
-            }
-            Ok(table)
-        })
-        .collect::<Result<_, _>>()?;
-    Ok((manifest, tables))
+    let read = || {
+        listed
+            .par_iter()
+            .zip(&manifest.files)
+            .filter(|(path, _)| path.extension().is_some_and(|extension| extension == "tsv"))
+            .map(|(path, file)| {
+                let table =
+                    parse(&read_text(path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?, path)?;
+                let Contents { profile, level, seed, .. } = table.writer.contents();
+                let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
+                let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;
+                if own != (profile.as_str(), level.as_str(), *seed, *behaviour_rev, file.rows) {
+                    let message = "its chip, level, seed, behaviour or number of rows is not the manifest's";
+                    return Err(VectorError::file("NB1011", path, message, "it belongs to another pack: export again"));
+                }
+                Ok(table)
+            })
+            .collect()
+    };
+    let tables: Result<Vec<Table>, VectorError> = on_threads(0, read);
+    Ok((manifest, tables?))
 }

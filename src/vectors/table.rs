@@ -25,10 +25,10 @@ use ninebit::state::{Named, Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
 /// First line of a table: the version of the format.
-pub(crate) const FORMAT: &str = "# ninebit-vectors 1";
+pub const FORMAT: &str = "# ninebit-vectors 1";
 
 /// Names of the columns after those of the unit.
-pub(crate) const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
+pub const LAST: [&str; 4] = ["tags", "grade", "reach", "alternatives"];
 
 /// The unit, chip, level and seed that determine a table.
 #[derive(Clone, Copy, Debug)]
@@ -111,8 +111,9 @@ impl Writer {
     pub fn row(&self, inputs: &[i64], origin: Origin) -> Row {
         let Contents { unit, profile, .. } = self.contents;
         let mut results = vec![0; self.results.len()];
-        unit.evaluate(inputs, &Conditions { profile, policies: Policies::DEFAULT }, &mut results);
-        let alternatives = unit::alternatives(unit, &self.results, inputs, profile, &results);
+        let conditions = Conditions { profile, policies: Policies::DEFAULT };
+        unit.evaluate(inputs, &conditions, &mut results);
+        let alternatives = unit::alternatives(unit, &self.results, inputs, &conditions, &results);
         Row { inputs: inputs.to_vec(), results, origin, alternatives }
     }
 
@@ -148,11 +149,9 @@ impl Writer {
             .alternatives
             .iter()
             .map(|alternative| {
-                let changed = self.results.iter().zip(alternative.results.iter().zip(&row.results));
-                let changed: Vec<String> = changed
-                    .filter(|(_, (other, own))| other != own)
-                    .map(|(column, (other, _))| format!("{}={}", column.name, column.kind.write(*other)))
-                    .collect();
+                let changed = alternative.changed(&self.results, &row.results);
+                let changed: Vec<String> =
+                    changed.map(|(column, other)| format!("{}={}", column.name, column.kind.write(other))).collect();
                 format!("{}:{}", alternative.policy, changed.join(","))
             })
             .collect();
@@ -185,8 +184,7 @@ impl Writer {
 fn tags(unit: &dyn Unit, row: &Row) -> String {
     let mut tags = vec![row.origin.word().to_owned()];
     for alternative in row.alternatives.iter().filter(|_| unit.readings().is_empty()) {
-        let rule = alternative.policy.split('=').next().unwrap_or_default();
-        let tag = format!("policy:{rule}");
+        let tag = format!("policy:{}", alternative.rule);
         if !tags.contains(&tag) {
             tags.push(tag);
         }

@@ -159,33 +159,45 @@ impl Reach {
 /// The results of a row under another reading of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alternative {
+    /// The rule in question.
+    pub rule: &'static str,
     /// The rule and the value of its policy, or the reading of an open question: `CMB-3=literal`, `SHD-1=Nearest`.
     pub policy: String,
     /// The results, one number for each result column.
     pub results: Vec<i64>,
 }
 
-/// Returns the policies and readings that change an `out.` column of a row, one at a time.
+impl Alternative {
+    /// Returns the columns that are not as in `results`, with their numbers.
+    pub fn changed<'c>(&'c self, columns: &'c [Column], results: &'c [i64]) -> impl Iterator<Item = (&'c Column, i64)> {
+        let all = columns.iter().zip(self.results.iter().zip(results));
+        all.filter(|(_, (other, own))| other != own).map(|(column, (other, _))| (column, *other))
+    }
+}
+
+/// Returns the policies and readings that change the outcome of a row, one at a time; intermediates (`mid.`) are none.
 ///
 /// `columns` are the result columns, which the caller has looked up once.
 pub fn alternatives(
     unit: &dyn Unit,
     columns: &[Column],
     inputs: &[i64],
-    profile: Profile,
+    conditions: &Conditions,
     results: &[i64],
 ) -> Vec<Alternative> {
     let mut found = Vec::new();
-    for answer in answers(unit) {
-        let other = answer.evaluate(unit, inputs, profile, results.len());
-        if columns.iter().zip(other.iter().zip(results)).any(|(c, (a, b))| a != b && c.name.starts_with("out.")) {
-            found.push(Alternative { policy: answer.name(), results: other });
+    for answer in answers(unit, &conditions.policies) {
+        let (rule, policy) = (answer.rule, answer.name());
+        let other = answer.evaluate(unit, inputs, conditions.profile, results.len());
+        let alternative = Alternative { rule, policy, results: other };
+        if alternative.changed(columns, results).any(|(column, _)| !column.name.starts_with("mid.")) {
+            found.push(alternative);
         }
     }
     found
 }
 
-/// An answer to a question that rules leave open: another value than the default of a policy, or a reading.
+/// An answer to a question that rules leave open: another value of a policy than the one in force, or a reading.
 pub(crate) struct Answer {
     /// The rule in question.
     pub(crate) rule: &'static str,
@@ -209,16 +221,17 @@ impl Answer {
     }
 }
 
-/// Returns every value of every policy that is not the default, and every reading of the unit.
-pub(crate) fn answers(unit: &dyn Unit) -> impl Iterator<Item = Answer> {
+/// Returns every value of every policy that is not in force, and every reading of the unit.
+pub(crate) fn answers(unit: &dyn Unit, force: &Policies) -> impl Iterator<Item = Answer> {
+    let force = *force;
     let values = POLICIES.iter().flat_map(|policy| policy.values.iter().enumerate().map(move |value| (policy, value)));
-    let others = values.filter_map(|(Policy { rule, .. }, (index, (value, _)))| {
-        let mut policies = Policies::DEFAULT;
+    let others = values.filter_map(move |(Policy { rule, .. }, (index, (value, _)))| {
+        let mut policies = force;
         let differs = policies.chosen(rule) != index;
         policies.choose(rule, index);
         differs.then_some(Answer { rule, value, policies, reading: None })
     });
     let rule = unit.rules()[0];
     let readings = (0..).zip(unit.readings());
-    others.chain(readings.map(move |(n, value)| Answer { rule, value, policies: Policies::DEFAULT, reading: Some(n) }))
+    others.chain(readings.map(move |(n, value)| Answer { rule, value, policies: force, reading: Some(n) }))
 }

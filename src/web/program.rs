@@ -16,7 +16,8 @@ pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {
     let portion = |portion: &Portion| {
         json!({
             "inputs": portion.inputs.iter().map(input).collect::<Vec<_>>(),
-            "ab_output": portion.ab_output.name(), "cd_output": portion.cd_output.name(), "sum_output": portion.sum_output.name(),
+            "ab_output": portion.ab_output.destination(), "cd_output": portion.cd_output.destination(),
+            "sum_output": portion.sum_output.destination(),
             "ab_dot_product": portion.ab_dot_product, "cd_dot_product": portion.cd_dot_product, "mux": portion.mux,
             "scale": portion.scale.name(), "bias": portion.bias.name(),
             "ab_blue_to_alpha": portion.ab_blue_to_alpha, "cd_blue_to_alpha": portion.cd_blue_to_alpha,
@@ -39,6 +40,7 @@ pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {
         "text": print(&draw.combiners),
         "origin": ninebit_report::origins(&draw.program_origin),
         "choices": {
+            "destination": Register::ALL.iter().map(|register| register.destination()).collect::<Vec<_>>(),
             "register": Register::NAMES, "final_register": FinalRegister::NAMES, "component": Component::NAMES,
             "mapping": InputMapping::NAMES, "scale": Scale::NAMES, "bias": Bias::NAMES, "mux_select": MuxSelect::NAMES,
         },
@@ -125,9 +127,9 @@ fn set_portion(portion: &mut Portion, path: &[&str], value: &Value) -> Result<()
                 other => Err(unknown(other)),
             }
         }
-        ["ab_output"] => choose(&mut portion.ab_output, value),
-        ["cd_output"] => choose(&mut portion.cd_output, value),
-        ["sum_output"] => choose(&mut portion.sum_output, value),
+        ["ab_output"] => redirect(&mut portion.ab_output, value),
+        ["cd_output"] => redirect(&mut portion.cd_output, value),
+        ["sum_output"] => redirect(&mut portion.sum_output, value),
         ["ab_dot_product"] => switch(&mut portion.ab_dot_product, value),
         ["cd_dot_product"] => switch(&mut portion.cd_dot_product, value),
         ["mux"] => switch(&mut portion.mux, value),
@@ -150,6 +152,12 @@ fn index(text: &str, count: usize) -> Result<usize, Refused> {
 fn choose<T: Named>(field: &mut T, value: &Value) -> Result<(), Refused> {
     let name = value.as_str().unwrap_or_default();
     *field = T::from_name(name).ok_or_else(|| format!("`{name}` is not one of {}", T::NAMES.join(", ")))?;
+    Ok(())
+}
+
+fn redirect(field: &mut Register, value: &Value) -> Result<(), Refused> {
+    let name = value.as_str().unwrap_or_default();
+    *field = Register::from_destination(name).ok_or_else(|| format!("`{name}` is no destination"))?;
     Ok(())
 }
 

@@ -194,7 +194,9 @@ impl Session {
 
     /// Reads a scene. If it has errors, the answer holds them and the previous scene stays.
     fn open(&mut self, text: &str, name: &str) -> Value {
-        match parse_with(text, Path::new(name), &Limits::default(), &self.files) {
+        let limits = Limits::default();
+        let loaded = parse_with(text, Path::new(name), &limits, &self.files);
+        match loaded.and_then(|loaded| loaded.affordable(limits.shaded_pixels).map(|()| loaded)) {
             Ok(loaded) => {
                 let Loaded { scene, plan, warnings, source, .. } = loaded;
                 let answer = json!({ "scene": described(&scene), "findings": findings(&warnings, &source) });

@@ -13,6 +13,9 @@
 
 pub mod blocks;
 pub mod changed_scene;
+pub mod frames;
+pub mod lattice;
+pub mod metamorphic;
 pub mod random_program;
 pub mod random_scene;
 pub mod random_vertex_program;

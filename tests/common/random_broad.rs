@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Numbers of tape words in addition to those of a wider scene: for each draw, and for all changes.
 const BROAD_DRAW: usize = 64;
-const BROAD: usize = SHARED + 4 * BROAD_DRAW;
+pub(super) const BROAD: usize = SHARED + 4 * BROAD_DRAW;
 
 /// Largest number of pixels of a target, and of texels of a level of a texture.
 const MOST_PIXELS: u32 = 16_384;
@@ -21,7 +21,7 @@ pub fn scene() -> BoxedStrategy<Scene> {
 }
 
 /// Builds the scene of a tape.
-fn broadened(tape: &[u32]) -> Scene {
+pub(super) fn broadened(tape: &[u32]) -> Scene {
     let (first, rest) = tape.split_at((FIRST + WIDER).min(tape.len()));
     let mut scene = widened(first);
     let mut tape = Choices { tape: rest };

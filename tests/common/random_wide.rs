@@ -3,6 +3,8 @@
 
 #[path = "random_broad.rs"]
 pub mod broad;
+#[path = "random_extreme.rs"]
+pub mod extreme;
 #[path = "random_front_end.rs"]
 mod front_end;
 

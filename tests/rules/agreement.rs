@@ -7,10 +7,10 @@ use crate::repository;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Named, POLICIES, Profile, Scene};
 use ninebit::trace::Rule;
+use ninebit_handbook::{GRADES, meaning};
 use ninebit_report::compare::bound;
 use std::collections::{BTreeMap, BTreeSet};
 
-const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
 /// The fields that a built rule must have. *Range* and *Error* are optional.
 const FIELDS: [&str; 4] = ["Grade", "Formula", "Source", "Example"];
 
@@ -38,10 +38,10 @@ fn entries_are_complete() {
     assert!(ENTRIES.len() > 70, "{} entries", ENTRIES.len());
     let mut seen = BTreeSet::new();
     for entry in ENTRIES.iter() {
-        assert_eq!(ids(&entry.id), BTreeSet::from([entry.id.clone()]), "heading of {}", entry.id);
-        assert!(seen.insert(&entry.id), "{} has two entries", entry.id);
+        assert_eq!(ids(entry.id), BTreeSet::from([entry.id.to_owned()]), "heading of {}", entry.id);
+        assert!(seen.insert(entry.id), "{} has two entries", entry.id);
         for grade in entry.grades() {
-            assert!(GRADES.contains(&grade.as_str()), "{}: `{grade}` is no grade", entry.id);
+            assert!(GRADES.contains(&grade), "{}: `{grade}` is no grade", entry.id);
         }
         let needed: &[&str] = if entry.built { &FIELDS } else { &FIELDS[..2] };
         for label in needed {
@@ -88,13 +88,13 @@ fn rules_that_are_applied_are_built() {
 fn code_of_built_rules_exists_and_names_them() {
     for entry in built() {
         let code = entry.references("Code");
-        for (file, name) in &code {
+        for &(file, name) in &code {
             let source = read(file);
             if let Some(name) = name {
                 assert!(declares(&source, name), "{}: {file} does not declare {name}", entry.id);
             }
         }
-        let mentions = code.iter().any(|(file, _)| ids(&read(file)).contains(&entry.id));
+        let mentions = code.iter().any(|(file, _)| ids(&read(file)).contains(entry.id));
         assert!(mentions, "none of the files that {} names mentions it", entry.id);
     }
 }
@@ -103,10 +103,24 @@ fn code_of_built_rules_exists_and_names_them() {
 fn pins_exist() {
     for entry in built() {
         for (file, test) in entry.references("Pinned by") {
-            let source = read(&file);
+            let source = read(file);
             if let Some(test) = &test {
                 assert!(source.contains(&format!("fn {test}(")), "{}: {file} has no test {test}", entry.id);
             }
+        }
+    }
+}
+
+/// Entries name exactly the scenes that are there to be drawn on a card.
+#[test]
+fn deciding_scenes_are_named_by_their_rules() {
+    let named: BTreeSet<String> =
+        ENTRIES.iter().flat_map(|e| e.references("Decided by")).map(|(file, _)| file.to_owned()).collect();
+    let scenes = files("vectors/scenes/deciding", "ron").into_iter().map(|path| repository::name(&path));
+    assert_eq!(named, scenes.filter(|name| !name.ends_with(".expect.ron")).collect());
+    for entry in ENTRIES.iter() {
+        for (file, _) in entry.references("Decided by") {
+            assert!(file.starts_with(&format!("vectors/scenes/deciding/{}-", entry.id)), "{} names {file}", entry.id);
         }
     }
 }
@@ -121,7 +135,7 @@ fn computed(entry: &Entry, examples: &[(String, String)]) -> String {
         examples.iter().flat_map(|(file, source)| std::iter::repeat_n(file.as_str(), opened(source))).collect()
     };
     let [alone, beside]: [Vec<&str>; 2] = ["example(", "beside_rows("].map(opens);
-    match (catalogue::computes(&entry.id), &alone[..], &beside[..]) {
+    match (catalogue::computes(entry.id), &alone[..], &beside[..]) {
         (false, [file], []) => (*file).to_owned(),
         (true, [], []) => "catalogue".to_owned(),
         (true, [], [file]) => format!("catalogue, {file}"),
@@ -151,11 +165,11 @@ fn the_index_is_right() {
         let link: String = link.chars().filter(|c| c.is_alphanumeric() || *c == '-').collect();
         let cells = [
             format!("[{}](#{link}) {}", entry.id, entry.title),
-            entry.grades()[0].clone(),
+            entry.grades()[0].to_owned(),
             computed(entry, &examples),
-            if oracle.contains(&entry.id) { "yes".to_owned() } else { String::new() },
-            quoted(vectors.get(&entry.id)),
-            quoted(scenes.get(&entry.id)),
+            if oracle.contains(entry.id) { "yes".to_owned() } else { String::new() },
+            quoted(vectors.get(entry.id)),
+            quoted(scenes.get(entry.id)),
         ];
         table += &format!("| {} |\n", cells.join(" | "));
     }
@@ -199,7 +213,7 @@ fn counts() -> BTreeMap<String, [usize; 3]> {
                 (_, true) => 2,
                 (_, false) => continue,
             };
-            counts.entry(grade).or_default()[column] += 1;
+            counts.entry(grade.to_owned()).or_default()[column] += 1;
         }
     }
     counts
@@ -220,12 +234,10 @@ fn the_table_counts_right() {
 /// The README has the handbook's grades, their meanings and counts.
 #[test]
 fn the_readme_counts_right() {
-    let (handbook, counts) = (read(PAGE), counts());
+    let counts = counts();
     let mut table = "| grade | meaning | rules built |\n|---|---|---:|\n".to_string();
     for grade in GRADES {
-        let row = |line: &str| Some(line.strip_prefix(&format!("| {grade} | "))?.strip_suffix(" |")?.to_string());
-        let meaning = handbook.lines().find_map(row).unwrap_or_else(|| panic!("{PAGE}: what is {grade}?"));
-        table += &format!("| {grade} | {meaning} | {} |\n", counts[grade][0]);
+        table += &format!("| {grade} | {} | {} |\n", meaning(grade), counts[grade][0]);
     }
     pages::hold("README.md", "tests/rules (grades)", &table);
 }

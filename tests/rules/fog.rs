@@ -45,7 +45,7 @@ fn examples_of_fog() {
     fog5.gives("the others", [FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs].map(beyond), [0; 3]);
 
     let int5n = beside_rows("INT-5n");
-    let v = sample.factor(&triangle.factor([0.0, 1.0, 0.5]));
+    let v = ninebit::raster::fog::factor(sample.value(&ninebit::raster::weights::Linear::new([0.0, 1.0, 0.5])));
     int5n.shows("4096 f", 4096.0 * 11.75 / 96.0, 2, "501.33").gives("v", v, 501);
     int5n.gives("the byte", factor_byte(v), 31).shows("the real number", 255.0 * 11.75 / 96.0, 2, "31.21");
 }

@@ -1,12 +1,10 @@
 //! Reads `docs/numerics.md`: its entries, its examples, and ids that occur in files.
-//!
-//! The entry of a rule is a heading `### ID title`, a block of text with the formula, and a list with one field in each line: `- Grade:
-//! ...`.
 
 use crate::catalogue;
 use crate::pages;
 use crate::repository;
 use crate::settings::bless;
+use ninebit_handbook::{Rule, parse};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
@@ -17,80 +15,14 @@ const PREFIXES: [&str; 18] = [
     "SHD", "CYL",
 ];
 
+/// The entry of one rule.
+pub type Entry = Rule<'static>;
+
 /// Path of the handbook.
 pub const PAGE: &str = "docs/numerics.md";
 
-/// All entries of the handbook in order.
-pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(entries);
-
-/// The entry of one rule.
-pub struct Entry {
-    pub id: String,
-    pub title: String,
-    /// Whether the rule is built, that is, not in the section "Known, not built yet".
-    pub built: bool,
-    /// Label and text of each field, in order.
-    pub fields: Vec<(String, String)>,
-}
-
-impl Entry {
-    /// Returns the text of a field, which is empty if there is no such field.
-    pub fn field(&self, label: &str) -> &str {
-        self.fields.iter().find(|f| f.0 == label).map_or("", |f| f.1.as_str())
-    }
-
-    /// Returns the grades of the rule. Each is a word, possibly followed by the part that it applies to in brackets.
-    pub fn grades(&self) -> Vec<String> {
-        let mut depth = 0;
-        let mut plain = String::new();
-        for c in self.field("Grade").chars() {
-            match c {
-                '(' => depth += 1,
-                ')' => depth -= 1,
-                c if depth == 0 => plain.push(c),
-                _ => {}
-            }
-        }
-        plain.split(',').map(|g| g.trim().to_string()).collect()
-    }
-
-    /// Returns the files that a field names, each with the name in code that follows it.
-    pub fn references(&self, label: &str) -> Vec<(String, Option<String>)> {
-        let mut out: Vec<(String, Option<String>)> = Vec::new();
-        for part in self.field(label).split(", ").filter(|part| !part.is_empty()) {
-            let mut quoted = part.split('`').skip(1).step_by(2);
-            let file = quoted.next().unwrap_or_else(|| panic!("{}: {label}: no file in `{part}`", self.id));
-            out.push((file.to_string(), quoted.next().map(str::to_string)));
-        }
-        out
-    }
-}
-
-fn entries() -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
-    let (mut built, mut open, mut formula) = (true, false, None::<String>);
-    for line in read(PAGE).lines() {
-        if let Some(title) = line.strip_prefix("## ") {
-            built &= title != "Known, not built yet";
-            open = false;
-        } else if let Some(title) = line.strip_prefix("### ") {
-            let (id, title) = title.split_once(' ').unwrap();
-            entries.push(Entry { id: id.to_string(), title: title.to_string(), built, fields: Vec::new() });
-            open = true;
-        } else if line == "```text" && open {
-            formula = Some(String::new());
-        } else if let ("```", Some(text)) = (line, &formula) {
-            entries.last_mut().unwrap().fields.push(("Formula".to_string(), text.clone()));
-            formula = None;
-        } else if let Some(text) = &mut formula {
-            *text += line;
-            text.push('\n');
-        } else if let (true, Some((label, text))) = (open, line.strip_prefix("- ").and_then(|l| l.split_once(": "))) {
-            entries.last_mut().unwrap().fields.push((label.to_string(), text.to_string()));
-        }
-    }
-    entries
-}
+/// All entries of the handbook in order, as the document has them now.
+pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| parse(read(PAGE).leak()));
 
 /// Returns the ids of rules that were replaced, from the table of the section "Superseded".
 pub fn superseded() -> BTreeSet<String> {

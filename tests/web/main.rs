@@ -1,5 +1,5 @@
 //! Tests the page of `ninebit inspect`: in node the embedded module draws and finds the same as the program, and the page works in a
-//! browser.
+//! browser. So does the report of `ninebit replay`.
 //!
 //! Tests that need node, Chromium (`CHROMIUM` names it) or Firefox are *ignored* if these are missing. Forty scenes are drawn;
 //! `NINEBIT_WEB_SCENES=0` draws all of them.
@@ -38,6 +38,7 @@ fn main() {
         Trial::test("frames_are_the_programs", frames).with_ignored_flag(!node),
         Trial::test("findings_are_the_programs", findings).with_ignored_flag(!node),
         Trial::test("the_page_works_in_a_browser", page).with_ignored_flag(!browser),
+        Trial::test("the_report_works_in_a_browser", report).with_ignored_flag(!browser),
         Trial::test("the_page_opens_in_firefox", firefox).with_ignored_flag(!node || !runs("firefox", "--version")),
         Trial::test("requests_that_make_no_sense_are_refused", refused),
         Trial::test("places_count_as_scripts_do", places),
@@ -421,6 +422,52 @@ draws: [
         depth_test: (function: LessOrEqual), stencil_test: (function: Always, pass: IncrementSaturate)),
 ])"#;
 
+/// Runs a script of Chromium with a folder, further arguments, and perhaps a folder for pictures.
+fn chromium(script: &str, folder: &Path, arguments: &[PathBuf]) -> Result<(), Failed> {
+    let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));
+    let arguments = [folder.to_path_buf()].into_iter().chain(arguments.to_vec()).chain(pictures.map(PathBuf::from));
+    let run = Command::new("node").arg(script).args(arguments).output().unwrap();
+    print!("{}", String::from_utf8_lossy(&run.stdout));
+    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+}
+
+/// Replays three scenes: of one another value of a policy is expected, of one only a digest is known, one is broken.
+fn report() -> Result<(), Failed> {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir(at("scenes")).unwrap();
+    let copied = files(Path::new("vectors/scenes/dot3"), ".png").into_iter();
+    for path in
+        copied.chain(["constant-light.ron", "hemisphere.ron"].map(|name| Path::new("vectors/scenes/dot3").join(name)))
+    {
+        std::fs::copy(&path, at("scenes").join(path.file_name().unwrap())).unwrap();
+    }
+    let ninebit = |arguments: &str| {
+        let arguments = arguments.split(' ');
+        let run = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .env_remove("CI")
+            .output();
+        run.unwrap().status.code()
+    };
+    assert_eq!(ninebit("replay --bless scenes"), Some(0));
+    let plan = load(&at("scenes/constant-light.ron")).unwrap().0.plan;
+    let mut policies = Policies::default();
+    policies.set("CMB-8=each").unwrap();
+    for (name, digest) in
+        [("constant-light", digests(&plan.under(policies))[0].clone()), ("hemisphere", "0".repeat(64))]
+    {
+        let expectation = at(&format!("scenes/{name}.expect.ron"));
+        let text = std::fs::read_to_string(&expectation).unwrap();
+        let (before, rest) = text.split_once("sha256: \"").unwrap();
+        std::fs::write(&expectation, format!("{before}sha256: \"{digest}{}", &rest[64..])).unwrap();
+    }
+    std::fs::write(at("scenes/broken.ron"), "(version: 1, profile: Nv11)").unwrap();
+    assert_eq!(ninebit("replay scenes --report html=report.html"), Some(3));
+    chromium("tests/web/report.mjs", folder.path(), &[])
+}
+
 fn page() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -454,6 +501,15 @@ fn page() -> Result<(), Failed> {
     let mut native = Native::from_path(path);
     let ideal = native.differing(json!("ideal"), None);
     let against_literal = native.differing(json!({ "CMB-3": "literal" }), None);
+    let asked = native.ask(json!({ "do": "alternatives", "target": 0, "pixel": [pixel.0, pixel.1], "until": null }));
+    let differs = |rule: &&Value| {
+        let words: Vec<&Value> = rule["values"].as_array().unwrap().iter().map(|value| &value["word"]).collect();
+        words.iter().any(|word| *word != words[0])
+    };
+    let open: Vec<&str> =
+        asked["rules"].as_array().unwrap().iter().filter(differs).map(|rule| rule["rule"].as_str().unwrap()).collect();
+    let undecided = format!("Of the undecided rules {} would change this pixel.", open.join(", "));
+    assert!(!open.is_empty());
     let (text, edited) = native.edited(json!(["stages", 0, "rgb", "inputs", 0, "mapping"]), "UnsignedIdentity");
     let changed = parse(&text, path, &Limits::default()).unwrap();
     assert_eq!(digests(&changed.plan)[0], edited);
@@ -513,6 +569,7 @@ fn page() -> Result<(), Failed> {
             json!({ "page": page, "part": "Scale of stage 1 rgb", "value": "Two", "text": text, "digest": digest })
         })
         .to_vec();
+    inspect(Path::new("vectors/scenes/texture-shader/mirror-ball.ron"), &at("mirror-ball.html"));
     // One change after another.
     let mut twice = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
@@ -526,14 +583,10 @@ fn page() -> Result<(), Failed> {
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
         "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
-        "ideal": ideal, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
+        "ideal": ideal, "undecided": undecided, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
         "pasted": native.digest(None), "texture": texture, "edited": edited, "text": text, "literal": digests(&literal)[0],
         "same": png(&pixels), "other": STANDARD.encode(four_off(frame)), "differing": "4 pixels differ", "bad": bad,
     });
     std::fs::write(at("expected.json"), expected.to_string()).unwrap();
-    let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));
-    let arguments = [folder.path().to_path_buf(), at("expected.json")].into_iter().chain(pictures.map(PathBuf::from));
-    let run = Command::new("node").arg("tests/web/page.mjs").args(arguments).output().unwrap();
-    print!("{}", String::from_utf8_lossy(&run.stdout));
-    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+    chromium("tests/web/page.mjs", folder.path(), &[at("expected.json")])
 }

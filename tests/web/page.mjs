@@ -54,6 +54,15 @@ async function tests() {
   // A rule leads to its text.
   await browser.value('document.querySelector("#chain .badge").click()');
   assert.ok((await text("rule-text")).includes("Formula") && (await browser.value('document.getElementById("rule").open')));
+  // Its window begins at its beginning, says each heading once, and shows code as code.
+  const shown = await browser.value(`(() => { inspector.rule("CMB-3"); const box = document.getElementById("rule").getBoundingClientRect(), title = document.getElementById("rule-title").getBoundingClientRect();
+    return { heads: [...document.querySelectorAll("#rule-text h3")].map((each) => each.textContent), codes: document.querySelectorAll("#rule-text p code").length, text: document.getElementById("rule").innerText,
+      scrolled: document.getElementById("rule-text").scrollTop + document.getElementById("rule").scrollTop, whole: box.top >= 0 && box.bottom <= innerHeight && title.top >= box.top }; })()`);
+  assert.ok(shown.scrolled === 0 && shown.whole, JSON.stringify(shown));
+  assert.ok(shown.heads.includes("Commands") && !shown.heads.includes("Command") && new Set(shown.heads).size === shown.heads.length, `${shown.heads}`);
+  assert.ok(shown.codes > 3 && !shown.text.includes("`"), shown.text);
+  await browser.value('[...document.querySelectorAll("#rule-text button.rule")].at(-1).click()');
+  assert.ok(!(await text("rule-title")).startsWith("CMB-3 ") && (await browser.value('document.getElementById("rule").open')));
   await browser.value('document.getElementById("rule").close()');
 
   // Edit, undo, redo.
@@ -81,13 +90,28 @@ async function tests() {
   for (const hostile of ["#e30", "#####", `#${Buffer.from('{"p":[1e9,-1],"t":99,"e":[9,"x",{}],"v":{"a":[]}}').toString("base64url")}`]) {
     await opened("stone.html", { url: address("stone.html") + hostile });
     assert.equal(await browser.value("inspector.view.picture !== null"), true, hostile);
+    if (hostile === "#####") assert.ok((await text("message")).startsWith("The address is not one of this page"), await text("message"));
     sound("stone.html");
   }
+  // A link of a long change holds it; one that would be too long is refused, and says nothing else.
+  await browser.value('document.getElementById("reset").click()');
+  const long = (length) => browser.value(`inspector.commit(inspector.data.text + "\\n// " + "\u00e9#".repeat(${length}))`);
+  await long(150_000);
+  const [longLink, longText] = [await browser.value("location.href"), await browser.value("inspector.text")];
+  sound("stone.html");
+  await opened("stone.html", { url: longLink });
+  assert.equal((await browser.value("inspector.text")) === longText, true, "the link of a long change has another text");
+  await long(400_000);
+  await browser.value("inspector.link()");
+  assert.deepEqual([await browser.value("location.hash"), (await text("message")).startsWith("The changes are too long for a link")], ["", true]);
+  sound("stone.html");
   await browser.value('document.getElementById("reset").click()');
 
   // Policies: a value that changes the pixel does so when it is chosen.
   await browser.value('document.getElementById("tab-rules").click()');
   assert.ok((await text("rules")).includes("CMB-3"));
+  await browser.value(`inspector.choose(${JSON.stringify(expected.pixel)})`);
+  assert.equal(await browser.value('document.querySelector("#rules p").textContent'), expected.undecided);
   await browser.value('inspector.policy("CMB-3", "literal")');
   assert.equal(await digest(), expected.literal);
   await browser.value('document.getElementById("undo").click()');
@@ -177,6 +201,14 @@ async function tests() {
   await browser.press(",");
   assert.equal(await browser.value("inspector.until"), expected.steps.length - 2);
   sound("steps.html");
+
+  // The coordinate r of a texture shader is no red of a register.
+  await opened("mirror-ball.html");
+  await browser.value(`(() => { inspector.choose([128, 128]); inspector.chain.fill(); })()`);
+  const boxes = await browser.value(`[...document.querySelectorAll("#chain .box")].map((box) => [box.querySelector(".name").textContent, box.querySelector(".how").textContent])`);
+  assert.ok(["s", "t", "r"].every((name) => boxes.some(([each]) => each === name)), JSON.stringify(boxes));
+  assert.deepEqual(boxes.filter(([name, how]) => (/^unit\d$/.test(name) && !how.startsWith("mix ")) || (how.startsWith("float ") && /unit\d/.test(how))), []);
+  sound("mirror-ball.html");
 
   // A program in another language: its boxes can be changed, the page says what that does, and undo brings the language back.
   for (const { page, part, value, digest: changed, text: rewritten } of expected.rewritten) {

@@ -31,7 +31,7 @@ enum ninebit_status
    */
   NINEBIT_STATUS_MISSING = 4,
   /*
-   A limit has been exceeded.
+   A limit has been exceeded, or the system has no thread left.
    */
   NINEBIT_STATUS_LIMIT = 5,
   /*
@@ -177,7 +177,7 @@ ninebit_status ninebit_target_size(const struct ninebit_scene *scene,
 
 /*
  Renders the scene and writes the target with number `target`, row by row from the top: its stored words, and bytes R, G, B, A as a picture shows
- them. Either may be null. `threads` is the number of threads, or 0 for one on each core; the result does not depend on it.
+ them. Either may be null. `threads` is the number of threads, at most 1024, or 0 for one on each core; the result does not depend on it.
 
  # Safety
  `scene` came from this library; `words` is null or has room for `pixels` words, `rgba` is null or has room for 4 times as many bytes; `message` is

@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a thread, in bytes. Sanitizers need some of it themselves. */
+#define STACK (64 << 10)
+
 static int failed;
 #define CHECK(condition) \
     do { \
@@ -24,6 +27,30 @@ static void refused(ninebit_status status, ninebit_status wanted, char **message
 static const ninebit_scene *shared;
 static uint32_t *expected;
 static size_t pixels;
+
+/* A scene whose matrix is nested as deeply as it may be, read, drawn and traced on a small stack. */
+static void *small(void *unused)
+{
+    char text[1024] = "(version: 1, profile: Nv2a, names: (matrices: {\"a\": ", *json = NULL, *message = NULL;
+    ninebit_scene *scene;
+    uint32_t *words = malloc(64 * 48 * sizeof *words);
+    int n;
+    (void)unused;
+    for (n = 0; n < 15; n++) strcat(text, "Product(");
+    strcat(text, "Orthographic(left: -2, right: 2, bottom: -2, top: 2, near: -3, far: 3)");
+    for (n = 0; n < 15; n++) strcat(text, ")");
+    strcat(text, "}), targets: [(width: 64, height: 48, depth: Z24S8)], draws: [(vertices: Matrix(matrix: \"a\", mesh: Sphere(slices: 24, "
+                 "stacks: 12), diffuse: Normal), depth_test: (function: Less))])");
+    CHECK(ninebit_scene_parse(text, strlen(text), "deep.ron", &scene, &message) == NINEBIT_STATUS_OK);
+    if (message) printf("%s\n", message);
+    CHECK(ninebit_render(scene, 0, 1, words, NULL, 64 * 48, NULL) == NINEBIT_STATUS_OK);
+    CHECK(ninebit_trace(scene, 0, 32, 24, &json, NULL) == NINEBIT_STATUS_OK && json != NULL);
+    ninebit_text_free(json);
+    ninebit_text_free(message);
+    ninebit_scene_free(scene);
+    free(words);
+    return NULL;
+}
 
 static void *draw(void *unused)
 {
@@ -49,6 +76,7 @@ int main(int count, char **arguments)
     const ninebit_method methods[] = {{0x0ac0, 0x48440000}, {0x1e40, 0x000020c0}, {0x0288, 0x0000000c}, {0x028c, 0x00001c80}, {0x1e60, 0x00000101}};
     ninebit_inputs inputs[2] = {{{128, 200, 230, 255}, {0}, {0}, {{128, 128, 255, 255}}}, {{0, 0, 0, 255}, {0}, {0}, {{-256, 0, 0, 0}}}};
     pthread_t threads[2];
+    pthread_attr_t tiny;
     int n;
 
     if (count != 2) return 2;
@@ -66,6 +94,9 @@ int main(int count, char **arguments)
     refused(ninebit_target_size(scene, 1, &width, &height, &message), NINEBIT_STATUS_ARGUMENT, &message, "no target 1");
     refused(ninebit_render(scene, 0, 1, words, rgba, 7, &message), NINEBIT_STATUS_ARGUMENT, &message, "8 pixels");
     refused(ninebit_render(scene, 0, 1, (uint32_t *)(rgba + 1), NULL, 8, &message), NINEBIT_STATUS_ARGUMENT, &message, "aligned");
+    refused(ninebit_render(scene, 0, 1025, words, rgba, 8, &message), NINEBIT_STATUS_ARGUMENT, &message, "not a number from 0 to 1024");
+    refused(ninebit_render(scene, 0, (size_t)-1, words, rgba, 8, &message), NINEBIT_STATUS_ARGUMENT, &message, "not a number from 0 to 1024");
+    CHECK(ninebit_render(scene, 0, 1024, words, rgba, 8, NULL) == NINEBIT_STATUS_OK);
     refused(ninebit_trace(scene, 0, 4, 0, &json, &message), NINEBIT_STATUS_ARGUMENT, &message, "4");
     CHECK(json == NULL);
     refused(ninebit_trace(NULL, 0, 0, 0, &json, &message), NINEBIT_STATUS_ARGUMENT, &message, "scene is null");
@@ -100,6 +131,10 @@ int main(int count, char **arguments)
     for (n = 0; n < 2; n++) CHECK(pthread_join(threads[n], NULL) == 0);
     free(expected);
     ninebit_scene_free(scene);
+
+    /* A caller with little stack. */
+    CHECK(pthread_attr_init(&tiny) == 0 && pthread_attr_setstacksize(&tiny, STACK) == 0);
+    CHECK(pthread_create(&threads[0], &tiny, small, NULL) == 0 && pthread_join(threads[0], NULL) == 0);
     puts(failed ? "failed" : "all is well");
     return failed;
 }

@@ -53,6 +53,44 @@ fn c(library: &str) -> Result<(), Failed> {
     Ok(())
 }
 
+/// Compiles a text with every warning as an error, in C99 and, by the compiler of C++, in C++11.
+fn compiles(text: &str, include: &Path) -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let source = folder.path().join("program.c");
+    std::fs::write(&source, text)?;
+    for (name, compiler, language) in COMPILERS {
+        let compiler = named(name, compiler);
+        if !works(&compiler, &["--version"]) {
+            continue;
+        }
+        let mut compile = Command::new(compiler);
+        compile.args(language).args(["-Wall", "-Wextra", "-Werror", "-pedantic", "-O2", "-I"]).arg(include).arg("-c");
+        run(compile.arg(&source).arg("-o").arg(folder.path().join("program.o")))?;
+    }
+    Ok(())
+}
+
+/// Compilers, the variables that name others, and the standards.
+const COMPILERS: [(&str, &str, [&str; 3]); 4] = [
+    ("CC", "cc", ["-x", "c", "-std=c99"]),
+    ("CXX", "c++", ["-x", "c++", "-std=c++11"]),
+    ("CLANG", "clang", ["-x", "c", "-std=c99"]),
+    ("CLANGXX", "clang++", ["-x", "c++", "-std=c++11"]),
+];
+
+/// Checks that the example of the page and a program that needs next to nothing of a header compile without warnings.
+fn warnings() -> Result<(), Failed> {
+    let example = include_str!("../../../docs/c.md")
+        .split("```c\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .ok_or("no example")?;
+    compiles(example, &Path::new(HERE).join("include"))?;
+    let reader = "#include \"ninebit_vectors.h\"\n\nint main(void)\n{\n    static ninebit_table table;\n    \
+                  return !ninebit_open(&table, stdin);\n}\n";
+    compiles(reader, &Path::new(HERE).join("../../vectors/harness/c"))
+}
+
 /// Checks that the header is what cbindgen generates from the library.
 fn header() -> Result<(), Failed> {
     let config = Path::new(HERE).join("cbindgen.toml");
@@ -99,10 +137,11 @@ const EXPECTED: &str =
 
 fn main() {
     let arguments = Arguments::from_args();
-    let compiles = works(&named("CC", "cc"), &["--version"]);
+    let has_compiler = works(&named("CC", "cc"), &["--version"]);
     let trials = vec![
-        Trial::test("c, shared", || c("libninebit_c.so")).with_ignored_flag(!compiles),
-        Trial::test("c, static", || c("libninebit_c.a")).with_ignored_flag(!compiles),
+        Trial::test("c, shared", || c("libninebit_c.so")).with_ignored_flag(!has_compiler),
+        Trial::test("c, static", || c("libninebit_c.a")).with_ignored_flag(!has_compiler),
+        Trial::test("c and c++, without warnings", warnings).with_ignored_flag(!has_compiler),
         Trial::test("c++", cpp).with_ignored_flag(!works(&named("CXX", "c++"), &["--version"])),
         Trial::test("python", python)
             .with_ignored_flag(!works(&named("NINEBIT_C_PYTHON", "python3"), &["-c", "import numpy"])),

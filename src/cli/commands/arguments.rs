@@ -1,6 +1,7 @@
 //! Arguments that several commands share, and the context of every command.
 
 use clap::{Args, ValueEnum};
+use ninebit::shown;
 use ninebit::state::Named;
 use ninebit_files::output::{write_json, write_text};
 
@@ -55,7 +56,7 @@ pub(super) fn named<T: Named>(text: &str) -> Result<T, String> {
 
 /// Parses a whole number from 0 to `MAX`.
 pub(super) fn up_to<const MAX: usize>(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|number| *number <= MAX).ok_or_else(|| format!("not a number from 0 to {MAX}"))
+    text.parse().ok().filter(|number| *number <= MAX).ok_or_else(|| shown::not_up_to(MAX))
 }
 
 /// Context of every command.

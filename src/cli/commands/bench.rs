@@ -20,6 +20,8 @@ pub(crate) struct Arguments {
     policies: PolicyArguments,
     #[command(flatten)]
     engine: EngineArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// Frames that are timed of each scene
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
@@ -101,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             last = now;
             spent
         };
-        let (_, plan) = load(path, &arguments.policies, context)?;
+        let (_, plan) = load_to_draw(path, &arguments.policies, arguments.work, context)?;
         let load_microseconds = lap();
         let renderer = Renderer::new(&plan, &options);
         let prepare_microseconds = lap();

@@ -4,6 +4,7 @@ use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use ninebit::threads::on_threads;
 use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
 
@@ -86,9 +87,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let options = RenderOptions { threads: 1, ..arguments.engine.options()? };
     let policies = arguments.policies.policies()?;
-    let team = rayon::ThreadPoolBuilder::new().num_threads(arguments.engine.threads).build();
-    let team = team.map_err(|error| Failure::fault(&error.to_string()))?;
-    let outcomes: Vec<Outcome> = team.install(|| {
+    let outcomes: Vec<Outcome> = on_threads(arguments.engine.threads, || {
         let mut frames = frames(&suites)?;
         if let Some(count) = arguments.sample {
             frames = captures::sample(frames, count);

@@ -3,6 +3,9 @@
 use super::*;
 use std::fmt::Write;
 
+use ninebit::engine;
+use ninebit_report::Shaded;
+
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -14,14 +17,18 @@ pub(crate) struct Arguments {
 
 /// Checks and plans a scene and prints its cost.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (scene, _) = arguments.scene.load(context)?;
-    let cost = Cost::from_scene(&scene);
-    let value = || json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
-    arguments.format.print(|| text(&scene, &cost), || format!("{:#}", value()))
+    let (scene, plan) = arguments.scene.load(context)?;
+    let (cost, shaded) = (Cost::from_scene(&scene), Shaded::of(engine::shaded(&plan)));
+    let value = || {
+        let Shaded { pixels, exact, seconds } = shaded;
+        let shaded = json!({ "pixels": pixels, "exact": exact, "estimated_seconds": seconds });
+        json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost, "shaded": shaded })
+    };
+    arguments.format.print(|| text(&scene, &cost, &shaded), || format!("{:#}", value()))
 }
 
 /// Returns the cost as a table.
-fn text(scene: &Scene, cost: &Cost) -> String {
+fn text(scene: &Scene, cost: &Cost, shaded: &Shaded) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<16}{value}");
@@ -34,6 +41,10 @@ fn text(scene: &Scene, cost: &Cost) -> String {
         row("target", format!("{}: {width} x {height}, {format}{depth}", shown::name(&target.name)));
     }
     row("target pixels", cost.target_pixels.to_string());
+    row("shaded pixels", shaded.text());
+    if shaded.pixels > Limits::default().shaded_pixels {
+        row("", "more than the commands that draw take without `--work`".to_owned());
+    }
     row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
     row("memory", format!("about {}", bytes(cost.memory_bytes)));
     text

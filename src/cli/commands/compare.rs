@@ -5,12 +5,14 @@ use ninebit_report::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
 
-use super::engine::MAXIMUM_THREADS;
+use ninebit::threads::MAXIMUM as MAXIMUM_THREADS;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// What the ideal decides by itself
     #[arg(long, value_enum, value_name = "MODE", default_value_t = ModeArgument::Free)]
     mode: ModeArgument,
@@ -46,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ModeArgument::Follow => Mode::Follow,
         ModeArgument::PerOp => Mode::PerOp,
     };
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load_to_draw(arguments.work, context)?;
     destination.map_or(Ok(()), Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let comparison =
@@ -58,8 +60,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let format = arguments.format.get();
     format.print(|| comparison_text(&plan, &comparison), || comparison_json(&plan, &comparison))?;
     if comparison.rules.iter().any(|rule| rule.exceeds()) {
-        let message = "a rule is further from the ideal than docs/numerics.md says";
-        let help = "the table above names it: please report it with the scene";
+        let message = "a rule is further from the ideal than it says";
+        let help = "the table above names it, and `ninebit rule ID` prints it: please report it with the scene";
         return Err(Failure { exit: Exit::Difference, report: Report::message(None, message, help) });
     }
     Ok(())

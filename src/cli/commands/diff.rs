@@ -29,6 +29,8 @@ pub(crate) struct Arguments {
     target: Option<String>,
     #[command(flatten)]
     policies: PolicyArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// How to print the result
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
@@ -94,7 +96,7 @@ fn scene_findings<'a>(
     difference: &Difference,
     context: Context,
 ) -> Result<SceneFindings<'a>, Failure> {
-    let (scene, plan) = load(path, &arguments.policies, context)?;
+    let (scene, plan) = load_to_draw(path, &arguments.policies, arguments.work, context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let name = scene.targets[target].name.clone();
     let (width, height) = (scene.targets[target].width, scene.targets[target].height);

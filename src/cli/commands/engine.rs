@@ -4,6 +4,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use ninebit::engine::{Engine, Isa, RenderOptions};
 use ninebit::state::Named;
+use ninebit::threads;
 
 use super::{Failure, up_to};
 
@@ -11,7 +12,7 @@ use super::{Failure, up_to};
 #[derive(Clone, Debug, Args)]
 pub(crate) struct EngineArguments {
     /// Threads; 0 takes all cores. The picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<MAXIMUM_THREADS>)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = up_to::<{ threads::MAXIMUM }>)]
     pub(crate) threads: usize,
     /// What draws: one pixel at a time by the definition, or blocks of pixels. The picture does not depend on it
     #[arg(long, value_name = "ENGINE", default_value = "fast", value_parser = PossibleValuesParser::new(Engine::NAMES))]
@@ -33,6 +34,3 @@ impl EngineArguments {
         Ok(RenderOptions { threads: self.threads, engine, isa, band: None })
     }
 }
-
-/// Maximum of `--threads`.
-pub(super) const MAXIMUM_THREADS: usize = 1024;

@@ -151,11 +151,7 @@ impl From<ImageError> for Failure {
             _ => Exit::Invalid,
         };
         // The library's advice is about images that scenes name; here the command line names them.
-        let help = if error.is_missing() {
-            "check the spelling and the folder; upper and lower case count"
-        } else {
-            error.help()
-        };
-        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), help) }
+        let help = if error.is_missing() { ninebit_scene::path::advice(error.path()) } else { error.help().to_owned() };
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), &help) }
     }
 }

@@ -11,6 +11,8 @@ pub(crate) struct Arguments {
     /// Also render, and print what was counted beside what was predicted
     #[arg(long)]
     count: bool,
+    #[command(flatten)]
+    work: WorkArguments,
     /// How to print the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -18,7 +20,10 @@ pub(crate) struct Arguments {
 
 /// Prints the plan of a scene.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = match arguments.count {
+        true => arguments.scene.load_to_draw(arguments.work, context)?,
+        false => arguments.scene.load(context)?,
+    };
     let draws = explain(&scene, &plan);
     let counted = arguments.count.then(|| engine::count(&plan));
     let counted = counted.as_deref();

@@ -12,7 +12,7 @@ use ninebit_scene::load_with;
 use serde_json::Value;
 
 use super::scene::refused;
-use crate::page;
+use crate::{page, undecided};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -23,6 +23,8 @@ pub(crate) struct Arguments {
     output: Destination,
     #[command(flatten)]
     policies: PolicyArguments,
+    #[command(flatten)]
+    work: WorkArguments,
 }
 
 /// Writes a page that shows the scene and computes it in the browser.
@@ -30,6 +32,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let policies = arguments.policies.policies()?;
     let gathered = Gathered::default();
     let loaded = load_with(&arguments.scene, &Limits::default(), &gathered).map_err(refused)?;
+    loaded.affordable(arguments.work.pixels).map_err(refused)?;
     if !loaded.warnings.is_empty() {
         terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
     }
@@ -51,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         "chosen": chosen(&policies),
         "policies": alternatives(),
         "rules": page::rules(),
+        "undecided": { "none": undecided::sentence([], "this pixel"), "some": undecided::sentence(["{}"], "this pixel") },
     });
     Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
 }

@@ -23,6 +23,7 @@ mod program_file;
 mod registers;
 mod render;
 mod replay;
+mod rule;
 mod scene;
 mod signals;
 mod terminal;
@@ -36,6 +37,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::builder::PossibleValuesParser;
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::engine::RenderOptions;
 use ninebit::limits::Limits;
@@ -55,7 +57,7 @@ use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
-use scene::{PolicyArguments, SceneArguments, chosen_target, load};
+use scene::{PolicyArguments, SceneArguments, WorkArguments, chosen_target, load_to_draw};
 use terminal::{ColorChoice, Level, Progress};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
@@ -118,6 +120,8 @@ enum Command {
     /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
     /// missing, such as an expectation; 5: a limit; 6: an internal error in one; 7: a report or picture was not written.
     Replay(replay::Arguments),
+    /// Print a rule of the chip: formula, grade, source, code, units; or list all rules
+    Rule(rule::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -150,7 +154,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            let end = print_parser_message(&error, arguments);
+            let end = scene_as_command(&error).unwrap_or_else(|| print_parser_message(&error, arguments));
             return finish(end, color.on_stderr());
         }
     };
@@ -171,6 +175,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Vectors(command) => vectors::run(&command),
         Command::Captures(command) => captures::run(&command),
         Command::Replay(arguments) => replay::run(&arguments, context),
+        Command::Rule(arguments) => rule::run(&arguments),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Bench(arguments) => bench::run(&arguments, context),
@@ -189,6 +194,21 @@ fn finish(result: Result<(), Failure>, color: bool) -> Exit {
             exit
         }
     }
+}
+
+/// Returns the failure of a command line that names a scene where a command belongs.
+fn scene_as_command(error: &clap::Error) -> Option<Result<(), Failure>> {
+    let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let path = Path::new(given);
+    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+    (is_scene || path.is_file()).then(|| {
+        let scene = shown::path(path);
+        let help = match is_scene {
+            true => format!("did you mean `ninebit render {scene} -o {}`?", shown::path(&path.with_extension("png"))),
+            false => "`ninebit --help` lists the commands".to_owned(),
+        };
+        Err(Failure::usage(format!("`{scene}` names a file, not a command"), help))
+    })
 }
 
 /// Prints the parser's message: help to stdout, errors to stderr.

@@ -16,11 +16,19 @@ pub(crate) struct Arguments {
     /// The picture, a PNG; `-` is stdout
     #[arg(short, long, value_name = "FRAME.png", value_parser = picture::output("png"))]
     output: Destination,
+    /// Write an alpha of 255 in every pixel of the picture
+    #[arg(long, conflicts_with = "alpha")]
+    opaque: bool,
+    /// Write the alpha that is stored, which viewers show as see-through; it is written anyway, but not without a note
+    #[arg(long)]
+    alpha: bool,
     /// Which render target to write [default: the scene's first]
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
     #[command(flatten)]
     engine: EngineArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// Its depth buffer: NAME.png, grey of 16 bits, the upper 16 of each depth; any other name, words as the chip stores them, little-endian: two
     /// bytes of Z16, four of Z24S8, whose low byte is the stencil
     #[arg(long, value_name = "FILE", value_parser = picture::depths())]
@@ -56,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     }
     let options = arguments.engine.options()?;
     let mut clock = Clock::start();
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load_to_draw(arguments.work, context)?;
     destinations().try_for_each(Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let depth_buffer = scene.targets[target].depth;
@@ -74,7 +82,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     // Frees memory for the picture.
     drop(plan);
     let surface = &frames.surfaces[target];
-    let pixels = surface.rgba8();
+    let mut pixels = surface.rgba8();
+    if arguments.opaque {
+        pixels.iter_mut().for_each(|pixel| pixel[3] = 255);
+    }
     arguments.output.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;
     if let (Some(destination), Some(buffer)) = (&arguments.depth, depth_buffer) {
         destination.write(&depths(surface, buffer.format, destination)?)?;
@@ -83,6 +94,15 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         destination.write(&little_endian(&surface.words, surface.format.bytes() as usize))?;
     }
     clock.lap("write");
+    let clear = pixels.iter().filter(|pixel| pixel[3] < 255).count() as u64;
+    if clear > 0 && !arguments.alpha {
+        let message = format!(
+            "{} of the picture have an alpha below 255: viewers show them see-through",
+            shown::count(clear, "pixel")
+        );
+        let help = "`--opaque` writes the colours alone; `--alpha` says that alpha is wanted";
+        terminal::print(Level::Note, &Report::message(None, &message, help), context.color);
+    }
 
     if statistics_wanted {
         let target = |(target, surface): (&Target, &Surface)| {

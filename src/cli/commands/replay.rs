@@ -28,6 +28,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     engine: EngineArguments,
     #[command(flatten)]
+    work: WorkArguments,
+    #[command(flatten)]
     policies: PolicyArguments,
     /// Write reports, `-` for stdout: json=FILE, junit=FILE, html=FILE; github prints annotations. Separated by commas
     #[arg(long = "report", value_name = "REPORT", value_delimiter = ',', value_parser = wanted)]
@@ -118,6 +120,7 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
     }
     Ok(Options {
         render: arguments.engine.options()?,
+        limits: Limits { shaded_pixels: arguments.work.pixels, ..Limits::default() },
         policies,
         profile: arguments.profile.as_deref().and_then(Profile::from_name),
         bless: arguments.bless,

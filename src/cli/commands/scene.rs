@@ -24,6 +24,14 @@ pub(crate) struct SceneArguments {
     policies: PolicyArguments,
 }
 
+/// The limit of work for commands that draw.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct WorkArguments {
+    /// Draw a scene of up to so many shaded pixels; `ninebit check` says how many it has
+    #[arg(long = "work", value_name = "PIXELS", default_value_t = Limits::default().shaded_pixels)]
+    pub(crate) pixels: u64,
+}
+
 /// Arguments that choose alternatives of rules.
 #[derive(Debug, Default, Args)]
 pub(crate) struct PolicyArguments {
@@ -37,6 +45,11 @@ impl SceneArguments {
     pub(crate) fn load(&self, context: Context) -> Result<(Scene, Plan), Failure> {
         load(&self.scene, &self.policies, context)
     }
+
+    /// Like [`load`](Self::load), but refuses a scene that takes more work than allowed.
+    pub(crate) fn load_to_draw(&self, work: WorkArguments, context: Context) -> Result<(Scene, Plan), Failure> {
+        load_to_draw(&self.scene, &self.policies, work, context)
+    }
 }
 
 /// Reads, checks and plans the scene file at `path`; warnings go to stderr.
@@ -45,13 +58,27 @@ pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) ->
     Ok((loaded.scene, loaded.plan.under(policies)))
 }
 
-/// Reads, checks and plans a scene with a ground truth. Returns an error if it has none.
+/// Like [`load`], but refuses a scene that takes more work than allowed.
+pub(crate) fn load_to_draw(
+    path: &Path,
+    policies: &PolicyArguments,
+    work: WorkArguments,
+    context: Context,
+) -> Result<(Scene, Plan), Failure> {
+    let (loaded, policies) = read(path, policies, context)?;
+    loaded.affordable(work.pixels).map_err(refused)?;
+    Ok((loaded.scene, loaded.plan.under(policies)))
+}
+
+/// Reads, checks and plans a scene with a ground truth. Returns an error if it has none, or takes more work than allowed.
 pub(crate) fn load_with_truth(
     path: &Path,
     policies: &PolicyArguments,
+    work: WorkArguments,
     context: Context,
 ) -> Result<((Scene, Plan), Truth), Failure> {
     let (loaded, policies) = read(path, policies, context)?;
+    loaded.affordable(work.pixels).map_err(refused)?;
     let Some(truth) = loaded.truth else {
         let message = format!("`{}` does not say what its picture ought to show", shown::path(path));
         let help = "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it";

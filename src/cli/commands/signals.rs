@@ -17,7 +17,7 @@ pub(crate) fn install() {
     let Ok(mut signals) = Signals::new(wanted) else { return };
     let wait = move || {
         if let Some(signal) = signals.forever().next() {
-            ninebit_files::output::abandon();
+            ninebit_files::pending::abandon();
             // The exit status tells which signal it was.
             let _ = emulate_default_handler(signal);
         }

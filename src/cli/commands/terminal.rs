@@ -51,6 +51,8 @@ pub(crate) enum Level {
     Error,
     /// `warning`, in bold yellow.
     Warning,
+    /// `note`, in bold green.
+    Note,
 }
 
 /// Prints a report to stderr. Errors of stderr are ignored.
@@ -63,6 +65,7 @@ pub(crate) fn print(level: Level, report: &Report, color: bool) {
             let (word, paint) = match level {
                 Level::Error => ("error", "\x1b[1;31m"),
                 Level::Warning => ("warning", "\x1b[1;33m"),
+                Level::Note => ("note", "\x1b[1;32m"),
             };
             let code = code.map_or(String::new(), |code| format!("[{code}]"));
             let (paint, reset) = if color { (paint, "\x1b[0m") } else { ("", "") };

@@ -36,6 +36,8 @@ pub(crate) struct Arguments {
     /// The texture format of a file [default: that of the DDS file, else A8R8G8B8]
     #[arg(long, value_name = "FORMAT", value_parser = named::<TextureFormat>)]
     format: Option<TextureFormat>,
+    #[command(flatten)]
+    work: WorkArguments,
     /// The palette of a P8 texture of a scene [default: that of the first unit that samples it]
     #[arg(long, value_name = "NAME")]
     palette: Option<String>,

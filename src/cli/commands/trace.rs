@@ -10,6 +10,8 @@ use ninebit_report::{write_trace_json, write_trace_text, write_traces_json};
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    work: WorkArguments,
     /// Column and row of the pixel, from the top left
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "rectangle")]
     pixel: Option<(u32, u32)>,
@@ -32,7 +34,7 @@ pub(crate) struct Arguments {
 
 /// Prints the steps of one pixel, or of a rectangle of pixels.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (scene, plan) = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load_to_draw(arguments.work, context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let Arguments { pixel, rectangle, draw, fragments, .. } = *arguments;
     let pixels = match (pixel, rectangle) {

@@ -6,12 +6,13 @@ mod compare;
 mod diff;
 mod export;
 mod list;
+mod show;
 mod sweep;
 
 use std::fmt::Write;
 
-use super::engine::MAXIMUM_THREADS;
 use super::*;
+use ninebit::threads::MAXIMUM as MAXIMUM_THREADS;
 use ninebit_vectors::error::VectorError;
 use ninebit_vectors::{BEHAVIOUR, Unit, pack, units};
 
@@ -26,6 +27,10 @@ pub(crate) enum Command {
     ///
     /// Exit status 0: it is; 1: the model says something else of some rows; 3: the pack is not valid; 4: a file is missing.
     Check(check::Arguments),
+    /// Print a row of a pack: inputs, intermediates, outputs, rules, and how it came to be
+    ///
+    /// Exit status 0: the model has it so; 1: the model says something else; 3: the row or table is not valid; 4: a file is missing.
+    Show(show::Arguments),
     /// Compare two packs row by row
     ///
     /// Rows are found by their ids. Exit status 0: the packs have the same rows; 1: they differ.
@@ -59,6 +64,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::List(arguments) => list::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Show(arguments) => show::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),

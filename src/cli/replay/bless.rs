@@ -48,7 +48,7 @@ pub(super) fn write(
 
 /// Returns the problem of an expectation that cannot be used.
 pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
-    Problem::new(error.kind(), error.code(), format!("`{}`: {error}", shown::path(path)), error.help())
+    Problem::new(error.kind(), error.code(), format!("`{}`: {error}", shown::path(path)), &error.help())
 }
 
 /// Returns the problem of an output that was not written.

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 
 use ninebit::engine::RenderOptions;
+use ninebit::limits::Limits;
 use ninebit::state::{Policies, Profile};
 use ninebit::threads::on_threads;
 use ninebit_files::catch_panic::catch_panic;
@@ -32,6 +33,8 @@ pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKin
 pub struct Options {
     /// Options for drawing. `threads` is the number of scenes that are drawn in parallel; 0 means one per core.
     pub render: RenderOptions,
+    /// Limits of the scenes.
+    pub limits: Limits,
     /// Policies for drawing.
     pub policies: Policies,
     /// If set, scenes of other chips are skipped.

@@ -212,6 +212,15 @@ impl Difference {
 
     /// Returns the full description in several lines.
     pub fn text(&self) -> String {
+        self.described(str::to_owned)
+    }
+
+    /// Returns the same with a few KB of the traces: from where they part on, or of one trace the end.
+    pub fn brief(&self) -> String {
+        self.described(excerpt)
+    }
+
+    fn described(&self, traced: fn(&str) -> String) -> String {
         let mut text = format!("{}\n\n", self.verdict());
         let (target, expected) = (shown::name(&self.target), shown::name(&self.expected));
         text += &format!("target    {target}\nexpected  {expected}\ndrawn     {}\n", self.drawn);
@@ -226,7 +235,7 @@ impl Difference {
                 let channels: Vec<_> = CHANNELS.into_iter().zip(&known.difference.channels).collect();
                 text += &format!("\ndrawn less expected, in pixels:\n{}", histogram_text("difference", &channels));
                 if let Some(traces) = &known.traces {
-                    text += &format!("\n{}", traces.text);
+                    text += &format!("\n{}", traced(&traces.text));
                 }
             }
             None if matches!(self.mismatch, Mismatch::Size { .. } | Mismatch::Depth { .. }) => {}
@@ -234,6 +243,42 @@ impl Difference {
         }
         text
     }
+}
+
+/// Bytes of a trace in a brief description.
+const BRIEF: usize = 4000;
+
+/// Returns the part of a trace's text that says most: its first line, and what follows the first line that differs (`>`) under its heading; without
+/// one, the end.
+fn excerpt(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let Some((head, rest)) = lines.split_first() else { return String::new() };
+    let fits = |lines: &mut dyn Iterator<Item = &&str>| {
+        let mut bytes = 0;
+        lines
+            .take_while(|line| {
+                bytes += line.len() + 1;
+                bytes <= BRIEF
+            })
+            .count()
+    };
+    let heading = |line: &&str| line.starts_with("  ") && !line.starts_with("   ") && !line.starts_with("  >");
+    let (from, to) = match rest.iter().position(|line| line.starts_with("  >")) {
+        Some(parted) => {
+            let from = rest[..parted].iter().rposition(heading).unwrap_or(parted);
+            // Of a long block the line itself, at least.
+            let from = if fits(&mut rest[from..=parted].iter()) > parted - from { from } else { parted };
+            (from, from + fits(&mut rest[from..].iter()))
+        }
+        None => (rest.len() - fits(&mut rest.iter().rev()), rest.len()),
+    };
+    let left = |count: usize, what: &str| match count {
+        0 => String::new(),
+        count => format!("... {count} lines {what}\n"),
+    };
+    let kept: String = rest[from..to].iter().map(|line| format!("{line}\n")).collect();
+    let after = left(rest.len() - to, "more, which `--report html=FILE` and `--artifacts DIR` have");
+    format!("{head}\n{}{kept}{after}", left(from, "before, which `--report html=FILE` and `--artifacts DIR` have"))
 }
 
 /// Formats a colour for reports.
@@ -333,5 +378,29 @@ impl std::fmt::Display for Summary {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_brief_trace_begins_where_the_traces_part() {
+        let block = |name: &str, mark: char| {
+            let lines: String = (0..100).map(|n| format!("  {mark} {name}.step{n}  1  2\n")).collect();
+            format!("  {name}\n{lines}")
+        };
+        let text = format!("pixel 1,2: both\n{}{}{}", block("first", ' '), block("second", '>'), block("third", ' '));
+        let brief = excerpt(&text);
+        assert!(brief.len() < BRIEF + 300, "{}", brief.len());
+        let lines: Vec<&str> = brief.lines().collect();
+        assert_eq!((lines[0], lines[2], lines[3]), ("pixel 1,2: both", "  second", "  > second.step0  1  2"));
+        assert!(lines[1].starts_with("... 101 lines before") && brief.contains("lines more"), "{brief}");
+        // Of one trace the end says how the stored word came to be.
+        let one = text.replace('>', " ");
+        let brief = excerpt(&one);
+        assert!(brief.len() < BRIEF + 300 && brief.ends_with("    third.step99  1  2\n"), "{brief}");
+        assert_eq!(excerpt("a\nb\n"), "a\nb\n");
     }
 }

@@ -1,7 +1,11 @@
 //! Expected picture, drawn picture and amplified difference in one picture.
 
+use std::borrow::Cow;
+use std::path::Path;
+
+use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene::diff::{SizeError, highlight};
-use ninebit_scene::image::Rgba;
+use ninebit_scene::image::{self, ImageLimits, Rgba};
 
 /// Width of the gap between two panels, in pixels.
 pub(in crate::replay) const GAP: usize = 8;
@@ -27,9 +31,26 @@ pub(super) fn panels(expected: &Rgba, drawn: &Rgba) -> Result<(Rgba, u8), SizeEr
     Ok((picture, difference.scale))
 }
 
+/// Returns a PNG of this program without its alpha, for people to look at.
+pub(in crate::replay) fn opaque(png: &[u8]) -> Cow<'_, [u8]> {
+    let shown = image::decode(png, Path::new("drawn.png"), &ImageLimits::default()).ok().and_then(|picture| {
+        let pixels: Vec<[u8; 4]> = picture.pixels().iter().map(|[r, g, b, _]| [*r, *g, *b, 255]).collect();
+        encode_png(picture.width(), picture.height(), &pixels, Compression::Fast).ok()
+    });
+    shown.map_or(Cow::Borrowed(png), Cow::Owned)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pictures_for_people_are_opaque() {
+        let png = encode_png(2, 1, &[[1, 2, 3, 0], [4, 5, 6, 255]], Compression::Fast).expect("a small picture");
+        let shown = image::decode(&opaque(&png), Path::new("a.png"), &ImageLimits::default()).expect("a PNG");
+        assert_eq!(shown.pixels(), [[1, 2, 3, 255], [4, 5, 6, 255]]);
+        assert_eq!(opaque(b"no PNG")[..], b"no PNG"[..]);
+    }
 
     #[test]
     fn three_pictures_stand_side_by_side() {

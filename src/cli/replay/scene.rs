@@ -12,7 +12,6 @@ use crate::expectation::{Expectation, Mismatch, masked_digest};
 use ninebit::diagnostic::{ErrorKind, Severity};
 use ninebit::engine::{self, RenderOptions};
 use ninebit::frame::Surface;
-use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::Named;
@@ -80,7 +79,8 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
             return Ok(Outcome::Skipped(format!("needs {capture}`{}`, which is not here", shown::name(first))));
         }
     }
-    let loaded = scene::load(&entry.path, &Limits::default()).map_err(|error| not_accepted(&error))?;
+    let loaded = scene::load(&entry.path, &options.limits).map_err(|error| not_accepted(&error))?;
+    loaded.affordable(options.limits.shaded_pixels).map_err(|error| not_accepted(&error))?;
     if let Some(profile) = options.profile.filter(|profile| *profile != loaded.scene.profile) {
         let (is, asked) = (loaded.scene.profile.name(), profile.name());
         return Ok(Outcome::Skipped(format!("is a scene of {is}, not {asked}")));

@@ -113,7 +113,9 @@ pub fn title(folder: &Path, family: &str) -> String {
 /// # Errors
 /// Returns an error if the scene is not valid, or no pixel with a truth is drawn.
 pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, TechniqueError> {
-    let loaded = load(&entry.path, &Limits::default()).map_err(|error| TechniqueError::Scene(Box::new(error)))?;
+    let limits = Limits::default();
+    let loaded = load(&entry.path, &limits).and_then(|loaded| loaded.affordable(limits.shaded_pixels).map(|()| loaded));
+    let loaded = loaded.map_err(|error| TechniqueError::Scene(Box::new(error)))?;
     let Some(truth) = &loaded.truth else { return Ok(None) };
     let Some(accuracy) = accuracy::measure(&loaded.scene, &loaded.plan, truth) else {
         return Err(TechniqueError::Unseen(entry.path.clone()));

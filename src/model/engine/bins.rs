@@ -106,12 +106,12 @@ impl Bins {
 }
 
 /// Returns the columns or the rows of a triangle's bounding box, for axis 0 or 1.
-fn bounds(assembly: &Assembly, number: usize, axis: usize) -> (i64, i64) {
+pub(super) fn bounds(assembly: &Assembly, number: usize, axis: usize) -> (i64, i64) {
     centres(assembly.triangles.vertices(number).map(|v| i64::from(assembly.corners[v as usize].position[axis])))
 }
 
 /// Returns those that lie between 0 and `end`.
-fn within((first, last): (i64, i64), end: usize) -> Range<usize> {
+pub(super) fn within((first, last): (i64, i64), end: usize) -> Range<usize> {
     first.clamp(0, end as i64) as usize..last.clamp(0, end as i64) as usize
 }
 

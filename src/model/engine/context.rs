@@ -88,13 +88,24 @@ impl<'a> TriangleContext<'a> {
     pub(super) fn may_cover(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
         let (x, y) = positions(&corners(draw, number));
         let ((left, right), (top, bottom), area) = (centres(x), centres(y), clockwise_area(x, y));
-        let front = (area < 0) == (draw.front_face == FrontFace::CounterClockwise);
-        let culled = match draw.cull {
+        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !Self::is_culled(draw, area)
+    }
+
+    /// Returns the doubled area of triangle `number` of a draw, which is positive if it turns clockwise on the screen.
+    pub(super) fn clockwise_area(draw: &PlannedDraw, number: usize) -> i64 {
+        let (x, y) = positions(&corners(draw, number));
+        clockwise_area(x, y)
+    }
+
+    /// Returns whether a triangle of that [area](Self::clockwise_area) is culled.
+    #[inline(always)]
+    pub(super) fn is_culled(draw: &PlannedDraw, clockwise_area: i64) -> bool {
+        let front = (clockwise_area < 0) == (draw.front_face == FrontFace::CounterClockwise);
+        match draw.cull {
             Cull::None => false,
             Cull::Front => front,
             Cull::Back => !front,
-        };
-        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !culled
+        }
     }
 
     /// Takes triangle `number`, which [may cover](Self::may_cover) pixels, and the colours of its corners.

@@ -13,13 +13,15 @@ mod report;
 mod rows;
 mod texture_words;
 mod tracing;
+mod unseen;
 pub mod walk;
 
-pub use counting::{DrawCounts, count, fragments};
+pub use counting::{DrawCounts, Shaded, affordable, count, fragments, shaded};
 pub use rows::Isa;
 use rows::Kernels;
 pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
+pub use unseen::{Unseen, unseen};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};

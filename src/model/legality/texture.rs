@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
 use crate::place::Span;
+use crate::shown;
 use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
 
 /// Checks textures for a chip. Each check returns the finding at the given place, or `None` if the texture is legal.
@@ -128,7 +129,7 @@ impl TextureChecks {
             }
             _ => return None,
         };
-        let message = format!("a {what} cannot have {levels} levels");
+        let message = format!("{} cannot have {levels} levels", shown::a(what));
         (levels > 1).then(|| Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help))
     }
 

@@ -58,7 +58,7 @@ pub struct PlanError {
 
 impl PlanError {
     /// Creates an error of the scene as a whole.
-    fn new(
+    pub(crate) fn new(
         code: &'static str,
         rule: impl Into<Option<&'static str>>,
         message: impl Into<String>,

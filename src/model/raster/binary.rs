@@ -1,4 +1,4 @@
-//! Numbers of the interpolator: a mantissa of at most 62 bits and a power of two. Nothing is rounded but where a method says so.
+//! Numbers of the interpolator: a mantissa of at most 63 bits and a power of two. Nothing is rounded but where a method says so.
 
 use crate::number::convert::{align, shift, split};
 use std::cmp::Ordering;
@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 /// The number `mantissa` * 2^`exponent`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Binary {
-    /// Signed mantissa of at most 62 bits.
+    /// Signed mantissa of at most 63 bits.
     pub mantissa: i64,
     /// Power of two that scales the mantissa.
     pub exponent: i32,
@@ -77,16 +77,23 @@ impl Binary {
         self.top().cmp(&other.top()).then(high(a).cmp(&high(b)))
     }
 
-    /// Returns the sum. It is exact unless it would need more than 61 bits; then it is floored.
-    pub fn plus(self, other: Binary) -> Binary {
-        let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
-        Binary { mantissa: a + b, exponent }
+    /// Returns the sum. Where the larger number's first `bits` bits, at most 62, do not hold it, it is the odd one of its two neighbours: shorter
+    /// numbers are less or greater than that as they are than the sum, and cutting yields the same.
+    pub fn plus(self, other: Binary, bits: i32) -> Binary {
+        let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], bits);
+        let lost = [self, other].iter().any(|n| {
+            let dropped = exponent.saturating_sub(n.exponent);
+            n.mantissa != 0 && (n.mantissa.trailing_zeros() as i32) < dropped
+        });
+        Binary { mantissa: (a + b) | i64::from(lost), exponent }
     }
 
     /// Returns whether it is less than another.
     pub fn is_below(self, other: Binary) -> bool {
-        let ([a, b], _) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
-        a < b
+        let least = self.exponent.min(other.exponent);
+        // A number that is shifted by 64 is larger than any mantissa.
+        let up = |n: Binary| i128::from(n.mantissa) << (n.exponent - least).min(64);
+        up(self) < up(other)
     }
 
     /// Returns floor(`scale` * self * 2^`power`), limited to `limit` in magnitude. The product of mantissa and scale must fit into 62 bits.

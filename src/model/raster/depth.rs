@@ -62,7 +62,13 @@ impl DepthPlane {
             Some(w) => interpolate_w(e, w),
             None => interpolate(e, self.z),
         };
-        if self.offset.mantissa == 0 { depth } else { depth.plus(self.offset) }
+        self.with_offset(depth)
+    }
+
+    /// DEP-5: adds the offset to a depth.
+    #[inline]
+    pub(crate) fn with_offset(&self, depth: Binary) -> Binary {
+        if self.offset.mantissa == 0 { depth } else { depth.plus(self.offset, SUM_BITS) }
     }
 }
 
@@ -110,14 +116,22 @@ pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
     }
 }
 
+/// Bits of the larger of a depth and its offset that their sum keeps: so many that nothing is lost where they cancel.
+const SUM_BITS: i32 = 62;
+
+/// Bits of the larger part of an offset. The sum of both parts has one more.
+const OFFSET_BITS: i32 = 60;
+
 /// DEP-5: returns the offset of a triangle from bias, factor and slope.
 #[cold]
 pub fn offset(PolygonOffset { bias, factor }: PolygonOffset, slope: Binary) -> Binary {
     let (of_factor, exponent) = split(factor);
     let product = i128::from(slope.mantissa) * i128::from(of_factor);
-    let dropped = (128 - product.unsigned_abs().leading_zeros()).saturating_sub(61);
-    let scaled = Binary { mantissa: (product >> dropped) as i64, exponent: slope.exponent + exponent + dropped as i32 };
-    Binary::new(bias).plus(scaled)
+    let dropped = (128 - product.unsigned_abs().leading_zeros()).saturating_sub(OFFSET_BITS as u32);
+    let odd = i64::from(product >> dropped << dropped != product);
+    let scaled =
+        Binary { mantissa: (product >> dropped) as i64 | odd, exponent: slope.exponent + exponent + dropped as i32 };
+    Binary::new(bias).plus(scaled, OFFSET_BITS)
 }
 
 /// Returns the larger magnitude of dz/dx and dz/dy, truncated at the 29th bit from the top of the largest z.
@@ -232,6 +246,43 @@ mod tests {
             let held = Binary::new(z.clamp(range.lowest, range.highest));
             prop_assert_eq!(ranged(Some(&range), Binary::new(z)), (inside || clamps).then_some(held));
         }
+    }
+
+    proptest! {
+        /// Sums and comparisons are those of whole numbers with all bits, as far as shorter numbers can tell.
+        #[test]
+        fn sums_compare_as_exact_ones(
+            a in (-(1_i64 << 31)..1 << 31, 0_i32..64),
+            b in (-(1_i64 << 61)..1 << 61, 0_i32..64, 0_u32..60),
+            c in (-(1_i64 << 24)..1 << 24, 0_i32..90),
+            near in any::<bool>(),
+        ) {
+            let exact = |mantissa: i64, exponent: i32| i128::from(mantissa) << exponent.min(63);
+            let (depth, offset) = (Binary { mantissa: a.0, exponent: a.1 }, Binary { mantissa: b.0 >> b.2, exponent: b.1 });
+            let wanted = exact(depth.mantissa, depth.exponent) + exact(offset.mantissa, offset.exponent);
+            let sum = depth.plus(offset, SUM_BITS);
+            // Beside the sum, or anywhere.
+            let dropped = (128 - wanted.unsigned_abs().leading_zeros()).saturating_sub(24) as i32;
+            let short = if near && dropped < 64 { ((wanted >> dropped) as i64 + c.0.signum(), dropped) } else { (c.0, c.1.min(63)) };
+            let limit = Binary { mantissa: short.0, exponent: short.1 };
+            prop_assert_eq!(sum.is_below(limit), wanted < exact(short.0, short.1));
+            prop_assert_eq!(limit.is_below(sum), exact(short.0, short.1) < wanted);
+        }
+    }
+
+    /// A step that 61 bits do not hold lies beyond a limit.
+    #[test]
+    fn the_least_excess_is_outside() {
+        let range = DepthRange { lowest: -1.0, highest: 16_777_215.0, clamps: false, drops_triangles: false };
+        let kept = |z: f32, more: f32| {
+            let plane = DepthPlane { offset: Binary::new(more), ..DepthPlane::default() };
+            ranged(Some(&range), plane.with_offset(Binary::new(z))).is_some()
+        };
+        let least = f32::from_bits(1);
+        assert!(kept(16_777_215.0, 0.0) && kept(16_777_215.0, -least) && kept(-1.0, least) && kept(-1.0, 0.0));
+        assert!(!kept(least, 16_777_215.0) && !kept(16_777_215.0, least) && !kept(-1.0, -least));
+        assert_eq!(word(DepthFormat::Z24S8, Binary::new(5.0).plus(Binary::new(-least), SUM_BITS)), 4);
+        assert_eq!(word(DepthFormat::Z24S8, Binary::new(5.0).plus(Binary::new(least), SUM_BITS)), 5);
     }
 
     #[test]

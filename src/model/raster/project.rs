@@ -4,7 +4,7 @@
 
 use super::{BAND, SMALLEST_W};
 use crate::number::convert::snap;
-use crate::state::{ClipDepth, Vertex, VertexColor, Viewport, named};
+use crate::state::{ClipDepth, Named, Vertex, VertexColor, Viewport, named};
 
 named! {
     /// A plane that triangles are clipped at (RAS-6). The order of the variants is the order of clipping.
@@ -40,6 +40,11 @@ impl ClipPlane {
     /// Returns the planes of a set, in order.
     pub fn in_set(set: u8) -> impl Iterator<Item = ClipPlane> {
         ClipPlane::VOLUME.into_iter().chain(ClipPlane::SIDES).filter(move |plane| set & plane.bit() != 0)
+    }
+
+    /// Returns the names of the planes of a set, separated by commas.
+    pub fn names(set: u8) -> String {
+        ClipPlane::in_set(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
     }
 
     /// Returns the distance of a position from the plane. It is negative outside.

@@ -1,6 +1,6 @@
 //! State of the register combiners, in the terms of NV_register_combiners.
 
-use super::named;
+use super::{Named, named};
 
 /// Declares [`Register`] and [`FinalRegister`]; the latter begins with the variants of the former.
 macro_rules! registers {
@@ -21,7 +21,7 @@ macro_rules! registers {
     };
 }
 registers! {
-    /// Always 0. As a destination it discards the result.
+    /// Always 0. As a destination it is [`Register::DISCARD`].
     Zero,
     /// Constant colour 0.
     ConstantColor0,
@@ -49,6 +49,21 @@ registers! {
     Spare0PlusSecondary,
     /// The product of E and F (FIN-4). Only the RGB of inputs A to D can read it.
     ETimesF,
+}
+
+impl Register {
+    /// The destination that keeps nothing, GL_DISCARD_NV: the chip's word for it is that of [`Register::Zero`].
+    pub const DISCARD: Register = Register::Zero;
+
+    /// Returns its name as a destination: `Discard`, or that of the register.
+    pub fn destination(self) -> &'static str {
+        if self == Register::DISCARD { "Discard" } else { self.name() }
+    }
+
+    /// Returns the destination of that [name](Self::destination); `Zero` means `Discard` too.
+    pub fn from_destination(name: &str) -> Option<Register> {
+        if name == Register::DISCARD.destination() { Some(Register::DISCARD) } else { Register::from_name(name) }
+    }
 }
 
 named! {
@@ -138,11 +153,11 @@ impl CombinerInput {
 pub struct Portion {
     /// Inputs A, B, C and D.
     pub inputs: [CombinerInput; 4],
-    /// Destination of AB. [`Register::Zero`] discards it.
+    /// Destination of AB. [`Register::DISCARD`] discards it.
     pub ab_output: Register,
-    /// Destination of CD. [`Register::Zero`] discards it.
+    /// Destination of CD. [`Register::DISCARD`] discards it.
     pub cd_output: Register,
-    /// Destination of AB + CD, or of the mux. [`Register::Zero`] discards it.
+    /// Destination of AB + CD, or of the mux. [`Register::DISCARD`] discards it.
     pub sum_output: Register,
     /// Whether AB is a dot product (RGB only).
     pub ab_dot_product: bool,

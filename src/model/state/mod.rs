@@ -124,9 +124,10 @@ pub struct Draw {
     pub window_clip: Option<WindowClip>,
     /// Fog colour, and whether the fog factor of the vertices is used.
     pub fog: Fog,
-    /// Texture units. `None` is an unbound unit (TEX-16).
+    /// Texture units. `None` is an unbound unit (TEX-16). [`Draw::texture`] binds one and lets it sample.
     pub textures: [Option<TextureUnit>; TEXTURE_UNITS],
-    /// What each unit does: [`ShaderStage::conventional`] unless the draw has a texture shader (nv2a).
+    /// What each unit does: [`ShaderStage::conventional`] unless the draw has a texture shader (nv2a). A bound unit whose operation is
+    /// [`ShaderOperation::None`] is not sampled.
     pub texture_shader: [ShaderStage; TEXTURE_UNITS],
     /// The combiner program, which computes each pixel.
     pub combiners: Combiners,

@@ -5,6 +5,7 @@ use crate::Span;
 use crate::finding::finding;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::number::convert::constant;
+use ninebit::shown;
 use ninebit::state::Named;
 
 /// Returns a name without its prefix and suffix: `GL_COMBINE_RGB_ARB` becomes `COMBINE_RGB`. Suffixes in `keep` are part of the name.
@@ -32,7 +33,7 @@ pub(crate) fn choose<T: Copy>(
                 None => known(part, what, bare(name, &[]), table, |name| format!("GL_{name}"), findings),
             }
         }
-        _ => wrong_kind(value, &format!("a {what}"), "write the name that the API has for it", findings),
+        _ => wrong_kind(value, &shown::a(what), "write the name that the API has for it", findings),
     }
 }
 
@@ -65,7 +66,7 @@ pub(crate) fn numbered(
             let help = format!("write GL_{name}0 to GL_{name}{}", count - 1);
             out_of_range(&value.span, what, index, &help, findings)
         }
-        None => wrong_kind(value, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings),
+        None => wrong_kind(value, &shown::a(what), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings),
     }
 }
 

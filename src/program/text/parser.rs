@@ -8,6 +8,7 @@ use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use crate::{Places, Span};
 use ninebit::diagnostic::{Diagnostic, shorten};
+use ninebit::shown;
 use ninebit::state::{Component, FinalRegister};
 
 /// A register in an input.
@@ -142,11 +143,7 @@ impl<'t> Parser<'t> {
 
     /// Records that a word is unknown, or that it is not a word.
     pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
-        if self.cursor.kind() == Some(Kind::Word) {
-            self.unknown(what, known)
-        } else {
-            self.expected(&format!("a {what}"))
-        }
+        if self.cursor.kind() == Some(Kind::Word) { self.unknown(what, known) } else { self.expected(&shown::a(what)) }
     }
 
     pub(super) fn unknown_statement(&mut self, expected: &str, known: &[&str]) -> GivenUp {

@@ -1,6 +1,7 @@
 //! Cost of a draw, predicted from its plan.
 
 use ninebit::combiner::general::{BLUE, PlannedPortion};
+use ninebit::engine::Shaded;
 use ninebit::plan::PlannedDraw;
 use ninebit::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
 use ninebit::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
@@ -25,6 +26,8 @@ pub struct FragmentCost {
 pub struct Cost {
     /// Number of fragments: covered pixels, once for each triangle that covers them.
     pub fragments: u64,
+    /// Whether fragments were counted; otherwise their number, and all work, is an upper bound.
+    pub exact: bool,
     /// Whether tests decide which fragments are stored; [`total`](Self::total) is then an upper bound.
     pub tested: bool,
     /// Whether texture units drop fragments before they are shaded (TSH-10, KEY-1); all work is then an upper bound.
@@ -44,12 +47,13 @@ pub struct Cost {
 }
 
 impl Cost {
-    pub(super) fn from_draw(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
-        let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
+    pub(super) fn from_draw(planned: &PlannedDraw, policies: &Policies, shaded: Shaded) -> Cost {
+        let fragment = FragmentCost { shaded: for_each(planned, policies), stored: stored(planned) };
         let seen = planned.folded.invisible.is_none();
         let if_seen = |count: usize| if seen { count as u64 } else { 0 };
         Cost {
-            fragments,
+            fragments: shaded.pixels,
+            exact: shaded.exact,
             tested: planned.alpha_test.is_some()
                 || planned.stencil_test.is_some()
                 || planned.depth_test.is_some()
@@ -76,7 +80,10 @@ impl Cost {
 
     /// Returns the work if `stored` fragments pass the tests.
     pub fn with(&self, stored: u64) -> Amounts {
-        std::array::from_fn(|n| self.fragments * self.fragment.shaded[n] + stored * self.fragment.stored[n])
+        std::array::from_fn(|n| {
+            let of = |count: u64, each: u64| count.saturating_mul(each);
+            of(self.fragments, self.fragment.shaded[n]).saturating_add(of(stored, self.fragment.stored[n]))
+        })
     }
 
     /// Returns the work if all fragments pass the tests.
@@ -85,7 +92,7 @@ impl Cost {
     }
 }
 
-fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
+fn for_each(planned: &PlannedDraw, policies: &Policies) -> Amounts {
     let mut amounts = Amounts::default();
     let mut add = |work: Work, amount: u64| amounts[work as usize] += amount;
     for unit in &planned.units {

@@ -11,9 +11,9 @@ mod shader;
 pub use cost::{Cost, FragmentCost};
 pub use report::{explanation_json, explanation_text};
 
-use crate::planes;
-use ninebit::engine;
+use ninebit::engine::{self, Unseen};
 use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
+use ninebit::raster::project::ClipPlane;
 use ninebit::rop::{self, surface};
 use ninebit::state::*;
 use ninebit::texture::planned::PlannedUnit;
@@ -50,10 +50,14 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
     // A scene that has a plan also has this one: pruning does not make scenes legal.
     let whole = Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false });
     let whole = whole.as_ref().unwrap_or(plan);
-    let cost = |plan: &Plan, planned| Cost::from_draw(planned, &plan.policies, engine::fragments(plan, planned));
-    let draws = scene.draws.iter().zip(plan.draws()).zip(whole.draws());
+    let costs = |plan: &Plan| -> Vec<Cost> {
+        let draws = plan.draws().iter().zip(engine::shaded(plan));
+        draws.map(|(planned, shaded)| Cost::from_draw(planned, &plan.policies, shaded)).collect()
+    };
+    let draws = scene.draws.iter().zip(plan.draws()).zip(engine::unseen(plan));
     draws
-        .map(|((draw, planned), asked)| DrawExplanation {
+        .zip(costs(plan).into_iter().zip(costs(whole)))
+        .map(|(((draw, planned), unseen), (cost, asked))| DrawExplanation {
             name: planned.name.clone(),
             target: plan.targets()[planned.target].name.clone(),
             vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
@@ -61,9 +65,9 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
             program_origin: draw.program_origin.clone(),
             equations: equations(scene, plan, planned),
             clipping: clipping(planned),
-            dropped: dropped(scene, draw, planned),
-            cost: cost(plan, planned),
-            asked: cost(whole, asked),
+            dropped: dropped(scene, draw, planned, unseen),
+            cost,
+            asked,
         })
         .collect()
 }
@@ -76,7 +80,7 @@ fn clipping(planned: &PlannedDraw) -> Option<String> {
     }
     let (left, pieces, cut) = (planned.assembly.triangles.len(), clipping.pieces.len(), clipping.cut);
     let given = left - pieces + cut + clipping.removed;
-    let (planes, removed) = (planes(clipping.planes), clipping.removed);
+    let (planes, removed) = (ClipPlane::names(clipping.planes), clipping.removed);
     Some(format!(
         "{given} triangles: {removed} removed and {cut} cut into {pieces} pieces ({planes}); {left} are drawn"
     ))
@@ -256,11 +260,12 @@ fn comparison(function: CompareFunction) -> &'static str {
 }
 
 /// Returns the state that is not in the plan, and why.
-fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
-    if let Some(why) = planned.folded.invisible {
-        return vec![format!("the whole draw: {}", why.name())];
+fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw, unseen: Option<Unseen>) -> Vec<String> {
+    let mut lines: Vec<String> =
+        unseen.map(|unseen| format!("the whole draw: {}", unseen.reason)).into_iter().collect();
+    if planned.folded.invisible.is_some() {
+        return lines;
     }
-    let mut lines = Vec::new();
     for (index, unit) in draw.textures.iter().enumerate() {
         let Some(unit) = unit else { continue };
         let name = &scene.textures[unit.texture].name;

@@ -1,7 +1,8 @@
 //! Prints an explanation as text and as JSON.
 
 use super::{Cost, DrawExplanation};
-use ninebit::engine::DrawCounts;
+use crate::work::Shaded;
+use ninebit::engine::{self, DrawCounts};
 use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::{Named, Profile};
@@ -52,6 +53,9 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         }
         write_cost(out, draw, counted.map(|all| &all[number]))?;
     }
+    let shaded =
+        Shaded::of(draws.iter().map(|draw| engine::Shaded { pixels: draw.cost.fragments, exact: draw.cost.exact }));
+    writeln!(out, "\nshaded pixels: {}", shaded.text())?;
     writeln!(out, "\nall draws{:>32}{:>16}", "after pruning", "as asked")?;
     let (kept, asked) = (total(draws, |draw| &draw.cost), total(draws, |draw| &draw.asked));
     for ((name, kept), (_, asked)) in kept.iter().zip(&asked).filter(|((_, kept), (_, asked))| kept + asked > 0) {
@@ -65,7 +69,8 @@ fn write_cost(out: &mut String, draw: &DrawExplanation, counted: Option<&DrawCou
     let (cost, asked) = (&draw.cost, &draw.asked);
     let most = if cost.tested { ", at most, because tests decide" } else { "" };
     let lod = if cost.lod_decides { "; texels and filter steps at most, because the lod decides" } else { "" };
-    writeln!(out, "  cost: {} fragments{most}{lod}", cost.fragments)?;
+    let bound = if cost.exact { "" } else { "at most " };
+    writeln!(out, "  cost: {bound}{} fragments{most}{lod}", cost.fragments)?;
     writeln!(out, "{:>41}{:>16}", "after pruning", "as asked")?;
     for ((name, kept), (_, asked)) in cost.counts().iter().zip(asked.counts()).filter(|((_, n), (_, m))| n + m > 0) {
         writeln!(out, "    {name:<18}{kept:>19}{asked:>16}")?;
@@ -90,7 +95,7 @@ fn total(draws: &[DrawExplanation], of: fn(&DrawExplanation) -> &Cost) -> Vec<(&
         let work = Work::ALL.iter().map(|work| work.name()).zip(cost.total());
         for (n, (name, amount)) in cost.counts().into_iter().chain(work).enumerate() {
             match all.get_mut(n) {
-                Some((_, sum)) => *sum += amount,
+                Some((_, sum)) => *sum = sum.saturating_add(amount),
                 None => all.push((name, amount)),
             }
         }
@@ -109,6 +114,7 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         json!({
             "counts": counts,
             "fragments": cost.fragments,
+            "exact": cost.exact,
             "tested": cost.tested,
             "kills": cost.kills,
             "lod_decides": cost.lod_decides,

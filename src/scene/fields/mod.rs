@@ -24,7 +24,7 @@ mod texture;
 use std::fmt::Write;
 
 use super::field::*;
-use super::form::{Described, Form};
+use super::form::{self, Described, Form};
 use super::notation::Notation;
 use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
 use super::reader::{COUNT, FINITE, KIND, MISSING, Name, RANGE, Reader, TWICE, UNKNOWN, Valued, WORD};

@@ -140,10 +140,10 @@ source! {
     struct Portion {
         /// inputs
         a: Input [or "`Zero`"], b: Input [or "`Zero`"], c: Input [or "`Zero`"], d: Input [or "`Zero`"],
-        /// register for A B, for C D, for A B + C D
+        /// register for A B, for C D, for A B + C D; `Zero` is `Discard`, too
         ab: Output [or "`Discard`"], cd: Output [or "`Discard`"], sum: Output [or "`Discard`"],
-        /// the product is a dot product (RGB only)
-        ab_dot: bool = false, cd_dot: bool = false,
+        /// the product is a dot product (RGB only); `ab_dot` and `cd_dot` are read as well
+        ab_dot_product: bool = false, cd_dot_product: bool = false,
         /// `sum` gets A B or C D, chosen by SPARE0's alpha
         mux: bool = false,
         /// results are multiplied

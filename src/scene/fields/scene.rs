@@ -337,6 +337,12 @@ source! {
         /// how often the texture fits along s and t
         repeat: Numbers [numbers 2..=2, "the repeat of a texture"] = [1.0, 1.0, 0.0, 0.0],
     }
+    struct Cuboid "box" {
+        /// `(width, height, depth)`, centred on the origin; each face has its own normal and vertices
+        size: Numbers [numbers 3..=3, "the size of a box"] = [2.0, 2.0, 2.0, 0.0],
+        /// as of a grid, on each face; upright seen from outside, on top and bottom for a viewer who looks along the axis
+        repeat: Numbers [numbers 2..=2, "the repeat of a texture"] = [1.0, 1.0, 0.0, 0.0],
+    }
     struct Sphere "sphere" {
         /// about the origin, poles on the y axis, at least 3 slices and 2 stacks
         slices: u32 [required value], stacks: u32 [required value],
@@ -390,7 +396,15 @@ source! {
     struct Frustum "projection" {
         /// the window's edges, at the distance `near`
         left: f32 [required value], right: f32 [required value], bottom: f32 [required value], top: f32 [required value],
-        /// nothing nearer or farther is drawn: it is [clipped](#clipping)
+        /// nothing nearer or farther is drawn: it is [clipped](#clipping); of `Frustum` above 0
+        near: f32 [required value], far: f32 [required value],
+    }
+    struct Perspective "projection" {
+        /// the angle from bottom to top that is seen, in degrees, below 180
+        fov: f32 [required value],
+        /// the window's width divided by its height
+        aspect: f32 [required value],
+        /// as of a frustum, above 0
         near: f32 [required value], far: f32 [required value],
     }
     struct LookAt "view" {

@@ -114,8 +114,8 @@ fn portion<'a>(
     }
     for (name, text) in fields.written() {
         let part = match name {
-            "ab_dot" => Part::Dot(0),
-            "cd_dot" => Part::Dot(1),
+            "ab_dot_product" => Part::Dot(0),
+            "cd_dot_product" => Part::Dot(1),
             "ab_blue_to_alpha" => Part::BlueToAlpha(0),
             "cd_blue_to_alpha" => Part::BlueToAlpha(1),
             "bias" => Part::Bias,
@@ -124,8 +124,8 @@ fn portion<'a>(
         };
         places.set(at(part), reader.range(text));
     }
-    portion.ab_dot_product = fields.ab_dot(reader);
-    portion.cd_dot_product = fields.cd_dot(reader);
+    portion.ab_dot_product = fields.ab_dot_product(reader);
+    portion.cd_dot_product = fields.cd_dot_product(reader);
     portion.ab_blue_to_alpha = fields.ab_blue_to_alpha(reader);
     portion.cd_blue_to_alpha = fields.cd_blue_to_alpha(reader);
     portion.mux = fields.mux(reader);
@@ -136,14 +136,11 @@ fn portion<'a>(
 
 fn output<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Output>) -> Register {
     let (head, rest) = raw.split();
-    if head == "Discard" && rest.is_empty() {
-        return Register::Zero;
-    }
-    let register = Register::from_name(head).filter(|_| rest.is_empty()).or_else(|| {
-        let known: Vec<&str> = [&["Discard"], &Register::NAMES[4..]].concat();
+    let register = Register::from_destination(head).filter(|_| rest.is_empty()).or_else(|| {
+        let known: Vec<&str> = [&[Register::DISCARD.destination()], &Register::NAMES[4..]].concat();
         reader.unknown_variant(raw, "destination", &known)
     });
-    register.unwrap_or(Register::Zero)
+    register.unwrap_or(Register::DISCARD)
 }
 
 fn final_combiner<'a>(

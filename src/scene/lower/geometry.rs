@@ -250,8 +250,16 @@ pub(super) fn geometry<'a>(
 fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
-    let matrix = fields.matrix(reader);
-    let matrix = matrix.and_then(|raw| reader.value(&raw));
+    let raw_matrix = fields.matrix(reader);
+    let mut matrix = raw_matrix.and_then(|raw| reader.value(&raw));
+    if let Some((raw, known)) = raw_matrix.zip(matrix.as_ref())
+        && matrix::flattens(known)
+    {
+        let message = "this matrix takes all positions onto one line of the screen";
+        let help = "look for a scale of 0, and for rows that are multiples of each other";
+        reader.push(finding("NB0237", reader.span(&raw), message, "x, y and w depend on one another", help));
+        matrix = None;
+    }
     let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| reader.value(raw));
     let viewport = viewport(reader, &fields.viewport, target);
     let listed = fields.vertices.as_ref().filter(|_| fields.mesh.is_none());
@@ -260,6 +268,10 @@ fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) ->
         let message = "listed vertices have no mesh attributes";
         let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
         reader.push(finding("NB0222", reader.span(attribute), message, "needs a mesh", help));
+    }
+    // An unknown field may be one of the two, misspelt.
+    if !fields.faults.is_empty() && fields.vertices.is_none() && fields.mesh.is_none() {
+        return None;
     }
     let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let of_mesh = fields.mesh.is_some() && fields.vertices.is_none();

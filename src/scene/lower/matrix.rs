@@ -2,6 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::*;
+use crate::mesh::half_tangent;
 use ninebit::vertex::Rows;
 
 pub(super) const IDENTITY: Rows =
@@ -10,8 +11,19 @@ pub(super) const IDENTITY: Rows =
 /// Deepest nesting of products: each level reads its text again.
 const MAX_PRODUCT_DEPTH: usize = 16;
 
-const KINDS: &[&str] =
-    &["Identity", "Rows", "Product", "Transpose", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
+const KINDS: &[&str] = &[
+    "Identity",
+    "Rows",
+    "Product",
+    "Transpose",
+    "Translate",
+    "Scale",
+    "Rotate",
+    "Frustum",
+    "Orthographic",
+    "Perspective",
+    "LookAt",
+];
 
 /// Reads a matrix that is not a name. A matrix that is not finite is an error.
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
@@ -36,6 +48,7 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>
             [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0], [0.0, 0.0, 0.0, 1.0]]
         }
         "Rotate" => rotation(vector(reader, rest, "a rotation (a unit quaternion x, y, z, w)", 4)?),
+        "Perspective" => perspective(reader, &Raw::new(rest))?,
         "LookAt" => look_at(reader, &Raw::new(rest))?,
         kind => projection(reader, &Raw::new(rest), kind == "Frustum")?,
     };
@@ -115,6 +128,10 @@ fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, p
     let (l, r) = (box_.left(reader), box_.right(reader));
     let (b, t) = (box_.bottom(reader), box_.top(reader));
     let (n, f) = (box_.near(reader), box_.far(reader));
+    if perspective {
+        let ends = [above_0(reader, "near", &box_.near), above_0(reader, "far", &box_.far)];
+        ends.into_iter().collect::<Option<()>>()?;
+    }
     let (l, r, b, t, n, f) = (l?, r?, b?, t?, n?, f?);
     let (width, height, depth) = (r - l, t - b, f - n);
     Some(if perspective {
@@ -131,6 +148,62 @@ fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, p
             [0.0, 0.0, -2.0 / depth, -(f + n) / depth],
             [0.0, 0.0, 0.0, 1.0],
         ]
+    })
+}
+
+/// Reads OpenGL's perspective of a field of view, which is a frustum with equal halves.
+fn perspective<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Perspective<'a>>) -> Option<Rows> {
+    let view = reader.read(raw)?;
+    let (fov, aspect, n, f) = (view.fov(reader), view.aspect(reader), view.near(reader), view.far(reader));
+    let fields = [("fov", &view.fov), ("aspect", &view.aspect), ("near", &view.near), ("far", &view.far)];
+    let positive = fields.map(|(name, field)| above_0(reader, name, field));
+    let (fov, aspect, n, f) = (fov?, aspect?, n?, f?);
+    if let Some(raw) = view.fov.filter(|_| fov >= 180.0) {
+        let help = "write degrees, above 0 and below 180";
+        reader.push(finding("NB0206", reader.span(&raw), format!("`fov` is {fov}"), "out of range", help));
+        return None;
+    }
+    positive.into_iter().collect::<Option<()>>()?;
+    let near = (1.0 / half_tangent(fov.into())) as f32;
+    let depth = f - n;
+    Some([
+        [near / aspect, 0.0, 0.0, 0.0],
+        [0.0, near, 0.0, 0.0],
+        [0.0, 0.0, -(f + n) / depth, -2.0 * f * n / depth],
+        [0.0, 0.0, -1.0, 0.0],
+    ])
+}
+
+/// Refuses a number that is not above 0. One that cannot be read has been refused already.
+fn above_0<'a>(reader: &mut Reader<'a>, name: &str, field: &Option<Raw<'a, f32>>) -> Option<()> {
+    let raw = field.as_ref()?;
+    match reader.attempt::<f32>(raw.text) {
+        Some(value) if value <= 0.0 => {
+            let message = format!("`{name}` of a perspective is {value}");
+            let help = match name {
+                "near" | "far" => "write a number above 0: the distance from the viewer along the line of sight",
+                _ => "write a number above 0",
+            };
+            reader.refuse(finding("NB0206", reader.span(raw), message, "not above 0", help))
+        }
+        _ => Some(()),
+    }
+}
+
+/// Returns whether x, y and w behind the matrix depend on one another, whatever the position: all triangles are then without area.
+pub(super) fn flattens(matrix: &Rows) -> bool {
+    let [x, y, w] = [0, 1, 3].map(|row| matrix[row].map(f64::from));
+    (0..4).all(|left_out| {
+        let kept: Vec<usize> = (0..4).filter(|column| *column != left_out).collect();
+        let [a, b, c] = [kept[0], kept[1], kept[2]];
+        let plus = [x[a] * y[b] * w[c], x[b] * y[c] * w[a], x[c] * y[a] * w[b]];
+        let minus = [x[c] * y[b] * w[a], x[a] * y[c] * w[b], x[b] * y[a] * w[c]];
+        let (minor, size) = plus
+            .iter()
+            .zip(&minus)
+            .fold((0.0, 0.0), |(minor, size), (plus, minus)| (minor + plus - minus, size + plus.abs() + minus.abs()));
+        // What the sum and the products of 48 bits lose.
+        minor.abs() <= 4.0 * f64::EPSILON * size
     })
 }
 

@@ -4,7 +4,7 @@ use super::program_text::ProgramText;
 use super::*;
 use crate::mesh::{self, Mesh, MeshError, Surface};
 
-const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
+const KINDS: &[&str] = &["Grid", "Box", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 
 /// Reads a mesh from its description.
 pub(super) fn mesh<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Arc<Mesh>> {
@@ -15,6 +15,11 @@ pub(super) fn mesh<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource
             let (columns, rows) = (fields.columns(reader), fields.rows(reader));
             let (size, repeat) = (pair(fields.size(reader)), pair(fields.repeat(reader)));
             mesh::grid(columns?, rows?, size, repeat)
+        }
+        "Box" => {
+            let fields = reader.read(&Raw::<source::Cuboid<'a>>::new(rest))?;
+            let [width, height, depth, _] = fields.size(reader);
+            Ok(mesh::cuboid([width, height, depth], pair(fields.repeat(reader))))
         }
         "Sphere" => {
             let fields = reader.read(&Raw::<source::Sphere<'a>>::new(rest))?;

@@ -43,7 +43,8 @@ use super::reader::{Reader, too_many};
 use super::wording::shorten;
 use crate::truth::Truth;
 use ninebit::diagnostic::File;
-use ninebit::plan::{Plan, PlanOptions};
+use ninebit::engine::{self, Unseen};
+use ninebit::plan::{Invisible, Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit_program::{finding, warning};
 pub use program::ProgramLanguage;
@@ -145,7 +146,35 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
         palettes: textures.palettes.list,
         draws,
     };
-    plan(reader, &scene, &spans).map(|plan| Found { scene, plan, truth, spans })
+    let plan = plan(reader, &scene, &spans)?;
+    warn_unseen(reader, &plan, &spans);
+    warn_unread(reader, &scene, &spans);
+    Some(Found { scene, plan, truth, spans })
+}
+
+/// Warns of draws that store nothing.
+fn warn_unseen(reader: &mut Reader<'_>, plan: &Plan, spans: &[DrawSpans]) {
+    for ((planned, spans), unseen) in plan.draws().iter().zip(spans).zip(engine::unseen(plan)) {
+        // A pass that adds light adds none where a lamp lies on the other side; another scene of its family may differ.
+        let adds_nothing = planned.folded.invisible == Some(Invisible::AddsZero);
+        if let Some(Unseen { reason, help }) = unseen.filter(|_| !adds_nothing) {
+            let message = format!("draw `{}` stores no pixel: {reason}", shorten(&planned.name));
+            reader.push(warning("NB0919", spans.draw.clone(), message, "nothing of it is seen", help));
+        }
+    }
+}
+
+/// Warns of targets behind the first that are drawn into and shown by no texture of a draw.
+fn warn_unread(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) {
+    let units = scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten());
+    let shown: Vec<usize> = units.filter_map(|unit| scene.textures[unit.texture].image.target()).collect();
+    for (index, target) in scene.targets.iter().enumerate().skip(1).filter(|(index, _)| !shown.contains(index)) {
+        let Some(at) = scene.draws.iter().position(|draw| draw.target == index) else { continue };
+        let name = shorten(&target.name);
+        let message = format!("target \"{name}\" is drawn into, and no draw reads it");
+        let help = format!("a texture `Target(\"{name}\")` shows it to a draw; `ninebit render --target` writes it");
+        reader.push(warning("NB0920", spans[at].draw.clone(), message, "draws into it", help));
+    }
 }
 
 /// Returns whether this program reads the scene's version of the format.

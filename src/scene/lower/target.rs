@@ -50,7 +50,7 @@ pub(super) fn targets<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::
             Some(raw) => (reader.read(raw), reader.span(raw)),
             None if reader.targets.list.is_empty() => (Some(FRAME.to_owned()), opening),
             None => {
-                reader.required(&fields.name, "name", "target", opening);
+                reader.required(&fields.name, "name", "target", opening, &fields.faults);
                 continue;
             }
         };

@@ -13,7 +13,8 @@ use sha2::{Digest, Sha256};
 use super::compare::Comparison;
 use crate::error::{VectorError, unread};
 use crate::pack::Manifest;
-use ninebit_files::output::{PendingFolder, write_file};
+use ninebit_files::output::write_file;
+use ninebit_files::pending::PendingFolder;
 use ninebit_files::picture::hexadecimal;
 use ninebit_files::read;
 
@@ -116,13 +117,14 @@ pub fn adopt(
         return Err(VectorError::file("NB1036", &place, "the device has a record already", help));
     }
     let part = PendingFolder::create(&place)?;
+    let named = |error: VectorError| error.named(part.path(), &place);
     let mut units = Vec::new();
     for (unit, compared) in results.units.iter().zip(&comparison.units).filter(|(_, compared)| compared.asked > 0) {
-        let sha256 = copy(&unit.path, &part.path().join(format!("{}.tsv", unit.unit.name())))?;
+        let sha256 = copy(&unit.path, &part.path().join(format!("{}.tsv", unit.unit.name()))).map_err(named)?;
         let contradicted = compared.off_by_one + compared.worse - compared.waived;
         units.push(AdoptedUnit { unit: unit.unit.name().to_owned(), confirmed: compared.exact, contradicted, sha256 });
     }
-    copy(&device_path, &part.path().join(DEVICE))?;
+    copy(&device_path, &part.path().join(DEVICE)).map_err(named)?;
     let contradicts = units.iter().any(|unit| unit.contradicted > 0);
     let adopted = Adopted {
         format: FORMAT.to_owned(),
@@ -137,7 +139,7 @@ pub fn adopt(
         units,
     };
     let text = serde_json::to_string_pretty(&adopted).unwrap_or_default() + "\n";
-    write_file(&part.path().join(RECORD), text.as_bytes())?;
+    write_file(&part.path().join(RECORD), text.as_bytes()).map_err(|error| named(error.into()))?;
     part.commit()?;
     Ok((place, adopted))
 }

@@ -8,6 +8,7 @@ use crate::read::TableRow;
 use crate::table::LAST;
 use crate::unit::answers;
 use crate::{Contents, Kind, Table, Unit, VectorError};
+use ninebit::state::Policies;
 
 /// Comparison of results with a pack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -249,7 +250,7 @@ fn unit(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)],
 fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)]) -> Vec<Explanation> {
     let Contents { unit, profile, .. } = table.writer.contents();
     let mut found = Vec::new();
-    for answer in answers(unit).filter(|answer| unit.rules().contains(&answer.rule)) {
+    for answer in answers(unit, &Policies::DEFAULT).filter(|answer| unit.rules().contains(&answer.rule)) {
         let mut explanation = Explanation { policy: answer.name(), explains: 0, breaks: 0 };
         for (row, result) in pairs {
             let Some(observed) = &result.values else { continue };

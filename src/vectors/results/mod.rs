@@ -23,7 +23,7 @@ pub use read::parse;
 use super::pack::Manifest;
 use super::{Unit, VectorError, read_text};
 use ninebit::limits;
-use ninebit_files::output::is_leftover;
+use ninebit_files::leftover::is_leftover;
 use ninebit_files::read::Kind;
 
 /// Value of `format` in a device file.

@@ -87,7 +87,7 @@ impl ConfiguredStage {
 }
 
 impl Unit for ConfiguredStage {
-    known_as!("combiner", &["CMB-1"], "a portion of a general stage"; takes [register_columns()]);
+    known_as!("combiner", &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "CMB-11", "NUM-2", "NUM-3"], "a portion of a general stage"; takes [register_columns()]);
 
     fn results(&self) -> Vec<Column> {
         let name = |(register, channel)| format!("{}.{}", registers::name(register), channel_name(channel));
@@ -123,7 +123,7 @@ impl ConfiguredFinal {
 }
 
 impl Unit for ConfiguredFinal {
-    known_as!("final combiner", &["FIN-1", "FIN-2"], "the final combiner"; takes [register_columns()]);
+    known_as!("final combiner", &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"], "the final combiner"; takes [register_columns()]);
 
     fn results(&self) -> Vec<Column> {
         fragment(self.planned().live)
@@ -153,7 +153,7 @@ impl ConfiguredProgram {
 }
 
 impl Unit for ConfiguredProgram {
-    known_as!("program", &["CMB-1", "CMB-13", "FIN-2"], "a pixel program"; takes [register_columns()]; gives [fragment(15)]);
+    known_as!("program", &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "CMB-11", "CMB-13", "NUM-2", "NUM-3", "FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"], "a pixel program"; takes [register_columns()]; gives [fragment(15)]);
 
     computed!(run);
 }

@@ -210,7 +210,7 @@ fn pixel_slope(plane: &DepthPlane, triangle: &Triangle, [column, row]: [i64; 2])
     let here = plane.at(triangle.edges(column, row));
     let [right, below] = [[column + 1, row], [column, row + 1]].map(|[column, row]| {
         let there = plane.at(triangle.edges(column, row));
-        let apart = there.plus(Binary { mantissa: -here.mantissa, ..here });
+        let apart = there.plus(Binary { mantissa: -here.mantissa, ..here }, 62);
         Binary { mantissa: apart.mantissa.abs(), ..apart }
     });
     if right.is_below(below) { below } else { right }

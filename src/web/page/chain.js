@@ -20,8 +20,10 @@ function hex(step) {
 
 const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}${power(input)}`).join(", ")})`;
 
-// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r.
-function place(name) {
+// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r. The r of `unit3.r` is a coordinate where it is a number of its own or made of one, else red.
+function place({ name, per_one }) {
+  const coordinate = /^unit\d\.r(\.4096|\.drops)?$/.exec(name);
+  if (coordinate && (coordinate[1] || per_one === 0)) return { row: name, channel: "" };
   const parts = name.split(".");
   const at = parts.findIndex((part, n) => n > 0 && CHANNELS.includes(part));
   if (at < 0) return { row: name, channel: "" };
@@ -131,7 +133,7 @@ export class Chain {
   rows(steps) {
     const rows = new Map();
     for (const step of steps) {
-      const { row, channel } = place(step.name);
+      const { row, channel } = place(step);
       if (!rows.has(row)) rows.set(row, []);
       rows.get(row).push({ channel, step });
     }
@@ -149,7 +151,7 @@ export class Chain {
 
   box(row, cells, fragment, extra) {
     const { step } = cells[0];
-    const inputs = [...new Set(step.inputs.map((input) => short(place(input.name).row)))];
+    const inputs = [...new Set(step.inputs.map((input) => short(place(input).row)))];
     const from = inputs.length > 4 ? `${inputs.slice(0, 3).join(", ")}, …` : inputs.join(", ");
     const how = step.operation === "given" ? "" : `${step.operation.replaceAll("_", " ")}${from ? ` of ${from}` : ""}`;
     const rules = [...new Set(cells.map(({ step: each }) => each.rule).filter(Boolean))];
@@ -180,7 +182,7 @@ export class Chain {
     const pairs = [["A", "B"], ["C", "D"]].map((pair) => boxes("inputs", (name) => pair.includes(name))).filter((pair) => pair.length);
     const flag = (label, field) => el("label", {}, el("input", { type: "checkbox", "aria-label": `${label} of stage ${number} ${portion}`, checked: state[field],
       onchange: (event) => this.page.edit(draw, [...path, field], event.target.checked) }), ` ${label}`);
-    const output = (label, field) => [el("span", { className: "quiet" }, `${label} → `), pick(`Output of ${label}`, "register", [field])];
+    const output = (label, field) => [el("span", { className: "quiet" }, `${label} → `), pick(`Output of ${label}`, "destination", [field])];
     const settings = el("div", { className: "field" },
       editable ? [el("span", { className: "quiet" }, "scale "), pick("Scale", "scale", ["scale"]), el("span", { className: "quiet" }, " bias "), pick("Bias", "bias", ["bias"]),
         output("AB", "ab_output"), output("CD", "cd_output"), output(state.mux ? "mux" : "sum", "sum_output"),

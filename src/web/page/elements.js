@@ -51,4 +51,11 @@ export function bytesOf(base64) {
   return bytes;
 }
 
+// Characters of bytes, in parts: arguments stand on the stack.
+export function base64Of(bytes) {
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 0x4000) text += String.fromCharCode(...bytes.subarray(at, at + 0x4000));
+  return btoa(text);
+}
+
 export const hexadecimal = (value, width = 2) => (value < 0 ? "-0x" : "0x") + Math.abs(value).toString(16).padStart(width, "0");

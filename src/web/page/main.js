@@ -1,12 +1,15 @@
 // The page: one scene, its changes, and what is looked at.
 import { Chain } from "./chain.js";
 import { Change } from "./change.js";
-import { $, bytesOf, choice, colorField, el, swatch } from "./elements.js";
+import { $, base64Of, bytesOf, choice, colorField, el, swatch } from "./elements.js";
 import { Background, Model, serve } from "./model.js";
 import { View } from "./view.js";
 
-const encoded = (value) => btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(value)))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+const encoded = (value) => base64Of(new TextEncoder().encode(JSON.stringify(value))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 const decoded = (text) => JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
+
+// Browsers open no address that is much longer.
+const LONGEST_ADDRESS = 1_000_000;
 
 class Page {
   constructor(data, model, background, view) {
@@ -18,8 +21,7 @@ class Page {
     this.programs = new Map();
     for (const [name, bytes] of Object.entries(data.files)) model.file(name, bytesOf(bytes));
     this.wire();
-    this.fromAddress();
-    this.apply();
+    this.apply(this.fromAddress());
   }
 
   wire() {
@@ -58,7 +60,7 @@ class Page {
       const file = event.dataTransfer.files[0];
       if (file) this.dropped(file.name, new Uint8Array(await file.arrayBuffer()));
     });
-    window.addEventListener("hashchange", () => { if (location.hash.slice(1) !== this.address) { this.fromAddress(); this.apply(); } });
+    window.addEventListener("hashchange", () => { if (location.hash.slice(1) !== this.address) this.apply(this.fromAddress()); });
   }
 
   say(text) {
@@ -117,8 +119,9 @@ class Page {
     this.apply();
   }
 
-  apply() {
-    this.say("");
+  // Shows what stands now, below a message.
+  apply(message = "") {
+    this.say(message);
     this.tried(() => this.model.ask({ do: "policies", values: this.policies }));
     this.sound = this.open(this.text);
     $("undo").disabled = this.past.length === 0;
@@ -201,13 +204,16 @@ class Page {
     if (was !== is) state.e = [start, was.length - end, is.slice(start, is.length - end)];
     const policies = Object.fromEntries(Object.entries(this.policies).filter(([rule, value]) => this.data.chosen[rule] !== value));
     if (Object.keys(policies).length) state.v = policies;
-    this.address = Object.keys(state).length ? encoded(state) : "";
+    const address = Object.keys(state).length ? encoded(state) : "";
+    this.linked = address.length <= LONGEST_ADDRESS;
+    this.address = this.linked ? address : "";
     history.replaceState(null, "", `#${this.address}`);
   }
 
+  // Takes what the address holds. Returns what is to be said of it.
   fromAddress() {
     this.address = location.hash.slice(1);
-    if (!this.address || this.address === "pixel") return;
+    if (!this.address || this.address === "pixel") return "";
     try {
       const { p, t = 0, u = null, e, v = {} } = decoded(this.address);
       const whole = (value) => Number.isInteger(value) && value >= 0;
@@ -216,13 +222,15 @@ class Page {
       this.until = whole(u) ? u : null;
       if (Array.isArray(e) && whole(e[0]) && whole(e[1]) && typeof e[2] === "string") this.text = this.data.text.slice(0, e[0]) + e[2] + this.data.text.slice(e[1]);
       this.policies = { ...this.data.chosen, ...v };
+      return "";
     } catch {
-      this.say("The address is not one of this page; the scene is as it was saved.");
+      return "The address is not one of this page; the scene is as it was saved.";
     }
   }
 
   async link() {
     this.toAddress();
+    if (!this.linked) return this.say("The changes are too long for a link. Save RON keeps them.");
     try {
       await navigator.clipboard.writeText(location.href);
       this.say("The link is on the clipboard: this pixel, these changes.");
@@ -381,7 +389,7 @@ class Page {
         el("td", {}, value.chosen ? "" : el("button", { onclick: () => this.policy(rule, value.value) }, "Choose"))));
     });
     const differing = new Set(rules.filter(({ values }) => values.some((value) => value.word !== values.find((each) => each.chosen).word)).map(({ rule }) => rule));
-    $("rules").replaceChildren(el("p", {}, differing.size ? `Of the undecided rules ${[...differing].join(", ")} would change this pixel.` : "No undecided rule would change this pixel."),
+    $("rules").replaceChildren(el("p", {}, differing.size ? this.data.undecided.some.replace("{}", [...differing].join(", ")) : this.data.undecided.none),
       el("table", {}, el("thead", {}, el("tr", {}, ["value", "rule", "meaning", "pixel", ""].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, rows)));
   }
 
@@ -424,8 +432,19 @@ class Page {
     const rule = this.rules[id];
     if (!rule) return;
     $("rule-title").textContent = `${id} ${rule.title}`;
-    $("rule-text").replaceChildren(el("dl", {}, rule.lines.flatMap(([term, text]) => [el("dt", {}, term), el("dd", {}, text)])));
-    $("rule").showModal();
+    const terms = new Map();
+    for (const [term, text] of rule.lines) terms.set(term, [...(terms.get(term) ?? []), text]);
+    const told = (term, texts) => (term === "Formula" ? el("pre", { tabindex: 0 }, texts.join("\n")) : texts.map((text) => el("p", {}, this.marked(text, id))));
+    const parts = [...terms].flatMap(([term, texts]) => [el("h3", {}, texts.length > 1 ? `${term}s` : term), told(term, texts)]);
+    $("rule-text").replaceChildren(...parts.flat(2));
+    if (!$("rule").open) $("rule").showModal();
+    $("rule-text").scrollTop = 0;
+  }
+
+  // A text of the handbook: code stands between back-ticks, and other rules lead to their own text.
+  marked(text, own) {
+    const other = (part) => (part !== own && this.rules[part] ? el("button", { className: "rule", onclick: () => this.rule(part) }, part) : part);
+    return text.split("`").flatMap((part, n) => (n % 2 ? el("code", {}, part) : part.split(/\b([A-Z]{3}-\d+[a-z]?)\b/).map(other)));
   }
 }
 

@@ -27,6 +27,13 @@
 #define NINEBIT_COLUMNS 256
 #endif
 
+/* A test needs some of the functions; compilers that warn of the others are told. */
+#ifdef __GNUC__
+#define NINEBIT_OPTIONAL __attribute__((unused))
+#else
+#define NINEBIT_OPTIONAL
+#endif
+
 typedef struct ninebit_table {
     FILE *file;
     long line_number;
@@ -91,7 +98,7 @@ static void ninebit_value(const char *line, const char *key, char *into, size_t 
 }
 
 /* Reads the lines before the rows. 1, or 0 with `error` set. */
-static int ninebit_open(ninebit_table *table, FILE *file)
+NINEBIT_OPTIONAL static int ninebit_open(ninebit_table *table, FILE *file)
 {
     int types = 0;
     memset(table, 0, sizeof *table);
@@ -119,7 +126,7 @@ static int ninebit_open(ninebit_table *table, FILE *file)
 }
 
 /* The number of a column, -1 if there is none of that name. */
-static int ninebit_column(const ninebit_table *table, const char *name)
+NINEBIT_OPTIONAL static int ninebit_column(const ninebit_table *table, const char *name)
 {
     int column;
     for (column = 0; column < table->columns; column++) {
@@ -129,7 +136,7 @@ static int ninebit_column(const ninebit_table *table, const char *name)
 }
 
 /* Reads the next row. 1; 0 at the end, or with `error` set. */
-static int ninebit_next(ninebit_table *table)
+NINEBIT_OPTIONAL static int ninebit_next(ninebit_table *table)
 {
     if (table->error[0] || !ninebit_line(table, table->row)) return 0;
     if (ninebit_split(table->row, table->fields) != table->columns) return ninebit_fail(table, "fields and columns do not match");
@@ -137,13 +144,13 @@ static int ninebit_next(ninebit_table *table)
 }
 
 /* The text of a field of the current row; names of choices, ids and tags are text. Empty for a column that is not there. */
-static const char *ninebit_text(const ninebit_table *table, int column)
+NINEBIT_OPTIONAL static const char *ninebit_text(const ninebit_table *table, int column)
 {
     return column >= 0 && column < table->columns ? table->fields[column] : "";
 }
 
 /* Twice the number in a field of the current row, whatever the column's type: 24 for 12, 25 for 12.5, -1 for -0.5. */
-static long ninebit_halves(const ninebit_table *table, int column)
+NINEBIT_OPTIONAL static long ninebit_halves(const ninebit_table *table, int column)
 {
     const char *text = ninebit_text(table, column);
     char type = column >= 0 && column < table->columns ? table->types[column] : 0;
@@ -153,7 +160,7 @@ static long ninebit_halves(const ninebit_table *table, int column)
 
 /* The number in a field of the current row, as it is written there. A word of 32 bits needs a long that holds it. A number that is not
  * whole, which only columns of type h have, is an error: it sets `error` and ends the reading. Ask such columns by ninebit_halves. */
-static long ninebit_number(ninebit_table *table, int column)
+NINEBIT_OPTIONAL static long ninebit_number(ninebit_table *table, int column)
 {
     const char *text = ninebit_text(table, column);
     char type = column >= 0 && column < table->columns ? table->types[column] : 0;
@@ -163,7 +170,7 @@ static long ninebit_number(ninebit_table *table, int column)
 }
 
 /* Prints the current row with the names of its columns: configuration, inputs, intermediates, results. */
-static void ninebit_print(const ninebit_table *table, FILE *out)
+NINEBIT_OPTIONAL static void ninebit_print(const ninebit_table *table, FILE *out)
 {
     int column;
     fprintf(out, "row %s (line %ld):", table->fields[0], table->line_number);

@@ -20,7 +20,8 @@ int main(void)
     for (n = 0; n < count; n++) {
         const struct product_row *row = &product_rows[n];
         if ((got = product(row->in_a, row->in_b)) != row->out_ab && failed++ == 0)
-            printf("product: row %s (line %d of product.rows.inc): %d, not %d\n", row->id, n + 1, got, row->out_ab);
+            printf("product: row %s (line %d of product.rows.inc): in.a=%d in.b=%d mid.product=%d out.ab=%d, found %d\n", row->id, n + 1,
+                   row->in_a, row->in_b, (int)row->mid_product, row->out_ab, got);
     }
     printf("%d of %d rows failed\n", failed, count);
     return failed != 0;

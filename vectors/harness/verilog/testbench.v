@@ -15,11 +15,11 @@ module testbench;
     reg [ROW_BITS-1:0] rows [0:ROWS-1];
     reg [ROW_BITS-1:0] row;
     reg [8*1024-1:0] units, path;
-    reg [8*1024-1:0] text;
+    reg [8*1024-1:0] text, names, fields;
     reg [8*12-1:0] id;
     reg [7:0] first;
     wire [26:0] ab, cd, third;
-    integer n, failed, unread, table_file, line;
+    integer n, failed, unread, table_file, line, names_length, fields_length;
 
     general_stage #(.ROUNDING(ROUNDING)) stage (
         .mapping_a(row[CFG_MAPPING_A_HIGH:CFG_MAPPING_A_LOW]),
@@ -45,6 +45,36 @@ module testbench;
     wire [26:0] expected_third =
         {row[OUT_THIRD_R_HIGH:OUT_THIRD_R_LOW], row[OUT_THIRD_G_HIGH:OUT_THIRD_G_LOW], row[OUT_THIRD_B_HIGH:OUT_THIRD_B_LOW]};
 
+    // The current row of the table with the names of its columns: configuration, inputs, intermediates, results.
+    task show_row;
+        integer name_at, field_at, column;
+        reg is_shown;
+        begin
+            name_at = names_length;
+            field_at = fields_length;
+            is_shown = 1;
+            $write("   ");
+            for (column = 0; is_shown && name_at > 0 && field_at > 0; column = column + 1) begin
+                // Column 0 is the id; after the results come the tags.
+                is_shown = column == 0 || names[8 * (name_at - 1) +: 8] != "t";
+                if (column > 0 && is_shown) $write(" ");
+                while (name_at > 0 && names[8 * (name_at - 1) +: 8] > 10) begin
+                    if (column > 0 && is_shown) $write("%c", names[8 * (name_at - 1) +: 8]);
+                    name_at = name_at - 1;
+                end
+                if (column > 0 && is_shown) $write("=");
+                while (field_at > 0 && fields[8 * (field_at - 1) +: 8] > 10) begin
+                    if (column > 0 && is_shown) $write("%c", fields[8 * (field_at - 1) +: 8]);
+                    field_at = field_at - 1;
+                end
+                // The tabs.
+                name_at = name_at - 1;
+                field_at = field_at - 1;
+            end
+            $write("\n");
+        end
+    endtask
+
     // Red, green and blue of an output, what was found and what was expected.
     task show(input [8*5-1:0] name, input [26:0] found, input [26:0] expected);
         if (found !== expected)
@@ -61,6 +91,8 @@ module testbench;
             count = $fgets(text, table_file);
             first = count < 1 ? 0 : text >> 8 * (count - 1);
             id = count < 12 ? 0 : text >> 8 * (count - 12);
+            fields = text;
+            fields_length = count;
             // A line that is longer than the text comes in several parts.
             while (count > 0 && text[7:0] != 10) count = $fgets(text, table_file);
         end
@@ -83,6 +115,8 @@ module testbench;
         // Lines that begin with # come first, then the names of the columns.
         next_line;
         while (first == "#") next_line;
+        names = fields;
+        names_length = fields_length;
         $sformat(path, "%0s/general-stage.hex", units);
         $readmemh(path, rows);
         for (n = 0; n < ROWS; n = n + 1) begin
@@ -94,6 +128,7 @@ module testbench;
             if ({ab, cd, third} !== {expected_ab, expected_cd, expected_third}) begin
                 if (failed < SHOWN) begin
                     $display("general-stage: row %0s (line %0d of general-stage.tsv) fails", id, line);
+                    show_row;
                     show("ab", ab, expected_ab);
                     show("cd", cd, expected_cd);
                     show("third", third, expected_third);

@@ -63,6 +63,8 @@ pub(crate) enum Command {
     Unit(unit::Arguments),
 }
 
+pub(super) use unit::setup as unit_setup;
+
 /// Returns the checks of textures for a chip.
 fn texture_checks(profile: &ProfileArgument) -> TextureChecks {
     TextureChecks { profile: profile.profile, largest_side: Limits::default().texture_side }

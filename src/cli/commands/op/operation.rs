@@ -7,16 +7,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};
-use ninebit::state::{Named, Policies, Profile};
-use ninebit::trace::{Observer, Recorder, Step};
+use ninebit::state::{Named, POLICIES, Policies, Profile};
+use ninebit::trace::{Observer, Recorder, Silent, Step};
 use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
 use ninebit_vectors::Unit;
 use ninebit_vectors::column::{Column as Input, Domain, Kind};
-use ninebit_vectors::unit::{Conditions, observed};
+use ninebit_vectors::unit::{Alternative, Conditions, alternatives, observed};
 use serde_json::{Map, Value, json};
 
 use super::words::{self, number};
 use super::{Failure, Format, table};
+use crate::undecided;
 
 /// The option that chooses a chip.
 #[derive(Debug, Args)]
@@ -38,6 +39,13 @@ pub(super) struct Common {
     /// Where the table of results goes [default: stdout]
     #[arg(short, long, value_name = "OUT.tsv", requires = "inputs")]
     output: Option<OsString>,
+}
+
+impl Common {
+    /// Prints a list in the chosen format.
+    pub(super) fn list(&self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
+        self.format.print(text, json)
+    }
 }
 
 /// An input of a unit.
@@ -128,7 +136,7 @@ pub(super) fn set(columns: &mut [Column], values: impl IntoIterator<Item = i64>)
 pub(super) type Results = Vec<(String, Value)>;
 
 /// A unit with the values of its inputs.
-pub(super) struct Setup<'u> {
+pub(in crate::commands) struct Setup<'u> {
     /// The unit.
     pub(super) unit: &'u dyn Unit,
     /// The chip and the policies.
@@ -143,6 +151,8 @@ pub(super) struct Setup<'u> {
     pub(super) known: String,
     /// Returns a result as it is printed.
     pub(super) written: fn(&Input, i64) -> Value,
+    /// Columns of a table that are no inputs and are passed over.
+    pub(super) passed_over: Vec<String>,
 }
 
 /// Returns a result as JSON has it: a number, or the text of tables.
@@ -159,7 +169,8 @@ impl<'u> Setup<'u> {
         let find =
             |columns: &[Column], name: &str| columns.iter().position(|c| c.input.name == name || c.short == name);
         let conditions = Conditions { profile: Profile::Nv10, policies: Policies::DEFAULT };
-        Setup { unit, conditions, depends: false, columns, find, known: known.into(), written }
+        let passed_over = Vec::new();
+        Setup { unit, conditions, depends: false, columns, find, known: known.into(), written, passed_over }
     }
 
     /// Returns the results of a row. Columns of one name are one result, an array. The observer receives the steps.
@@ -182,6 +193,24 @@ impl<'u> Setup<'u> {
         if fits { Ok(()) } else { Err(format!("`{}` does not take these inputs together", self.unit.name())) }
     }
 
+    /// Returns what each open rule would change: the rule, its value, and the results that would be others. `None` for a unit without such rules.
+    fn alternatives(&self, values: &[i64]) -> Option<Vec<Changed>> {
+        let open = |rule: &&str| POLICIES.iter().any(|policy| policy.rule == *rule);
+        let asks = self.unit.rules().iter().any(open) || !self.unit.readings().is_empty();
+        if !self.depends || !asks {
+            return None;
+        }
+        let columns = self.unit.results();
+        let own = observed(self.unit, values, &self.conditions, &mut Silent);
+        let found = alternatives(self.unit, &columns, values, &self.conditions, &own);
+        let changed = |alternative: &Alternative| {
+            let results = alternative.changed(&columns, &own).filter(|(column, _)| !column.name.starts_with("mid."));
+            let results = results.map(|(column, value)| (column.name.clone(), (self.written)(column, value)));
+            Changed { rule: alternative.rule, policy: alternative.policy.clone(), results: results.collect() }
+        };
+        Some(found.iter().map(changed).collect())
+    }
+
     /// Computes and prints the results of the given values, or of a table of cases.
     pub(super) fn drive(&self, common: &Common) -> Result<(), Failure> {
         if let Some(path) = &common.inputs {
@@ -195,42 +224,89 @@ impl<'u> Setup<'u> {
         let values = self.columns.iter().map(value).collect::<Result<Vec<i64>, Failure>>()?;
         self.check(&values)
             .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
-        let mut recorder = Recorder::default();
-        let results = self.results(&values, &mut recorder);
-        let Conditions { profile, policies } = &self.conditions;
-        let mut steps = given(&self.columns, &values, &recorder.steps);
-        steps.append(&mut recorder.steps);
-        let json = || {
-            let value = json!({
-                "format": "ninebit-op-1",
-                "operation": self.unit.name(),
-                "profile": self.depends.then(|| profile.name()),
-                "policies": self.depends.then(|| policies_value(policies)),
-                "steps": steps_value(&steps),
-                "results": results.iter().cloned().collect::<Map<String, Value>>(),
-            });
-            format!("{value:#}\n")
-        };
-        common.format.print(|| self.text(&steps, &results), json)
+        let told = self.told(&values);
+        common.format.print(|| told.text(), || format!("{:#}\n", told.value()))
     }
 
-    fn text(&self, steps: &[Step], results: &Results) -> String {
+    /// Computes a row: results, steps, and what open rules would change.
+    pub(in crate::commands) fn told(&self, values: &[i64]) -> Told<'_> {
+        let mut recorder = Recorder::default();
+        let results = self.results(values, &mut recorder);
+        let mut steps = given(&self.columns, values, &recorder.steps);
+        steps.append(&mut recorder.steps);
+        Told { setup: self, steps, results, changed: self.alternatives(values) }
+    }
+}
+
+/// An operation that was run.
+pub(in crate::commands) struct Told<'s> {
+    setup: &'s Setup<'s>,
+    steps: Vec<Step>,
+    results: Results,
+    changed: Option<Vec<Changed>>,
+}
+
+impl Told<'_> {
+    /// Returns it as JSON.
+    pub(in crate::commands) fn value(&self) -> Value {
+        let Conditions { profile, policies } = &self.setup.conditions;
+        let depends = self.setup.depends;
+        json!({
+            "format": "ninebit-op-1",
+            "operation": self.setup.unit.name(),
+            "profile": depends.then(|| profile.name()),
+            "policies": depends.then(|| policies_value(policies)),
+            "steps": steps_value(&self.steps),
+            "results": self.results.iter().cloned().collect::<Map<String, Value>>(),
+            "alternatives": self.changed.as_ref().map(|all| all.iter().map(Changed::value).collect::<Vec<_>>()),
+        })
+    }
+
+    fn text(&self) -> String {
         let mut out = String::new();
-        if self.depends {
-            let Conditions { profile, policies } = &self.conditions;
-            let _ = writeln!(out, "{}, profile {}", self.unit.name(), profile.name());
+        if self.setup.depends {
+            let Conditions { profile, policies } = &self.setup.conditions;
+            let _ = writeln!(out, "{}, profile {}", self.setup.unit.name(), profile.name());
             out.push_str(&policies_text(policies));
         }
-        if !steps.is_empty() {
-            out.push_str(&steps_text(steps));
-        }
-        if results.is_empty() {
+        out.push_str(&self.steps());
+        if self.results.is_empty() {
             out.push_str("  result: nothing is written\n");
-            return out;
+        } else {
+            let results: Vec<String> =
+                self.results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
+            let _ = writeln!(out, "  result: {}", results.join("  "));
         }
-        let results: Vec<String> = results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
-        let _ = writeln!(out, "  result: {}", results.join("  "));
+        out + &self.changes()
+    }
+
+    /// Returns the steps as a table; nothing for a unit without steps.
+    pub(in crate::commands) fn steps(&self) -> String {
+        if self.steps.is_empty() { String::new() } else { steps_text(&self.steps) }
+    }
+
+    /// Says which open rules would change the results, and to what.
+    pub(in crate::commands) fn changes(&self) -> String {
+        let Some(all) = &self.changed else { return String::new() };
+        let mut out = undecided::sentence(all.iter().map(|each| each.rule), "this result") + "\n";
+        for Changed { policy, results, .. } in all {
+            let results: Vec<String> = results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
+            let _ = writeln!(out, "  {policy:<16} {}", results.join("  "));
+        }
         out
+    }
+}
+
+/// What another value of an open rule changes.
+struct Changed {
+    rule: &'static str,
+    policy: String,
+    results: Results,
+}
+
+impl Changed {
+    fn value(&self) -> Value {
+        json!({ "policy": self.policy, "results": self.results.iter().cloned().collect::<Map<String, Value>>() })
     }
 }
 

@@ -6,9 +6,11 @@ use std::path::Path;
 
 use ninebit::limits::OPERATION_TABLE;
 use ninebit::shown;
+use ninebit::state::Named;
 use ninebit::trace::Silent;
 use ninebit_files::output::{Destination, write_stdout};
 use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_vectors::table::FORMAT;
 
 use super::{Exit, Failure, Report, Setup, operation::shown as written};
 
@@ -19,7 +21,9 @@ const MAX_ERRORS: usize = 16;
 pub(super) fn run(setup: &Setup<'_>, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
     let destination = output.map(Destination::from);
     let text = read(path)?;
-    let results = evaluate(setup, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    check_pack(setup, path, text)?;
+    let results = evaluate(setup, path, text)?;
     match destination {
         Some(destination) => Ok(destination.write(results.as_bytes())?),
         None => Ok(write_stdout(results.as_bytes())?),
@@ -48,6 +52,30 @@ fn read(path: &Path) -> Result<String, Failure> {
         error => unreadable(&error.to_string()),
     })?;
     String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text"))
+}
+
+/// Refuses a pack's table of another unit, or of another chip.
+fn check_pack(setup: &Setup<'_>, path: &Path, text: &str) -> Result<(), Failure> {
+    if setup.passed_over.is_empty() || text.lines().next() != Some(FORMAT) {
+        return Ok(());
+    }
+    let head = |name: &str| {
+        text.lines()
+            .take_while(|line| line.starts_with('#'))
+            .find_map(|line| line.strip_prefix("# ")?.strip_prefix(name))
+    };
+    let own = [
+        ("unit ", setup.unit.name(), "name that unit"),
+        ("profile ", setup.conditions.profile.name(), "`--profile` chooses the chip"),
+    ];
+    for (name, own, help) in own {
+        if let Some(other) = head(name).filter(|other| *other != own) {
+            let other = shown::name(&other.chars().take(40).collect::<String>()).into_owned();
+            let message = format!("table `{}` is of {name}{other}, not {own}", shown::path(path));
+            return Err(Failure::invalid("NB0532", message, help));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the table with its results.
@@ -98,7 +126,8 @@ fn evaluate(setup: &Setup<'_>, path: &Path, text: &str) -> Result<String, Failur
 }
 
 /// Returns the operation's column for each column of the table.
-fn header_columns(setup: &Setup<'_>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
+/// `None` stands for one that is passed over.
+fn header_columns(setup: &Setup<'_>, path: &Path, line: usize, names: &[&str]) -> Result<Vec<Option<usize>>, Failure> {
     let wrong = |column: usize, what: String| {
         let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
         Failure::invalid("NB0532", message, columns_help(&setup.known))
@@ -106,15 +135,19 @@ fn header_columns(setup: &Setup<'_>, path: &Path, line: usize, names: &[&str]) -
     let mut columns = Vec::with_capacity(names.len());
     for (index, name) in names.iter().enumerate() {
         let Some(column) = (setup.find)(&setup.columns, name) else {
+            if setup.passed_over.iter().any(|known| known == name) {
+                columns.push(None);
+                continue;
+            }
             let short: String = name.chars().take(40).collect();
             return Err(wrong(index, format!("there is no input `{}`", shown::name(&short))));
         };
-        if let Some(first) = columns.iter().position(|known| *known == column) {
+        if let Some(first) = columns.iter().position(|known| *known == Some(column)) {
             return Err(wrong(index, format!("`{name}` is the same input as column {}", first + 1)));
         }
-        columns.push(column);
+        columns.push(Some(column));
     }
-    let missing = (0..).zip(&setup.columns).find(|(n, column)| column.value.is_none() && !columns.contains(n));
+    let missing = (0..).zip(&setup.columns).find(|(n, column)| column.value.is_none() && !columns.contains(&Some(*n)));
     if let Some((_, column)) = missing {
         let message = format!("table `{}` has no column `{}`", shown::path(path), column.input.name);
         return Err(Failure::invalid("NB0532", message, column.how_to_give.as_str()));
@@ -129,7 +162,7 @@ fn columns_help(known: &str) -> String {
 /// Reads the values of one line.
 fn row(
     setup: &Setup<'_>,
-    columns: &[usize],
+    columns: &[Option<usize>],
     names: &[&str],
     fields: &[&str],
     values: &mut [i64],
@@ -139,8 +172,9 @@ fn row(
         return Err(format!("{} {plural}, the header has {}", fields.len(), columns.len()));
     }
     for (index, (field, place)) in fields.iter().zip(columns).enumerate() {
-        let column = &setup.columns[*place];
-        values[*place] = column.read(field).ok_or_else(|| {
+        let Some(place) = *place else { continue };
+        let column = &setup.columns[place];
+        values[place] = column.read(field).ok_or_else(|| {
             let field = shown::name(&field.chars().take(40).collect::<String>()).to_string();
             format!("column {} (`{}`): `{field}` is not {}", index + 1, names[index], column.wants())
         })?;

@@ -2,6 +2,7 @@
 
 use super::*;
 
+use ninebit::threads::on_threads;
 use ninebit_vectors::read::{Difference, Table};
 use rayon::prelude::*;
 
@@ -18,7 +19,7 @@ pub(crate) struct Arguments {
 /// Checks a pack.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (manifest, tables) = pack::open(&arguments.pack)?;
-    let found: Vec<Vec<Difference>> = tables.par_iter().map(Table::differences).collect();
+    let found: Vec<Vec<Difference>> = on_threads(0, || tables.par_iter().map(Table::differences).collect());
     let rows: usize = tables.iter().map(|table| table.rows.len()).sum();
     let differing: usize = found.iter().map(Vec::len).sum();
     let mut text = String::new();

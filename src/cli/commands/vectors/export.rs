@@ -10,7 +10,7 @@ use ninebit_vectors::view::View;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The folder of the pack; it is made, and files of an earlier export in it are replaced
+    /// The folder of the pack; it is made; a pack in it is replaced when the new one is whole
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// The chip: nv10 or nv2a

@@ -28,7 +28,7 @@ fn annotation(one: &Replayed) -> String {
     let (file, title) =
         (property(&shown::path(&one.path)), property(&format!("{} {}", shown::name(&one.name), one.status())));
     let messages: Vec<String> = std::iter::once(one.message())
-        .chain(one.unwritten.iter().map(|problem| shown::name(&problem.message).into_owned()))
+        .chain(one.unwritten.iter().map(|problem| format!("{} {}", problem.code, shown::name(&problem.message))))
         .collect();
     let message = messages.into_iter().filter(|message| !message.is_empty()).collect::<Vec<_>>().join("\n");
     format!("::error file={file}{place},title={title}::{}\n", data(&message))

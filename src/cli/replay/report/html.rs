@@ -1,47 +1,61 @@
-//! Report as an HTML page that needs no other file.
+//! Report as an HTML page that needs no other file. Its content security policy allows its own script and style by their hashes, and nothing else.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::replay::panels::GAP;
+use crate::page::source_hash;
+use crate::replay::panels::{GAP, opaque};
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
 use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
 
 const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("report.js");
 
 /// Returns a page with all details of the scenes that are not as expected, and a list of all scenes. Pictures are embedded.
 pub fn html(all: &[Replayed]) -> String {
     let summary = Summary::from_replays(all);
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
+    let style = STYLE.to_owned() + &wrong.iter().enumerate().map(|(n, one)| shape(n, one)).collect::<String>();
+    let (script, styled) = (source_hash(SCRIPT), source_hash(&style));
+    let policy = format!(
+        "default-src 'none'; img-src data:; script-src {script}; style-src {styled}; base-uri 'none'; form-action 'none'"
+    );
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(policy);
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
                 title { "ninebit replay: " (summary) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(&style)) }
             }
             body {
-                h1 { "ninebit replay" }
-                p { (summary) }
-                @if !wrong.is_empty() {
-                    ul { @for one in &wrong { li { a href={ "#" (shown::name(&one.name)) } { (shown::name(&one.name)) } ": " (one.message()) } } }
+                header {
+                    h1 { "ninebit replay" }
+                    p { (summary) }
                 }
-                @for one in &wrong { (scene(one)) }
-                h2 { "All scenes" }
-                div.scroll { table {
-                    @for one in all {
-                        tr {
-                            td { (status(one)) }
-                            td { code { (shown::path(&one.path)) } }
-                            td { @if matches!(one.outcome, Outcome::Skipped(_) | Outcome::Blessed { .. }) { (one.message()) } }
-                        }
+                main aria-label="Scenes" {
+                    @if !wrong.is_empty() {
+                        ul.wrong { @for one in &wrong { li { (status(one)) " " a href={ "#" (shown::name(&one.name)) } { (shown::name(&one.name)) } } } }
                     }
-                } }
+                    @for (n, one) in wrong.iter().enumerate() { (scene(n, one)) }
+                    h2 { "All scenes" }
+                    div.scroll { table {
+                        @for one in all {
+                            tr {
+                                td { (status(one)) }
+                                td { code { (shown::path(&one.path)) } }
+                                td { @if matches!(one.outcome, Outcome::Skipped(_) | Outcome::Blessed { .. }) { (one.message()) } }
+                            }
+                        }
+                    } }
+                }
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };
@@ -52,12 +66,26 @@ fn status(one: &Replayed) -> Markup {
     html! { span class={ "status " (one.status()) } { (one.status()) } }
 }
 
-fn scene(one: &Replayed) -> Markup {
+/// Returns the rules that give a scene's figure the shape of its pictures. Each title is as wide as its panel; a tall picture is narrower than the
+/// page, but wide enough for its titles.
+fn shape(n: usize, one: &Replayed) -> String {
+    let Outcome::Differs(difference) = &one.outcome else { return String::new() };
+    let Some(known) = &difference.known else { return String::new() };
+    let (width, height) = (known.difference.width, known.difference.height);
+    let [panel, gap] = [width as usize, GAP].map(|columns| format!("minmax(0, {columns}fr)"));
+    let whole = 3 * width as usize + 2 * GAP;
+    format!(
+        "#figure{n}:not(.live) {{ max-width: max(22rem, calc(45rem * {whole} / {height})); }}\n\
+         #figure{n} .titles {{ grid-template-columns: {panel} {gap} {panel} {gap} {panel}; }}\n"
+    )
+}
+
+fn scene(n: usize, one: &Replayed) -> Markup {
     html! {
         section id=(shown::name(&one.name)) {
             h2 { (shown::name(&one.name)) " " (status(one)) }
             @match &one.outcome {
-                Outcome::Differs(difference) => (self::difference(difference)),
+                Outcome::Differs(difference) => (self::difference(n, difference)),
                 Outcome::Failed(problem) => pre { (shown::lines(&problem.text)) },
                 _ => {}
             }
@@ -70,25 +98,27 @@ fn image(png: &[u8], class: &str, text: &str) -> Markup {
     html! { img class=(class) alt=(text) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
 }
 
-fn difference(difference: &Difference) -> Markup {
+fn difference(n: usize, difference: &Difference) -> Markup {
     html! {
-        p { strong { (shown::name(&difference.verdict())) } }
+        p { (shown::name(&difference.verdict())) }
         @match &difference.known {
-            Some(known) => (pictures(known)),
+            Some(known) => (pictures(n, known)),
             None => {
                 p { "Only the digest of the expected picture is known; this was drawn:" }
-                (image(&difference.picture, "panels", "drawn"))
-            }
-        }
-        table {
-            tr { th { "target" } td { code { (shown::name(&difference.target)) } } }
-            tr { th { "expected" } td { code { (shown::name(&difference.expected)) } } }
-            tr { th { "drawn" } td { code { (difference.drawn) } } }
-            @if let Some(Known { origin: Origin::File(path), .. }) = &difference.known {
-                tr { th { "expected picture" } td { code { (shown::path(path)) } } }
+                figure data-panels="1" { (image(&opaque(&difference.picture), "panels", "drawn")) }
             }
         }
         @for remark in &difference.remarks { p { (shown::name(remark)) } }
+        details.quiet {
+            summary { "Target " code { (shown::name(&difference.target)) } ", digests" }
+            table {
+                tr { th { "expected" } td { code { (shown::name(&difference.expected)) } } }
+                tr { th { "drawn" } td { code { (difference.drawn) } } }
+                @if let Some(Known { origin: Origin::File(path), .. }) = &difference.known {
+                    tr { th { "expected picture" } td { code { (shown::path(path)) } } }
+                }
+            }
+        }
         @if let Some(known) = &difference.known {
             h3 { "Drawn less expected, in pixels" }
             (histogram(known))
@@ -97,16 +127,11 @@ fn difference(difference: &Difference) -> Markup {
     }
 }
 
-fn pictures(known: &Known) -> Markup {
-    let (width, height) = (known.difference.width, known.difference.height);
-    // Each title is as wide as its panel. A tall picture is narrower than the page, but wide enough for its titles.
-    let [panel, gap] = [width as usize, GAP].map(|columns| format!("minmax(0, {columns}fr)"));
-    let titles = format!("grid-template-columns: {panel} {gap} {panel} {gap} {panel}");
-    let whole = 3 * width as usize + 2 * GAP;
-    let figure = format!("max-width: max(22rem, calc(45rem * {whole} / {height}))");
+fn pictures(n: usize, known: &Known) -> Markup {
+    let first = &known.first;
     html! {
-        figure style=(figure) {
-            div.titles style=(titles) {
+        figure id={ "figure" (n) } data-panels="3" data-scale=(known.scale) data-first={ (first.x) "," (first.y) } {
+            div.titles {
                 span { "expected" } span {} span { "drawn" } span {} span { "difference, times " (known.scale) }
             }
             (image(&known.panels, "panels", "expected, drawn, difference"))

@@ -50,7 +50,7 @@ fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
             return Ok(());
         }
         Outcome::Skipped(_) => ("skipped", None),
-        Outcome::Differs(difference) => ("failure", Some(("difference".to_owned(), difference.text()))),
+        Outcome::Differs(difference) => ("failure", Some(("difference".to_owned(), difference.brief()))),
         Outcome::Failed(problem) => ("error", Some((format!("exit {code}"), problem.text.clone()))),
     };
     case.write_inner_content(|writer| {

@@ -26,7 +26,7 @@ fn write(out: &mut String, all: &[Replayed]) -> std::fmt::Result {
             _ => writeln!(out, "{:8} {}: {}", one.status(), shown::path(&one.path), one.message())?,
         }
         for problem in &one.unwritten {
-            writeln!(out, "{:8} {}", "", shown::name(&problem.message))?;
+            writeln!(out, "{:8} {} {}", "", problem.code, shown::name(&problem.message))?;
         }
     }
     writeln!(out, "{}", Summary::from_replays(all))

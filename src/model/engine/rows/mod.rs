@@ -25,6 +25,11 @@ mod equivalence_tests;
 mod geometry;
 mod interpolate;
 mod lanes;
+#[cfg(test)]
+#[path = "../../../../tests/common/lattice.rs"]
+mod lattice;
+#[cfg(test)]
+mod limit_tests;
 mod sampling;
 mod shading;
 mod store;

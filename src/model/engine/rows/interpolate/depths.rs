@@ -117,8 +117,7 @@ fn words(context: &TriangleContext<'_>, depths: &[f64], out: &mut [u32]) {
     let range = context.draw.depth_test.as_ref().and_then(|test| test.range.as_ref());
     if plane.offset.mantissa != 0 || range.is_some() {
         for n in 0..out.len() {
-            let depth = Binary::from_double(depths[n]);
-            let depth = if plane.offset.mantissa == 0 { depth } else { depth.plus(plane.offset) };
+            let depth = plane.with_offset(Binary::from_double(depths[n]));
             out[n] = depth::ranged(range, depth).map_or(OUTSIDE, |depth| depth::word(format, depth));
         }
     } else if format.is_float() {

@@ -325,3 +325,70 @@ fn operate(test: &StencilTest, operation: StencilOperation, stencils: &[u8; BLOC
     }
     each!(Keep Zero Replace IncrementSaturate DecrementSaturate Invert Increment Decrement)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::lattice;
+    use super::*;
+    use crate::random::Random;
+    use crate::state::Named;
+
+    /// Words of all formats, of bytes at the ends of what fields keep.
+    #[test]
+    fn words_are_packed_and_read_by_the_rule() {
+        let mut random = Random::seeded(3);
+        let mut byte = || i16::from(lattice::byte(&mut || random.bits() as u32));
+        for _ in 0..64 {
+            let [r, g, b, a]: [Row; 4] = std::array::from_fn(|_| std::array::from_fn(|_| byte()));
+            for format in SurfaceFormat::ALL.iter().copied() {
+                let (lanes, of, mut words) = (Lanes::default(), [&r, &g, &b, &a], [0; BLOCK]);
+                match format {
+                    SurfaceFormat::A8R8G8B8 | SurfaceFormat::X8R8G8B8O => pack_halves(format, lanes, of, &mut words),
+                    _ => pack_as(format, lanes, of, &mut words),
+                }
+                for n in 0..BLOCK {
+                    let bytes = of.map(|row| row[n] as u8);
+                    assert_eq!(words[n], surface::pack(format, bytes), "{format:?} {bytes:?}");
+                }
+                let mut channels = [[0; BLOCK]; 4];
+                let [r, g, b, a] = &mut channels;
+                read_channel::<0>(format, lanes, &words, r);
+                read_channel::<1>(format, lanes, &words, g);
+                read_channel::<2>(format, lanes, &words, b);
+                read_channel::<3>(format, lanes, &words, a);
+                for n in 0..BLOCK {
+                    let read = surface::read(format, words[n]).map(i16::from);
+                    assert_eq!(channels.each_ref().map(|row| row[n]), read, "{format:?} {:#x}", words[n]);
+                }
+            }
+        }
+    }
+
+    /// Runs of all lengths: those of a few words are copied by their ends.
+    #[test]
+    fn runs_touch_their_words_alone() {
+        let mut random = Random::seeded(4);
+        for count in 1..=40_usize {
+            for mask in [u32::MAX, 0, 0x00ff_ffff, 0x8000_0001, 0xff00_0000] {
+                let next = &mut || random.bits() as u32;
+                let (lane, at) = (next() as usize % (BLOCK - count), next() as usize % 60);
+                let mut from = std::array::from_fn::<_, BLOCK, _>(|_| next());
+                let before: Vec<u32> = (0..128).map(|_| next()).collect();
+                let alive = std::array::from_fn(|_| next() % 4 != 0);
+                let runs = [Run::new(lane, at as u32, count)];
+                let mut wanted = before.clone();
+                wanted[at..at + count].copy_from_slice(&from[lane..lane + count]);
+                let mut words = before.clone();
+                write_runs(&from, &runs, &mut words);
+                assert_eq!(words, wanted, "{count}");
+                for n in 0..count {
+                    let written = if alive[lane + n] { mask } else { 0 };
+                    wanted[at + n] = before[at + n] & !written | from[lane + n] & written;
+                }
+                let mut words = before.clone();
+                merge_runs((mask, Lanes::default()), &alive, &mut from, &mut [0; BLOCK], &runs, &mut words);
+                assert_eq!(words, wanted, "{count} {mask:#x}");
+            }
+        }
+    }
+}
