@@ -1,6 +1,7 @@
 //! The lanes of a block: one number for each of up to 384 pixels, and the arithmetic that loops over them use.
 #![allow(clippy::float_arithmetic, reason = "floors and roundings to whole numbers, which are exact")]
 
+use crate::raster::interpolate::COORDINATE_LIMIT;
 use std::ops::{Deref, DerefMut};
 
 /// Number of pixels of a block.
@@ -186,6 +187,13 @@ pub(crate) fn nearest_32(q: f32) -> i32 {
 #[inline(always)]
 pub(crate) fn floor_within(t: f64, low: f64, high: f64) -> i32 {
     nearest(smaller(larger(t, low), high).floor())
+}
+
+/// RAS-0: returns the floor of a coordinate in 1/256 texel within its limits.
+#[inline(always)]
+pub(crate) fn limited(at: f64) -> i32 {
+    const LIMIT: f64 = COORDINATE_LIMIT as f64;
+    floor_within(at, -LIMIT, LIMIT)
 }
 
 /// Returns the floor of the exact sum of two numbers of which one may be much smaller.

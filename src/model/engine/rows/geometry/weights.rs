@@ -62,20 +62,12 @@ impl Pixels {
         }
     }
 
-    /// Calls a function with the edge numbers and reciprocals of lanes, a part at a time, and with its lanes.
+    /// Returns edge numbers and reciprocals of at most [`CHUNK`] lanes. Not by calls of a function: compilers do not inline long closures, and what
+    /// is not inlined lacks the caller's instruction set.
     #[inline(always)]
-    pub(crate) fn each_part(
-        &mut self,
-        shape: &Shape,
-        ratios: Option<[f64; 3]>,
-        lanes: Range<usize>,
-        mut call: impl FnMut(&Passes, Range<usize>),
-    ) {
-        for first in lanes.clone().step_by(CHUNK) {
-            let part = first..(first + CHUNK).min(lanes.end);
-            self.passes.run(shape, ratios, &self.x[part.clone()], &self.y[part.clone()]);
-            call(&self.passes, part);
-        }
+    pub(crate) fn part(&mut self, shape: &Shape, ratios: Option<[f64; 3]>, lanes: Range<usize>) -> &Passes {
+        self.passes.run(shape, ratios, &self.x[lanes.clone()], &self.y[lanes]);
+        &self.passes
     }
 }
 

@@ -3,9 +3,9 @@
 
 use super::depths::word;
 use super::{Weighted, quotient};
-use crate::engine::rows::lanes::{floor_of_quotient, larger, smaller};
+use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, smaller};
 use crate::engine::rows::sampling::facing::Facing;
-use crate::engine::rows::sampling::place::{FARTHEST, Place, limited};
+use crate::engine::rows::sampling::place::{FARTHEST, Place};
 use crate::engine::rows::sampling::sampler::{Sampler, Third};
 use crate::raster::weights::Linear;
 use crate::state::TriangleVertices;

@@ -19,6 +19,9 @@ use std::ops::Range;
 /// Marks a pixel outside the draw's depth range, which is dropped (DEP-4). No buffer has it.
 pub(crate) const OUTSIDE: u32 = u32::MAX - 1;
 
+/// WGT-1: 2^128, as which differences beyond single precision count.
+const BEYOND: f64 = f64::from_bits((1023 + 128) << 52);
+
 /// Depths of the vertices of a triangle, or their w.
 #[derive(Clone, Copy)]
 struct Vertices {
@@ -29,7 +32,7 @@ struct Vertices {
 
 impl Vertices {
     fn new(z: [f32; 3]) -> Vertices {
-        let between = |a: usize, b: usize| f64::from(difference(z[a], z[b]));
+        let between = |a: usize, b: usize| f64::from(difference(z[a], z[b])).clamp(-BEYOND, BEYOND);
         Vertices { z: z.map(f64::from), differences: [between(1, 0), between(2, 0), between(2, 1)] }
     }
 
@@ -93,9 +96,10 @@ pub(crate) fn depths(
     let [w0, w1, w2] = vertices.z;
     let ratios = plane.w.map(|_| [(w1 / w0).cut(), 1.0, (w1 / w2).cut()]);
     let mut found = [0.0; CHUNK];
-    // One call of one function: compilers inline no closure that is called twice.
-    pixels.each_part(shape, ratios, lanes, |Passes { edges: [e0, e1, e2], reciprocals }, lanes| {
-        let found = &mut found[..lanes.len()];
+    for first in lanes.clone().step_by(CHUNK) {
+        let part = first..(first + CHUNK).min(lanes.end);
+        let found = &mut found[..part.len()];
+        let Passes { edges: [e0, e1, e2], reciprocals } = pixels.part(shape, ratios, part.clone());
         if ratios.is_some() {
             for n in 0..found.len() {
                 found[n] = vertices.w([e0[n], e1[n], e2[n]], reciprocals[n]);
@@ -105,8 +109,8 @@ pub(crate) fn depths(
                 found[n] = vertices.depth([e0[n], e1[n], e2[n]], reciprocals[n]);
             }
         }
-        words(context, found, &mut out[lanes]);
-    });
+        words(context, found, &mut out[part]);
+    }
 }
 
 /// DEP-3 to DEP-5: writes the words of depths.
@@ -145,5 +149,26 @@ pub(crate) fn word(format: DepthFormat, depth: f64) -> u32 {
         tiny if tiny >> kept == 0 => 0,
         huge if huge >= end => format.largest(),
         word => word as u32,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::weights::edge_numbers;
+
+    /// Differences of the largest depths lie beyond single precision.
+    #[test]
+    fn extreme_depths_are_those_of_the_definition() {
+        let ends = [f32::MIN, -1.329_228e36, 0.0, f32::MIN_POSITIVE, 1.0, 16_777_215.0, 1.329_228e36, f32::MAX];
+        let edges = [[5, 7, 1000], [900, 31, 0], [3, 70_000_001, 12], [1, 1, 1], [1, 1, 1 << 36]];
+        for z in ends.iter().flat_map(|a| ends.iter().flat_map(move |b| ends.map(|c| [*a, *b, c]))) {
+            for e in edges {
+                let numbers = edge_numbers(e.map(f64::from_edge), None);
+                let found = Vertices::new(z).depth(numbers, f64::sum_of_edges(numbers).reciprocal());
+                let exact = depth::interpolate(e, z);
+                assert_eq!(found, exact.mantissa as f64 * 2_f64.powi(exact.exponent), "{z:?} {e:?}");
+            }
+        }
     }
 }

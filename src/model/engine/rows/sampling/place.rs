@@ -4,8 +4,7 @@
 use super::levels::MipFetches;
 use super::sampler::Sampler;
 use super::taps::Pair;
-use crate::engine::rows::lanes::{PerLane, floor_within};
-use crate::raster::interpolate::COORDINATE_LIMIT;
+use crate::engine::rows::lanes::{PerLane, limited};
 use std::ops::Range;
 
 /// Largest magnitude of a coordinate in 1/65536 texel from which levels of detail follow. Beyond it nothing is told apart (TEX-11).
@@ -50,11 +49,4 @@ impl Place {
             }
         }
     }
-}
-
-/// RAS-0: returns the floor of a coordinate in 1/256 texel within its limits.
-#[inline(always)]
-pub(crate) fn limited(at: f64) -> i32 {
-    const LIMIT: f64 = COORDINATE_LIMIT as f64;
-    floor_within(at, -LIMIT, LIMIT)
 }
