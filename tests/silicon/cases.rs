@@ -120,7 +120,7 @@ pub fn r1() -> Case {
     }
 }
 
-/// WGT-1: vertical ramps with a tie in every eighth row.
+/// INT-3: vertical ramps with a tie in every eighth row.
 pub fn r2() -> Case {
     let (black, white) = ([0; 3], [255; 3]);
     let mut vertices = Vec::new();
@@ -142,7 +142,7 @@ pub fn r2() -> Case {
     }
 }
 
-/// WGT-1 with three colours, and DEP-1.
+/// INT-3 with three colours, and DEP-1.
 pub fn r3() -> Case {
     // DEP-2: z (2^24 - 1), rounded down, is 11184809 above and 16777214 below.
     let (above, below) = (11_184_810.0 / 16_777_216.0, 16_777_215.0 / 16_777_216.0);
@@ -214,7 +214,7 @@ fn equal_w(corners: &[(i32, i32, [u8; 3])]) -> Vec<Vertex> {
     vertices
 }
 
-/// WGT-1: without the perspective flag w has no effect. RAS-1: positions left of the screen are truncated toward zero.
+/// INT-1: without the perspective flag w has no effect. RAS-1: positions left of the screen are truncated toward zero.
 pub fn r6() -> Case {
     let mut vertices = vec![
         vertex(-162.311_39, -242.311_39, [255, 0, 0, 255]),

@@ -24,4 +24,3 @@ mod settings;
 mod sheet;
 mod table;
 mod unit_probes;
-mod weights;

@@ -81,7 +81,6 @@ pub fn shaded(plan: &Plan) -> Vec<Shaded> {
 ///
 /// # Errors
 /// The plan shades more, or so many that they are not counted and may be more. The error names the draw with the most.
-#[allow(clippy::result_large_err, reason = "it is made once a scene")]
 pub fn affordable(plan: &Plan, most: u64) -> Result<(), PlanError> {
     let total = |draws: &[Shaded]| draws.iter().map(|draw| draw.pixels).fold(0, u64::saturating_add);
     let bounds = plan.draws.iter().map(|planned| Shaded { pixels: Most::of(plan, planned).pixels, exact: false });
@@ -113,7 +112,7 @@ pub fn fragments(plan: &Plan, planned: &PlannedDraw) -> u64 {
 /// Visits the rows of a draw's triangles with the number of pixels that are covered on each, as long as `visit` wishes.
 pub(super) fn spans(plan: &Plan, planned: &PlannedDraw, mut visit: impl FnMut(u64) -> bool) {
     let rows = (0, i64::from(plan.targets[planned.target].height));
-    let mut context = TriangleContext::vacant(plan, planned);
+    let mut context = TriangleContext::vacant(plan, planned, true);
     for ((rows, columns), number) in walk::triangles(planned, rows) {
         if !context.set_up(number, rows) {
             continue;
