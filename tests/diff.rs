@@ -232,7 +232,7 @@ fn errors_say_what_to_do() {
         ),
         ("diff small.png small.png --scene scene.ron", 3, "error[NB0522]: target `frame` of `scene.ron` is 8 x 4"),
         ("diff small.png small.png --scene scene.ron --target attic", 2, "its targets: `frame`, `spare`"),
-        ("diff a.png none.png", 4, "help: check the spelling and the folder"),
+        ("diff a.png elsewhere-entirely.png", 4, "help: check the spelling and the folder"),
         ("diff a.png not.png", 3, "error[NB0513]"),
         ("diff a.png b.png --scene none.ron", 4, "none.ron"),
         ("diff a.png b.png --scene broken.ron", 3, "broken.ron"),

@@ -371,7 +371,6 @@ mod tests {
 
     #[test]
     fn tangents_of_half_angles_are_near_the_real_ones() {
-        assert_eq!(half_tangent(90.0), 1.0);
         for n in 1..360 {
             let degrees = f64::from(n) / 2.0;
             let tangent = (degrees.to_radians() / 2.0).tan();

@@ -227,7 +227,7 @@ mod tests {
         let help = |name| resolve(folder.path(), name).expect_err(name).help();
         assert_eq!(help("maps/rock.png"), "did you mean `maps/rocks.png`?");
         assert_eq!(help("map"), "did you mean `maps`?");
-        assert!(help("maps/moss.png").starts_with("names are relative"), "{}", help("maps/moss.png"));
+        assert!(help("maps/gravel-normals.png").starts_with("names are relative"));
         assert!(help("other/rocks.png").starts_with("names are relative"));
         let meant = folder.path().join("maps/rocks.png");
         assert_eq!(advice(&folder.path().join("maps/rucks.png")), format!("did you mean `{}`?", meant.display()));

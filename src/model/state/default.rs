@@ -67,24 +67,6 @@ impl Draw {
     /// Returns the draw with a texture bound to unit `index`, which samples it with coordinate set `index`. A unit that does something else by the
     /// texture shader goes on doing it, with this texture.
     ///
-    /// ```
-    /// use ninebit::engine::{RenderOptions, render};
-    /// use ninebit::plan::{Plan, PlanOptions};
-    /// use ninebit::state::*;
-    ///
-    /// let image = TextureImage::Texels(Texels { width: 1, height: 1, levels: 1, layers: 1, border: false, words: [0xff80_4020].into() });
-    /// let (name, kind) = ("brown".to_owned(), TextureKind::TwoDimensional);
-    /// let texture = Texture { name, kind, format: TextureFormat::A8R8G8B8, image };
-    /// let combiners = Combiners::showing(FinalRegister::Texture0);
-    /// let corner = |x: f32, y: f32| Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() };
-    /// let vertices = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 2.0)].into();
-    /// let draw = Draw { vertices, indices: [0, 1, 2].into(), combiners, ..Draw::default() }.texture(0, TextureUnit::new(0));
-    /// let targets = vec![Target::new(1, 1, SurfaceFormat::X8R8G8B8O)];
-    /// let scene = Scene { profile: Profile::Nv10, targets, textures: vec![texture], draws: vec![draw], ..Scene::default() };
-    /// let plan = Plan::compile(&scene, &PlanOptions::default()).expect("within the limits");
-    /// assert_eq!(render(&plan, &RenderOptions::default()).surfaces[0].words, [0xff80_4020]);
-    /// ```
-    ///
     /// # Panics
     /// Panics if `index` is not below [`TEXTURE_UNITS`].
     #[must_use]
