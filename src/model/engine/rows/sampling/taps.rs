@@ -1,53 +1,12 @@
 //! TEX-17 on rows: the taps of each pixel, in pairs on both sides of it.
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, and quotients of them that are floored")]
 
+use super::pairs::{MAX_PAIRS, Pair, PairsOfQuad};
 use super::quads::{AtQuads, Measure, Quads};
-use crate::engine::rows::lanes::{PerLane, STEP, larger, nearest};
+use crate::engine::rows::lanes::{STEP, larger, nearest};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
-
-/// Largest number of pairs of taps of a footprint.
-const MAX_PAIRS: usize = anisotropy::MAX_TAPS / 2;
-
-/// The taps of a quad's footprint, in pairs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct PairsOfQuad {
-    /// Offsets and weights as in [`Pair`].
-    offsets: [[i32; 2]; MAX_PAIRS],
-    weights: [i32; MAX_PAIRS],
-}
-
-impl PairsOfQuad {
-    /// Converts the definition's taps, for a level with these sides.
-    fn from_taps(taps: &anisotropy::Taps<i64, i32>, sides: [u32; 2]) -> PairsOfQuad {
-        // A single tap counts as two halves in the same place.
-        let weight = |n: usize| match taps.count {
-            1 => {
-                if n == 0 {
-                    128
-                } else {
-                    0
-                }
-            }
-            _ => taps.weights[2 * n],
-        };
-        let pairs = [0, 1, 2, 3];
-        PairsOfQuad {
-            offsets: pairs.map(|n: usize| [0, 1].map(|axis: usize| near(taps.offsets[2 * n][axis], sides[axis]))),
-            weights: pairs.map(weight),
-        }
-    }
-}
-
-/// A pair of taps for each lane of a block. Both have the same distance from the pixel.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Pair {
-    /// Offset of one tap from u and v, 1/256 texel. The other one lies on the opposite side.
-    pub(crate) offsets: [PerLane<i32>; 2],
-    /// Weight of each tap, of 256; 0 for none.
-    pub(crate) weights: PerLane<u16>,
-}
 
 /// Sets the taps of the lanes of a block to those of their quads.
 #[inline(always)]
@@ -59,20 +18,6 @@ pub(crate) fn spread(quads: &Quads, known: &[PairsOfQuad], pairs: &mut [Pair]) {
             (pair.offsets[0][lane], pair.offsets[1][lane]) = (quad.offsets[n][0], quad.offsets[n][1]);
         }
     });
-}
-
-/// An upper bound of coordinates, 1/256 texel.
-const BEYOND_COORDINATES: u64 = 1 << 27;
-
-/// Returns an equivalent offset in 32 bits. An offset beyond all coordinates lies outside the image, so that only its remainder by the
-/// image and its mirror image counts.
-#[inline(always)]
-fn near(offset: i64, side: u32) -> i32 {
-    let magnitude = offset.unsigned_abs();
-    if magnitude < BEYOND_COORDINATES {
-        return offset as i32;
-    }
-    offset.signum() as i32 * (BEYOND_COORDINATES + (magnitude - BEYOND_COORDINATES) % (512 * u64::from(side))) as i32
 }
 
 /// If pixels of a quad are further apart, in 1/65536 texel, its taps are computed in integers. Below that, quotients in double precision
