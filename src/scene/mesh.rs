@@ -374,7 +374,8 @@ mod tests {
         for n in 1..360 {
             let degrees = f64::from(n) / 2.0;
             let tangent = (degrees.to_radians() / 2.0).tan();
-            assert!((half_tangent(degrees) / tangent - 1.0).abs() < 1e-14, "{degrees}");
+            // Near 180 degrees the rounding of the angle counts 200 times.
+            assert!((half_tangent(degrees) / tangent - 1.0).abs() < 1e-13, "{degrees}");
         }
     }
 

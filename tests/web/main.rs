@@ -316,7 +316,7 @@ fn edits() -> Result<(), Failed> {
         vec![(json!(["constants", 1]), json!([9, 8, 7, 6])), (json!(["final", "color_sum_clamp"]), json!(true))];
     for portion in ["rgb", "alpha"] {
         for (field, kind) in
-            [("scale", "scale"), ("bias", "bias"), ("ab_output", "register"), ("sum_output", "register")]
+            [("scale", "scale"), ("bias", "bias"), ("ab_output", "destination"), ("sum_output", "destination")]
         {
             changes.extend(words(kind).into_iter().map(|word| (json!(["stages", 0, portion, field]), word)));
         }
