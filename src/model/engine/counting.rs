@@ -81,6 +81,7 @@ pub fn shaded(plan: &Plan) -> Vec<Shaded> {
 ///
 /// # Errors
 /// The plan shades more, or so many that they are not counted and may be more. The error names the draw with the most.
+#[allow(clippy::result_large_err, reason = "it is made once a scene")]
 pub fn affordable(plan: &Plan, most: u64) -> Result<(), PlanError> {
     let total = |draws: &[Shaded]| draws.iter().map(|draw| draw.pixels).fold(0, u64::saturating_add);
     let bounds = plan.draws.iter().map(|planned| Shaded { pixels: Most::of(plan, planned).pixels, exact: false });
