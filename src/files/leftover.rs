@@ -1,6 +1,6 @@
 //! Temporary files and folders: their names, and how those are cleared that killed processes have left behind.
 //!
-//! A name says who writes: `.ninebit-MACHINE-PROCESS-RANDOM.part`. Whoever begins to write in a folder [clears](clear) it of those whose process is
+//! A name says who writes: `.ninebit-MACHINE-PROCESS-RANDOM.part`. Whoever begins to write in a folder clears it of those whose process is
 //! gone. Of a process on another machine, which shares the folder, only age tells: nothing takes a day without writing. Readers of folders ignore
 //! them all.
 

@@ -232,7 +232,7 @@ enum Target {
 }
 
 impl PendingFile {
-    /// Begins a file; see [`write_file`].
+    /// Begins a file; see `output::write_file`.
     ///
     /// # Errors
     /// The path is a folder or a read-only file, or its folder is missing or not writable.
