@@ -144,9 +144,13 @@ pub(crate) fn cuboid(size: [f32; 3], repeat: [f32; 2]) -> Mesh {
 /// Returns the tangent of half an angle in degrees, which is above 0 and below 180.
 pub(crate) fn half_tangent(degrees: f64) -> f64 {
     let half = degrees / 2.0;
-    let eighth = if half <= 45.0 { half } else { 90.0 - half } / 45.0 * std::f64::consts::FRAC_PI_4;
+    // Rounded, the sine and the cosine of 45 degrees are not equal.
+    if half == 45.0 {
+        return 1.0;
+    }
+    let eighth = if half < 45.0 { half } else { 90.0 - half } / 45.0 * std::f64::consts::FRAC_PI_4;
     let tangent = sin_eighth(eighth) / cos_eighth(eighth);
-    if half <= 45.0 { tangent } else { 1.0 / tangent }
+    if half < 45.0 { tangent } else { 1.0 / tangent }
 }
 
 /// Makes a sphere about the origin with its poles on the y axis. It has `slices` around the axis and `stacks` from pole to pole.
@@ -373,10 +377,12 @@ mod tests {
     fn tangents_of_half_angles_are_near_the_real_ones() {
         for n in 1..360 {
             let degrees = f64::from(n) / 2.0;
-            let tangent = (degrees.to_radians() / 2.0).tan();
-            // Near 180 degrees the rounding of the angle counts 200 times.
-            assert!((half_tangent(degrees) / tangent - 1.0).abs() < 1e-13, "{degrees}");
+            // Near 180 degrees a rounded angle counts 200 times; what is left to 180 is exact.
+            let tangent = |degrees: f64| (degrees.to_radians() / 2.0).tan();
+            let tangent = if degrees <= 90.0 { tangent(degrees) } else { 1.0 / tangent(180.0 - degrees) };
+            assert!((half_tangent(degrees) / tangent - 1.0).abs() < 1e-14, "{degrees}");
         }
+        assert_eq!(half_tangent(90.0), 1.0);
     }
 
     #[test]
