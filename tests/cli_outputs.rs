@@ -9,15 +9,7 @@ use std::process::Stdio;
 
 use ninebit_files::output::{Compression, encode_png};
 
-use crate::bench::{Bench, Run};
-
-/// A scene of one textured triangle, which differs from its ideal by one step.
-const SCENE: &str = r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 8, height: 8)],
-    textures: { "stone": (source: File("stone.png")) },
-    draws: [(
-        vertices: Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))]), textures: ["stone"],
-        program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: PrimaryColor, ab: Spare0))], final_combiner: (d: Spare0)),
-    )])"#;
+use crate::bench::{Bench, Run, SCENE};
 
 /// Returns a folder with the scene and its texture.
 fn bench() -> Bench {

@@ -5,12 +5,16 @@
 //! plants the fault.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+#[path = "common/bench.rs"]
+mod bench;
+
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
+use bench::SCENE;
 use libtest_mimic::{Arguments, Failed, Trial};
 use ninebit::faults::{self, Operation};
 
@@ -22,14 +26,6 @@ const CAME: &str = "the planted fault has come";
 
 const OPERATIONS: [(&str, Operation); 3] =
     [("read", Operation::Read), ("write", Operation::Write), ("start", Operation::Start)];
-
-/// A scene of one textured triangle, which differs from its ideal by one step.
-const SCENE: &str = r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 8, height: 8)],
-    textures: { "stone": (source: File("stone.png")) },
-    draws: [(
-        vertices: Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))]), textures: ["stone"],
-        program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: PrimaryColor, ab: Spare0))], final_combiner: (d: Spare0)),
-    )])"#;
 
 /// A square of one colour with a truth, for charts.
 const TONE: &str = "(version: 1, profile: Nv10, targets: [(width: 16, height: 16)], truth: (hemisphere: (sky: (51, 51, 51), ground: (51, 51, 51))), \

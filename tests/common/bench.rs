@@ -5,6 +5,14 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
+/// A scene of one triangle, textured by `stone.png`, which differs from its ideal by one step.
+pub const SCENE: &str = r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 8, height: 8)],
+    textures: { "stone": (source: File("stone.png")) },
+    draws: [(
+        vertices: Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))]), textures: ["stone"],
+        program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), b: PrimaryColor, ab: Spare0))], final_combiner: (d: Spare0)),
+    )])"#;
+
 /// A temporary folder for runs of the program.
 pub struct Bench(tempfile::TempDir);
 
