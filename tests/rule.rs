@@ -5,6 +5,7 @@ use crate::bench::Bench;
 use crate::repository::at;
 use ninebit_handbook::{RULES, TEXT};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 #[test]
 fn the_program_has_the_handbook_of_the_repository() {
@@ -53,6 +54,45 @@ fn rules_are_listed() {
     assert_eq!(rule["policy"]["values"][1]["value"], "each");
     assert_eq!(rule["code"][0]["name"], "dot");
     assert!(rule["units"].as_array().unwrap().contains(&"dot-product".into()));
+}
+
+/// The table of docs/commands.md names the fields of each form, and no others.
+#[test]
+fn forms_of_json_are_on_the_page() {
+    let bench = Bench::new();
+    let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<BTreeSet<String>>();
+    let words = |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<BTreeSet<String>>();
+    let page = std::fs::read_to_string(at("docs/commands.md")).unwrap();
+    let (_, table) = page.split_once("<!-- held by tests/rule.rs: begin -->").unwrap();
+    let (table, _) = table.split_once("<!-- held by tests/rule.rs: end -->").unwrap();
+    let pack = at("vectors/packs/nv2a");
+    let mux = std::fs::read_to_string(pack.join("units/mux.tsv")).unwrap();
+    let (row, _) = mux.lines().last().unwrap().split_once('\t').unwrap();
+    let show = format!("vectors show {} {row}", pack.display());
+    let mut rows = 0;
+    for (command, list) in [("rule", "rules"), (show.as_str(), ""), ("op unit mux --columns", "columns")] {
+        let document: Value = serde_json::from_str(&bench.run(&format!("{command} --format json")).text()).unwrap();
+        let format = document["format"].as_str().unwrap();
+        let line = table.lines().find(|line| line.starts_with(&format!("| `{format}` "))).unwrap();
+        let mut fields = keys(&document);
+        fields.remove("format");
+        // Every item has the same fields, and so has each of its parts.
+        for item in document[list].as_array().into_iter().flatten() {
+            fields.extend(keys(item));
+            let parts = item["code"].as_array().into_iter().flatten().chain([&item["policy"]]);
+            fields.extend(parts.filter(|part| part.is_object()).flat_map(keys));
+        }
+        let mut told = words(line.rsplit(" | ").next().unwrap());
+        told.remove("null");
+        if told.remove("op") {
+            let op = bench.run("op unit mux --in select=Msb --in spare0.a=-256 --format json").text();
+            let op: Value = serde_json::from_str(&op).unwrap();
+            told.extend(keys(&op).into_iter().filter(|key| key != "format"));
+        }
+        assert_eq!(told, fields, "{format}");
+        rows += 1;
+    }
+    assert_eq!(table.lines().filter(|line| line.starts_with("| `ninebit-")).count(), rows);
 }
 
 #[test]
