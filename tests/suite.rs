@@ -71,6 +71,7 @@ mod scene_hostile;
 mod scene_in_code;
 mod stability;
 mod techniques;
+mod texture_lattice;
 mod texture_properties;
 mod textures;
 mod third_party_harness;
