@@ -71,6 +71,8 @@ fn pictures_that_are_see_through_are_noted() {
 fn a_scene_in_place_of_a_command_is_told_apart() {
     let bench = Bench::new();
     bench.run("my-scene.ron").failed(2, "did you mean `ninebit render my-scene.ron -o my-scene.png`?");
+    bench.write("lit-stone.ron", SCENE);
+    bench.run("lit-stoen.ron").failed(2, "did you mean `ninebit render lit-stone.ron -o lit-stone.png`?");
     bench.write("frame.png", "");
     bench.run("frame.png").failed(2, "`frame.png` names a file, not a command");
     bench.run("rendr scene.ron").failed(2, "a similar subcommand exists: 'render'");

@@ -93,7 +93,7 @@ impl PathError {
 const MOST_ENTRIES: usize = 10_000;
 
 /// Returns the name of the file that is most like that of a missing one, in the same folder.
-fn similar(missing: &Path) -> Option<String> {
+pub fn similar(missing: &Path) -> Option<String> {
     let name = missing.file_name()?.to_str()?;
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = std::fs::read_dir(folder).ok()?.take(MOST_ENTRIES);

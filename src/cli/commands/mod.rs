@@ -202,12 +202,14 @@ fn scene_as_command(error: &clap::Error) -> Option<Result<(), Failure>> {
     let path = Path::new(given);
     let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
     (is_scene || path.is_file()).then(|| {
-        let scene = shown::path(path);
+        let similar = if path.exists() { None } else { ninebit_scene::path::similar(path) };
+        let meant = similar.map_or_else(|| path.to_path_buf(), |name| path.with_file_name(name));
+        let picture = shown::path(&meant.with_extension("png"));
         let help = match is_scene {
-            true => format!("did you mean `ninebit render {scene} -o {}`?", shown::path(&path.with_extension("png"))),
+            true => format!("did you mean `ninebit render {} -o {picture}`?", shown::path(&meant)),
             false => "`ninebit --help` lists the commands".to_owned(),
         };
-        Err(Failure::usage(format!("`{scene}` names a file, not a command"), help))
+        Err(Failure::usage(format!("`{}` names a file, not a command", shown::path(path)), help))
     })
 }
 
