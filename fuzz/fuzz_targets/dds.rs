@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
     let texels = Texels { width, height, levels, layers: 1, border: false, words: image.words.into() };
     let palette = image.palette.unwrap_or_default();
     for (face, level) in (0..faces).flat_map(|face| (0..levels).map(move |level| (face, level))) {
-        let shown = show::level(&texels, image.format, &palette, bytes.len() % 2 == 0, face, level);
+        let shown = show::level(&texels, image.format, &palette, bytes.len().is_multiple_of(2), face, level);
         let shown = shown.expect("every level of every face is there");
         assert_eq!(shown.pixels.len(), shown.width as usize * shown.height as usize);
     }

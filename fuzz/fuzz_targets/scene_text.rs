@@ -28,7 +28,8 @@ fuzz_target!(|text: &str| {
             });
             let drawn = |plan, engine| render(plan, &RenderOptions { engine, ..RenderOptions::default() });
             let fast = drawn(&pruned, Engine::Fast);
-            for (other, name) in [(drawn(&whole, Engine::Fast), "unpruned"), (drawn(&pruned, Engine::Scalar), "scalar")] {
+            for (other, name) in [(drawn(&whole, Engine::Fast), "unpruned"), (drawn(&pruned, Engine::Scalar), "scalar")]
+            {
                 assert!(fast == other, "{:?}", frames::difference(&fast, &other, name));
             }
             // Any text tells which change is made.

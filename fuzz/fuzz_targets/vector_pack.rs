@@ -20,6 +20,6 @@ fuzz_target!(|bytes: &[u8]| {
         std::fs::write(place(name), bytes).expect("a file");
     }
     let _ = pack::open(&FOLDER);
-    let _ = tree::merge(&[FOLDER.clone()]);
+    let _ = tree::merge(std::slice::from_ref(&*FOLDER));
     let _ = tree::Tree::read(&place("tree.json"));
 });
