@@ -159,18 +159,6 @@ fn wider_random_scenes_agree() {
     );
 }
 
-/// INT-4t: random scenes seldom lie within a loss of a texel's edge. Every pixel of this scene does, and differs between the values.
-#[test]
-fn losses_on_planes_agree() {
-    let path = crate::repository::at("vectors/scenes/deciding/INT-4t-planes.ron");
-    let loaded = ninebit_scene::load(&path, &ninebit::limits::Limits::default()).unwrap();
-    for value in 0..2 {
-        let mut policies = Policies::DEFAULT;
-        policies.choose("INT-4t", value);
-        compare(&loaded.scene, &policies).unwrap();
-    }
-}
-
 #[test]
 fn random_scenes_draw_something() {
     let strategy = random_scene::scene();

@@ -204,21 +204,22 @@ impl Place {
         if image.kind == TextureKind::Cube {
             place.stay_on_the_face(512 * image.side(0, 0));
         }
-        if image.format.depth().is_some() || !place.is_fine(image) {
+        if image.format.depth().is_some() {
             place.q = 1.0;
+        }
+        if !place.is_fine(image) {
+            (place.right, place.down) = ([0; 2], [0; 2]);
         }
         place
     }
 
-    /// Returns whether quotients are exact to an eighth of 1/256 texel: numerators and denominator share 28 bits (TEX-15).
+    /// Returns whether coordinates are exact to less than half a step: weights and terms lose up to twelve last bits of 24 (WGT-1).
     fn is_fine(&self, image: &Image) -> bool {
         let [_, _, width, height] = self.area.map(i64::from);
         let corners = [[0, 0], [width, 0], [0, height], [width, height]];
-        let spans = [0, 1].map(|axis| image.span(0, axis) as f64);
-        let sizes =
-            corners.iter().flat_map(|at| [0, 1].map(|axis| self.corner(*at)[axis].abs() as f64 / spans[axis] / 512.0));
-        let largest = sizes.fold(self.layer.abs() as f64 / 512.0, f64::max).max(1.0);
-        largest * f64::exp2(-26.0) * 256.0 * spans[0].max(spans[1]) < 0.125
+        let steps = corners.iter().flat_map(|at| self.corner(*at)).map(|corner| corner.abs() as f64 / 2.0);
+        let least = 256.0 * image.span(0, 0).max(image.span(0, 1)) as f64;
+        steps.fold(least, f64::max) * 12.0 * f64::exp2(-24.0) < 0.4
     }
 
     fn stay_on_the_face(&mut self, end: i64) {

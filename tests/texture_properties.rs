@@ -1,8 +1,9 @@
 //! Tests general properties of texture units: faces of cube maps, addressing, scaled coordinates, filter weights.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test binary")]
 
-use ninebit::raster::interpolate::Sample;
+use ninebit::raster::interpolate::{Sample, face_coordinate, ratio};
 use ninebit::raster::setup::Triangle;
+use ninebit::raster::weights::Linear;
 use ninebit::state::{AddressMode, Named, Profile};
 use ninebit::texture::address::address;
 use ninebit::texture::cube::Face;
@@ -237,43 +238,13 @@ proptest! {
     ) {
         let scaled = parts.map(|x| x.map(|x| x * 2.0_f32.powi(power)));
         let sample = Sample::new(&triangle, e);
-        let [s, t, q] = triangle.direction(parts);
-        let [s2, t2, q2] = triangle.direction(scaled);
-        for ((a, a2), size) in [(s, s2), (t, t2)].into_iter().zip([1 << bits, 7 * (bits + 1)]) {
-            prop_assert_eq!(sample.ratio(&a, &q, size), sample.ratio(&a2, &q2, size));
-        }
-        let sums = |x: [[i64; 3]; 3]| x.map(|g| sample.sum(&g));
-        let face = |sums: [i128; 3]| Face::from_direction(sums, sums.map(i128::abs), 0);
-        let (a, b) = (sums([s, t, q]), sums([s2, t2, q2]));
-        prop_assert_eq!(face(a), face(b));
-        let on_face = |x: [[i64; 3]; 3], face: Face| {
-            face.components().map(|c| if c.negative { x[c.axis].map(|g| -g) } else { x[c.axis] })
-        };
-        if a != [0; 3] {
-            let [sc, tc, ma] = on_face([s, t, q], face(a));
-            let [sc2, tc2, ma2] = on_face([s2, t2, q2], face(a));
-            for (minor, minor2) in [(sc, sc2), (tc, tc2)] {
-                let u = sample.face_coordinate(&minor, &ma, 1 << bits);
-                prop_assert_eq!(u, sample.face_coordinate(&minor2, &ma2, 1 << bits));
-                prop_assert!((0..=256 << bits).contains(&u.value) || u.lowered != 0);
+        let [a, b] = [parts, scaled].map(|parts| parts.map(|x| sample.value(&Linear::new(x))));
+        for size in [1 << bits, 7 * (bits + 1)] {
+            for n in 0..2 {
+                prop_assert_eq!(ratio(a[n], a[2], size), ratio(b[n], b[2], size));
+                prop_assert_eq!(face_coordinate(a[n], a[2], size, 8), face_coordinate(b[n], b[2], size, 8));
             }
         }
-    }
-
-    /// A shift by whole repeats moves the coordinate exactly, ties included.
-    #[test]
-    fn whole_texels_move_coordinates_exactly(
-        (triangle, e) in triangle(),
-        s in prop::array::uniform3((-1024..1024_i32).prop_map(|n| n as f32 / 64.0)),
-        shift in -50..50_i32,
-        bits in 0..10_u32,
-    ) {
-        let sample = Sample::new(&triangle, e);
-        let size = 1 << bits;
-        let at = sample.coordinate(&triangle.coordinate(s, size));
-        let moved = sample.coordinate(&triangle.coordinate(s.map(|s| s + shift as f32), size));
-        prop_assert_eq!(moved.value - at.value, i64::from(shift) * 256 * i64::from(size));
-        prop_assert_eq!(moved.lowered, at.lowered);
     }
 }
 

@@ -117,7 +117,9 @@ fn fields(value: &Value, page: &Words, optional: &[(&str, bool)]) {
 /// Checks the fields of a value that may be too large for all readers of JSON, and then has a text as well.
 fn fields_with_value(value: &Value, page: &Words, optional: (&str, bool)) {
     let text = value_text(value);
-    fields(value, page, &[("value_text", text.is_some()), optional]);
+    // Only numbers of WGT-1 have a power of two.
+    let exponent = value.get("exponent").is_some_and(|exponent| exponent != 0);
+    fields(value, page, &[("value_text", text.is_some()), ("exponent", exponent), optional]);
     assert!(text.is_none_or(|text| value["value_text"] == text), "{value:#}");
 }
 
@@ -144,7 +146,7 @@ impl Seen {
         let long = word >> 31 != 0;
         fields(document, &page.document, &[("left_out", false), ("word_text", long)]);
         assert!(!long || document["word_text"] == format!("{word:#010x}"));
-        assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
+        assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &2.into()));
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
             // Only pieces of clipped triangles have this field.

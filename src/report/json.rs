@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::io;
 
 /// Version of the document's format.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Returns the trace of a pixel as a JSON document that ends in a newline.
 pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
@@ -153,6 +153,9 @@ fn step(step: &Step, id: usize, made: &HashMap<&str, usize>, textures: &[Texture
     if let Some(text) = beyond_31_bits(step.value, step.per_one) {
         value["value_text"] = json!(text);
     }
+    if step.exponent != 0 {
+        value["exponent"] = json!(step.exponent);
+    }
     if let Some(TexelAddress { texture, face, level, at: [x, y] }) = step.texel {
         let name = textures.get(texture).map(|texture| texture.name.as_str());
         let word = format!("{:#010x}", step.value);
@@ -166,6 +169,9 @@ fn operand(operand: &Operand, step: Option<&usize>) -> Value {
     let mut value = json!({ "name": operand.name, "value": operand.value, "per_one": operand.per_one });
     if let Some(text) = beyond_31_bits(operand.value, operand.per_one) {
         value["value_text"] = json!(text);
+    }
+    if operand.exponent != 0 {
+        value["exponent"] = json!(operand.exponent);
     }
     if let Some(step) = step {
         value["step"] = json!(step);

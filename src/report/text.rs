@@ -124,7 +124,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 40), width(|l| l.1.chars().count(), 58));
-    let integers = steps.iter().map(|s| integer(s.value, s.per_one).len()).max().unwrap_or(0).max(7);
+    let integers = steps.iter().map(|s| held(s).len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
         "    {:names$}  {:expressions$}  {:>integers$} {:>10} {:>10}  rule",
@@ -138,8 +138,9 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
                 None => writeln!(out, "  {block}")?,
             }
         }
-        let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
-        let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
+        let counts = step.per_one == 1 && step.exponent == 0;
+        let real = if counts { String::new() } else { format!("{:.6}", step.real()) };
+        let ideal = step.ideal.filter(|_| !counts).map_or(String::new(), |i| format!("{i:.6}"));
         let (mut name, mut expression) = (name.as_str(), expression.as_str());
         // What is wider than its column gets a line of its own, so that the numbers stay aligned.
         if name.chars().count() > names {
@@ -152,7 +153,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         }
         let line = format!(
             "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
-            integer(step.value, step.per_one),
+            held(step),
             graded(step.rule)
         );
         match &step.note {
@@ -168,9 +169,21 @@ pub(super) fn integer(value: i64, per_one: i64) -> String {
     if per_one == SINGLE { format!("{value:#010x}") } else { value.to_string() }
 }
 
+/// Formats the integer of a step with its power of two, if it has one.
+pub(super) fn held(step: &Step) -> String {
+    powered(integer(step.value, step.per_one), step.exponent)
+}
+
+fn powered(integer: String, exponent: i32) -> String {
+    if exponent == 0 { integer } else { format!("{integer} 2^{exponent}") }
+}
+
 /// Formats an operand of a formula: its integer, or the single-precision number.
 fn shown(operand: &Operand) -> String {
-    if operand.per_one == SINGLE { f32::from_bits(operand.value as u32).to_string() } else { operand.value.to_string() }
+    match operand.per_one {
+        SINGLE => f32::from_bits(operand.value as u32).to_string(),
+        _ => powered(operand.value.to_string(), operand.exponent),
+    }
 }
 
 /// Returns the formula of a step with the integers of its operands.
@@ -181,35 +194,40 @@ pub(super) fn expression(step: &Step) -> String {
             inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
         products.join(" + ")
     };
-    // The coordinate that is computed, and the quantity that each vertex has one of.
-    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
-    let axis = last(&step.name);
-    let prefix = step.inputs.first().map_or(String::new(), |input| last(input.name.trim_end_matches('0')));
+    // The last parts of the operands' names.
+    let name = |n: usize| step.inputs.get(n).map_or("", |input| input.name.rsplit('.').next().unwrap_or_default());
     match step.operation {
         "given" => String::new(),
         "product" | "dot_product" => pairs(&step.inputs),
-        "sum_of_products" => "P0 E0 + P1 E1 + P2 E2".to_string(),
         "edge_function" => format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2)),
-        "floor_weight" => format!("floor(256 * {} * {} / {})", value(0), value(1), value(2)),
+        "cut_24" => format!("cut({})", name(0)),
+        "cut_24_product" => format!("cut({} {})", name(0), name(1)),
+        "edge_sum" => format!("{} + {} + {}, to 29 bits of the largest", name(0), name(1), name(2)),
+        "reciprocal" => format!("floor(2^s / {} - 3/16) 2^-s, 29 bits", name(0)),
+        "rest_24" => format!("1 - {} - {}, up to 24 bits", name(0), name(1)),
+        "float_difference" => format!("{} - {}", value(0), value(1)),
+        "number" => name(0).to_owned(),
+        "number_product" => format!("{} {}", name(0), name(1)),
+        "align_24" => format!("{}, to 24 bits of the largest", name(0)),
+        "number_sum" => format!("{} + {} + {}", name(0), name(1), name(2)),
+        "floor_weight" => format!("floor(256 {})", name(0)),
         "remainder_weight" => format!("256 - {} - {}", value(0), value(1)),
         "interpolate" => {
             let products = [0, 1, 2].map(|n| format!("{} * {}", value(n), value(n + 3)));
             format!("({} + 128) >> 8", products.join(" + "))
         }
-        "floor_plane" | "floor_plane_short" => {
-            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D){}", short(step))
-        }
-        "floor_ratio" => format!("floor(256 * {} * N_{axis} / N_q){}", value(9), short(step)),
+        "floor_coordinate" => format!("floor(256 * {} * {})", value(1), name(0)),
+        "quad_coordinate" => format!("floor(65536 * {} * {})", value(1), name(0)),
+        "floor_ratio" => format!("floor(256 * {} * {} / {})", value(2), name(0), name(1)),
+        "quad_ratio" => format!("floor(65536 * {} * {} / {})", value(2), name(0), name(1)),
         "cube_face" => {
-            let [x, y, z] = direction(&step.inputs);
-            format!("largest of ({x}, {y}, {z})")
+            let [x, y, z] = [0, 1, 2].map(|n| step.inputs.get(n).map_or(0.0, real));
+            format!("largest of ({}, {}, {})", decimal(x), decimal(y), decimal(z))
         }
         "floor_face_u" | "floor_face_v" | "quad_face_u" | "quad_face_v" => {
             let ((s, m), steps) = (on_face(step), if step.operation.starts_with("quad") { 32768 } else { 128 });
-            format!("floor({steps} * {} * ({s} + {m}) / {m})", value(13))
+            format!("floor({steps} * {} * ({} + {}) / {})", value(4), decimal(s), decimal(m), decimal(m))
         }
-        "quad_plane" => format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)"),
-        "quad_ratio" => format!("floor(65536 * {} * N_{axis} / N_q)", value(9)),
         "log2_ratio" => {
             let moved = |pixel: usize, n: usize| {
                 let at = |k: usize| step.inputs.get(k).map_or(0, |o| o.value);
@@ -225,17 +243,12 @@ pub(super) fn expression(step: &Step) -> String {
         "high_byte" => format!("{} >> 8", value(0)),
         "high_byte_doubled" => format!("2 * ({} >> 8)", value(0)),
         "low_byte" => format!("{} & 255", value(0)),
-        "nearest_float" | "floor_number" => {
-            let scale = if step.operation == "floor_number" { "4096 * " } else { "" };
-            format!("{scale}({prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2) / D * 2^{}", value(7))
-        }
-        "is_negative" | "is_not_negative" => {
-            let sign = if step.operation == "is_negative" { "<" } else { ">=" };
-            format!("{prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2 {sign} 0")
-        }
-        "floor_plane_moved" => {
-            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D + {} / 2^24){}", value(7), short(step))
-        }
+        "nearest_float" => format!("nearest float to {}", name(0)),
+        "floor_number" | "floor_factor" => format!("floor(4096 {})", name(0)),
+        "fog_steps" => format!("floor(4096 {}) - 6144", name(0)),
+        "is_negative" => format!("{} < 0", name(0)),
+        "is_not_negative" => format!("{} >= 0", name(0)),
+        "floor_moved" => format!("floor(256 * {} * ({} + {} / 128))", value(2), name(0), value(1)),
         "float_product" => format!("{} * {}", value(0), value(1)),
         "float_sum" => format!("({} + {}) + {}", value(0), value(1), value(2)),
         "float_double" => format!("2 * {}", value(0)),
@@ -276,31 +289,25 @@ pub(super) fn expression(step: &Step) -> String {
     }
 }
 
-/// Returns the direction that a cube map step's twelve operands yield: three planes and the edge functions.
-fn direction(inputs: &[Operand]) -> [i128; 3] {
-    let at = |n: usize| inputs.get(n).map_or(0, |o| i128::from(o.value));
-    [0, 3, 6].map(|first| (0..3).map(|k| at(first + k) * at(9 + k)).sum())
+/// Returns the number of an operand that has a power of two.
+#[allow(clippy::float_arithmetic, reason = "display of a number")]
+fn real(operand: &Operand) -> f64 {
+    operand.value as f64 * 2.0_f64.powi(operand.exponent)
 }
 
-/// Returns the suffix of a formula that says which weights fall short (INT-4t).
-fn short(step: &Step) -> &'static str {
-    let is = |name: &str| step.inputs.iter().any(|input| input.name == name && input.value == 1);
-    match (is("short0"), is("short2")) {
-        (false, false) => "",
-        (true, false) => ", b0 short by 2^-24",
-        (false, true) => ", b2 short by 2^-24",
-        (true, true) => ", b0 and b2 short by 2^-24",
-    }
+/// Formats a number with at most six decimals.
+fn decimal(number: f64) -> String {
+    let text = format!("{number:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Returns the minor component for u or v, and the magnitude of the major one, for a step on a face.
-fn on_face(step: &Step) -> (i128, i128) {
-    let direction = direction(&step.inputs);
-    let face = step.inputs.get(12).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
-    let [s, t, m] = face
-        .copied()
-        .unwrap_or(Face::PositiveX)
-        .components()
-        .map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
+#[allow(clippy::float_arithmetic, reason = "display of a number")]
+fn on_face(step: &Step) -> (f64, f64) {
+    let face = step.inputs.get(3).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
+    let [s, t, m] = face.copied().unwrap_or(Face::PositiveX).components().map(|c| {
+        let component = step.inputs.get(c.axis).map_or(0.0, real);
+        if c.negative { -component } else { component }
+    });
     (if step.operation.ends_with('u') { s } else { t }, m)
 }

@@ -12,8 +12,8 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("clipped-triangle", "a vertex of three positions of four floats", 377, &[]),
     ("coverage", "six positions, a pixel", 99, &[]),
     ("clip", "a pixel by the surface clip and two rectangles", 169, &[]),
-    ("perspective-weights", "three w", 91, &[]),
-    ("color-weights", "six positions, a pixel, three w", 110, &[]),
+    ("weights", "six positions, a pixel, three w", 110, &[]),
+    ("linear", "two weights and three numbers", 154, &[]),
     ("color-interpolation", "three colours by two weights", 41, &[]),
     ("color-interpolation", "two colours by one weight", 25, &["color-interpolation/edge"]),
     ("texture-coordinate", "six positions, a pixel, three w, three coordinates", 206, &[]),
@@ -34,7 +34,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("bilinear", "four texels by two weights", 51, &[]),
     ("bilinear", "a row, a column: two texels by a weight", 26, &["bilinear/row", "bilinear/column"]),
     ("filtered-channel", "four texels by two weights", 51, &[]),
-    ("cube-direction", "three whole numbers", 88, &[]),
+    ("cube-direction", "three whole numbers", 76, &[]),
     ("cube-face", "three floats", 94, &[]),
     ("level-choice", "the lod: four distances", 133, &[]),
     (
@@ -133,7 +133,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("shader-dot-product", "a colour and three floats", 126, &[]),
     ("shader-reflection", "a normal and an eye vector", 187, &[]),
     ("coordinate-stage", "four floats", 125, &[]),
-    ("bump-offset", "two bytes and two entries of a matrix, for a size", 79, &[]),
+    ("bump-offset", "two bytes, two entries of a matrix and a coordinate, for a size", 110, &[]),
     ("bump-offset", "two bytes by a matrix that is given", 16, &["bump-offset/bytes"]),
     ("bump-luminance", "two bytes, scale and offset", 79, &[]),
     (

@@ -6,15 +6,24 @@
 mod dxt;
 #[path = "recompute_shader.rs"]
 mod shader;
+#[path = "recompute_weights.rs"]
+mod weights;
 
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// An exact number: `value / per_one`. If `per_one` is 0, `value` is the bits of a binary32 number.
+/// An exact number: `value * 2^exponent / per_one`. If `per_one` is 0, `value` is the bits of a binary32 number.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     pub value: i128,
     pub per_one: i128,
+    pub exponent: i32,
+}
+
+impl Number {
+    pub fn new(value: i128, per_one: i128) -> Number {
+        Number { value, per_one, exponent: 0 }
+    }
 }
 
 impl PartialEq for Number {
@@ -22,12 +31,16 @@ impl PartialEq for Number {
         if self.per_one == 0 || other.per_one == 0 {
             return (self.value, self.per_one) == (other.value, other.per_one);
         }
+        if self.exponent != 0 || other.exponent != 0 {
+            return weights::Exact::new(*self).is_equal(weights::Exact::new(*other));
+        }
         self.value * other.per_one == other.value * self.per_one
     }
 }
 
 fn number(v: &Value) -> Number {
-    Number { value: v["value"].as_i64().unwrap().into(), per_one: v["per_one"].as_i64().unwrap().into() }
+    let exponent = v.get("exponent").map_or(0, |exponent| exponent.as_i64().unwrap() as i32);
+    Number { exponent, ..Number::new(v["value"].as_i64().unwrap().into(), v["per_one"].as_i64().unwrap().into()) }
 }
 
 /// Returns whether a step states this operand itself, so that no earlier step yields it.
@@ -36,10 +49,6 @@ fn is_parameter(name: &str) -> bool {
         "x",
         "y",
         "size",
-        "lowered",
-        "short0",
-        "short2",
-        "exponent",
         "lod_bias",
         "min_lod",
         "max_lod",
@@ -91,8 +100,7 @@ fn is_parameter(name: &str) -> bool {
         "B8",
     ];
     let slope = name.starts_with("dE");
-    let coefficient = name.len() == 2 && "abc".contains(&name[..1]) && "012".contains(&name[1..]);
-    parameters.contains(&name) || formats.contains(&name) || coefficient || slope
+    parameters.contains(&name) || formats.contains(&name) || slope || name.ends_with(".origin")
 }
 
 /// Recomputes one fragment under the document's `policies`. Returns the final value of each name.
@@ -133,11 +141,11 @@ pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Numbe
 }
 
 fn plain(value: i128) -> Number {
-    Number { value, per_one: 1 }
+    Number::new(value, 1)
 }
 
 fn byte(value: i128) -> Number {
-    Number { value, per_one: 255 }
+    Number::new(value, 255)
 }
 
 /// Rounds a number to the nearest 255th, halves up: floor(255 n + 1/2).
@@ -146,15 +154,15 @@ fn nearest_255(n: Number) -> Number {
 }
 
 fn times(a: Number, b: Number) -> Number {
-    Number { value: a.value * b.value, per_one: a.per_one * b.per_one }
+    Number::new(a.value * b.value, a.per_one * b.per_one)
 }
 
 fn add(a: Number, b: Number) -> Number {
-    Number { value: a.value * b.per_one + b.value * a.per_one, per_one: a.per_one * b.per_one }
+    Number::new(a.value * b.per_one + b.value * a.per_one, a.per_one * b.per_one)
 }
 
 fn negate(a: Number) -> Number {
-    Number { value: -a.value, per_one: a.per_one }
+    Number::new(-a.value, a.per_one)
 }
 
 /// Returns twice the centre of the expand mappings, in steps.
@@ -173,7 +181,7 @@ fn half(policies: &Value) -> i128 {
 
 /// Returns the smaller of a number and 1.
 fn at_most_one(n: Number) -> Number {
-    Number { value: n.value.min(n.per_one), per_one: n.per_one }
+    Number::new(n.value.min(n.per_one), n.per_one)
 }
 
 /// Returns A B and (1 - A) C of the final combiner.
@@ -190,64 +198,19 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     Some(match operation {
         // Rasteriser and interpolation.
         "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
-        "sum_of_products" => plain((0..inputs.len() / 2).map(|k| v(2 * k) * v(2 * k + 1)).sum()),
-        "floor_weight" => {
-            let (numerator, d) = (256 * v(0) * v(1), v(2));
-            let q = numerator.div_euclid(d);
-            if v(3) != 0 && (numerator.rem_euclid(d) != 0 || q == 0) {
-                return None;
-            }
-            Number { value: q - v(3), per_one: 256 }
-        }
-        "remainder_weight" => Number { value: 256 - v(0) - v(1), per_one: 256 },
+        "cut_24" | "cut_24_product" | "edge_sum" | "reciprocal" => weights::number(operation, inputs),
+        "rest_24" | "number" | "number_product" | "align_24" | "number_sum" => weights::number(operation, inputs),
+        "float_difference" => weights::number(operation, inputs),
+        "floor_weight" => weights::floor(&[n(0)], 256, 256, 256),
+        "remainder_weight" => Number::new(256 - v(0) - v(1), 256),
         "interpolate" => byte((v(0) * v(3) + v(1) * v(4) + v(2) * v(5) + 128) >> 8),
-        "floor_plane" => {
-            let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
-            if v(7) != 0 && sum.rem_euclid(v(6)) != 0 {
-                return None;
-            }
-            Number { value: sum.div_euclid(v(6)) - v(7), per_one: 256 }
-        }
-        "floor_ratio" => {
-            let s: i128 = (0..3).map(|k| v(k) * v(6 + k)).sum();
-            let q: i128 = (0..3).map(|k| v(3 + k) * v(6 + k)).sum();
-            let limit = 1 << 24;
-            let floor = |s: i128, q: i128| match q {
-                0 => limit * s.signum(),
-                _ => shader::floor_of_product(s * q.signum(), q.abs(), 256 * v(9)).clamp(-limit, limit),
-            };
-            let value = floor(shader::short_of_unit(inputs, 0, 6, 10), shader::short_of_unit(inputs, 3, 6, 10));
-            if floor(s, q) - value != v(15) {
-                return None;
-            }
-            Number { value, per_one: 256 }
-        }
-        "floor_factor" => {
-            let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
-            Number { value: sum.div_euclid(v(6)).clamp(0, 4096), per_one: 4096 }
-        }
-        "truncate_24" => plain(truncated_24(inputs).0),
-        "truncate_24_exponent" => plain(truncated_24(inputs).1 + v(7)),
-        "fog_linear" | "fog_linear_abs" => {
-            // p0 + d p1 - 1
-            let d = if operation.ends_with("_abs") { v(4).abs() } else { v(4) };
-            factor(sum(&[(v(0), v(1)), (v(2) * d, v(3) + v(5)), (-1, 0)]))
-        }
-        "fog_steps" => {
-            let quotient: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
-            // floor(4096 quotient 2^exponent / D) - 6144 - lowered
-            let (up, bottom) = (v(7) + 12, v(6));
-            let bits = 128 - i128::from(quotient.unsigned_abs().leading_zeros());
-            let floor = if up > 0 && quotient != 0 && bits + up > 126 {
-                if quotient < 0 { i128::from(i64::MIN) } else { i128::from(i64::MAX) }
-            } else if up > 0 {
-                (quotient << up).div_euclid(bottom)
-            } else {
-                quotient.div_euclid(bottom) >> (-up).min(127)
-            };
-            let floor = floor.clamp(i64::MIN.into(), i64::MAX.into());
-            Number { value: (floor - v(8) - 6144).clamp(i64::MIN.into(), i64::MAX.into()), per_one: 4096 }
-        }
+        "floor_coordinate" => weights::floor(&[n(0)], 256 * v(1), 256, 1 << 24),
+        "quad_coordinate" => weights::floor(&[n(0)], 65536 * v(1), 65536, 1 << 61),
+        "floor_ratio" => weights::floor(&[n(0), n(1)], 256 * v(2), 256, 1 << 24),
+        "quad_ratio" => weights::floor(&[n(0), n(1)], 65536 * v(2), 65536, 1 << 61),
+        "floor_factor" | "floor_number" => Number::new(weights::floor(&[n(0)], 4096, 4096, 4096).value.max(0), 4096),
+        "fog_linear" | "fog_linear_abs" => weights::fog_line(inputs, operation.ends_with("_abs")),
+        "fog_steps" => Number::new(weights::floor(&[n(0)], 4096, 4096, 1 << 40).value - 6144, 4096),
         "fog_exp" | "fog_exp_abs" | "fog_exp2" => byte(fog_table(operation, v(0))),
         "light_word" => plain(light_word(v(0))),
         "light_product" => plain(light_product(v(0), v(1))),
@@ -257,33 +220,16 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "copy_bit_11" => plain(v(0) & !(1 << 10) | (v(0) >> 11 & 1) << 10),
         "factor_byte" => byte((v(0) - (v(0) >> 8)) >> 4),
         // Texture units.
-        "cube_face" => plain(cube_face(inputs)),
-        "floor_face_u" | "floor_face_v" => {
-            let [s, m] = on_face(inputs, operation.ends_with('u'));
-            if m == 0 {
-                return Some(Number { value: 0, per_one: 256 });
-            }
-            Number { value: (128 * v(13) * (s + m)).div_euclid(m) - v(14), per_one: 256 }
-        }
-        "quad_face_u" | "quad_face_v" => {
-            let [s, m] = on_face(inputs, operation.ends_with('u'));
-            Number { value: (32768 * v(13) * (s + m)).div_euclid(m), per_one: 65536 }
-        }
-        "quad_plane" => {
-            let sum = |a: usize| (0..3).map(|k| v(a + k) * v(3 + k)).sum::<i128>();
-            Number { value: (256 * sum(0)).div_euclid(sum(6)), per_one: 65536 }
-        }
-        "quad_ratio" => {
-            let sum = |a: usize| (0..3).map(|k| v(a + k) * v(6 + k)).sum::<i128>();
-            Number { value: (65536 * v(9) * sum(0)).div_euclid(sum(3)), per_one: 65536 }
-        }
-        "log2_ratio" => Number { value: log2_ratio([v(0), v(1), v(2), v(3), v(4), v(5)]), per_one: 256 },
-        "biased_lod" => Number { value: (v(0) + v(1)).max(v(2)).min(v(3)), per_one: 256 },
+        "cube_face" => plain(weights::face(inputs)),
+        "floor_face_u" | "floor_face_v" => weights::face_coordinate(inputs, operation.ends_with('u'), 256),
+        "quad_face_u" | "quad_face_v" => weights::face_coordinate(inputs, operation.ends_with('u'), 65536),
+        "log2_ratio" => Number::new(log2_ratio([v(0), v(1), v(2), v(3), v(4), v(5)]), 256),
+        "biased_lod" => Number::new((v(0) + v(1)).max(v(2)).min(v(3)), 256),
         "level_0" => plain(0),
         "nearest_level" => plain(((v(0) + 128) >> 8).min(v(1) - 1)),
         "lower_level" => plain((v(0) >> 8).min(v(1) - 1)),
         "upper_level" => plain(((v(0) >> 8) + 1).min(v(1) - 1)),
-        "lod_weight" => Number { value: v(0) & 255, per_one: 256 },
+        "lod_weight" => Number::new(v(0) & 255, 256),
         "decode_dxt1" | "decode_dxt1_dithered" | "decode_dxt3" | "decode_dxt5" => {
             let words: Vec<i128> = inputs.iter().map(|input| input.1.value).collect();
             plain(dxt::decode(operation, &words))
@@ -291,7 +237,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "nearest_texel" => plain(v(0) >> 8),
         "linear_texel" => plain((v(0) - 128) >> 8),
         "linear_texel_next" => plain(((v(0) - 128) >> 8) + 1),
-        "linear_weight" => Number { value: (v(0) - 128) & 255, per_one: 256 },
+        "linear_weight" => Number::new((v(0) - 128) & 255, 256),
         "wrap" => plain(v(0).rem_euclid(v(1))),
         "mirror" => {
             let period = v(0).rem_euclid(2 * v(1));
@@ -302,7 +248,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "clamp_to_border_texels" => plain(v(0).clamp(-4, v(1) + 3)),
         "expand_texel" => byte(texel(&inputs[1].0, v(0), &inputs[2].0)?),
         "expand_texel_signed" => byte(i128::from(texel(&inputs[1].0, v(0), &inputs[2].0)? as u8 as i8)),
-        "mix" => Number { value: (v(0) * (256 - v(2)) + v(1) * v(2) + 128) >> 8, per_one: n(0).per_one },
+        "mix" => Number::new((v(0) * (256 - v(2)) + v(1) * v(2) + 128) >> 8, n(0).per_one),
         "high_half" => sixteen_bits(v(0) >> 16),
         "low_half" => sixteen_bits(v(0) & 0xffff),
         "high_half_signed" => sixteen_bits(i128::from((v(0) >> 16) as u16 as i16)),
@@ -315,26 +261,24 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         // Texture shader.
         "byte_of_register" => plain(v(0) & 255),
         "byte_of_double" => plain(v(0) >> 1 & 255),
-        "nearest_float" => shader::nearest_float(inputs),
-        "floor_number" => Number { value: shader::floor_number(inputs, 4096).clamp(0, 4096), per_one: 4096 },
-        "is_negative" => plain(i128::from(shader::numerator(inputs) < 0)),
-        "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
+        "nearest_float" => weights::nearest_float(n(0)),
+        "is_negative" => plain(i128::from(weights::Exact::new(n(0)).m < 0)),
+        "is_not_negative" => plain(i128::from(weights::Exact::new(n(0)).m >= 0)),
         "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
         "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
         "float_product" | "float_sum" | "float_dot" | "float_double" | "float_reflection" => {
             shader::float(operation, inputs)
         }
-        "floor_float" => Number { value: shader::floor_float(inputs), per_one: 256 },
+        "floor_float" => Number::new(shader::floor_float(inputs), 256),
         "float_face" => plain(shader::face(inputs)),
         "floor_float_face_u" | "floor_float_face_v" => {
-            Number { value: shader::face_coordinate(inputs, operation.ends_with('u')), per_one: 256 }
+            Number::new(shader::face_coordinate(inputs, operation.ends_with('u')), 256)
         }
-        "dependent_255" => Number { value: 256 * v(1) * v(0) / 255, per_one: 256 },
-        "dependent_256" => Number { value: v(1) * v(0), per_one: 256 },
-        "bump_offset" => Number { value: shader::bump_offset(inputs), per_one: 1 << 32 },
-        "floor_plane_moved" => shader::floor_moved(inputs, v(7), 8)?,
-        "floor_plane_short" => shader::floor_moved(inputs, 0, 7)?,
-        "luminance" => Number { value: shader::luminance(inputs), per_one: 4096 },
+        "dependent_255" => Number::new(256 * v(1) * v(0) / 255, 256),
+        "dependent_256" => Number::new(v(1) * v(0), 256),
+        "bump_offset" => shader::bump_offset(inputs),
+        "floor_moved" => weights::moved(inputs),
+        "luminance" => Number::new(shader::luminance(inputs), 4096),
         "luminance_byte" => byte(((v(0) - (v(0) >> 8)) >> 4).min(255)),
         // Combiners.
         "unsigned_identity" => byte(max0(0)),
@@ -342,8 +286,8 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "final_invert" => byte((255 - max0(0)).max(0)),
         "expand_normal" => byte(2 * max0(0) - centre(policies)),
         "expand_negate" => byte((centre(policies) - 2 * max0(0)).min(255)),
-        "half_bias_normal" => Number { value: 2 * max0(0) - half(policies), per_one: 510 },
-        "half_bias_negate" => Number { value: half(policies) - 2 * max0(0), per_one: 510 },
+        "half_bias_normal" => Number::new(2 * max0(0) - half(policies), 510),
+        "half_bias_negate" => Number::new(half(policies) - 2 * max0(0), 510),
         "signed_identity" => n(0),
         "signed_negate" => byte((-v(0)).min(255)),
         "product" | "dot_product" => inputs.chunks(2).map(|p| times(p[0].1, p[1].1)).fold(plain(0), add),
@@ -362,7 +306,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "scale_1_round_255" => nearest_255(n(0)),
         "scale_2_round_255" => nearest_255(times(n(0), plain(2))),
         "scale_4_round_255" => nearest_255(times(n(0), plain(4))),
-        "scale_half_round_255" => nearest_255(times(n(0), Number { value: 1, per_one: 2 })),
+        "scale_half_round_255" => nearest_255(times(n(0), Number::new(1, 2))),
         "bias_scale_1_round_255" => nearest_255(add(n(0), byte(-128))),
         "bias_scale_2_round_255" => nearest_255(times(add(n(0), byte(-128)), plain(2))),
         "saturate_256" => byte(v(0).clamp(-256, 255)),
@@ -389,30 +333,24 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "always" => plain(1),
         "depth" | "w" => {
             let full = v(inputs.len() - 1);
-            Number {
-                value: depth(inputs, full).map_or(0, |z| z.floor().clamp(0.0, full as f64) as i128),
-                per_one: full,
-            }
+            Number::new(depth(inputs, full).map_or(0, |z| z.floor().clamp(0.0, full as f64) as i128), full)
         }
         "depth_float_16" | "w_float_16" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 12, 7, 0xffff))),
         "depth_float_24" | "w_float_24" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 16, 127, 0xff_ffff))),
-        "depth_sum" | "depth_reciprocal" | "depth_weight" => {
-            depth_part(operation, &[0, 1, 2].map(|k| inputs.get(k).map_or(0.0, |(_, n)| real(*n))))
-        }
         "depth_inside" | "w_inside" => plain(depth(inputs, 0).is_some().into()),
         "drop_2_bits" => byte(v(0) >> 2 << 2),
-        "depth_word" | "depth_word_of_ratio" => plain(shader::depth_word(inputs)),
+        "depth_word" | "depth_word_of_ratio" => plain(weights::depth_word(inputs)),
         "depth_of_word" => plain(v(0) & 0xff_ffff),
         "all_or_nothing" => byte(255 * v(0)),
         "tap_u" | "tap_v" => {
             let axis = usize::from(operation == "tap_v");
             let (offset, _) = tap([v(1), v(2)], inputs.get(3..).unwrap_or_default());
-            Number { value: v(0) + offset[axis], per_one: 256 }
+            Number::new(v(0) + offset[axis], 256)
         }
-        "tap_weight" => Number { value: tap([v(0), v(1)], inputs.get(2..).unwrap_or_default()).1, per_one: 256 },
+        "tap_weight" => Number::new(tap([v(0), v(1)], inputs.get(2..).unwrap_or_default()).1, 256),
         "weighted_sum" => {
             let sum: i128 = (0..inputs.len() / 2).map(|k| v(2 * k) * v(2 * k + 1)).sum();
-            Number { value: (sum + 128) >> 8, per_one: n(0).per_one }
+            Number::new((sum + 128) >> 8, n(0).per_one)
         }
         "equals_key" => {
             let half = inputs.len() / 2;
@@ -446,43 +384,6 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "store" => plain(store(inputs)?),
         _ => return None,
     })
-}
-
-/// Returns the first 24 bits of a quotient, truncated toward zero, and their exponent.
-fn truncated_24(inputs: &[(String, Number)]) -> (i128, i128) {
-    let v = |k: usize| inputs[k].1.value;
-    let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
-    let (mut top, mut bottom, mut exponent) = (sum.abs(), v(6), 0);
-    if top == 0 {
-        // A zero gets the exponent 0 by the rule. The caller adds the numerator's exponent, so it is subtracted here.
-        return (0, inputs.get(7).map_or(0, |exponent| -exponent.1.value));
-    }
-    while top / bottom >= 1 << 24 {
-        (bottom, exponent) = (bottom * 2, exponent + 1);
-    }
-    while top / bottom < 1 << 23 {
-        (top, exponent) = (top * 2, exponent - 1);
-    }
-    (top / bottom * sum.signum(), exponent)
-}
-
-/// Returns the sum of numbers m 2^e in units of 2^-60, each rounded down. If a term is beyond 2^60, only its sign counts.
-fn sum(terms: &[(i128, i128)]) -> i128 {
-    let mut sum = 0_i128;
-    for (m, e) in terms.iter().filter(|term| term.0 != 0) {
-        let up = e + 60;
-        let bits = 128 - i128::from(m.unsigned_abs().leading_zeros());
-        if bits + up > 120 {
-            return m.signum() << 120;
-        }
-        sum += if up >= 0 { m << up } else { m >> (-up).min(127) };
-    }
-    sum
-}
-
-/// Converts a sum in units of 2^-60 to 4096ths, limited to 0..4096.
-fn factor(sum: i128) -> Number {
-    Number { value: (sum >> 48).clamp(0, 4096), per_one: 4096 }
 }
 
 fn fog_table(operation: &str, q: i128) -> i128 {
@@ -568,34 +469,7 @@ fn light_sum(terms: [i128; 3]) -> i128 {
 }
 
 fn sixteen_bits(value: i128) -> Number {
-    Number { value, per_one: 65535 }
-}
-
-/// Returns the three components of a direction. Inputs 0 to 8 are the planes, 9 to 11 the edge functions.
-fn direction(inputs: &[(String, Number)]) -> [i128; 3] {
-    let v = |k: usize| inputs[k].1.value;
-    [0, 3, 6].map(|first| (0..3).map(|k| v(first + k) * v(9 + k)).sum())
-}
-
-fn cube_face(inputs: &[(String, Number)]) -> i128 {
-    let d = direction(inputs);
-    let largest = d.iter().map(|c| c.abs()).max().unwrap();
-    let axis = d.iter().position(|c| c.abs() == largest).unwrap();
-    2 * axis as i128 + i128::from(d[axis] < 0)
-}
-
-/// Returns the numerator of s or t, and |ma|, of a direction on the face of input 12.
-fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
-    let [x, y, z] = direction(inputs);
-    let (sc, tc, m) = match inputs[12].1.value {
-        0 => (-z, -y, x),
-        1 => (z, -y, -x),
-        2 => (x, z, y),
-        3 => (x, -z, -y),
-        4 => (x, -y, z),
-        _ => (-x, -y, -z),
-    };
-    [if s { sc } else { tc }, m]
+    Number::new(value, 65535)
 }
 
 /// Returns floor(128 log2 n) - 4096 for the larger squared distance n.
@@ -729,27 +603,6 @@ fn depth_reciprocal(sum: f64) -> f64 {
     let whole = (sum / two(top - 30)) as i128;
     let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
     if whole == 1 << 30 { 1.0 / sum } else { low }
-}
-
-/// Recomputes one of the steps of DEP-1 that lead to a depth.
-#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
-fn depth_part(operation: &str, inputs: &[f64; 3]) -> Number {
-    let [first, second, _] = *inputs;
-    let of = |n: f64, bits: i32| (n / two(power(n) + 1 - bits)) as i128;
-    match operation {
-        "depth_sum" => plain(depth_sum(inputs.map(first_24), *inputs) as i128),
-        "depth_reciprocal" => plain(of(depth_reciprocal(first), 29)),
-        _ => {
-            let reciprocal = depth_reciprocal(second);
-            let weight = first_24(first_24(first) * reciprocal);
-            // The last bit of R.
-            let last = 28 - power(reciprocal);
-            match weight {
-                0.0 => Number { value: 0, per_one: 1 << last.min(62) },
-                weight => Number { value: of(weight, 24), per_one: 1 << (23 - power(weight)) },
-            }
-        }
-    }
 }
 
 /// Recomputes the depth of DEP-1, DEP-4 and DEP-5 in doubles, which represent all of its numbers exactly. Returns `None` for `depth_inside`

@@ -1,7 +1,7 @@
 //! Computes the fog factor: FOG-1 to FOG-5, INT-5n, NUM-6.
 
 use super::raster::{Sample, Setup};
-use super::real::{bits, factor_byte, floor_div, floor_sum, shift, split};
+use super::real::{Number, bits, factor_byte, floor_sum, shift, split};
 use super::tally::{count, count_named};
 use ninebit::state::{FogFunction, FogMode, Profile};
 
@@ -9,14 +9,8 @@ use ninebit::state::{FogFunction, FogMode, Profile};
 pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> i128 {
     let Some(function) = function else {
         // Without a function, the factors of the vertices are interpolated.
-        let sum: i128 = (0..3)
-            .map(|k| {
-                let given = setup.vertices[k].fog;
-                let (m, e) = split(if given.is_nan() { 0.0 } else { given.clamp(0.0, 1.0) });
-                shift(setup.p[k] * 4096 * m, e) * sample.e[k]
-            })
-            .sum();
-        return factor_byte(floor_div(sum, sample.d).0.clamp(0, 4096));
+        let f = setup.number(sample, |v| if v.fog.is_nan() { 0.0 } else { v.fog.clamp(0.0, 1.0) });
+        return factor_byte(f.floor(4096).clamp(0, 4096));
     };
     count_named(function.mode);
     let mut finite = setup.vertices.iter().all(|vertex| vertex.fog.is_finite());
@@ -29,64 +23,22 @@ pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> 
                 count("fog", "not finite");
                 return 255;
             }
-            factor_byte(in_4096ths(function.mode, (p0, p1), coordinate(setup, sample)))
+            factor_byte(in_4096ths(function.mode, (p0, p1), setup.number(sample, |v| v.fog).cut(24)))
         }
         mode if !finite => {
             count("fog", "not finite");
             if mode == FogMode::Exp { 255 } else { 0 }
         }
-        mode => exponential(mode, steps(setup, sample)),
+        // FOG-4: 4096 (e - 3/2) is limited far outside the range of the tables.
+        mode => exponential(mode, setup.number(sample, |v| v.fog).floor(4096).clamp(-1 << 40, 1 << 40) - 6144),
     }
-}
-
-/// FOG-2: returns the fog coordinate, truncated to 24 significant bits, as m 2^e.
-fn coordinate(setup: &Setup, sample: &Sample) -> (i128, i32) {
-    let (n, e) = setup.attribute(sample, |v| v.fog);
-    if n == 0 {
-        return (0, 0);
-    }
-    let up = 126 - bits(n);
-    let q = (n.abs() << up) / sample.d;
-    let drop = (bits(q) - 24).max(0);
-    (n.signum() * (q >> drop), e - up + drop)
 }
 
 /// FOG-2: returns v, the linear factor in 4096ths, limited to 0..4096.
-fn in_4096ths(mode: FogMode, (p0, p1): (f32, f32), (d, de): (i128, i32)) -> i128 {
-    let d = if mode == FogMode::LinearAbs { d.abs() } else { d };
+fn in_4096ths(mode: FogMode, (p0, p1): (f32, f32), d: Number) -> i128 {
+    let (d, de) = (if mode == FogMode::LinearAbs { d.m.abs() } else { d.m }, d.e);
     let ((p0, e0), (p1, e1)) = (split(p0), split(p1));
     floor_sum(&[(p0, e0 + 12), (d * p1, de + e1 + 12), (-1, 12)]).clamp(0, 4096)
-}
-
-/// FOG-4: returns q, with the tie of INT-4t. It is limited far outside the range of the tables.
-fn steps(setup: &Setup, sample: &Sample) -> i128 {
-    let (g, e) = setup.attribute_numbers(|v| v.fog);
-    let sum: i128 = (0..3).map(|k| g[k] * sample.e[k]).sum();
-    let up = e + 12;
-    let (floor, tie) = if up > 0 {
-        if sum != 0 && bits(sum) + up > 126 {
-            (sum.signum() << 40, false)
-        } else {
-            floor_div(sum << up.min(126), sample.d)
-        }
-    } else {
-        let (whole, tie) = floor_div(sum, sample.d);
-        let floor = shift(whole, up);
-        (floor, tie && (up == 0 || whole == 0 || (up > -127 && floor << -up == whole)))
-    };
-    let lowered = tie && !setup.exact && {
-        let (_, dominant) = setup.weights(sample);
-        let way: i128 = [0, 2]
-            .into_iter()
-            .filter(|i| *i != dominant)
-            .map(|i| (g[i] * setup.p[1] - setup.p[i] * g[1]) * sample.e[i])
-            .sum();
-        way > 0
-    };
-    if lowered {
-        count("fog", "tie lowered");
-    }
-    floor.clamp(-1 << 40, 1 << 40) - i128::from(lowered) - 6144
 }
 
 /// FOG-4: returns the fog byte for q.

@@ -1,4 +1,4 @@
-//! A second model of the chip, written from the rules alone: slow, in straight lines, with integers of 128 bits.
+//! A second model of the chip, written from the rules alone: slow, in straight lines, with exact integers of 128 bits.
 //!
 //! It shares no code with the crate except for the scene that it reads (`ninebit::state`) and the surfaces that it returns, so an error in
 //! one of the two models shows as a difference.
@@ -22,10 +22,11 @@ pub mod shader;
 pub mod tally;
 pub mod texel;
 pub mod texture;
+pub mod weights;
 
 use combiner::Registers;
 use ninebit::frame::Surface;
-use ninebit::state::{Draw, PlaneLoss, Policies, Rectangle, Scene, Target, WindowClip};
+use ninebit::state::{Draw, Policies, Rectangle, Scene, Target, WindowClip};
 use raster::{Sample, Setup};
 use shader::Units;
 use texture::Image;
@@ -67,15 +68,15 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
         bottom = bottom.min(top + u64::from(s.height));
     }
     for vertices in raster::triangles(draw) {
-        let Some(mut setup) = Setup::new(draw, scene.profile, vertices) else { continue };
-        setup.finite = policies.plane_loss == PlaneLoss::Finite;
+        let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
         let units = Units::new(draw, &images, &setup, policies);
         for j in top..bottom {
             for i in left..right {
-                let sample = setup.sample(i.into(), j.into());
-                if !sample.covered || clipped(draw, target, (i, j)) {
+                let (_, covered) = setup.edges(i.into(), j.into());
+                if !covered || clipped(draw, target, (i, j)) {
                     continue;
                 }
+                let sample = setup.sample(i.into(), j.into()).expect("a sum above 0 inside");
                 // TSH-10
                 let Some(textures) = units.registers(i.into(), j.into(), &sample) else { continue };
                 let color = shade(draw, textures, &setup, &sample, policies);
@@ -127,7 +128,7 @@ fn clipped(draw: &Draw, target: &Target, (x, y): (u64, u64)) -> bool {
 /// Returns the colour of a fragment, bytes R, G, B, A.
 fn shade(draw: &Draw, textures: [[i128; 4]; 4], setup: &Setup, sample: &Sample, policies: &Policies) -> [i128; 4] {
     let [r, g, b] = draw.fog.color.map(i128::from);
-    let weights = setup.color_weights(sample);
+    let weights = weights::colour_weights(sample.b);
     let registers = Registers {
         fog: [r, g, b, if draw.fog.enabled { fog::factor(setup, sample, draw.fog.function) } else { 255 }],
         primary: setup.color(weights, |v| v.diffuse),

@@ -1,6 +1,7 @@
 //! Computes covered pixels from vertices, and everything that is interpolated.
 
-use super::real::{align, color_byte, floor_div, shift, split};
+use super::real::{Number, bits, color_byte, shift, split};
+use super::weights;
 use ninebit::state::{
     ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel,
     Topology, Vertex, VertexColor, VertexDepths, Viewport,
@@ -207,27 +208,21 @@ pub struct Setup {
     area: i128,
     /// 1 if the vertices run clockwise on the screen (y down), otherwise -1.
     turn: i128,
-    /// The perspective weights P of the vertices.
-    pub p: [i128; 3],
-    /// INT-3: whether the exception for exact weights applies.
-    pub exact: bool,
-    /// INT-4t: whether coordinates on planes lose 2^-24 S rather than its limit.
-    pub finite: bool,
+    /// w of the vertices, with perspective.
+    w: Option<[Number; 3]>,
 }
 
 /// The sample point of one pixel.
 #[derive(Clone, Copy)]
 pub struct Sample {
     /// Edge functions. None of them is negative if the pixel is covered.
-    pub e: [i128; 3],
-    /// Whether the triangle covers the pixel (RAS-3).
-    pub covered: bool,
-    /// D, the sum of P E, which is positive if the pixel is covered.
-    pub d: i128,
+    pub edges: [i128; 3],
+    /// The weights of the vertices (WGT-1).
+    pub b: [Number; 3],
 }
 
 impl Setup {
-    /// Sets up a triangle: RAS-1, INT-6 and P. Returns `None` if the area is zero or the triangle is culled.
+    /// Sets up a triangle: RAS-1, INT-6. Returns `None` if the area is zero or the triangle is culled.
     pub fn new(draw: &Draw, profile: Profile, vertices: [Vertex; 3]) -> Option<Setup> {
         let snapped = vertices.map(|v| [snap(v.position[0]), snap(v.position[1])]);
         let [a, b, c] = snapped;
@@ -242,27 +237,14 @@ impl Setup {
             Cull::Back if !front => return None,
             _ => {}
         }
-        // INT-6: nv10 keeps sixteen of the 24 significant bits.
-        let w = vertices.map(|v| match profile {
-            Profile::Nv10 => {
-                let (m, e) = split(v.position[3]);
-                (m >> 8 << 8, e)
-            }
-            Profile::Nv2a => split(v.position[3]),
-        });
-        let other = |i: usize, j: usize| (w[i].0 * w[j].0, w[i].1 + w[j].1);
-        let p = if draw.perspective {
-            align([other(1, 2), other(2, 0), other(0, 1)], 28).map(|p| p.max(1))
-        } else {
-            [1 << 27; 3]
-        };
-        let same = w[0] == w[1] && w[1] == w[2];
-        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same);
-        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact, finite: false })
+        // INT-6: nv10 keeps sixteen bits.
+        let w = vertices.map(|v| Number::of(v.position[3]).cut(if profile == Profile::Nv10 { 16 } else { 24 }));
+        let w = draw.perspective.then_some(w);
+        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), w })
     }
 
-    /// RAS-2, RAS-3, INT-1: returns the sample point of a pixel.
-    pub fn sample(&self, i: i128, j: i128) -> Sample {
+    /// RAS-2, RAS-3: returns the edge functions at a pixel, and whether the triangle covers it.
+    pub fn edges(&self, i: i128, j: i128) -> ([i128; 3], bool) {
         let (x, y) = (16 * i + 8, 16 * j + 8);
         let (mut e, mut covered) = ([0; 3], true);
         for k in 0..3 {
@@ -278,24 +260,13 @@ impl Setup {
             let top = t[1] == s[1] && t[0] > s[0];
             covered &= e[k] > 0 || (e[k] == 0 && (left || top));
         }
-        Sample { e, covered, d: (0..3).map(|k| self.p[k] * e[k]).sum() }
+        (e, covered)
     }
 
-    /// INT-3: returns the weights P E, and which of them is dominant.
-    pub fn weights(&self, sample: &Sample) -> ([i128; 3], usize) {
-        let n = std::array::from_fn(|k| self.p[k] * sample.e[k]);
-        (n, dominant(n, sample.d))
-    }
-
-    /// INT-2, INT-3: returns the weights of the three colours in 256ths.
-    pub fn color_weights(&self, sample: &Sample) -> [i128; 3] {
-        let (n, dominant) = self.weights(sample);
-        let weight = |k: usize| {
-            let (q, tie) = floor_div(256 * n[k], sample.d);
-            if tie && q > 0 && k != dominant && !self.exact { q - 1 } else { q }
-        };
-        let (w0, w2) = (weight(0), weight(2));
-        [w0, 256 - w0 - w2, w2]
+    /// WGT-1: returns the sample point of a pixel, or `None` where the edge numbers add to 0 or less, which happens outside only.
+    pub fn sample(&self, i: i128, j: i128) -> Option<Sample> {
+        let (edges, _) = self.edges(i, j);
+        Some(Sample { edges, b: weights::weights(edges, self.w)? })
     }
 
     /// INT-2: interpolates one of the two vertex colours.
@@ -310,23 +281,27 @@ impl Setup {
         })
     }
 
-    /// TSH-4, FOG-2: interpolates a number of the vertices. Returns the numerator and its exponent; the denominator is D of the sample.
-    pub fn attribute(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> (i128, i32) {
-        let (g, exponent) = self.attribute_numbers(x);
-        ((0..3).map(|k| g[k] * sample.e[k]).sum(), exponent)
+    /// WGT-1 (8): interpolates a number of the vertices.
+    pub fn number(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> Number {
+        weights::linear(self.vertices.each_ref().map(x), sample.b)
     }
 
-    /// Returns the products of the numbers with P in 62 bits, with a common exponent.
-    pub fn attribute_numbers(&self, x: impl Fn(&Vertex) -> f32) -> ([i128; 3], i32) {
-        let parts: [(i128, i32); 3] = std::array::from_fn(|k| {
-            let (m, e) = split(x(&self.vertices[k]));
-            (self.p[k] * m, e)
-        });
-        let Some(top) = parts.iter().filter(|p| p.0 != 0).map(|p| p.1 + super::real::bits(p.0)).max() else {
-            return ([0; 3], 0);
-        };
-        let exponent = top - 62;
-        (parts.map(|part| shift(part.0, part.1 - exponent)), exponent)
+    /// DEP-1, DEP-6: returns the number that a depth buffer holds in its own steps, from those of the vertices.
+    fn depth_or_w(&self, sample: &Sample, z: [f32; 3], w_buffer: bool) -> Number {
+        if !w_buffer {
+            let edges = weights::edge_numbers(sample.edges, None);
+            let b = weights::shares(edges, weights::reciprocal(weights::sum(edges, 29)));
+            return weights::linear_from(weights::largest_edge(sample.edges), z, b, 29);
+        }
+        let w = self.vertices.each_ref().map(|v| v.position[3]);
+        let edges = weights::edge_numbers(sample.edges, Some(w.map(Number::of)));
+        // 61 bits of the largest count.
+        let last = edges.iter().filter_map(|edge| edge.exponent()).max().unwrap_or(0) - 60;
+        let edges = edges.map(|edge| edge.cut_at(last));
+        let mut b = weights::shares(edges, weights::reciprocal(weights::sum(edges, 29)));
+        let d = weights::dominant(b);
+        b[d] = weights::rest(b, d).cut(24);
+        weights::linear_from(1, w, b, 29)
     }
 
     /// DEP-1, DEP-3 to DEP-5: returns the word for the depth buffer, or `None` if the fragment is dropped.
@@ -337,9 +312,6 @@ impl Setup {
             let (m, e) = split(n);
             shift(m, e + POINT)
         };
-        let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
-        let keep =
-            |n: i128, step: i32| if step > 0 { n.signum() * (n.abs() >> step.min(127) << step.min(127)) } else { n };
         let full = i128::from(format.largest());
         let floats = matches!(format, DepthFormat::Z16F | DepthFormat::Z24S8F);
         let z = self.vertices.each_ref().map(|v| match test.vertex_depths {
@@ -349,60 +321,8 @@ impl Setup {
             }
             _ => v.position[2],
         });
-        // DEP-6: edge functions are multiplied by w_1/w_k, with 24 bits each. The largest gets 61 bits.
-        let w = self.vertices.each_ref().map(|v| v.position[3]);
-        let in_perspective = |k: usize| {
-            let ((m, e), (n, f)) = (split(w[1]), split(w[k]));
-            let ratio = (m << 60) / n;
-            let ratio = keep(ratio, bits(ratio) - 24);
-            let zeros = ratio.trailing_zeros() as i32;
-            let edge = keep(sample.e[k], bits(sample.e[k]) - 24);
-            let product = edge * (ratio >> zeros);
-            (keep(product, bits(product) - 24), e - f - 60 + zeros)
-        };
-        // Edge functions have 24 bits. Their sum has steps of the 29th bit of the largest.
-        let edges = match test.w_buffer {
-            true => align([0, 1, 2].map(in_perspective), 61),
-            false => sample.e.map(|e| keep(e, bits(e) - 24)),
-        };
-        let values = if test.w_buffer { w } else { z };
-        let step = edges.iter().map(|e| bits(*e)).max().unwrap() - 29;
-        let sum = edges.iter().map(|e| keep(*e, step)).sum::<i128>().max(1);
-        // 1 / sum in units of 2^-(28 + bits of the sum). It has 29 bits and is 3/16 of the last bit too low, except for powers of two.
-        let length = bits(sum);
-        let power = sum == 1 << (length - 1);
-        let reciprocal = if power { 1 << 29 } else { ((1 << (28 + length + 4)) - 3 * sum).div_euclid(16 * sum) };
-        let order = [1, 0, 2];
-        let size = |k: usize| bits(sample.e[k].max(0));
-        let largest = order.into_iter().find(|k| (0..3).all(|other| size(other) <= size(*k))).unwrap();
-        let reference = if test.w_buffer { 1 } else { largest };
-        let mut weights = edges.map(|edge| {
-            let weight = edge * reciprocal;
-            keep(weight, bits(weight) - 24)
-        });
-        if test.w_buffer {
-            // The dominant weight, chosen by exponents, is 1 minus the others.
-            let class = weights.map(|weight| if weight > 0 { bits(weight) } else { -1 });
-            let dominant = match class {
-                [a, b, c] if a >= b && a > c => 0,
-                [a, b, c] if c > b && c >= a || a == b && b == c => 2,
-                _ => 1,
-            };
-            let others = weights[(dominant + 1) % 3] + weights[(dominant + 2) % 3];
-            let rest = (1 << (28 + length)) - others;
-            weights[dominant] = keep(rest, bits(rest) - 24);
-        }
-        let terms = [0, 1, 2].map(|k| {
-            if k == reference {
-                return fixed(values[k]);
-            }
-            let weight = weights[k];
-            let zeros = weight.trailing_zeros().min(100) as i32;
-            let (m, e) = split(values[k] - values[reference]);
-            shift((weight >> zeros) * m, zeros - (28 + length) + e + POINT)
-        });
-        let step = terms.iter().map(|term| bits(*term)).max().unwrap() - 29;
-        let mut depth: i128 = terms.iter().map(|term| keep(*term, step)).sum();
+        let value = self.depth_or_w(sample, z, test.w_buffer);
+        let mut depth = shift(value.m, value.e + POINT);
         // DEP-5: the larger slope, in steps of the 29th bit of the largest z.
         let largest = z.map(|z| bits(fixed(z))).into_iter().max().unwrap();
         let step = largest - 29;
@@ -446,30 +366,5 @@ impl Setup {
                 }
             }
         })
-    }
-}
-
-/// INT-3: returns the weight with the largest binary exponent, where an exact power of two counts as slightly less. A weight that is not
-/// positive, which only occurs outside the triangle, is never dominant.
-fn dominant(n: [i128; 3], d: i128) -> usize {
-    let class = n.map(|n| {
-        if n <= 0 {
-            return u32::MAX;
-        }
-        let mut c = 0;
-        while n << (c + 1) <= d {
-            c += 1;
-        }
-        c
-    });
-    let beats = |a: usize, b: usize| class[a] <= class[b];
-    if class[0] == class[1] && class[1] == class[2] {
-        2
-    } else if beats(0, 1) && class[0] < class[2] {
-        0
-    } else if beats(1, 2) && class[1] < class[0] {
-        1
-    } else {
-        2
     }
 }

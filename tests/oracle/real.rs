@@ -1,5 +1,7 @@
 //! Exact reading of floats, and the integer operations that the rules share.
 
+use std::ops::Neg;
+
 /// Returns f = m 2^e exactly, as (m, e).
 pub fn split(f: f32) -> (i128, i32) {
     let bits = f.to_bits();
@@ -19,10 +21,95 @@ pub fn shift(n: i128, e: i32) -> i128 {
     if e >= 0 { n << e.min(126 - bits(n)).max(0) } else { n >> (-e).min(127) }
 }
 
-/// Returns block floating point: the largest magnitude gets exactly `keep` bits, and the others get the same exponent, rounded down.
-pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i128; N] {
-    let top = values.iter().filter(|(m, _)| *m != 0).map(|(m, e)| bits(*m) + e).max().unwrap_or(0);
-    values.map(|(m, e)| shift(m, e + keep - top))
+/// The number m 2^e.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    pub m: i128,
+    pub e: i32,
+}
+
+impl Number {
+    pub const ZERO: Number = Number { m: 0, e: 0 };
+
+    /// Returns a float exactly. A NaN counts as 0, and an infinity as 2^128 (TSH-4).
+    pub fn of(f: f32) -> Number {
+        let (m, e) = split(if f.is_nan() { 0.0 } else { f });
+        Number { m, e }
+    }
+
+    /// Returns the binary exponent of the magnitude, or `None` for 0.
+    pub fn exponent(self) -> Option<i32> {
+        (self.m != 0).then(|| bits(self.m) - 1 + self.e)
+    }
+
+    /// Cuts toward zero to the first `n` bits.
+    pub fn cut(self, n: i32) -> Number {
+        self.cut_at(self.e + bits(self.m) - n)
+    }
+
+    /// Cuts toward zero to a multiple of 2^last.
+    pub fn cut_at(self, last: i32) -> Number {
+        if last <= self.e {
+            return self;
+        }
+        Number { m: self.m.signum() * (self.m.abs() >> (last - self.e).min(127)), e: last }
+    }
+
+    /// Rounds up to the first `n` bits.
+    pub fn up(self, n: i32) -> Number {
+        let cut = self.cut(n);
+        let loses = self.m > 0 && cut.m << (cut.e - self.e) != self.m;
+        Number { m: cut.m + i128::from(loses), e: cut.e }
+    }
+
+    /// Returns the product, whose factors have at most 60 bits.
+    pub fn times(self, other: Number) -> Number {
+        Number { m: self.m * other.m, e: self.e + other.e }
+    }
+
+    /// Returns this number, which is a multiple of 2^e, in units of 2^e.
+    pub fn over(self, e: i32) -> i128 {
+        if self.m == 0 {
+            return 0;
+        }
+        assert!(self.e >= e && bits(self.m) + self.e - e <= 126, "{self:?} in units of 2^{e}");
+        self.m << (self.e - e)
+    }
+
+    /// Returns the floor of `scale` times this number, limited to +-2^100.
+    pub fn floor(self, scale: i128) -> i128 {
+        floor_sum(&[(self.m * scale, self.e)])
+    }
+
+    /// Returns the value as a float of 64 bits, which is exact for the numbers of WGT-1: they have at most 53 bits.
+    pub fn real(self) -> f64 {
+        assert!(bits(self.m) <= 53, "{self:?}");
+        self.m as f64 * 2.0_f64.powi(self.e)
+    }
+}
+
+impl Neg for Number {
+    type Output = Number;
+
+    fn neg(self) -> Number {
+        Number { m: -self.m, e: self.e }
+    }
+}
+
+/// Returns floor(scale n / d) for d other than 0, limited to about +-2^100. `scale` and both numbers have at most 60 bits together.
+pub fn floor_ratio(n: Number, d: Number, scale: i128) -> i128 {
+    let (numerator, denominator) = (n.m * scale * d.m.signum(), d.m.abs());
+    let up = n.e - d.e;
+    if numerator == 0 {
+        0
+    } else if up >= 0 {
+        if bits(numerator) + up > 126 { numerator.signum() << 100 } else { (numerator << up).div_euclid(denominator) }
+    } else if bits(denominator) - up > 126 {
+        // The denominator would be larger than any numerator.
+        if numerator < 0 { -1 } else { 0 }
+    } else {
+        numerator.div_euclid(denominator << -up)
+    }
 }
 
 /// Returns floor(numerator / denominator) for any signs, and whether the remainder is 0.

@@ -2,7 +2,7 @@
 
 use super::coordinate::Place;
 use super::raster::{Sample, Setup};
-use super::real::bits;
+use super::real::{Number, bits};
 use super::tally::count;
 use ninebit::state::{
     AddressMode, CompareFunction, DepthFormat, Named, ShadowComparison, ShadowReference, TextureUnit,
@@ -30,8 +30,8 @@ pub fn wrapped(setup: &Setup, unit: &TextureUnit, set: usize) -> Option<Setup> {
     Some(setup)
 }
 
-/// Returns whether (n 2^e) / (d 2^f) is at least m 2^g, for positive d and n that is not negative.
-fn reaches((n, e): (i128, i32), (d, f): (i128, i32), (m, g): (i128, i32)) -> bool {
+/// Returns whether n / d is at least m 2^g, for positive d and n that is not negative.
+fn reaches(Number { m: n, e }: Number, Number { m: d, e: f }: Number, (m, g): (i128, i32)) -> bool {
     // n 2^e >= m d 2^(f + g)
     let product = m * d;
     if product == 0 || n == 0 {
@@ -50,18 +50,15 @@ fn reaches((n, e): (i128, i32), (d, f): (i128, i32), (m, g): (i128, i32)) -> boo
 
 /// SHD-1, DEP-3: returns the largest word whose depth is at most r/q.
 pub fn reference(setup: &Setup, sample: &Sample, set: usize, format: DepthFormat) -> i128 {
-    let [mut r, mut q] = [2, 3].map(|n| setup.attribute(sample, |v| v.texture_coordinates[set][n]));
-    if setup.vertices.iter().all(|v| v.texture_coordinates[set][3] == 1.0) {
-        q = (sample.d, 0);
-    }
-    if q.0 < 0 {
-        (r.0, q.0) = (-r.0, -q.0);
+    let [mut r, mut q] = [2, 3].map(|n| setup.number(sample, |v| v.texture_coordinates[set][n]));
+    if q.m < 0 {
+        (r.m, q.m) = (-r.m, -q.m);
     }
     let full = i128::from(format.largest());
-    if r.0 <= 0 {
+    if r.m <= 0 {
         return 0;
     }
-    if q.0 == 0 {
+    if q.m == 0 {
         return full;
     }
     let (kept, bias) = match format {

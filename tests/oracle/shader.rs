@@ -2,7 +2,7 @@
 
 use super::coordinate::{Place, lod};
 use super::raster::{Sample, Setup};
-use super::real::{factor_byte, floor_div, floor_sum, nearest_f32, shift, split};
+use super::real::{Number, factor_byte, floor_div, floor_sum, nearest_f32, split};
 use super::sampling;
 use super::tally::{count, count_named};
 use super::texel::{Color, signed};
@@ -51,8 +51,8 @@ impl<'a> Units<'a> {
     fn culled(&self, k: usize, sample: &Sample, drops_not_negative: [bool; 4]) -> bool {
         let set = self.draw.texture_shader[k].coordinate_set;
         (0..4).any(|c| {
-            let (n, _) = self.setup.attribute(sample, |v| v.texture_coordinates[set][c]);
-            (n >= 0) == drops_not_negative[c]
+            let number = self.setup.number(sample, |v| v.texture_coordinates[set][c]);
+            (number.m >= 0) == drops_not_negative[c]
         })
     }
 
@@ -65,8 +65,8 @@ impl<'a> Units<'a> {
             ShaderOperation::DotProduct => Color::plain([0; 4]),
             ShaderOperation::PassThrough => Color::plain([0, 1, 2, 3].map(|c| {
                 // TSH-9
-                let (n, e) = self.setup.attribute(sample, |v| v.texture_coordinates[stage.coordinate_set][c]);
-                factor_byte(floor_div(shift(n, e + 12), sample.d).0.clamp(0, 4096))
+                let number = self.setup.number(sample, |v| v.texture_coordinates[stage.coordinate_set][c]);
+                factor_byte(number.floor(4096).clamp(0, 4096))
             })),
             _ => {
                 // TEX-16
@@ -84,7 +84,7 @@ impl<'a> Units<'a> {
 
     /// Returns the colour that a unit samples, before it is multiplied by luminance.
     fn sampled(&self, k: usize, image: &Image, i: i128, j: i128, sample: &Sample) -> Color {
-        let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
+        let place = self.place(k, i, j, sample);
         let setup = self.setup_of(k);
         if let Some(shadow) = image.unit.shadow {
             return image.compare(shadow, setup, sample, &place, self.draw.texture_shader[k].coordinate_set);
@@ -107,8 +107,8 @@ impl<'a> Units<'a> {
         let (left, top) = (i & !1, j & !1);
         let mut face = None;
         [(left, top), (left + 1, top), (left, top + 1)].map(|(i, j)| {
-            let sample = self.setup.sample(i, j);
-            let place = self.place(k, i, j, &sample)?;
+            let sample = self.setup.sample(i, j)?;
+            let place = self.place(k, i, j, &sample);
             let setup = self.setup_of(k);
             let face = *face.get_or_insert_with(|| place.face(setup, &sample));
             place.fine(setup, &sample, image.scale(0), face)
@@ -136,20 +136,17 @@ impl<'a> Units<'a> {
         Color { bytes, register: [bytes[0], bytes[1], bytes[2], color.register[3]] }
     }
 
-    /// Returns where a unit samples, or `None` outside the triangle where that is undefined.
-    fn place(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Option<Place> {
+    /// Returns where a unit samples.
+    fn place(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Place {
         let stage = &self.draw.texture_shader[k];
-        if stage.operation.reads_previous() && sample.d <= 0 {
-            return None;
-        }
         let set = stage.coordinate_set;
         let dot = |unit: usize| self.dot(unit, i, j, sample);
-        Some(match stage.operation {
+        match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
                 // TSH-7: both bytes are two's complement regardless of the flags. The sums are in single precision.
                 let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8) as f32);
                 let [m0, m1, m2, m3] = matrix;
-                Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(split))
+                Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(Number::of))
             }
             ShaderOperation::DependentAlphaRed => {
                 let [r, _, _, a] = self.previous(k, i, j, sample);
@@ -174,7 +171,7 @@ impl<'a> Units<'a> {
             }
             _ if self.images[k].as_ref().is_some_and(Image::is_cube) => Place::Direction(set),
             _ => Place::Set(set),
-        })
+        }
     }
 
     /// TSH-6: returns the divisor of a byte, which counts as 1.
@@ -187,8 +184,7 @@ impl<'a> Units<'a> {
 
     /// TSH-4: returns an interpolated coordinate, rounded to single precision.
     fn float(&self, sample: &Sample, set: usize, c: usize) -> f32 {
-        let (n, e) = self.setup.attribute(sample, |v| v.texture_coordinates[set][c]);
-        nearest_f32(n, sample.d, e)
+        self.setup.number(sample, |v| v.texture_coordinates[set][c]).real() as f32
     }
 
     /// TSH-1 to TSH-4: returns the dot product of a unit.

@@ -20,7 +20,7 @@ fn examples_of_fog() {
     let found = |mode, p0, d: [f32; 3]| {
         let function = FogFunction { mode, p0, p1: -0.25, p2: 0.0, per_vertex: false };
         let vertices = d.map(|d| passed(&function, Profile::Nv2a, d));
-        FogPlane::new(&triangle, Some(function), vertices).at(&sample)
+        FogPlane::new(Some(function), vertices).at(&sample)
     };
     let linear = found(FogMode::Linear, 2.0, [0.0, 4.0, 2.0]);
     let FogStep::Linear(v, _) = linear.from else { panic!("linear") };
@@ -34,7 +34,7 @@ fn examples_of_fog() {
     let exp = found(FogMode::Exp, 1.5, [0.0, 4.0, 2.0]);
     let FogStep::Exponential(q) = exp.from else { panic!("exponential") };
     fog4.shows("e", 1.5 - d / 4.0, 5, "1.37760").shows("4096 (e - 3/2)", -1024.0 * d, 2, "-501.33");
-    fog4.gives("q", q.value, -502).gives("i and w", (502 >> 6, 502 & 63), (7, 54));
+    fog4.gives("q", q, -502).gives("i and w", (502 >> 6, 502 & 63), (7, 54));
     fog4.gives("entries", (EXPONENTIAL[7], EXPONENTIAL[8], SQUARED[7], SQUARED[8]), (76, 64, 196, 180));
     fog4.shows("real Exp", 255.0 * (-4.0 * d).exp2(), 2, "65.62");
     fog4.shows("real Exp2", 255.0 * (-2.0 * d * d).exp2(), 2, "182.91");
@@ -45,7 +45,7 @@ fn examples_of_fog() {
     fog5.gives("the others", [FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs].map(beyond), [0; 3]);
 
     let int5n = beside_rows("INT-5n");
-    let v = sample.factor(&triangle.factor([0.0, 1.0, 0.5]));
+    let v = ninebit::raster::fog::factor(sample.value(&ninebit::raster::weights::Linear::new([0.0, 1.0, 0.5])));
     int5n.shows("4096 f", 4096.0 * 11.75 / 96.0, 2, "501.33").gives("v", v, 501);
     int5n.gives("the byte", factor_byte(v), 31).shows("the real number", 255.0 * 11.75 / 96.0, 2, "31.21");
 }

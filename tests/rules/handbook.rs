@@ -10,9 +10,9 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-const PREFIXES: [&str; 17] = [
-    "NUM", "RAS", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL", "SHD",
-    "CYL",
+const PREFIXES: [&str; 18] = [
+    "NUM", "RAS", "WGT", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL",
+    "SHD", "CYL",
 ];
 
 /// The entry of one rule.
@@ -23,6 +23,14 @@ pub const PAGE: &str = "docs/numerics.md";
 
 /// All entries of the handbook in order, as the document has them now.
 pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| parse(read(PAGE).leak()));
+
+/// Returns the ids of rules that were replaced, from the table of the section "Superseded".
+pub fn superseded() -> BTreeSet<String> {
+    let page = read(PAGE);
+    let (_, section) = page.split_once("\n## Superseded\n").unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    section.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | ")).flat_map(|(id, _)| ids(id)).collect()
+}
 
 /// Returns the rules that are built.
 pub fn built() -> impl Iterator<Item = &'static Entry> {

@@ -5,9 +5,11 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::depth::{self, DepthPlane};
-use ninebit::raster::interpolate::{Floored, Sample};
+use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{CompareFunction, DepthFormat, DepthTest, PolygonOffset, Profile, VertexDepths};
+use ninebit_oracle::real::Number;
+use ninebit_oracle::weights;
 use ninebit_scene as scene;
 use std::path::Path;
 
@@ -33,41 +35,41 @@ fn examples_of_interpolation() {
     let triangle = of_the_section();
     assert_eq!(triangle.doubled_area(), 1536 * 1536);
 
-    let int1 = beside_rows("INT-1");
-    let deep = right_triangle(96.0, [1.0, 1.0, 2.0], Profile::Nv2a);
-    let sample = Sample::new(&deep, [1; 3]);
-    int1.gives("fifths of D", sample.n.map(|n| 5 * n), [2 * sample.d, 2 * sample.d, sample.d]);
+    let wgt1 = beside_rows("WGT-1");
+    // Returns a number in units of 2^e.
+    let over = |n: Number, e: i32| n.real() / 2_f64.powi(e);
+    let edges = [2_064_384, 258_048, 36_864];
+    wgt1.gives("E", triangle.edges(10, 1).map(i128::from), edges);
+    let numbers = weights::edge_numbers(edges, None);
+    let r = weights::reciprocal(weights::sum(numbers, 29));
+    wgt1.gives("S", over(weights::sum(numbers, 29), 0), 2_359_296.0).gives("R", over(r, -50), 477_218_588.0);
+    wgt1.gives("d", weights::dominant(weights::shares(numbers, r)), 0);
+    let b = weights::weights(edges, None).unwrap();
+    wgt1.gives("b_0", over(b[0], -24), 14_680_065.0).gives("b_1", over(b[1], -27), 14_680_063.0);
+    wgt1.gives("b_2", over(b[2], -30), 16_777_215.0).gives("colours", weights::colour_weights(b), [224, 29, 3]);
+    let at_64 = |s: [f32; 3]| weights::linear(s, b).times(Number::of(64.0 * 256.0)).real();
+    wgt1.gives("s = (0, 0, 1)", at_64([0.0, 0.0, 1.0]), 256.0 - 2_f64.powi(-16));
+    wgt1.gives("s = (0, 1, 0)", at_64([0.0, 1.0, 0.0]), 1792.0 + 2_f64.powi(-9));
+    let deep = weights::weights([768; 3], Some([1.0, 1.0, 2.0].map(Number::of))).unwrap();
+    let [b0, b1, b2] = deep;
+    let deep = [over(b0, -24), over(b1, -23), over(b2, -24)];
+    wgt1.gives("in perspective", deep, [6_710_887.0, 3_355_443.0, 3_355_443.0]);
+    let quad = weights::weights([4_063_232, 131_072, 0], None).unwrap();
+    let term = f64::from(0.9_f32 - 1.1_f32) * quad[0].real();
+    wgt1.gives("b_0 of the quad", over(quad[0], -5), 31.0).shows("the term", term, 11, "-0.19375004619");
+    wgt1.shows("the term that is cut", (term * 2_f64.powi(23)).trunc() / 2_f64.powi(23), 11, "-0.19375002384");
+    let real = 256.0 * (f64::from(0.9_f32) * 31.0 + f64::from(1.1_f32)) / 32.0;
+    wgt1.shows("the real number", real, 7, "231.9999943");
 
     let int2 = beside_rows("INT-2");
     int2.gives("the second weight", 256 - 76 - 51, 129).gives("the products", [255 * 76, 128 * 51], [19_380, 6528]);
     int2.shows("the real number", 0.3 * 255.0 + 0.2 * 128.0, 1, "102.1");
 
-    let int3 = beside_rows("INT-3");
-    let sample = at(&triangle, 10, 1);
-    int3.gives("256 E / D", sample.n.map(|n| 256 * i128::from(n)), [224, 28, 4].map(|k| k * i128::from(sample.d)));
-    int3.gives("the dominant weight", sample.dominant(), 0);
-    int3.gives("W1", 256 - 224 - 3, 29);
-
     let int4 = beside_rows("INT-4");
     int4.shows("the real number", 16_384.0 * 2.5 / 96.0, 2, "426.67").gives("the part", 426 & 255, 170);
 
-    let int4t = beside_rows("INT-4t");
-    let sample = at(&triangle, 10, 1);
-    let plane = |s| triangle.coordinate(s, 64);
-    let [third, second] = [plane([0.0, 0.0, 1.0]), plane([0.0, 1.0, 0.0])];
-    int4t.gives("256 D", sample.sum(&third), 256 * i128::from(sample.d));
-    int4t.gives("64 b2", 64 * sample.n[2], sample.d).gives("S > 0", sample.shortfall(&third) > 0, true);
-    int4t.gives("1792 D", sample.sum(&second), 1792 * i128::from(sample.d));
-    int4t.gives("S < 0", sample.shortfall(&second) < 0, true);
-    let [numerator, denominator, _] = triangle.direction([[0.0, 0.0, 2.0], [2.0; 3], [0.0; 3]]);
-    int4t.gives("the loss of N_q", sample.shortfall(&denominator), 0);
-    let parts = sample.sum(&numerator) * i128::from(triangle.p()[1]);
-    int4t.gives("the loss of N_s in 2^-24 / P_1", sample.shortfall(&numerator), parts);
-    int4t.gives("64 N_s", 64 * sample.sum(&numerator), sample.sum(&denominator));
-    int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), Floored { value: 255, lowered: 1 });
-
     let int6 = beside_rows("INT-6");
-    let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p();
+    let p = |w: f32, profile| at(&right_triangle(96.0, [w, 1.0, 1.0], profile), 10, 1).weights().b;
     let (small, large) = (1.0 + 2_f32.powi(-20), 1.0 + 2_f32.powi(-15));
     int6.gives("1 + 2^-20 counts as 1 on Nv10", p(small, Profile::Nv10), p(1.0, Profile::Nv10));
     int6.gives("1 + 2^-20 differs from 1 on Nv2a", p(small, Profile::Nv2a) != p(1.0, Profile::Nv2a), true);

@@ -1,9 +1,10 @@
 //! Computes the examples of the section "Texture units".
 
 use crate::handbook::beside_rows;
-use crate::interpolation::{at, of_the_section};
+use crate::interpolation::of_the_section;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
+use ninebit_oracle::weights;
 
 /// Returns a pixel that shows TEXTURE0, where unit 0 samples a row of texels at s with t = 0 and the given q.
 fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn(&mut TextureUnit)) -> Pixel {
@@ -47,15 +48,11 @@ fn examples_of_texture_units() {
     }
 
     let tex15 = beside_rows("TEX-15");
-    let triangle = of_the_section();
-    let sample = at(&triangle, 10, 1);
-    for (sign, value) in [(1.0, 1 << 24), (-1.0, -1 << 24)] {
-        let [s, q, one] = triangle.direction([[1.0; 3], [0.0, sign, -7.0 * sign], [1.0; 3]]);
-        tex15.gives("q", sample.sum(&q), 0);
-        // The weights fall short by 2^-27 of 1.
-        let loss = -sign as i128 * sample.sum(&one) * i128::from(triangle.p()[1]);
-        tex15.gives("8 times its loss", 8 * sample.shortfall(&q), loss);
-        tex15.gives("u", sample.ratio(&s, &q, 64).value, value);
+    let b = weights::weights(of_the_section().edges(10, 1).map(i128::from), None).unwrap();
+    for sign in [1.0, -1.0] {
+        let q = weights::linear([0.0, sign, -7.0 * sign], b).real();
+        tex15.gives("q", q, f64::from(sign) * 2_f64.powi(-23));
+        tex15.gives("whether the quotient passes the limit", 256.0 * 64.0 / q.abs() > 2_f64.powi(24), true);
     }
 
     let tex16 = beside_rows("TEX-16");

@@ -120,7 +120,7 @@ pub fn r1() -> Case {
     }
 }
 
-/// INT-3: vertical ramps with a tie in every eighth row.
+/// WGT-1: vertical ramps with a tie in every eighth row.
 pub fn r2() -> Case {
     let (black, white) = ([0; 3], [255; 3]);
     let mut vertices = Vec::new();
@@ -142,7 +142,7 @@ pub fn r2() -> Case {
     }
 }
 
-/// INT-3 with three colours, and DEP-1.
+/// WGT-1 with three colours, and DEP-1.
 pub fn r3() -> Case {
     // DEP-2: z (2^24 - 1), rounded down, is 11184809 above and 16777214 below.
     let (above, below) = (11_184_810.0 / 16_777_216.0, 16_777_215.0 / 16_777_216.0);
@@ -190,7 +190,7 @@ pub fn r4() -> Case {
         (3291, 5668, [204, 255, 51]),
         (5119, 3839, [255, 204, 51]),
     ];
-    shaded("R4", "Shade_model/Prog_Tri_Smooth_First.png", draw(Topology::Triangles, equal_w(&corners)), [36_035, 2])
+    shaded("R4", "Shade_model/Prog_Tri_Smooth_First.png", draw(Topology::Triangles, equal_w(&corners)), [36_035, 1])
 }
 
 /// INT-2: quads with equal w at all vertices.
@@ -214,7 +214,7 @@ fn equal_w(corners: &[(i32, i32, [u8; 3])]) -> Vec<Vertex> {
     vertices
 }
 
-/// INT-1: without the perspective flag w has no effect. RAS-1: positions left of the screen are truncated toward zero.
+/// WGT-1: without the perspective flag w has no effect. RAS-1: positions left of the screen are truncated toward zero.
 pub fn r6() -> Case {
     let mut vertices = vec![
         vertex(-162.311_39, -242.311_39, [255, 0, 0, 255]),
@@ -235,7 +235,7 @@ pub fn r6() -> Case {
         background,
         region: everywhere,
         covered: 200_120,
-        differing: 0,
+        differing: 1,
     }
 }
 

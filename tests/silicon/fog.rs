@@ -64,7 +64,7 @@ fn fog_of_the_captured_triangles() {
         *differences.entry((case.to_string(), difference)).or_default() += 1;
     }
     println!("{differences:?}");
-    // One pixel of the 1,493 lies at a tie of the coordinate (INT-4t) and differs by one step.
+    // One pixel of the 1,493 lies at a tie of the coordinate (WGT-1) and differs by one step.
     let wrong: Vec<_> = differences.iter().filter(|((_, difference), _)| *difference != 0).collect();
     assert_eq!(wrong, [(&("AFF-exp_abs-planar".to_string(), 1), &1)], "{differences:?}");
     assert_eq!(differences[&("AFF-linear_abs-planar".to_string(), 0)], 458);

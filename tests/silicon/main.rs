@@ -24,3 +24,4 @@ mod settings;
 mod sheet;
 mod table;
 mod unit_probes;
+mod weights;

@@ -1,4 +1,4 @@
-//! Probes of interpolated colours (INT-1 to INT-3).
+//! Probes of interpolated colours (WGT-1, INT-2).
 
 use crate::build::{draw, target, vertex};
 use crate::cases;
@@ -18,7 +18,7 @@ fn pixels(scene: &Scene, rows: &[Row]) -> Answers {
     single(rows.iter().map(|row| shown[index(row)]).collect())
 }
 
-/// Draws the rows of `alpha-ramp`: quads of 512 x 64 pixels. Their area is a power of two, which is the exception of INT-3.
+/// Draws the rows of `alpha-ramp`: quads of 512 x 64 pixels. Their area is a power of two, so S is, and no weight is cut.
 pub fn alpha_ramp(rows: &[Row]) -> Answers {
     let frame = target(640, 480, SurfaceFormat::A8R8G8B8, rows[0].bytes("destination"));
     let mut scene =

@@ -4,6 +4,7 @@ use super::content::{directions, dot, unit};
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
 use ninebit::plan::Plan;
+use ninebit::raster::binary::Binary;
 use ninebit::state::{Scene, Texture, TextureImage};
 use ninebit::texture::coordinates::Coordinates;
 use ninebit::texture::cube::Face;
@@ -53,15 +54,18 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
     let mut map = vec![(Face::PositiveX, [0.0; 3]); 256 * 256];
     visit(plan, |covered| {
         if covered.draw == 1 {
-            let Coordinates::Direction(g) = Coordinates::new(covered.triangle, covered.coordinates(), covered.unit)
-            else {
+            let Coordinates::Direction(g) = Coordinates::new(covered.coordinates(), covered.unit) else {
                 panic!("a cube map is sampled with a direction");
             };
             let at = covered.sample();
-            let sums = g.map(|g| at.sum(&g));
-            let face = Face::from_direction(sums, sums.map(i128::abs), 0);
+            // Numbers of at most 26 bits.
+            let direction = g.map(|g| {
+                let Binary { mantissa, exponent } = at.value(&g);
+                mantissa as f64 * 2_f64.powi(exponent)
+            });
+            let face = Face::from_direction(direction, direction.map(f64::abs), 0.0);
             let (i, j) = covered.pixel;
-            map[256 * j as usize + i as usize - 256] = (face, sums.map(|n| n as f64));
+            map[256 * j as usize + i as usize - 256] = (face, direction);
         }
     });
     map

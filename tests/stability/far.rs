@@ -67,8 +67,7 @@ pub fn section() -> Section {
 
 /// Returns u of the model and the floor of the exact rational number, both in 1/256 texel.
 fn u(covered: &Covered<'_>) -> (i64, i64) {
-    let (sample, coordinates) =
-        (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
+    let (sample, coordinates) = (covered.sample(), Coordinates::new(covered.coordinates(), covered.unit));
     let place = Interpolated {
         unit: covered.unit,
         coordinates: &coordinates,
@@ -77,9 +76,7 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
         vertices: covered.vertices,
         perspective: true,
     };
-    let floored = place.on(&covered.unit.levels[0])[0];
-    // INT-4t makes an exact tie one step lower. That is the rule and does not count as an error.
-    let u = floored.value + floored.lowered;
+    let u = place.on(&covered.unit.levels[0])[0];
     // All values are converted to whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
     let whole = |value: f32, bits: i32| (f64::from(value) * f64::from(bits).exp2()) as i128;
     let w = covered.w().map(|w| whole(w, 23));

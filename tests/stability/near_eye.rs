@@ -6,9 +6,10 @@ use super::view::{draw, plan, scene};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::raster::ideal;
-use ninebit::raster::interpolate::{Floored, Sample};
+use ninebit::raster::interpolate::{Sample, coordinate};
 use ninebit::raster::project::ClipPlane;
 use ninebit::raster::setup::Triangle;
+use ninebit::raster::weights::Linear;
 use ninebit::state::{Profile, Scene};
 
 /// Width of the texture to which the coordinates refer, in texels.
@@ -37,7 +38,7 @@ pub fn section() -> Section {
     ])];
     let row = |label: String, w: [f64; 3]| {
         let ([inside, _], [_, edge]) = (slanted(w), errors(EDGE, w));
-        let numbers = [inside.weight, inside.u, edge.weight, edge.u].map(|error| format!("{error:.2}"));
+        let numbers = [inside.weight, inside.u, edge.weight, edge.u].map(|error| format!("{error:.4}"));
         [vec![label], numbers.to_vec()].concat()
     };
     for k in [0, 8, 12, 16, 20] {
@@ -112,7 +113,7 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
     let mut worst = [Errors::default(); 2];
     let Some(triangle) = Triangle::new(positions, true, Profile::Nv2a) else { return worst };
     let s = [0.5, 0.0, 1.0];
-    let g = triangle.coordinate(s, SIDE);
+    let f = Linear::new(s);
     for j in triangle.rows().0..triangle.rows().1 {
         let (low, high) = triangle.span(j, (0, 128));
         for i in low..high {
@@ -120,20 +121,19 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
             let sample = Sample::new(&triangle, e);
             let exact = ideal::barycentrics(&triangle, e, w, true);
             let most = &mut worst[usize::from(e[0] == 0)];
-            for (n, floored) in [0, 2].into_iter().zip(sample.weights()) {
+            for (n, floored) in [0, 2].into_iter().zip(sample.color_weights()) {
                 most.weight = most.weight.max(beyond(floored, 256.0 * exact[n]));
             }
             let u = 256.0 * f64::from(SIDE) * ideal::mix(exact, s.map(f64::from));
-            most.u = most.u.max(beyond(sample.coordinate(&g), u));
+            most.u = most.u.max(beyond(coordinate(sample.value(&f), SIDE), u));
         }
     }
     worst
 }
 
-/// Returns how far an integer is from being the floor of a real number: 0 if the real number lies within the step above it. A tie that was
-/// rounded one step lower counts as exact.
-fn beyond(floored: Floored, exact: f64) -> f64 {
+/// Returns how far an integer is from being the floor of a real number: 0 if the real number lies within the step above it.
+fn beyond(floored: i64, exact: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
-    let error = (floored.value + floored.lowered) as f64 - exact;
+    let error = floored as f64 - exact;
     if error > ROUNDING { error } else { (-error - 1.0 - ROUNDING).max(0.0) }
 }

@@ -122,7 +122,7 @@ impl Covered<'_> {
 
     /// TEX-10, TEX-11: returns 256 times the lod of the model, before bias and limits.
     pub fn lod(&self) -> i32 {
-        let coordinates = Coordinates::new(self.triangle, self.coordinates(), self.unit);
+        let coordinates = Coordinates::new(self.coordinates(), self.unit);
         let at = self.sample();
         let place = Interpolated {
             unit: self.unit,

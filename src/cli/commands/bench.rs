@@ -5,7 +5,7 @@ use super::*;
 use std::fmt::Write;
 use std::time::Instant;
 
-use ninebit::engine::{Reason, Renderer};
+use ninebit::engine::Renderer;
 use ninebit::threads;
 use ninebit_files::read::page;
 
@@ -46,18 +46,10 @@ struct Measured {
     frame_microseconds: Spread,
     /// The same per shaded pixel. A pixel counts once for each draw that shades it.
     ns_per_shaded_pixel: Spread,
-    /// For the fast engine, the share of pixels for which the definition computed something, by reason.
-    defined_share: Vec<Defined>,
+    /// Share of pixels that the scalar engine drew for the fast one.
+    scalar_share: f64,
     /// Peak resident memory of the process while the scene was measured, if the system reports it.
     peak_memory_bytes: Option<u64>,
-}
-
-/// Work that the fast engine left to the definition.
-#[derive(Debug, Serialize)]
-struct Defined {
-    reason: &'static str,
-    /// Share of all shaded pixels; above 1 if several values of a pixel were computed that way.
-    share: f64,
 }
 
 /// Distribution of times.
@@ -129,10 +121,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             })
             .collect();
         times.sort_by(f64::total_cmp);
-        let share = |(reason, count): &(Reason, u64)| Defined {
-            reason: reason.name(),
-            share: *count as f64 / (shaded_pixels.max(1) as f64),
-        };
         Ok(Measured {
             scene: shown::lossless(path),
             engine: renderer.engine().name(),
@@ -142,7 +130,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             prepare_microseconds,
             frame_microseconds: Spread::from_times(&times, 1.0),
             ns_per_shaded_pixel: Spread::from_times(&times, 1e3 / (shaded_pixels.max(1) as f64)),
-            defined_share: statistics.defined_pixels.iter().map(share).collect(),
+            scalar_share: statistics.scalar_pixels as f64 / (shaded_pixels.max(1) as f64),
             peak_memory_bytes: peak_memory(),
         })
     });
@@ -186,8 +174,8 @@ fn text(document: &Document) -> String {
         let (frame, pixels) = (measured.frame_microseconds.median / 1e3, measured.shaded_pixels);
         let scene = shown::name(&measured.scene);
         let _ = writeln!(text, "{pixels:>10} {set_up:>10.3} {peak:>10} {frame:>10.3} {spread:>22}  {scene}");
-        for Defined { reason, share } in &measured.defined_share {
-            let _ = writeln!(text, "{:>66}  pixel by pixel: {:.3} %, {reason}", "", 100.0 * share);
+        if measured.scalar_share > 0.0 {
+            let _ = writeln!(text, "{:>66}  by the scalar engine: {:.3} %", "", 100.0 * measured.scalar_share);
         }
     }
     text

@@ -9,7 +9,7 @@
 //! | reader | its values | its result |
 //! |---|---|---|
 //! | [`Direct`](crate::combiner::direct::Direct) | numbers of a lane | the pixel: scalar engine, traces, the ideal, vectors |
-//! | `engine::rows::graph::Graph` | nodes with ranges | what the fast engine computes |
+//! | `engine::rows::shading::graph::Graph` | nodes with ranges | what the fast engine computes |
 //! | `Trail` | nodes and what is known about them | what is read (liveness), and what is the same in every pixel
 //! (folding) |
 //!

@@ -28,11 +28,6 @@ pub struct TriangleContext<'a> {
     pub fog: Option<FogPlane>,
     /// Depths of the vertices, if there is a depth test.
     pub depth: DepthPlane,
-    /// Whether stages of a texture shader run by this context.
-    defines: bool,
-    /// Whether the triangle is set up, and whether coordinates and fog are.
-    placed: bool,
-    complete: bool,
 }
 
 /// Returns the corners of a triangle of a draw.
@@ -52,7 +47,7 @@ fn positions([a, b, c]: &[&Corner; 3]) -> ([i64; 3], [i64; 3]) {
 impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`. Returns `None` if it is culled, empty, or outside `rows`.
     pub fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
-        let mut context = TriangleContext::vacant(plan, draw, true);
+        let mut context = TriangleContext::vacant(plan, draw);
         if !context.set_up(number, rows) {
             return None;
         }
@@ -60,9 +55,8 @@ impl<'a> TriangleContext<'a> {
         Some(context)
     }
 
-    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up). `defines` says whether stages of a texture
-    /// shader run by it.
-    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw, defines: bool) -> Self {
+    /// Returns a context in which one triangle of a draw after the other can be [set up](Self::set_up).
+    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw) -> Self {
         TriangleContext {
             plan,
             draw,
@@ -74,14 +68,11 @@ impl<'a> TriangleContext<'a> {
             shader: None,
             fog: None,
             depth: DepthPlane::default(),
-            defines,
-            placed: false,
-            complete: false,
         }
     }
 
-    /// Sets up triangle `number`. Returns `false` if it is culled, empty, or outside `rows`; then the context is not valid.
-    /// [`complete`](Self::complete) sets up texture coordinates and fog.
+    /// Sets up edge functions and depths of triangle `number`. Returns `false` if it is culled, empty, or outside `rows`; then the context is not
+    /// valid. [`complete`](Self::complete) sets up the rest.
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
         if !Self::may_cover(self.draw, number, rows) {
@@ -119,9 +110,9 @@ impl<'a> TriangleContext<'a> {
 
     /// Takes triangle `number`, which [may cover](Self::may_cover) pixels, and the colours of its corners.
     #[inline(always)]
-    pub(super) fn begin(&mut self, number: usize) {
+    fn begin(&mut self, number: usize) {
         let draw = self.draw;
-        (self.number, self.placed, self.complete) = (number, false, false);
+        self.number = number;
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners(draw, number),
             ShadeModel::Flat => [&draw.assembly.corners[draw.assembly.triangles.provoking(number) as usize]; 3],
@@ -136,15 +127,11 @@ impl<'a> TriangleContext<'a> {
         corners(self.draw, self.number)
     }
 
-    /// Sets up the triangle. Returns `false` if its depths drop it; then the context is not valid.
+    /// Sets up edge functions and depths of the triangle. Returns `false` if its depths drop it.
     #[inline(always)]
-    pub(super) fn place(&mut self) -> bool {
-        let (plan, draw, corners) = (self.plan, self.draw, self.corners());
-        let (x, y) = positions(&corners);
-        self.placed = true;
+    fn place(&mut self) -> bool {
+        let (draw, (x, y)) = (self.draw, positions(&self.corners()));
         self.triangle.place(x, y);
-        self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
-        self.triangle.lose(plan.policies.plane_loss);
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
@@ -155,27 +142,20 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up the triangle, texture coordinates and fog, unless they are set up.
-    #[inline(always)]
+    /// Sets up weights, texture coordinates and fog of a triangle that is [set up](Self::set_up) otherwise.
     pub(super) fn complete(&mut self) {
-        if std::mem::replace(&mut self.complete, true) {
-            return;
-        }
-        if !self.placed {
-            self.place();
-        }
         let draw = self.draw;
+        self.triangle.weigh(self.corners().map(|c| c.w), draw.perspective, self.plan.profile);
         if let Some(shader) = &draw.shader {
-            self.shader =
-                Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices(), self.defines)));
+            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, self.vertices())));
         } else {
             for unit in &draw.units {
                 let sets = self.coordinate_set(unit.stage.coordinate_set);
-                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+                self.coordinates[unit.index] = Some(Coordinates::new(sets, unit));
             }
         }
         if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
+            self.fog = Some(FogPlane::new(draw.fog.function, self.vertices().fog()));
         }
     }
 

@@ -113,7 +113,7 @@ pub fn fragments(plan: &Plan, planned: &PlannedDraw) -> u64 {
 /// Visits the rows of a draw's triangles with the number of pixels that are covered on each, as long as `visit` wishes.
 pub(super) fn spans(plan: &Plan, planned: &PlannedDraw, mut visit: impl FnMut(u64) -> bool) {
     let rows = (0, i64::from(plan.targets[planned.target].height));
-    let mut context = TriangleContext::vacant(plan, planned, true);
+    let mut context = TriangleContext::vacant(plan, planned);
     for ((rows, columns), number) in walk::triangles(planned, rows) {
         if !context.set_up(number, rows) {
             continue;

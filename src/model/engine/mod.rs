@@ -17,8 +17,8 @@ mod unseen;
 pub mod walk;
 
 pub use counting::{DrawCounts, Shaded, affordable, count, fragments, shaded};
+pub use rows::Isa;
 use rows::Kernels;
-pub use rows::{Isa, Reason};
 pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
 pub use unseen::{Unseen, unseen};
@@ -26,7 +26,7 @@ pub use unseen::{Unseen, unseen};
 use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{Named, Target, named};
+use crate::state::{Target, named};
 use crate::texture::planned::Image;
 use crate::threads::Team;
 use crate::trace::Silent;
@@ -71,9 +71,8 @@ impl Default for RenderOptions {
 pub struct Statistics {
     /// Number of covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
-    /// Number of pixels of which the definition computed something for the fast engine, by reason. Reasons without pixels are left out. A
-    /// pixel counts once for each computed value.
-    pub defined_pixels: Vec<(Reason, u64)>,
+    /// Number of these that the scalar engine drew for the fast one, because rows do not sample their textures.
+    pub scalar_pixels: u64,
 }
 
 /// Least number of rows of a band, if no number is asked for.
@@ -230,11 +229,11 @@ impl<'a> Renderer<'a> {
     }
 
     fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
-        let defined = [const { AtomicU64::new(0) }; Reason::ALL.len()];
-        let shaded = self.groups.iter().flat_map(|group| self.draw_group(group, frames, band_done, &defined));
-        let shaded_pixels = shaded.collect();
-        let defined = Reason::ALL.iter().copied().zip(defined.map(AtomicU64::into_inner));
-        Statistics { shaded_pixels, defined_pixels: defined.filter(|(_, count)| *count > 0).collect() }
+        let shaded = self.groups.iter().flat_map(|group| self.draw_group(group, frames, band_done));
+        let shaded_pixels: Vec<u64> = shaded.collect();
+        let is_scalar = |draw: usize| self.rows.as_ref().is_some_and(|rows| rows.is_scalar(draw));
+        let scalar = shaded_pixels.iter().enumerate().filter(|(draw, _)| is_scalar(*draw));
+        Statistics { scalar_pixels: scalar.map(|(_, pixels)| pixels).sum(), shaded_pixels }
     }
 
     /// Runs a group. Returns the number of covered pixels of each draw.
@@ -243,7 +242,6 @@ impl<'a> Renderer<'a> {
         Group { draws, borders, bins }: &Group,
         frames: &mut Frames,
         band_done: &(dyn Fn() + Sync),
-        defined: &[AtomicU64],
     ) -> Vec<u64> {
         let plan = self.plan;
         let window = |index: usize| {
@@ -260,19 +258,15 @@ impl<'a> Renderer<'a> {
                 for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
                     let draw = &plan.draws[index];
                     let pixels = match &compiled {
-                        Some(compiled) => {
-                            let compiled = compiled[n].as_ref();
-                            let triangles = bins[n].of(number);
-                            let job = kernels.job(plan, draw, compiled, textures, triangles);
-                            if triangles.is_empty() { 0 } else { rows::run(kernels, &job, band, block) }
+                        Some(_) if bins[n].of(number).is_empty() => 0,
+                        Some(compiled) if !compiled[n].is_scalar => {
+                            let job = kernels.job(plan, draw, compiled[n].as_ref(), bins[n].of(number));
+                            rows::run(kernels, &job, band, block)
                         }
-                        None => walk::draw(plan, draw, textures, band, &mut Silent).0,
+                        _ => walk::draw(plan, draw, textures, band, &mut Silent).0,
                     };
                     shaded.fetch_add(pixels, Ordering::Relaxed);
                     band_done();
-                }
-                for (all, own) in defined.iter().zip(std::mem::take(&mut block.defined)) {
-                    all.fetch_add(own, Ordering::Relaxed);
                 }
             }
         });

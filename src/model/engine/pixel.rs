@@ -8,7 +8,8 @@ use crate::combiner::{final_combiner, general};
 use crate::number::Lane;
 use crate::raster::depth;
 use crate::raster::ideal;
-use crate::raster::interpolate::{self, Floored, Sample};
+use crate::raster::interpolate::{self, Sample};
+use crate::raster::setup::significant;
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
@@ -78,9 +79,11 @@ impl TriangleContext<'_> {
         observer: &mut O,
     ) -> Option<Stored<L>> {
         let draw = self.draw;
-        let sample = Sample { ideal: fragment.weights, ..Sample::new(&self.triangle, fragment.e) };
+        let mut sample = Sample::new(&self.triangle, fragment.e);
+        sample.ideal = fragment.weights;
         if O::ON {
-            reports::setup(&self.triangle, &sample, fragment.pixel, observer);
+            let w = significant(self.vertices().position(3), self.plan.profile);
+            reports::setup(&sample, fragment.pixel, w, self.barycentrics(&sample), observer);
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);
@@ -117,18 +120,18 @@ impl TriangleContext<'_> {
         ];
         // Equal bytes at all three vertices need no weights, because C W0 + C W1 + C W2 is 256 C.
         let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
-            let weights = sample.weights();
+            let weights = sample.color_weights();
             if O::ON && sets.iter().any(|s| s.1 != 0) {
                 reports::weights(sample, weights, self.barycentrics(sample), observer);
             }
             weights
         } else {
-            [Floored { value: 0, lowered: 0 }; 2]
+            [0; 2]
         };
         let lane = |n: usize| {
             let k = 2 * n;
             #[allow(clippy::float_arithmetic, reason = "the ideal's weight")]
-            L::weight(weights[n].value as i32, || 256.0 * self.barycentrics(sample)[k])
+            L::weight(weights[n] as i32, || 256.0 * self.barycentrics(sample)[k])
         };
         let (w0, w2) = (lane(0), lane(1));
         for (register, live, colors, name) in sets {

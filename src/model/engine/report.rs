@@ -4,15 +4,13 @@ use super::context::TriangleContext;
 use super::pixel::DepthStencil;
 use crate::combiner::registers::{self, channel_name};
 use crate::combiner::report::constants;
-use crate::number::{Lane, convert, light};
+use crate::number::{Lane, light};
 use crate::plan::PlannedDraw;
-use crate::raster::depth::{DepthWeights, largest_edge};
-use crate::raster::fog::{FogFactor, FogPlane, FogStep};
-use crate::raster::interpolate::{Floored, Sample};
-use crate::raster::setup;
+use crate::raster::fog::{FogFactor, FogPlane, FogStep, limited};
+use crate::raster::interpolate::Sample;
+use crate::raster::{depth, report as raster};
 use crate::rop::{blend, surface};
 use crate::state::*;
-use crate::texture::coordinates::edge_function;
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, part, plain, report};
 use crate::vertex::fog as vertex_fog;
 
@@ -21,36 +19,18 @@ const INTERPOLATION: &str = "interpolation";
 const FOG: &str = "fog";
 const DEPTH: &str = "depth test";
 
-/// Reports edge functions, perspective weights and D.
-pub(super) fn setup<O: Observer>(triangle: &setup::Triangle, sample: &Sample<'_>, pixel: (i64, i64), observer: &mut O) {
-    for (k, e) in sample.e.iter().enumerate() {
-        let inputs = edge_function(triangle, k, pixel);
-        let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
-        let on_edge = (*e == 0).then(|| format!("exactly on a {owns}"));
-        observer.step(Step::given(RASTER, "RAS-3", format!("E{k}"), *e).by("edge_function", inputs).note(on_edge));
-    }
-    for (k, p) in triangle.p.iter().enumerate() {
-        observer.step(Step::given(RASTER, "INT-1", format!("P{k}"), *p));
-    }
-    let inputs =
-        (0..3).flat_map(|k| [plain(format!("P{k}"), triangle.p[k]), plain(format!("E{k}"), sample.e[k])]).collect();
-    observer.step(Step::given(RASTER, "INT-1", "D", sample.d).by("sum_of_products", inputs));
-}
-
-/// Reports DEP-1's sum, reciprocal and weights.
-fn depth_weights<O: Observer>(e: [i64; 3], observer: &mut O) {
-    let weights = DepthWeights::from_edges(e);
-    let inputs = (0..3).map(|k| plain(format!("E{k}"), e[k])).collect();
-    let sum = observer.tell(Step::given(DEPTH, "DEP-1", "depth.sum", weights.sum).by("depth_sum", inputs));
-    let (mantissa, exponent) = weights.reciprocal;
-    let step = Step::given(DEPTH, "DEP-1", "depth.reciprocal", mantissa).by("depth_reciprocal", vec![sum.clone()]);
-    observer.step(step.note(format!("times 2^-{exponent}")));
-    for k in (0..3).filter(|k| *k != largest_edge(e)) {
-        let (mantissa, exponent) = weights.weight(k);
-        // On an edge it is 0, in any unit.
-        let step = Step::given(DEPTH, "DEP-1", format!("depth.weight{k}"), mantissa).per(1 << (-exponent).min(62));
-        observer.step(step.by("depth_weight", vec![plain(format!("E{k}"), e[k]), sum.clone()]));
-    }
+/// Reports edge functions and weights. `w` holds those of the vertices as the chip takes them, `ideal` the weights of the ideal.
+pub(super) fn setup<O: Observer>(
+    sample: &Sample<'_>,
+    pixel: (i64, i64),
+    w: [f32; 3],
+    ideal: [f64; 3],
+    observer: &mut O,
+) {
+    let triangle = sample.triangle;
+    raster::edges(RASTER, ("RAS-3", ""), triangle, pixel, observer);
+    raster::ratios(INTERPOLATION, triangle, w, observer);
+    raster::weights(INTERPOLATION, "", (sample.e, triangle.ratios), sample.weights(), Some(ideal), observer);
 }
 
 /// CMB-13: reports registers that are read before they are written.
@@ -65,41 +45,16 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
 }
 
 /// Reports the 8-bit weights of the colours.
-pub(super) fn weights<O: Observer>(
-    sample: &Sample<'_>,
-    weights: [Floored; 2],
-    barycentrics: [f64; 3],
-    observer: &mut O,
-) {
+pub(super) fn weights<O: Observer>(sample: &Sample<'_>, [w0, w2]: [i64; 2], barycentrics: [f64; 3], observer: &mut O) {
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
     let ideal = barycentrics.map(|b| Some(256.0 * b));
-    for (k, floored) in [(0, weights[0]), (2, weights[1])] {
-        let inputs = vec![
-            plain(format!("P{k}"), sample.triangle.p[k]),
-            plain(format!("E{k}"), sample.e[k]),
-            plain("D", sample.d),
-            plain("lowered", floored.lowered),
-        ];
-        let (rule, note) = if floored.lowered != 0 {
-            ("INT-3", Some(format!("exact tie; weight {} dominates: one step lower", sample.dominant())))
-        } else {
-            ("INT-2", None)
-        };
-        observer.step(
-            Step::given(INTERPOLATION, rule, format!("W{k}"), floored.value)
-                .per(256)
-                .by("floor_weight", inputs)
-                .ideal(ideal[k])
-                .note(note),
-        );
+    let step = |name: &str, value: i64| Step::given(INTERPOLATION, "INT-2", name, value).per(256);
+    for (k, value) in [(0, w0), (2, w2)] {
+        let inputs = vec![raster::number(format!("b{k}"), sample.weights().b[k])];
+        observer.step(step(&format!("W{k}"), value).by("floor_weight", inputs).ideal(ideal[k]));
     }
-    let (w0, w2) = (weights[0].value, weights[1].value);
-    observer.step(
-        Step::given(INTERPOLATION, "INT-2", "W1", 256 - w0 - w2)
-            .per(256)
-            .by("remainder_weight", vec![part("W0", w0), part("W2", w2)])
-            .ideal(ideal[1]),
-    );
+    let inputs = vec![part("W0", w0), part("W2", w2)];
+    observer.step(step("W1", 256 - w0 - w2).by("remainder_weight", inputs).ideal(ideal[1]));
 }
 
 /// Reports one interpolated channel, and the vertices' bytes that it comes from. `output` is the register of the vertex program that has
@@ -109,7 +64,7 @@ pub(super) fn color<L: Lane, O: Observer>(
     channel: usize,
     (sources, output): ([VertexColor; 3], Option<&str>),
     corners: [L; 3],
-    weights: &[Floored; 2],
+    &[w0, w2]: &[i64; 2],
     value: L,
     observer: &mut O,
 ) {
@@ -126,14 +81,8 @@ pub(super) fn color<L: Lane, O: Observer>(
         };
         inputs.push(observer.tell(report::register_step(INTERPOLATION, rule, corner, corners[k]).note(note)));
     }
-    let (w0, w2) = (weights[0].value, weights[1].value);
     inputs.extend([part("W0", w0), part("W1", 256 - w0 - w2), part("W2", w2)]);
     observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
-}
-
-/// Reports a number of the set-up that a step reads.
-fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: impl Into<i64>) -> Operand {
-    observer.tell(Step::given(FOG, rule, name, value))
 }
 
 impl TriangleContext<'_> {
@@ -146,11 +95,10 @@ impl TriangleContext<'_> {
         factor: L,
         observer: &mut O,
     ) {
-        // Operands of the interpolated quotient.
-        let quotient = |observer: &mut O, rule, g: [i64; 3]| -> Vec<Operand> {
-            let planes: Vec<Operand> = (0..3).map(|k| given(observer, rule, &format!("fog.G{k}"), g[k])).collect();
-            let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
-            planes.into_iter().chain(edges).chain([plain("D", sample.d)]).collect()
+        let interpolated = |observer: &mut O, rule, name: &str| {
+            let fog = self.vertices().fog();
+            let values = if self.draw.fog.function.is_some() { fog } else { fog.map(limited) };
+            raster::linear(raster::Place { block: FOG, rule, name, prefix: "" }, values, sample.weights().b, observer)
         };
         if let Some(function) = &self.draw.fog.function {
             self.report_passed_fog(function, observer);
@@ -160,39 +108,28 @@ impl TriangleContext<'_> {
             ("NUM-6", "factor_byte", vec![factor])
         };
         let (rule, operation, inputs) = match (plane, found.from) {
-            (FogPlane::Linear(line, attribute), FogStep::Linear(v, (m, e))) => {
-                let (g, exponent) = attribute.numbers();
-                let mut inputs = quotient(observer, "FOG-2", g);
-                observer.step(Step::given(FOG, "FOG-2", "fog.d", m).by("truncate_24", inputs.clone()));
-                inputs.push(given(observer, "FOG-2", "fog.G.exponent", exponent));
-                observer.step(Step::given(FOG, "FOG-2", "fog.d.exponent", e).by("truncate_24_exponent", inputs));
-                let mut inputs = Vec::new();
-                for (name, p) in [("fog.p0", line.p0), ("fog.p1", line.p1)] {
-                    let (m, e) = convert::split(p);
-                    inputs.push(given(observer, "FOG-2", name, m));
-                    inputs.push(given(observer, "FOG-2", &format!("{name}.exponent"), e));
-                }
-                inputs.extend([plain("fog.d", m), plain("fog.d.exponent", e)]);
+            (FogPlane::Linear(line, _), FogStep::Linear(v, d)) => {
+                let whole = interpolated(observer, "FOG-2", "fog.d");
+                let cut = raster::number_step(FOG, "FOG-2", "fog.d.24", d).by("cut_24", vec![whole]);
+                let cut = observer.tell(cut);
+                let [p0, p1] = [("fog.p0", line.p0), ("fog.p1", line.p1)]
+                    .map(|(name, p)| observer.tell(float_step(FOG, "FOG-2", name, p, f64::from(p))));
                 let operation = if line.absolute { "fog_linear_abs" } else { "fog_linear" };
-                factor_in_4096ths(observer, "FOG-2", v, operation, inputs)
+                factor_in_4096ths(observer, "FOG-2", v, operation, vec![p0, p1, cut])
             }
-            (FogPlane::Exponential(mode, attribute), FogStep::Exponential(q)) => {
-                let (g, exponent) = attribute.numbers();
-                let mut inputs = quotient(observer, "FOG-4", g);
-                inputs.push(given(observer, "FOG-4", "fog.G.exponent", exponent));
-                inputs.push(plain("lowered", q.lowered));
-                let note = (q.lowered != 0).then(|| "exactly on a step: one step lower (INT-4t)".to_string());
-                let steps = Step::given(FOG, "FOG-4", "fog.q", q.value).per(4096).by("fog_steps", inputs);
+            (FogPlane::Exponential(mode, _), FogStep::Exponential(q)) => {
+                let e = interpolated(observer, "FOG-4", "fog.e");
+                let steps = Step::given(FOG, "FOG-4", "fog.q", q).per(4096).by("fog_steps", vec![e]);
                 let operation = match mode {
                     FogMode::Exp => "fog_exp",
                     FogMode::ExpAbs => "fog_exp_abs",
                     _ => "fog_exp2",
                 };
-                ("FOG-4", operation, vec![observer.tell(steps.note(note))])
+                ("FOG-4", operation, vec![observer.tell(steps)])
             }
-            (FogPlane::Factor(g), FogStep::Factor(v)) => {
-                let inputs = quotient(observer, "INT-5n", *g);
-                factor_in_4096ths(observer, "INT-5n", v, "floor_factor", inputs)
+            (FogPlane::Factor(_), FogStep::Factor(v)) => {
+                let f = interpolated(observer, "INT-5n", "fog.f");
+                factor_in_4096ths(observer, "INT-5n", v, "floor_factor", vec![f])
             }
             _ => {
                 let linear = self.draw.fog.function.is_some_and(|function| function.mode.is_linear());
@@ -287,7 +224,8 @@ impl TriangleContext<'_> {
         }
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
         if !test.w_buffer {
-            depth_weights(sample.e, observer);
+            let weights = depth::weights(sample.e);
+            raster::shares(DEPTH, ("DEP-1", "", "depth."), (sample.e, None), &weights, observer);
         }
         if test.offset != PolygonOffset::default() {
             let triangle = sample.triangle;

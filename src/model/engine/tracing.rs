@@ -198,7 +198,7 @@ impl<'a> Tracer<'a> {
         let mut tracer = Tracer { plan, target, pixel, only, left_out: 0 };
         let mut count = 0_u64;
         for (_, planned) in tracer.draws().filter(|(index, _)| tracer.keeps(*index)) {
-            let mut context = TriangleContext::vacant(plan, planned, true);
+            let mut context = TriangleContext::vacant(plan, planned);
             count += (0..planned.assembly.triangles.len())
                 .filter(|n| covered(&mut context, *n, pixel).is_some())
                 .count() as u64;
@@ -275,7 +275,7 @@ impl<'a> Tracer<'a> {
             }
             let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
             let textures = texture_words.images();
-            let mut context = TriangleContext::vacant(plan, planned, true);
+            let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
                 let Some(e) = covered(&mut context, number, self.pixel) else { continue };
                 context.complete();

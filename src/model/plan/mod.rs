@@ -126,7 +126,7 @@ pub struct PlannedDraw {
     pub assembly: Assembly,
     /// Whether colours are interpolated or flat.
     pub shade_model: ShadeModel,
-    /// Whether attributes are interpolated in perspective, with w (INT-1).
+    /// Whether attributes are interpolated in perspective, with w (WGT-1).
     pub perspective: bool,
     /// Which faces are culled.
     pub cull: Cull,

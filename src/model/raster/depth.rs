@@ -1,47 +1,13 @@
 //! The depth of a pixel (DEP-1), its offset (DEP-5), its range (DEP-4), and the word that is stored (DEP-3).
 //!
-//! Until it is stored a depth is a [`Binary`], which is rounded only where a rule says so.
+//! Until it is stored a depth is a [`Binary`], which is rounded only where a rule says so. Weights are those of [WGT-1](super::weights) without
+//! perspective, before the dominant one becomes the rest of the others.
 
-use super::interpolate::most_dominant;
+use super::binary::Binary;
 use super::setup::Triangle;
+use super::weights::{Number, Weights, difference, ratios};
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
-
-/// The number `mantissa` * 2^`exponent`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Binary {
-    /// Signed mantissa of at most 63 bits.
-    pub mantissa: i64,
-    /// Power of two that scales the mantissa.
-    pub exponent: i32,
-}
-
-impl Binary {
-    /// Converts a finite number exactly.
-    pub fn new(n: f32) -> Binary {
-        let (mantissa, exponent) = split(n);
-        Binary { mantissa, exponent }
-    }
-
-    /// Returns the sum. Where the larger number's first `bits` bits, at most 62, do not hold it, it is the odd one of its two neighbours: shorter
-    /// numbers are less or greater than that as they are than the sum, and cutting yields the same.
-    pub fn plus(self, other: Binary, bits: i32) -> Binary {
-        let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], bits);
-        let lost = [self, other].iter().any(|n| {
-            let dropped = exponent.saturating_sub(n.exponent);
-            n.mantissa != 0 && (n.mantissa.trailing_zeros() as i32) < dropped
-        });
-        Binary { mantissa: (a + b) | i64::from(lost), exponent }
-    }
-
-    /// Whether it is less than another.
-    pub fn is_below(self, other: Binary) -> bool {
-        let least = self.exponent.min(other.exponent);
-        // A number that is shifted by 64 is larger than any mantissa.
-        let up = |n: Binary| i128::from(n.mantissa) << (n.exponent - least).min(64);
-        up(self) < up(other)
-    }
-}
 
 /// The depths of a triangle's vertices in steps of the buffer, and the offset of its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -184,122 +150,35 @@ pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
     Binary { mantissa: mantissa as i64, exponent: exponent + dropped }
 }
 
-/// Significant bits of the largest edge number, and of the largest term of a depth (DEP-1).
-const DEPTH_BITS: i32 = 29;
-
-/// DEP-1: sum, reciprocal and weights of edge numbers that are truncated to 24 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct DepthWeights {
-    edges: [i64; 3],
-    /// The sum S.
-    pub sum: i64,
-    /// The reciprocal R as a mantissa of 29 bits, and the s of its scale 2^-s.
-    pub reciprocal: (i64, i32),
+/// DEP-1: returns the weights of the vertices, of which the [shares](Weights::shares) count. They are linear on the screen.
+#[inline]
+pub(crate) fn weights(e: [i64; 3]) -> Weights<Binary> {
+    Weights::new(e.map(Binary::from_edge), None)
 }
 
-impl DepthWeights {
-    /// Computes the weights of edge functions.
-    #[inline]
-    pub(crate) fn from_edges(e: [i64; 3]) -> DepthWeights {
-        DepthWeights::from_cut_edges(e.map(|e| significant(e, 24)))
-    }
-
-    fn from_cut_edges(edges: [i64; 3]) -> DepthWeights {
-        let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
-        let dropped = (top - DEPTH_BITS).max(0);
-        // Outside the triangle, where nothing is stored, edge numbers may be negative.
-        let sum = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
-        let (mantissa, exponent) = reciprocal(sum);
-        DepthWeights { edges, sum: sum << dropped, reciprocal: (mantissa, exponent + dropped) }
-    }
-
-    /// Returns the weight b_k as a mantissa of at most 24 bits and an exponent.
-    #[inline]
-    pub(crate) fn weight(&self, k: usize) -> (i64, i32) {
-        let (mantissa, dropped) = first_24(i128::from(self.edges[k]) * i128::from(self.reciprocal.0));
-        (mantissa, dropped - self.reciprocal.1)
-    }
-}
-
-/// DEP-1: returns z_d + sum of b_k (z_k - z_d) with each term truncated. The interpolation is linear on the screen.
+/// DEP-1: returns z_d + sum of b_k (z_k - z_d) with each term cut at the 29th bit of the largest.
 #[inline]
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
-    let (reference, weights) = (largest_edge(e), DepthWeights::from_edges(e));
-    let terms: [(i64, i32); 3] = std::array::from_fn(|k| {
-        if k == reference {
-            return split(z[k]);
-        }
-        let ((mantissa, exponent), (by, power)) = (weights.weight(k), split(difference(z[k], z[reference])));
-        (mantissa * by, exponent + power)
-    });
-    sum_of_terms(terms)
+    sum_of_terms(weights(e).shares, z, largest_edge(e))
 }
 
-/// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term truncated as in DEP-1.
+/// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1.
 fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
-    let edges = std::array::from_fn(|k| {
-        let (ratio, power) = w_ratio(w[1], w[k]);
-        let (edge, of_edge) = first_24(i128::from(e[k]));
-        let (product, more) = first_24(i128::from(edge) * i128::from(ratio));
-        (product, power + of_edge + more)
-    });
-    let (edges, _) = align(edges, 61);
-    let cut = DepthWeights::from_cut_edges(edges);
-    let mut weights = [0, 1, 2].map(|k| cut.weight(k));
-    // INT-3: the dominant weight is 1 less the others.
-    let size = |(mantissa, exponent): (i64, i32)| {
-        if mantissa > 0 { 64 - mantissa.leading_zeros() as i32 + exponent } else { i32::MIN }
-    };
-    let dominant = match most_dominant(weights.map(size)) {
-        [true, _] => 0,
-        [_, true] => 2,
-        _ => 1,
-    };
-    let ([whole, one, other], exponent) = align([(1, 0), weights[(dominant + 1) % 3], weights[(dominant + 2) % 3]], 61);
-    let (rest, dropped) = first_24(i128::from(whole) - i128::from(one) - i128::from(other));
-    weights[dominant] = (rest, dropped + exponent);
-    let term = |k: usize| {
-        let (by, power) = split(difference(w[k], w[1]));
-        (weights[k].0 * by, weights[k].1 + power)
-    };
-    sum_of_terms([term(0), split(w[1]), term(2)])
+    let ratios = ratios(w.map(Binary::new));
+    let Weights { shares: mut b, dominant, .. } = Weights::new(e.map(Binary::from_edge), Some(ratios));
+    // Cut, not rounded up as in WGT-1.
+    let others = [b[(dominant + 1) % 3], b[(dominant + 2) % 3]].map(|b| (b.mantissa, b.exponent));
+    let ([whole, one, other], exponent) = align([(1, 0), others[0], others[1]], 61);
+    b[dominant] = Binary { mantissa: whole - one - other, exponent }.cut();
+    sum_of_terms(b, w, 1)
 }
 
-/// DEP-6: returns w_1/w_k of two positive w as a mantissa of 24 bits and an exponent.
-pub(crate) fn w_ratio(first: f32, w: f32) -> (i64, i32) {
-    let ((first, power_of_first), (mantissa, power)) = (split(first), split(w));
-    let (ratio, dropped) = first_24((i128::from(first) << 62) / i128::from(mantissa.max(1)));
-    (ratio, power_of_first - power - 62 + dropped)
-}
-
-/// Returns the first 24 bits of a number, truncated toward zero, and the number of bits that were dropped.
-fn first_24(n: i128) -> (i64, i32) {
-    let dropped = (128 - n.unsigned_abs().leading_zeros() as i32 - 24).max(0);
-    let magnitude = (n.unsigned_abs() >> dropped) as i64;
-    (if n < 0 { -magnitude } else { magnitude }, dropped)
-}
-
-/// DEP-1: aligns terms to the largest, truncates them toward zero at its 29th bit, and adds them.
-fn sum_of_terms(terms: [(i64, i32); 3]) -> Binary {
-    let bits = |n: i64| 64 - n.unsigned_abs().leading_zeros() as i32;
-    let Some(top) = terms.iter().filter(|term| term.0 != 0).map(|term| bits(term.0) + term.1).max() else {
-        return Binary::default();
-    };
-    let unit = top - DEPTH_BITS;
-    let cut = |(n, exponent): (i64, i32)| match exponent - unit {
-        // A zero may have any exponent.
-        up if up >= 0 => n << up.min(63),
-        down => n.signum() * (n.abs() >> (-down).min(63)),
-    };
-    Binary { mantissa: terms.into_iter().map(cut).sum(), exponent: unit }
-}
-
-/// Returns the difference of two vertex depths in binary32, rounded to nearest. A difference below 2^-126 becomes zero.
-#[allow(clippy::float_arithmetic, reason = "DEP-1 names binary32 for this one difference")]
-#[inline(always)]
-pub(crate) fn difference(a: f32, b: f32) -> f32 {
-    let difference = a - b;
-    if difference.is_subnormal() { 0.0 } else { difference }
+/// Returns the sum of the reference vertex's number and of the weighted differences from it, each cut at the 29th bit of the largest.
+fn sum_of_terms(b: [Binary; 3], values: [f32; 3], reference: usize) -> Binary {
+    Binary::aligned_sum::<29>(std::array::from_fn(|k| match k == reference {
+        true => Binary::new(values[k]),
+        false => b[k].times(Binary::new(difference(values[k], values[reference]))),
+    }))
 }
 
 /// DEP-1: returns the vertex whose edge number has the largest binary exponent. Among equals, vertex 1 comes first,
@@ -313,24 +192,6 @@ pub fn largest_edge(e: [i64; 3]) -> usize {
     } else {
         2
     }
-}
-
-/// Truncates a number toward zero to its first `bits` bits.
-fn significant(n: i64, bits: u32) -> i64 {
-    let dropped = (64 - n.unsigned_abs().leading_zeros()).saturating_sub(bits);
-    n.signum() * (n.abs() >> dropped << dropped)
-}
-
-/// DEP-1: returns the reciprocal of a sum of at most 31 bits as a mantissa of 29 bits, which is low by 3/16 of its last
-/// bit, and the s of its scale 2^-s.
-pub(crate) fn reciprocal(sum: i64) -> (i64, i32) {
-    let length = 63 - sum.leading_zeros() as i32;
-    if sum & (sum - 1) == 0 {
-        return (1 << 28, 28 + length);
-    }
-    // floor(2^s / sum - 3/16).
-    let numerator = (1_u64 << (29 + length + 4)) - 3 * sum as u64;
-    ((numerator / (16 * sum as u64)) as i64, 29 + length)
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 //! exact single-precision numbers, and nothing is lost before the floor to 4096ths. The exponential modes are tables of
 //! 32 segments, indexed by the interpolated e less 3/2.
 
-use super::attribute::Attribute;
-use super::interpolate::{Floored, Sample};
-use super::setup::Triangle;
-use crate::number::convert::{factor_byte, shift, split};
+use super::binary::Binary;
+use super::interpolate::Sample;
+use super::weights::{Linear, Number};
+use crate::number::convert::factor_byte;
 use crate::state::{FogFunction, FogMode};
 
 /// Number of fraction bits of 4096ths.
@@ -18,6 +18,9 @@ pub(crate) const CENTRE: i64 = 6144;
 
 /// Distance from the centre at which the tables end, in 4096ths.
 pub(crate) const TABLE_END: i64 = 2048;
+
+/// Limit of e in 4096ths, which is far beyond the tables.
+const FARTHEST: i64 = 1 << 40;
 
 /// Width of a segment of the tables, in 4096ths.
 const SEGMENT: i64 = 64;
@@ -37,12 +40,12 @@ pub const SQUARED: [u8; 33] = [
 /// The fog of a triangle, set up from its vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FogPlane {
-    /// Factors, limited to 0..1: floor(4096 P_k f_k) (INT-5n).
-    Factor([i64; 3]),
+    /// Factors, limited to 0..1 (INT-5n).
+    Factor(Linear<Binary>),
     /// d', or e of INT-5n, for a linear function (FOG-2).
-    Linear(Line, Attribute),
+    Linear(Line, Linear<Binary>),
     /// e, for a table (FOG-4).
-    Exponential(FogMode, Attribute),
+    Exponential(FogMode, Linear<Binary>),
     /// Some value is not finite. Holds the byte of all pixels (FOG-4, FOG-5).
     NotFinite(u8),
 }
@@ -94,10 +97,10 @@ pub struct FogFactor {
 pub enum FogStep {
     /// A factor in 4096ths, 0..=4096.
     Factor(i64),
-    /// The same factor, and the coordinate m 2^e that it was computed from as (m, e).
-    Linear(i64, (i64, i32)),
-    /// Steps of 1/4096 from the centre of the table, lowered where a tie was lowered.
-    Exponential(Floored),
+    /// The same factor, and the coordinate of 24 bits that it was computed from.
+    Linear(i64, Binary),
+    /// Steps of 1/4096 from the centre of the table.
+    Exponential(i64),
     /// The coordinate is not a finite number.
     NotFinite,
 }
@@ -109,14 +112,14 @@ pub(crate) fn limited(factor: f32) -> f32 {
 
 impl FogPlane {
     /// Sets up the fog of a triangle from the values of its vertices: factors, or the d' or e of the function.
-    pub fn new(triangle: &Triangle, function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
+    pub fn new(function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
         let Some(function) = function else {
-            return FogPlane::Factor(triangle.factor(vertices.map(limited)));
+            return FogPlane::Factor(Linear::new(vertices.map(limited)));
         };
         let finite = vertices.iter().all(|n| n.is_finite());
         match Curve::new(&function) {
-            Some(Curve::Line(line)) if finite => FogPlane::Linear(line, triangle.attribute(vertices)),
-            Some(Curve::Table(mode)) if finite => FogPlane::Exponential(mode, triangle.attribute(vertices)),
+            Some(Curve::Line(line)) if finite => FogPlane::Linear(line, Linear::new(vertices)),
+            Some(Curve::Table(mode)) if finite => FogPlane::Exponential(mode, Linear::new(vertices)),
             _ => FogPlane::NotFinite(not_finite(function.mode)),
         }
     }
@@ -125,23 +128,27 @@ impl FogPlane {
     #[inline]
     pub fn at(&self, sample: &Sample<'_>) -> FogFactor {
         match self {
-            FogPlane::Factor(g) => {
-                let v = sample.factor(g);
+            FogPlane::Factor(f) => {
+                let v = factor(sample.value(f));
                 FogFactor { byte: factor_byte(v), from: FogStep::Factor(v) }
             }
-            FogPlane::Linear(line, attribute) => {
-                let coordinate = sample.attribute(attribute).truncated_24();
+            FogPlane::Linear(line, d) => {
+                let coordinate = sample.value(d).cut();
                 let v = line.at(coordinate);
                 FogFactor { byte: factor_byte(v), from: FogStep::Linear(v, coordinate) }
             }
-            FogPlane::Exponential(mode, attribute) => {
-                let steps = sample.steps(attribute, FACTOR_BITS);
-                let q = Floored { value: steps.value.saturating_sub(CENTRE), ..steps };
-                FogFactor { byte: exponential(*mode, q.value), from: FogStep::Exponential(q) }
+            FogPlane::Exponential(mode, e) => {
+                let q = sample.value(e).floored(1, FACTOR_BITS, FARTHEST) - CENTRE;
+                FogFactor { byte: exponential(*mode, q), from: FogStep::Exponential(q) }
             }
             FogPlane::NotFinite(byte) => FogFactor { byte: *byte, from: FogStep::NotFinite },
         }
     }
+}
+
+/// NUM-6: returns a factor in 4096ths, 0..=4096.
+pub fn factor(f: Binary) -> i64 {
+    f.floored(1, FACTOR_BITS, 1 << FACTOR_BITS).max(0)
 }
 
 /// FOG-4, FOG-5: returns the byte of a triangle with a value that is not finite.
@@ -168,38 +175,22 @@ pub fn exponential(mode: FogMode, q: i64) -> u8 {
 }
 
 impl Line {
-    /// FOG-2: returns the factor v, 0..=4096, at the coordinate m 2^e given as (m, e) with |m| < 2^24. p0 and p1 must
-    /// be finite.
-    pub(crate) fn at(&self, coordinate: (i64, i32)) -> i64 {
-        let ((m, e), (m1, e1)) = (coordinate, split(self.p1));
-        let m = if self.absolute { m.abs() } else { m };
+    /// FOG-2: returns the factor v, 0..=4096, at a coordinate of 24 bits. p0 and p1 must be finite.
+    pub(crate) fn at(&self, coordinate: Binary) -> i64 {
+        let magnitude = Binary { mantissa: coordinate.mantissa.abs(), ..coordinate };
+        let d = if self.absolute { magnitude } else { coordinate };
         // An exact product of 48 bits.
-        let product = (m * m1, e + e1);
-        (floor_sum(split(self.p0), product) - (1 << FACTOR_BITS)).clamp(0, 1 << FACTOR_BITS) as i64
+        let sum = Binary::new(self.p0).floored_sum(d.times(Binary::new(self.p1)), 1, FACTOR_BITS, FARTHEST);
+        (sum - (1 << FACTOR_BITS)).clamp(0, 1 << FACTOR_BITS)
     }
-}
-
-/// Returns floor(4096 (a + b)) of two numbers m 2^e of at most 48 bits. Results far outside 0..2 are limited.
-fn floor_sum(a: (i64, i32), b: (i64, i32)) -> i128 {
-    // A zero must not decide where the other number is truncated.
-    let ((high, high_at), (low, low_at)) = if b.0 == 0 || (a.0 != 0 && a.1 >= b.1) { (a, b) } else { (b, a) };
-    // If the exponents differ by more than this, the lower number is less than 2^-28 of the higher one, so they cannot
-    // cancel. Where the truncation at 2^(high_at - 76) is not below 2^-12, the sum is beyond 2^43.
-    let gap = (high_at - low_at).clamp(0, 76);
-    let sum = (i128::from(high) << gap) + shift(i128::from(low), low_at - (high_at - gap));
-    let at = high_at - gap + FACTOR_BITS;
-    if at <= 0 {
-        return shift(sum, at);
-    }
-    // Beyond 2^60 only the sign matters.
-    let fits = at < 72 && sum.unsigned_abs() < 1 << (72 - at);
-    if fits { sum << at } else { sum.signum() << 72 }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::float_arithmetic, reason = "real-number text of the functions")]
     use super::*;
+    use crate::number::convert::split;
+    use crate::raster::setup::Triangle;
     use crate::state::{Named, Profile};
     use proptest::prelude::*;
 
@@ -230,13 +221,13 @@ mod tests {
             let (a, b) = (split(d), split(p1));
             let sum = |d: i64| at(split(p0)) + at((d * b.0, a.1 + b.1)) - (1 << 106);
             let floor = |n: i128| (n >> 94).clamp(0, 4096) as i64;
-            prop_assert_eq!(line(p0, p1).at(a), floor(sum(a.0)));
-            prop_assert_eq!(magnitude(p0, p1).at(a), floor(sum(a.0.abs())));
+            prop_assert_eq!(line(p0, p1).at(Binary::new(d)), floor(sum(a.0)));
+            prop_assert_eq!(magnitude(p0, p1).at(Binary::new(d)), floor(sum(a.0.abs())));
         }
 
         #[test]
         fn lines_of_anything_are_factors(p0 in finite(), p1 in finite(), d in finite()) {
-            let value = line(p0, p1).at(split(d));
+            let value = line(p0, p1).at(Binary::new(d));
             let (p0, product) = (f64::from(p0), f64::from(d) * f64::from(p1));
             let real = 4096.0 * (p0 + product - 1.0).clamp(0.0, 1.0);
             // Only where float64 is accurate enough.
@@ -245,27 +236,6 @@ mod tests {
                 prop_assert!((value as f64 - real).abs() <= 1.001, "{value} {real}");
             }
             prop_assert!((0..=4096).contains(&value));
-        }
-
-        /// Compares the floor of an interpolated e, and its tie, with a division over a common denominator.
-        #[test]
-        fn steps_are_floors(e in proptest::array::uniform3(-2048_i32..2048), w in prop::sample::select(vec![1.0_f32, 4.0, 3.0])) {
-            let p = [[1.0, 2.0, 0.0, w], [90.0, 7.0, 0.0, 1.0], [13.0, 71.0, 0.0, 1.0]];
-            let triangle = Triangle::new(p, true, Profile::Nv2a).expect("area");
-            let FogPlane::Exponential(_, attribute) =
-                FogPlane::new(&triangle, Some(function(FogMode::Exp)), e.map(|e| e as f32 / 1024.0))
-            else {
-                panic!("finite")
-            };
-            for (i, j) in [(20, 20), (40, 9), (14, 60), (60, 15)] {
-                let sample = Sample::new(&triangle, triangle.edges(i, j));
-                prop_assume!(triangle.covers(sample.e));
-                let numerator: i128 = (0..3).map(|k| i128::from(e[k]) * 4 * i128::from(sample.n[k])).sum();
-                let (floor, tie) = (numerator.div_euclid(sample.d.into()), numerator.rem_euclid(sample.d.into()) == 0);
-                let steps = sample.steps(&attribute, FACTOR_BITS);
-                prop_assert_eq!(i128::from(steps.value + steps.lowered), floor);
-                prop_assert!(tie || steps.lowered == 0);
-            }
         }
     }
 
@@ -311,24 +281,24 @@ mod tests {
     #[test]
     fn large_terms_cancel_exactly() {
         let (p0, p1) = (2.0_f32.powi(100), -2.0_f32.powi(60));
-        assert_eq!(line(p0, p1).at(split(2.0_f32.powi(40))), 0);
-        assert_eq!(magnitude(p0, p1).at(split(-(2.0_f32.powi(40)))), 0);
+        assert_eq!(line(p0, p1).at(Binary::new(2.0_f32.powi(40))), 0);
+        assert_eq!(magnitude(p0, p1).at(Binary::new(-(2.0_f32.powi(40)))), 0);
         // Coordinates times parameters that both have 24 significant bits.
         let d = (1 << 22) as f32 + 0.5;
-        assert_eq!(line(-(2.0_f32.powi(44)) - 2.0_f32.powi(21), 2.0_f32.powi(22)).at(split(d)), 0);
+        assert_eq!(line(-(2.0_f32.powi(44)) - 2.0_f32.powi(21), 2.0_f32.powi(22)).at(Binary::new(d)), 0);
         let product = (8_388_609.0_f32, 8_388_607.0_f32);
         // (2^23 + 1)(2^23 - 1) = 2^46 - 1
-        assert_eq!(line(-(2.0_f32.powi(46)), product.0).at(split(product.1)), 0);
-        assert_eq!(line(2.0_f32.powi(46), -product.0 / 2.0).at(split(product.1)), 4096);
+        assert_eq!(line(-(2.0_f32.powi(46)), product.0).at(Binary::new(product.1)), 0);
+        assert_eq!(line(2.0_f32.powi(46), -product.0 / 2.0).at(Binary::new(product.1)), 4096);
     }
 
     #[test]
     fn what_is_below_a_step_counts() {
         let tiny = f32::from_bits(1 << 9);
-        assert_eq!(line(2.0, -tiny).at(split(tiny)), 4095);
-        assert_eq!(line(2.0, tiny).at(split(tiny)), 4096);
-        assert_eq!(magnitude(2.0, tiny).at(split(-tiny)), 4096);
-        assert_eq!(magnitude(2.0, -tiny).at(split(-tiny)), 4095);
+        assert_eq!(line(2.0, -tiny).at(Binary::new(tiny)), 4095);
+        assert_eq!(line(2.0, tiny).at(Binary::new(tiny)), 4096);
+        assert_eq!(magnitude(2.0, tiny).at(Binary::new(-tiny)), 4096);
+        assert_eq!(magnitude(2.0, -tiny).at(Binary::new(-tiny)), 4095);
     }
 
     #[test]
@@ -340,14 +310,14 @@ mod tests {
         for mode in FogMode::ALL {
             let expected = if matches!(mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp) { 255 } else { 0 };
             for beyond in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
-                let far = FogPlane::new(&triangle, Some(function(*mode)), [0.0, beyond, 1.0]);
+                let far = FogPlane::new(Some(function(*mode)), [0.0, beyond, 1.0]);
                 assert_eq!(far.at(&sample), FogFactor { byte: expected, from: FogStep::NotFinite });
             }
-            let plain = FogPlane::new(&triangle, Some(function(*mode)), [0.0, 2.0, 1.0]);
+            let plain = FogPlane::new(Some(function(*mode)), [0.0, 2.0, 1.0]);
             assert!(!matches!(plain, FogPlane::NotFinite(_)));
         }
         let steep = FogFunction { p0: f32::NAN, ..function(FogMode::Linear) };
-        assert_eq!(FogPlane::new(&triangle, Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
+        assert_eq!(FogPlane::new(Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
     }
 
     /// Values of the light unit reach the ends of single precision: e may be far outside the table, also beside small
@@ -359,7 +329,7 @@ mod tests {
                 .expect("area");
         let far = [f32::MAX, -f32::MAX, 1e-38, -1e-38, 1e-45, 0.0, 1.5];
         for e in far.iter().flat_map(|a| far.iter().flat_map(|b| far.iter().map(|c| [*a, *b, *c]))) {
-            let plane = FogPlane::new(&triangle, Some(function(FogMode::ExpAbs)), e);
+            let plane = FogPlane::new(Some(function(FogMode::ExpAbs)), e);
             for (i, j) in [(5, 5), (30, 20), (0, 88), (88, 0)] {
                 let sample = Sample::new(&triangle, triangle.edges(i, j));
                 assert!(triangle.covers(sample.e));
@@ -377,7 +347,7 @@ mod tests {
         let f = line(2.0, -0.01);
         let mut last = 255;
         for d in 0..=100_u16 {
-            let byte = factor_byte(f.at(split(f32::from(d))));
+            let byte = factor_byte(f.at(Binary::new(f32::from(d))));
             assert!(byte <= last);
             last = byte;
         }

@@ -2,18 +2,20 @@
 //!
 //! [`triangles`], [`assemble`] and [`project`] convert the vertices of a draw to clipped triangles in window
 //! coordinates, once, when the plan is made. [`setup`] splits the floats of a triangle; everything after it is integer
-//! arithmetic. [`interpolate`] defines weights, texel coordinates and fog factors, [`mod@depth`] defines depths, and
-//! [`attribute`] defines values that are interpolated as numbers.
+//! arithmetic. [`weights`] defines the weights of the vertices and the numbers that are interpolated by them,
+//! [`interpolate`] the colours and texel coordinates, [`fog`] the fog, and [`mod@depth`] the depths.
 
 pub mod assemble;
-pub mod attribute;
+pub mod binary;
 pub mod depth;
 pub mod fog;
 pub mod ideal;
 pub mod interpolate;
 pub mod project;
+pub(crate) mod report;
 pub mod setup;
 pub mod triangles;
+pub mod weights;
 
 /// RAS-0: limit of snapped window coordinates, which stay below it in magnitude: 4096 pixels in units of 1/16 pixel.
 pub(crate) const GUARD: i64 = 1 << 16;

@@ -1,12 +1,11 @@
-//! Triangle set-up: RAS-1 to RAS-3, and the perspective weights of INT-1.
+//! Triangle set-up: RAS-1 to RAS-3, and the ratios of w of WGT-1.
 
 use super::GUARD;
-use crate::number::convert::{align, scaled, snap, split, w_16_bits};
-use crate::state::{PlaneLoss, Profile};
+use super::binary::Binary;
+use super::weights::ratios;
+use crate::number::convert::{snap, w_16_bits};
+use crate::state::Profile;
 use std::ops::{Add, Mul, Shr, Sub};
-
-/// Bits of the perspective weights. Their sum of products with the edge functions then stays below 2^62.
-pub(crate) const PERSPECTIVE_BITS: i32 = 28;
 
 /// A triangle that is set up for drawing.
 ///
@@ -22,9 +21,8 @@ pub struct Triangle {
     pub(crate) c: [i64; 3],
     /// Whether a sample exactly on edge k belongs to the triangle: left edges and horizontal top edges (RAS-3).
     pub(crate) owns: [bool; 3],
-    /// P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
-    /// Without perspective all are 2^27.
-    pub(crate) p: [i64; 3],
+    /// WGT-1: r_k, w_1 over w_k, in perspective with w that differ.
+    pub(crate) ratios: Option<[Binary; 3]>,
     /// Twice the area in 1/256 square pixel, positive, below 2^34.
     pub(crate) doubled_area: i64,
     /// Half-open range of the rows that can be covered.
@@ -33,18 +31,9 @@ pub struct Triangle {
     pub(crate) columns: (i64, i64),
     /// Whether it turns counter-clockwise as seen on the screen.
     pub(crate) counter_clockwise: bool,
-    /// INT-3's exception: whether the reciprocal of the weights' sum is exact, so that no tie is lowered.
-    pub(crate) exact_reciprocal: bool,
-    /// INT-4t's policy: whether coordinates on planes lose the finite amount.
-    finite_loss: bool,
 }
 
 impl Triangle {
-    /// Returns P_k: the product of the other two w in block floating point, the largest in [2^27, 2^28), each at least 1.
-    pub fn p(&self) -> [i64; 3] {
-        self.p
-    }
-
     /// Returns twice the area in 1/256 square pixel, positive, below 2^34.
     pub fn doubled_area(&self) -> i64 {
         self.doubled_area
@@ -86,20 +75,8 @@ impl Triangle {
     #[inline(always)]
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
         let taken = significant(w, profile);
-        self.p = if perspective { perspective_weights(taken) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
-        self.exact_reciprocal = (self.doubled_area.count_ones() == 1) & is_flat(w, perspective, profile);
-    }
-
-    /// INT-4t: sets what coordinates on planes lose.
-    #[inline(always)]
-    pub fn lose(&mut self, loss: PlaneLoss) {
-        self.finite_loss = loss == PlaneLoss::Finite;
-    }
-
-    /// INT-4t: returns whether coordinates on planes may lose a finite amount.
-    #[inline(always)]
-    pub(crate) fn loses_on_planes(&self) -> bool {
-        self.finite_loss && !self.exact_reciprocal
+        let flat = is_flat(w, perspective, profile);
+        self.ratios = (!flat).then(|| ratios(taken.map(Binary::new)));
     }
 
     /// Returns the three edge functions at the centre of pixel (i, j).
@@ -130,42 +107,6 @@ impl Triangle {
             }
         }
         (low, high.max(low))
-    }
-
-    /// Returns G_k of a coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel
-    /// (INT-4).
-    #[inline(always)]
-    pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
-        let mut g = [0; 3];
-        for k in 0..3 {
-            let (m, e) = split(s[k]);
-            g[k] = scaled(m * self.p[k], i64::from(size), e + 8);
-        }
-        g
-    }
-
-    /// Returns G_k of a factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5n).
-    pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
-        std::array::from_fn(|k| {
-            let (m, e) = split(f[k]);
-            scaled(m, self.p[k], e + 12)
-        })
-    }
-
-    /// Returns the linear functions of three coordinates of which only ratios are used: nine numbers P_k x_k with one common exponent and 28 bits.
-    /// They are truncated toward zero, so that opposite directions stay opposite (TEX-15).
-    #[inline(always)]
-    pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let mut magnitudes = [(0, 0); 9];
-        for (n, magnitude) in magnitudes.iter_mut().enumerate() {
-            let (m, e) = split(x[n / 3][n % 3]);
-            *magnitude = (m.abs() * self.p[n % 3], e);
-        }
-        let (mut g, _) = align(magnitudes, PERSPECTIVE_BITS);
-        for (n, g) in g.iter_mut().enumerate() {
-            *g = if x[n / 3][n % 3] < 0.0 { -*g } else { *g };
-        }
-        [[g[0], g[1], g[2]], [g[3], g[4], g[5]], [g[6], g[7], g[8]]]
     }
 }
 
@@ -208,7 +149,7 @@ impl<T: Whole> EdgeFunctions<T> {
     }
 }
 
-/// Returns whether a triangle has a single w, so that all P_k are equal.
+/// Returns whether a triangle has a single w, so that it needs no ratios.
 #[inline(always)]
 pub(crate) fn is_flat(w: [f32; 3], perspective: bool, profile: Profile) -> bool {
     let w = significant(w, profile);
@@ -235,14 +176,6 @@ pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
 pub(crate) fn centres<T: Whole>(n: [T; 3]) -> (T, T) {
     let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
     ((low + T::from(7)) >> 4, ((high - T::from(8)) >> 4) + T::from(1))
-}
-
-/// Returns P_k: the exact products of the other two w, floored to one common exponent, each at least 1.
-#[inline(always)]
-fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
-    let ((m0, e0), (m1, e1), (m2, e2)) = (split(w[0]), split(w[1]), split(w[2]));
-    let ([p0, p1, p2], _) = align([(m1 * m2, e1 + e2), (m2 * m0, e2 + e0), (m0 * m1, e0 + e1)], PERSPECTIVE_BITS);
-    [p0.max(1), p1.max(1), p2.max(1)]
 }
 
 #[cfg(test)]
@@ -294,20 +227,5 @@ mod tests {
         // Right, then down, which is clockwise on a screen whose y points down.
         assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
         assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
-    }
-
-    #[test]
-    fn opposite_directions_are_opposite() {
-        let t = Triangle::new([[0.0, 0.0, 0.0, 1.3], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 2.1]], true, Profile::Nv2a);
-        let x = [[0.1_f32, -0.003, 7.7], [-1.9, 0.0, 0.37], [1.0, 1.7, -0.3]];
-        let (there, back) = (t.expect("area").direction(x), t.expect("area").direction(x.map(|row| row.map(|c| -c))));
-        assert_eq!(there, back.map(|row| row.map(|g| -g)));
-    }
-
-    #[test]
-    fn equal_w_keeps_weights_equal() {
-        let t = Triangle::new([[0.0, 0.0, 0.0, 3.7], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 3.7]], true, Profile::Nv2a);
-        let p = t.expect("area").p;
-        assert!(p[0] == p[1] && p[1] == p[2]);
     }
 }

@@ -67,18 +67,6 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// Returns the values at the indices of triangles: for each corner those of all triangles.
-    #[inline(always)]
-    pub(super) fn gather<const N: usize>(&self, triangles: &[[u32; 3]; N]) -> [[T; N]; 3] {
-        let mut all = [[self.at(0); N]; 3];
-        if let Column::Each(values) = self {
-            for (n, [a, b, c]) in triangles.iter().enumerate() {
-                (all[0][n], all[1][n], all[2][n]) = (values[*a as usize], values[*b as usize], values[*c as usize]);
-            }
-        }
-        all
-    }
-
     /// Appends values to a column of `count` elements, and reserves room for `capacity` elements if it allocates.
     pub(super) fn extend(&mut self, count: usize, capacity: usize, values: impl Iterator<Item = T> + Clone) {
         if let (0, Some(first)) = (count, values.clone().next()) {

@@ -25,7 +25,7 @@ pub use combiner::{
 pub use named::Named;
 pub use policy::{
     DependentScale, DotRounding, ExpandCentre, HalfBiasConstant, LerpRounding, MuxNegative, OutputRounding, POLICIES,
-    PlaneLoss, Policies, Policy, PolicyError, RegisterFloor, SumRounding,
+    Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
     ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology,
@@ -112,7 +112,7 @@ pub struct Draw {
     pub shade_model: ShadeModel,
     /// Which vertex gives the colour of a flat triangle (RAS-5).
     pub provoking_vertex: ProvokingVertex,
-    /// Whether weights are perspective-corrected (INT-1); otherwise they are linear on the screen.
+    /// Whether weights are perspective-corrected (WGT-1); otherwise they are linear on the screen.
     pub perspective: bool,
     /// Which faces are culled.
     pub cull: Cull,

@@ -12,15 +12,6 @@ named! {
     }
 }
 named! {
-    /// INT-4t: what a texture coordinate that is neither divided by q nor moved loses because weights fall short.
-    pub enum PlaneLoss {
-        /// The limit of a small loss: an exact quotient is one step less.
-        Limit,
-        /// The loss itself, as divided and moved coordinates lose it.
-        Finite,
-    }
-}
-named! {
     /// TSH-6: how a byte becomes a coordinate of a dependent read.
     pub enum DependentScale {
         /// v / 255.
@@ -129,8 +120,6 @@ macro_rules! policies {
 policies! {
     register_floor: RegisterFloor = Full, "NUM-3", "lowest value of a register",
         [("256", "saturates at -256"), ("255", "saturates at -255")];
-    plane_loss: PlaneLoss = Limit, "INT-4t", "loss of a texture coordinate without q",
-        [("limit", "an exact quotient is one step less"), ("finite", "2^-24 S, as with q")];
     dependent_scale: DependentScale = Over255, "TSH-6", "what makes a byte a coordinate of a dependent read",
         [("255", "v / 255: 255 is 1.0"), ("256", "v / 256: 255 is the last of 256 texels")];
     expand_centre: ExpandCentre = Centred, "CMB-3", "centre of the expand mappings",

@@ -131,33 +131,6 @@ impl Vertices {
         TriangleVertices { vertices: self, indices }
     }
 
-    /// Returns a component (s, t, r or q) of a coordinate set at the vertices of triangles, which must exist: for each corner those of all triangles.
-    #[inline(always)]
-    pub(crate) fn gather<const N: usize>(
-        &self,
-        set: usize,
-        component: usize,
-        triangles: &[[u32; 3]; N],
-    ) -> [[f32; N]; 3] {
-        self.coordinates[self.representative[set]][component].gather(triangles)
-    }
-
-    /// Returns a component of the positions (x, y, z or w) at the vertices of triangles, which must exist, like [`gather`](Self::gather).
-    #[inline(always)]
-    pub(crate) fn gather_positions<const N: usize>(
-        &self,
-        component: usize,
-        triangles: &[[u32; 3]; N],
-    ) -> [[f32; N]; 3] {
-        self.position[component].gather(triangles)
-    }
-
-    /// Returns the fog of the vertices of triangles, which must exist, like [`gather`](Self::gather).
-    #[inline(always)]
-    pub(crate) fn gather_fog<const N: usize>(&self, triangles: &[[u32; 3]; N]) -> [[f32; N]; 3] {
-        self.fog.gather(triangles)
-    }
-
     /// Calls `change` with the index and the contents of each vertex, and stores the changed vertices.
     pub fn update(&mut self, mut change: impl FnMut(usize, &mut Vertex)) {
         let changed = self.iter().enumerate().map(|(index, mut vertex)| {

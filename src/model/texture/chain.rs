@@ -1,6 +1,6 @@
 //! TSH-1 to TSH-10: runs the stages of a texture shader in order, for one pixel.
 
-use super::coordinates::{Coordinates, Interpolated, quad_samples, real_coordinate};
+use super::coordinates::{Coordinates, Interpolated, quad_pixels, quad_samples, real_coordinate};
 use super::dependent::{Dependent, Moved, QuadTargets, Target};
 use super::filter::nearest;
 use super::planned::{Image, PlannedUnit};
@@ -8,6 +8,7 @@ use super::real::{self, RealColor, RealTarget};
 use super::stage::{Color, Dot, PlannedShader, ShaderSetup, StageSetup};
 use super::{dot, shader, shader_report as report, unit};
 use crate::number::{Lane, convert};
+use crate::raster::fog::factor;
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, TriangleVertices};
@@ -125,6 +126,11 @@ impl<L: Lane> Chain<'_, L> {
         self.vertices.coordinates(self.shader.stages[index].state.coordinate_set)
     }
 
+    /// Returns a component of the vertices' coordinate set of a stage.
+    fn component(&self, index: usize, n: usize) -> [f32; 3] {
+        self.set(index).map(|vertex| vertex[n])
+    }
+
     /// Returns the ideal's weights of the vertices.
     fn weights(&self, at: &Sample<'_>) -> [f64; 3] {
         at.ideal.unwrap_or_else(|| ideal::barycentrics(at.triangle, at.e, self.vertices.position(3), self.perspective))
@@ -152,31 +158,30 @@ impl<L: Lane> Chain<'_, L> {
 
     /// TSH-9: returns the coordinates, limited, as a colour.
     fn pass_through<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
-        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return black() };
+        let StageSetup::Numbers(numbers) = &self.setup.0[index] else { return black() };
         let live = self.shader.stages[index].live;
         let real = if Self::wants_real::<O>() { self.real_coordinates(index, at.sample) } else { [0.0; 4] };
         std::array::from_fn(|n| {
             if live >> n & 1 == 0 {
                 return L::ZERO;
             }
-            let v = at.sample.attribute(&attributes[n]).floor_times(4096).clamp(0, 4096);
+            let v = factor(at.sample.value(&numbers[n]));
             let value = L::value(i32::from(convert::factor_byte(v)), || real::pass_through(real[n]));
             let value = observer.observe(Rule::Tsh9, value);
             if O::ON {
-                report::pass_through(index, n, &attributes[n], at.sample, v, value, observer);
+                report::pass_through(index, n, (self.component(index, n), at.sample), v, value, observer);
             }
             value
         })
     }
 
-    /// TSH-10: returns whether a coordinate has the sign that is dropped. The test is exact, because neither rounding
-    /// nor a tie changes a sign.
+    /// TSH-10: returns whether a coordinate has the sign that is dropped.
     fn drops<O: Observer>(&self, index: usize, not_negative: [bool; 4], at: At<'_>, observer: &mut O) -> bool {
-        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return false };
+        let StageSetup::Numbers(numbers) = &self.setup.0[index] else { return false };
         let fixed: [bool; 4] = std::array::from_fn(|n| {
-            let negative = at.sample.attribute(&attributes[n]).floor_times(1) < 0;
+            let negative = at.sample.value(&numbers[n]).mantissa < 0;
             if O::ON {
-                report::sign(index, n, &attributes[n], at.sample, not_negative[n], negative, observer);
+                report::sign(index, n, (self.component(index, n), at.sample), (not_negative[n], negative), observer);
             }
             negative != not_negative[n]
         });
@@ -216,10 +221,10 @@ impl<L: Lane> Chain<'_, L> {
         if let Some(dot) = state.dots[index] {
             return dot;
         }
-        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return Dot::default() };
+        let StageSetup::Numbers(numbers) = &self.setup.0[index] else { return Dot::default() };
         let ShaderStage { previous, mapping, .. } = self.shader.stages[index].state;
         let color = self.color::<O>(previous, state);
-        let coordinates = [0, 1, 2].map(|n| at.sample.attribute(&attributes[n]).rounded_f32());
+        let coordinates = [0, 1, 2].map(|n| at.sample.value(&numbers[n]).nearest_f32());
         let vector = dot::remap(mapping, color.bytes);
         let products = dot::products(coordinates, vector);
         observer.count(Work::Dots, dot::DOT_OPERATIONS);
@@ -229,7 +234,8 @@ impl<L: Lane> Chain<'_, L> {
             let real = color.real.remap(mapping);
             dot.real = dot::dot([s, t, r], real);
             if O::ON {
-                let parts = report::DotParts { mapping, attributes, coordinates, vector, products, dot };
+                let values = [0, 1, 2].map(|n| self.component(index, n));
+                let parts = report::DotParts { mapping, values, coordinates, vector, products, dot };
                 report::dot(index, &color, &parts, ([s, t, r], real), at.sample, observer);
             }
         }
@@ -290,14 +296,14 @@ impl<L: Lane> Chain<'_, L> {
                     report::previous(index, &color, red, observer);
                 }
                 let blue_green = [color.bytes[2], color.bytes[1]];
-                let StageSetup::Places(Coordinates::Plane(planes)) = &self.setup.0[index] else {
+                let StageSetup::Places(Coordinates::Plane(st)) = &self.setup.0[index] else {
                     return (Target::Bytes([0; 2], self.scale), RealTarget::Coordinates([0.0; 2]));
                 };
                 let own = real(&|| {
                     let [s, t, ..] = self.real_coordinates(index, at.sample);
                     RealTarget::moved([s, t], real::offset(matrix, &color.real))
                 });
-                (Target::Moved(Moved { planes, at: *at.sample, matrix, blue_green }), own)
+                (Target::Moved(Moved { st, at: at.sample, vertices: self.vertices, matrix, blue_green }), own)
             }
             // DotProductCube and DotReflectDiffuse.
             _ => {
@@ -314,13 +320,13 @@ impl<L: Lane> Chain<'_, L> {
         }
         let mut real = [0.0; 3];
         let fixed = std::array::from_fn(|n| {
-            let StageSetup::Numbers(attributes) = &self.setup.0[n + 1] else { return 0.0 };
-            let q = at.attribute(&attributes[3]).rounded_f32();
+            let StageSetup::Numbers(numbers) = &self.setup.0[n + 1] else { return 0.0 };
+            let q = at.value(&numbers[3]).nearest_f32();
             if Self::wants_real::<O>() {
                 real[n] = self.real_coordinates(n + 1, at)[3];
             }
             if O::ON {
-                report::rounded(n + 1, 3, &attributes[3], at, q, real[n], observer);
+                report::rounded(n + 1, 3, (self.component(n + 1, 3), at), q, real[n], observer);
             }
             q
         });
@@ -346,7 +352,7 @@ impl<L: Lane> Chain<'_, L> {
                 let uv = [0, 1].map(|n| unit::floored(real_coordinate(real.st[n], sides[n])));
                 texel(real.face as i64, uv)
             };
-            let fixed = texel(target.face() as i64, target.on(unit, &unit.levels[0]).map(|c| c.value));
+            let fixed = texel(target.face() as i64, target.on(unit, &unit.levels[0]));
             observer.decided(Decision::Dependent, if L::DECIDES { on(real) } else { fixed }, || on(own));
         }
         let quad = if unit.needs_lod() { self.quad(index, unit, at) } else { None };
@@ -377,14 +383,13 @@ impl<L: Lane> Chain<'_, L> {
     /// behind the viewer or the face.
     fn quad(&self, index: usize, unit: &PlannedUnit, at: At<'_>) -> Option<QuadTargets> {
         let samples = quad_samples(at.sample.triangle, at.pixel);
-        let (i, j) = (at.pixel.0 & !1, at.pixel.1 & !1);
-        if samples.iter().any(|sample| sample.d <= 0) {
+        if samples.iter().any(Sample::is_behind) {
             return None;
         }
         let mut fixed = [[0; 2]; 3];
         let mut real = [[0.0; 2]; 3];
         let (mut face, mut real_face) = (None, None);
-        for (n, (sample, pixel)) in samples.iter().zip([(i, j), (i + 1, j), (i, j + 1)]).enumerate() {
+        for (n, (sample, pixel)) in samples.iter().zip(quad_pixels(at.pixel)).enumerate() {
             let at = At { sample, pixel };
             let mut state = self.before(index, at);
             let (target, own) = self.target(index, at, &mut state, &mut Silent);

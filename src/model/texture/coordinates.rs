@@ -3,39 +3,37 @@
 use super::cube::{Face, Signed};
 use super::lod::Quad;
 use super::planned::PlannedUnit;
-use super::report::{Report, linear, shortfall};
-use crate::raster::attribute::Attribute;
-use crate::raster::depth::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, Floored, Sample};
+use super::report::Report;
+use crate::raster::binary::Binary;
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, face_coordinate, ratio};
+use crate::raster::weights::Linear;
 use crate::raster::{ideal, setup::Triangle};
 use crate::state::{AddressMode, DepthFormat, Level, Named, TextureKind, TriangleVertices};
 use crate::trace::{Observer, Operand, Rule, Step, plain};
 
-/// The coordinates of a unit, set up for one triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The coordinates of a unit, set up for one triangle: the components that they are computed from.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coordinates {
-    /// q is 1 at all three vertices, so that u and v of level 0 are linear functions over D (INT-4).
-    Plane([[i64; 3]; 2]),
-    /// Linear functions of s, t and q, for the ratios s/q and t/q (TEX-15).
-    Ratio([[i64; 3]; 3]),
-    /// Linear functions of the direction s, t, r into a cube map (TEX-12). q is ignored.
-    Direction([[i64; 3]; 3]),
+    /// s and t, where q is 1 at all three vertices (INT-4).
+    Plane([Linear<Binary>; 2]),
+    /// s, t and q, for the ratios s/q and t/q (TEX-15).
+    Ratio([Linear<Binary>; 3]),
+    /// The direction s, t, r into a cube map (TEX-12). q is ignored.
+    Direction([Linear<Binary>; 3]),
 }
 
 impl Coordinates {
     /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its vertices.
-    #[inline(always)]
-    pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
-        let [a, b, c] = wrapped(unit, vertices);
-        let component = |n: usize| [a[n], b[n], c[n]];
+    #[inline]
+    pub fn new(vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
+        let set = wrapped(unit, vertices);
+        let component = |n: usize| Linear::new(set.map(|vertex| vertex[n]));
         if unit.kind == TextureKind::Cube {
-            return Coordinates::Direction(triangle.direction([component(0), component(1), component(2)]));
-        }
-        if component(3) == [1.0; 3] {
-            let [width, height] = unit.scale(&unit.levels[0]);
-            Coordinates::Plane([triangle.coordinate(component(0), width), triangle.coordinate(component(1), height)])
+            Coordinates::Direction([component(0), component(1), component(2)])
+        } else if set.map(|vertex| vertex[3]) == [1.0; 3] {
+            Coordinates::Plane([component(0), component(1)])
         } else {
-            Coordinates::Ratio(triangle.direction([component(0), component(1), component(3)]))
+            Coordinates::Ratio([component(0), component(1), component(3)])
         }
     }
 }
@@ -66,29 +64,19 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
     vertices
 }
 
-/// VOL-1: returns r of the vertices as a linear function over D, or r and q if the coordinates are ratios.
-pub(crate) fn layer_planes(
-    triangle: &Triangle,
-    coordinates: &Coordinates,
-    [r, q]: [[f32; 3]; 2],
-    layers: u32,
-) -> ([i64; 3], Option<[i64; 3]>) {
-    match coordinates {
-        Coordinates::Ratio(_) => {
-            let [r, q, _] = triangle.direction([r, q, q]);
-            (r, Some(q))
-        }
-        Coordinates::Plane(_) | Coordinates::Direction(_) => (triangle.coordinate(r, layers), None),
-    }
+/// Returns the face that a direction meets.
+pub(crate) fn face_of([x, y, z]: [Binary; 3]) -> Face {
+    let not_below = |a: Binary, b: Binary| a.compare_magnitude(b).is_ge();
+    let (x_first, y_first) = (not_below(x, y) && not_below(x, z), not_below(y, z));
+    // As `Face::from_direction` orders magnitudes.
+    let magnitudes = [if x_first { 2 } else { 0 }, i64::from(y_first), i64::from(!y_first)];
+    Face::from_direction([x, y, z].map(|n| n.mantissa), magnitudes, 0)
 }
 
-/// Returns the linear functions of sc, tc and |ma| of a direction on a face.
-pub(crate) fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
-    face.components().map(
-        |Signed { axis, negative }| {
-            if negative { direction[axis].map(|g| -g) } else { direction[axis] }
-        },
-    )
+/// Returns sc, tc and |ma| of a direction on a face.
+pub(crate) fn on_face(direction: [Binary; 3], face: Face) -> [Binary; 3] {
+    let signed = |Signed { axis, negative }| if negative { direction[axis].negated() } else { direction[axis] };
+    face.components().map(signed)
 }
 
 /// Coordinates of the ideal.
@@ -100,21 +88,12 @@ pub struct Real {
     pub st: [f64; 2],
 }
 
-/// INT-4, INT-4t: returns the operation that yields a coordinate on a plane, and its operands after the edge functions.
-fn on_plane(at: &Sample<'_>) -> (&'static str, Vec<Operand>) {
-    let denominator = plain("D", at.d);
-    if at.triangle.loses_on_planes() {
-        return ("floor_plane_short", [vec![denominator], shortfall(at)].concat());
-    }
-    ("floor_plane", vec![denominator])
-}
-
 /// The coordinates at which a unit samples. Implementations differ in where the coordinates come from.
 pub trait SampleCoordinates {
     /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
     fn face(&self) -> Face;
     /// Returns u and v on a level, in 1/256 texel.
-    fn on(&self, level: &Level) -> [Floored; 2];
+    fn on(&self, level: &Level) -> [i64; 2];
     /// TEX-11: returns u and v at the quad, on the face of its top-left pixel. Returns `None` if part of the quad lies
     /// behind the viewer.
     fn quad(&self) -> Option<Quad>;
@@ -129,7 +108,7 @@ pub trait SampleCoordinates {
         &self,
         report: &Report<'_>,
         level: &Level,
-        floored: [Floored; 2],
+        floored: [i64; 2],
         ideal: [f64; 2],
         observer: &mut O,
     );
@@ -138,15 +117,15 @@ pub trait SampleCoordinates {
 
     /// VOL-1: returns the coordinate among `layers` layers, in 1/256 layer. Only interpolated coordinates have one; for
     /// others it is 0.
-    fn layer(&self, _layers: u32) -> Floored {
-        Floored { value: 0, lowered: 0 }
+    fn layer(&self, _layers: u32) -> i64 {
+        0
     }
     /// Returns the ideal's r/q, or 0 if the coordinates are not interpolated.
     fn real_r(&self) -> f64 {
         0.0
     }
     /// Reports how the layer coordinate is computed.
-    fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: Floored, _observer: &mut O) {}
+    fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: i64, _observer: &mut O) {}
     /// SHD-1: returns r/q in steps of a depth buffer, or 0 if the coordinates are not interpolated.
     fn reference(&self) -> Binary {
         Binary::default()
@@ -180,40 +159,41 @@ pub struct Interpolated<'a> {
 }
 
 /// Returns samples at the top-left pixel of a pixel's quad and at its right and lower neighbours.
-pub(crate) fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] {
+pub(crate) fn quad_samples(triangle: &Triangle, pixel: (i64, i64)) -> [Sample<'_>; 3] {
+    quad_pixels(pixel).map(|(i, j)| Sample::new(triangle, triangle.edges(i, j)))
+}
+
+/// Returns the pixels of a pixel's quad that determine the level of detail: the top-left one and its right and lower neighbours.
+pub(crate) fn quad_pixels((i, j): (i64, i64)) -> [(i64, i64); 3] {
     let (i, j) = (i & !1, j & !1);
-    [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| Sample::new(triangle, triangle.edges(i, j)))
+    [(i, j), (i + 1, j), (i, j + 1)]
 }
 
 impl Interpolated<'_> {
-    fn face_at(direction: &[[i64; 3]; 3], at: &Sample<'_>) -> Face {
-        let sums = direction.map(|g| at.sum(&g));
-        Face::from_direction(sums, sums.map(i128::abs), 0)
+    fn face_at(direction: &[Linear<Binary>; 3], at: &Sample<'_>) -> Face {
+        face_of([at.value(&direction[0]), at.value(&direction[1]), at.value(&direction[2])])
     }
 
     /// Returns the coordinates of one pixel of the quad on a face, in 1/65536 texel of level 0, or `None` if it lies
     /// behind the viewer.
     fn at_quad(&self, at: &Sample<'_>, face: Face) -> Option<[i64; 2]> {
-        let [width, height] = self.unit.scale(&self.unit.levels[0]).map(i128::from);
-        let floor = |numerator: i128, denominator: i128| {
-            let limit = 1 << 62;
-            (denominator > 0).then(|| numerator.div_euclid(denominator).clamp(-limit, limit) as i64)
-        };
-        if at.d <= 0 {
+        let [width, height] = self.unit.scale(&self.unit.levels[0]);
+        if at.is_behind() {
             return None;
         }
         match self.coordinates {
-            Coordinates::Plane(g) => {
-                let along = |n: usize| floor(at.sum(&g[n]) << 8, i128::from(at.d));
-                Some([along(0)?, along(1)?])
+            Coordinates::Plane([s, t]) => {
+                Some([quad_coordinate(at.value(s), width), quad_coordinate(at.value(t), height)])
             }
-            Coordinates::Ratio([s, t, q]) => {
-                let q = at.sum(q);
-                Some([floor((at.sum(s) * width) << 16, q)?, floor((at.sum(t) * height) << 16, q)?])
+            Coordinates::Ratio(of) => {
+                let [s, t, q] = of.map(|f| at.value(&f));
+                let along = |s: Binary, size: u32| s.floored_ratio(q, size, 16, FARTHEST);
+                (q.mantissa > 0).then(|| [along(s, width), along(t, height)])
             }
             Coordinates::Direction(direction) => {
-                let [s, t, m] = on_face(direction, face).map(|g| at.sum(&g));
-                Some([floor(((s + m) * width) << 15, m)?, floor(((t + m) * height) << 15, m)?])
+                let [s, t, m] = on_face(direction.map(|f| at.value(&f)), face);
+                let along = |s: Binary, size: u32| face_coordinate(s, m, size, 16);
+                (m.mantissa > 0).then(|| [along(s, width), along(t, height)])
             }
         }
     }
@@ -223,16 +203,10 @@ impl Interpolated<'_> {
         self.vertices.coordinates(self.unit.stage.coordinate_set).map(|vertex| vertex[n])
     }
 
-    /// Returns the [`layer_planes`] of these coordinates.
-    fn layer_planes(&self, layers: u32) -> ([i64; 3], Option<[i64; 3]>) {
-        layer_planes(self.at.triangle, self.coordinates, [self.component(2), self.component(3)], layers)
-    }
-
-    /// Returns r, and q if it is not 1 at all three vertices.
-    fn reference_parts(&self) -> (Attribute, Option<Attribute>) {
-        let q = self.component(3);
-        let r = self.at.triangle.attribute(self.component(2));
-        (r, (q != [1.0; 3]).then(|| self.at.triangle.attribute(q)))
+    /// Returns r, and q if the coordinates are ratios.
+    fn third(&self) -> (Binary, Option<Binary>) {
+        let of = |n: usize| self.at.value(&Linear::new(self.component(n)));
+        (of(2), (self.component(3) != [1.0; 3]).then(|| of(3)))
     }
 
     /// Returns the ideal's weights of the vertices, for edge functions that need not be covered.
@@ -273,17 +247,18 @@ impl SampleCoordinates for Interpolated<'_> {
         }
     }
 
-    fn on(&self, level: &Level) -> [Floored; 2] {
+    fn on(&self, level: &Level) -> [i64; 2] {
         let [width, height] = self.unit.scale(level);
         match self.coordinates {
-            Coordinates::Plane(g) => {
-                let [s, t] = self.unit.plane_shifts(level);
-                [self.at.coordinate(&g[0].map(|g| g >> s)), self.at.coordinate(&g[1].map(|g| g >> t))]
+            Coordinates::Plane([s, t]) => [coordinate(self.at.value(s), width), coordinate(self.at.value(t), height)],
+            Coordinates::Ratio(of) => {
+                let [s, t, q] = of.map(|f| self.at.value(&f));
+                [ratio(s, q, width), ratio(t, q, height)]
             }
-            Coordinates::Ratio([s, t, q]) => [self.at.ratio(s, q, width), self.at.ratio(t, q, height)],
-            Coordinates::Direction(direction) => {
-                let [s, t, m] = on_face(direction, Self::face_at(direction, self.at));
-                [self.at.face_coordinate(&s, &m, width), self.at.face_coordinate(&t, &m, height)]
+            Coordinates::Direction(of) => {
+                let direction = of.map(|f| self.at.value(&f));
+                let [s, t, m] = on_face(direction, face_of(direction));
+                [face_coordinate(s, m, width, 8), face_coordinate(t, m, height, 8)]
             }
         }
     }
@@ -304,7 +279,7 @@ impl SampleCoordinates for Interpolated<'_> {
 
     fn real_quad(&self) -> Option<[[f64; 2]; 3]> {
         let samples = quad_samples(self.at.triangle, self.pixel);
-        if samples.iter().any(|at| at.d <= 0) {
+        if samples.iter().any(Sample::is_behind) {
             return None;
         }
         let [origin, right, lower] = samples.map(|at| self.weights(at.e));
@@ -324,50 +299,33 @@ impl SampleCoordinates for Interpolated<'_> {
         &self,
         report: &Report<'_>,
         level: &Level,
-        floored: [Floored; 2],
+        floored: [i64; 2],
         ideal: [f64; 2],
         observer: &mut O,
     ) {
-        let edges = (0..3).map(|k| plain(format!("E{k}"), self.at.e[k]));
         let sides = self.unit.scale(level);
-        let shifts = self.unit.plane_shifts(level);
-        let direction = self.tell_direction(report, observer);
+        let numbers = self.tell_numbers(report, "", self.at, observer);
+        let face = self.tell_face(report, "face", (self.at, &numbers), observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
-            let lowered = plain("lowered", floored[axis].lowered);
             let size = plain("size", sides[axis]);
-            let (rule, operation, mut inputs) = match self.coordinates {
-                Coordinates::Plane(g) => {
-                    let g = g[axis].map(|g| g >> shifts[axis]);
-                    ("INT-4", on_plane(self.at).0, report.planes("INT-4", &format!("G_{letter}"), &g, observer))
-                }
-                Coordinates::Ratio(planes) => {
-                    let mut inputs = report.planes("INT-4", &format!("N_{letter}"), &planes[axis], observer);
-                    inputs.extend(report.planes("INT-4", "N_q", &planes[2], observer));
-                    ("TEX-15", "floor_ratio", inputs)
-                }
-                Coordinates::Direction(_) => ("TEX-12", ["floor_face_u", "floor_face_v"][axis], direction.clone()),
-            };
-            inputs.extend(edges.clone());
-            match self.coordinates {
-                Coordinates::Plane(_) => inputs.extend(on_plane(self.at).1),
+            let (rule, operation, inputs) = match self.coordinates {
+                Coordinates::Plane(_) => ("INT-4", "floor_coordinate", vec![numbers[axis].clone(), size]),
                 Coordinates::Ratio(_) => {
-                    inputs.push(size);
-                    inputs.extend(shortfall(self.at));
+                    ("TEX-15", "floor_ratio", vec![numbers[axis].clone(), numbers[2].clone(), size])
                 }
                 Coordinates::Direction(_) => {
-                    inputs.push(plain(report.name("face"), self.face() as i64));
-                    inputs.push(size);
+                    let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
+                    ("TEX-12", ["floor_face_u", "floor_face_v"][axis], inputs)
                 }
-            }
-            inputs.push(lowered);
+            };
             report.coordinate(rule, letter, floored[axis], ideal[axis], (operation, inputs), observer);
         }
     }
 
-    fn layer(&self, layers: u32) -> Floored {
-        match self.layer_planes(layers) {
-            (r, Some(q)) => self.at.ratio(&r, &q, layers),
-            (r, None) => self.at.coordinate(&r),
+    fn layer(&self, layers: u32) -> i64 {
+        match self.third() {
+            (r, Some(q)) => ratio(r, q, layers),
+            (r, None) => coordinate(r, layers),
         }
     }
 
@@ -377,40 +335,23 @@ impl SampleCoordinates for Interpolated<'_> {
         ideal::quotient(component(2), component(3))
     }
 
-    fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, floored: Floored, observer: &mut O) {
-        let (r, q) = self.layer_planes(layers);
-        let (rule, operation, mut inputs) = match q {
-            None => ("INT-4", on_plane(self.at).0, report.planes("INT-4", "G_w", &r, observer)),
-            Some(q) => {
-                let mut inputs = report.planes("INT-4", "N_w", &r, observer);
-                inputs.extend(report.planes("INT-4", "N_wq", &q, observer));
-                ("TEX-15", "floor_ratio", inputs)
-            }
-        };
-        inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
-        if q.is_some() {
-            inputs.push(plain("size", layers));
-            inputs.extend(shortfall(self.at));
-        } else {
-            inputs.extend(on_plane(self.at).1);
-        }
-        inputs.push(plain("lowered", floored.lowered));
+    fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, floored: i64, observer: &mut O) {
+        let mut inputs = self.tell_third(report, observer);
+        let (rule, operation) =
+            if inputs.len() == 1 { ("INT-4", "floor_coordinate") } else { ("TEX-15", "floor_ratio") };
+        inputs.push(plain("size", layers));
         let ideal = real_coordinate(self.real_r(), layers);
         report.coordinate(rule, "w", floored, ideal, (operation, inputs), observer);
     }
 
     fn reference(&self) -> Binary {
-        let (r, q) = self.reference_parts();
-        let r = self.at.attribute(&r);
-        q.map_or_else(|| r.binary(), |q| r.binary_ratio(&self.at.attribute(&q)))
+        let (r, q) = self.third();
+        q.map_or(r, |q| r.positive_ratio(q))
     }
 
     fn describe_reference<O: Observer>(&self, report: &Report<'_>, format: DepthFormat, word: u32, observer: &mut O) {
-        let (r, q) = self.reference_parts();
-        let index = self.unit.index;
-        let mut inputs = linear(index, 2, &r, self.at, observer);
-        let operation = if q.is_some() { "depth_word_of_ratio" } else { "depth_word" };
-        inputs.extend(q.map(|q| linear(index, 3, &q, self.at, observer)).into_iter().flatten());
+        let mut inputs = self.tell_third(report, observer);
+        let operation = if inputs.len() == 1 { "depth_word" } else { "depth_word_of_ratio" };
         inputs.push(plain(format.name(), 0));
         let real = ideal::in_words(format, self.real_r());
         observer.step(
@@ -421,46 +362,23 @@ impl SampleCoordinates for Interpolated<'_> {
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O) {
         let Some(quad) = self.quad() else { return };
         let triangle = self.at.triangle;
-        let (i, j) = (self.pixel.0 & !1, self.pixel.1 & !1);
-        let direction = self.tell_direction(report, observer);
         let samples = quad_samples(triangle, self.pixel);
         let sides = self.unit.scale(&self.unit.levels[0]);
-        for (n, pixel) in [(i, j), (i + 1, j), (i, j + 1)].into_iter().enumerate() {
-            let edge = |k: usize| report.name(&format!("quad{n}.E{k}"));
-            for k in 0..3 {
-                let step = Step::given(&report.block(), "TEX-11", edge(k), samples[n].e[k]);
-                observer.step(step.by("edge_function", edge_function(triangle, k, pixel)));
-            }
-            if let Coordinates::Direction(_) = self.coordinates
-                && n == 0
-            {
-                let mut inputs = direction.clone();
-                inputs.extend((0..3).map(|k| plain(edge(k), samples[0].e[k])));
-                self.tell_face(report, "quad0.face", &samples[0], inputs, observer);
+        let mut face = None;
+        for (n, (pixel, at)) in quad_pixels(self.pixel).into_iter().zip(&samples).enumerate() {
+            let prefix = report.name(&format!("quad{n}."));
+            report.weights(&prefix, at, pixel, observer);
+            let numbers = self.tell_numbers(report, &prefix, at, observer);
+            if n == 0 {
+                face = self.tell_face(report, "quad0.face", (at, &numbers), observer);
             }
             for (axis, letter) in ["u", "v"].into_iter().enumerate() {
-                let edges = (0..3).map(|k| plain(edge(k), samples[n].e[k]));
                 let size = plain("size", sides[axis]);
                 let (operation, inputs) = match self.coordinates {
-                    Coordinates::Plane(g) => {
-                        let mut inputs = report.planes("INT-4", &format!("G_{letter}"), &g[axis], observer);
-                        inputs.extend(edges);
-                        inputs.extend((0..3).map(|k| plain(format!("P{k}"), triangle.p[k])));
-                        ("quad_plane", inputs)
-                    }
-                    Coordinates::Ratio(planes) => {
-                        let mut inputs = report.planes("INT-4", &format!("N_{letter}"), &planes[axis], observer);
-                        inputs.extend(report.planes("INT-4", "N_q", &planes[2], observer));
-                        inputs.extend(edges);
-                        inputs.push(size);
-                        ("quad_ratio", inputs)
-                    }
-                    Coordinates::Direction(planes) => {
-                        let mut inputs = direction.clone();
-                        inputs.extend(edges);
-                        let face = Self::face_at(planes, &samples[0]) as i64;
-                        inputs.push(plain(report.name("quad0.face"), face));
-                        inputs.push(size);
+                    Coordinates::Plane(_) => ("quad_coordinate", vec![numbers[axis].clone(), size]),
+                    Coordinates::Ratio(_) => ("quad_ratio", vec![numbers[axis].clone(), numbers[2].clone(), size]),
+                    Coordinates::Direction(_) => {
+                        let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
                         (["quad_face_u", "quad_face_v"][axis], inputs)
                     }
                 };
@@ -471,40 +389,52 @@ impl SampleCoordinates for Interpolated<'_> {
 }
 
 impl Interpolated<'_> {
-    /// Reports the direction at the vertices and the face of this pixel, and returns the direction as operands. Does
-    /// nothing for other coordinates.
-    fn tell_direction<O: Observer>(&self, report: &Report<'_>, observer: &mut O) -> Vec<Operand> {
-        let Coordinates::Direction(direction) = self.coordinates else { return Vec::new() };
-        let mut planes = Vec::new();
-        for (letter, g) in ["N_x", "N_y", "N_z"].into_iter().zip(direction) {
-            planes.extend(report.planes("TEX-12", letter, g, observer));
-        }
-        let mut inputs = planes.clone();
-        inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
-        self.tell_face(report, "face", self.at, inputs, observer);
-        planes
+    /// Reports the components that the coordinates are computed from, at a sample whose weights have names that begin with `prefix`, and returns
+    /// them as operands.
+    fn tell_numbers<O: Observer>(
+        &self,
+        report: &Report<'_>,
+        prefix: &str,
+        at: &Sample<'_>,
+        observer: &mut O,
+    ) -> Vec<Operand> {
+        let components: &[usize] = match self.coordinates {
+            Coordinates::Plane(_) => &[0, 1],
+            Coordinates::Ratio(_) => &[0, 1, 3],
+            Coordinates::Direction(_) => &[0, 1, 2],
+        };
+        let set = wrapped(self.unit, self.vertices.coordinates(self.unit.stage.coordinate_set));
+        let each = components.iter().map(|&n| {
+            let values = set.map(|vertex| vertex[n]);
+            report.component(n, prefix, values, at, observer)
+        });
+        each.collect()
     }
 
+    /// Reports r, and q if it is not 1 at all vertices, and returns them as operands.
+    fn tell_third<O: Observer>(&self, report: &Report<'_>, observer: &mut O) -> Vec<Operand> {
+        let components: &[usize] = if self.third().1.is_some() { &[2, 3] } else { &[2] };
+        components.iter().map(|&n| report.component(n, "", self.component(n), self.at, observer)).collect()
+    }
+
+    /// Reports the face that a direction meets, and returns it as an operand. Does nothing for other coordinates.
     fn tell_face<O: Observer>(
         &self,
         report: &Report<'_>,
         name: &str,
-        at: &Sample<'_>,
-        inputs: Vec<Operand>,
+        (at, numbers): (&Sample<'_>, &[Operand]),
         observer: &mut O,
-    ) {
-        let Coordinates::Direction(direction) = self.coordinates else { return };
+    ) -> Option<Operand> {
+        let Coordinates::Direction(direction) = self.coordinates else { return None };
         let face = Self::face_at(direction, at);
         let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
-        observer.step(step.by("cube_face", inputs).note(Named::name(face).to_string()));
+        Some(observer.tell(step.by("cube_face", numbers.to_vec()).note(Named::name(face).to_string())))
     }
 }
 
-/// Returns the operands of edge function `k` of a triangle at a pixel.
-pub(crate) fn edge_function(triangle: &Triangle, k: usize, (x, y): (i64, i64)) -> Vec<Operand> {
-    let slopes = [("a", triangle.a), ("b", triangle.b), ("c", triangle.c)];
-    let slopes = slopes.map(|(letter, of)| plain(format!("{letter}{k}"), of[k]));
-    slopes.into_iter().chain([plain("x", x), plain("y", y)]).collect()
+/// Returns a coordinate of an image of `size` texels in 1/65536 texel.
+pub(crate) fn quad_coordinate(value: Binary, size: u32) -> i64 {
+    value.floored(size, 16, FARTHEST)
 }
 
 /// Returns the ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.

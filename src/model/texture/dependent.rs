@@ -6,10 +6,12 @@ use super::lod::Quad;
 use super::planned::PlannedUnit;
 use super::real::RealTarget;
 use super::report::Report;
-use super::shader::{self, OFFSET_BITS};
+use super::shader;
 use super::shader_report;
-use crate::raster::interpolate::{Floored, SHORT_BITS, Sample};
-use crate::state::{DependentScale, Level};
+use crate::raster::binary::Binary;
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample};
+use crate::raster::weights::Linear;
+use crate::state::{DependentScale, Level, TriangleVertices};
 use crate::trace::{Observer, Rule};
 
 /// The coordinates of a dependent read.
@@ -25,16 +27,15 @@ pub enum Target<'a> {
     Vector([f32; 3]),
 }
 
-// Both count in units of 2^-24.
-const _: () = assert!(OFFSET_BITS == SHORT_BITS);
-
-/// TSH-7: linear functions of level 0 over D, and their displacement.
+/// TSH-7: s and t, and their displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved<'a> {
-    /// u and v at the vertices (INT-4), in 1/256 texel of level 0. q has no effect.
-    pub planes: &'a [[i64; 3]; 2],
+    /// s and t of the vertices. q has no effect.
+    pub st: &'a [Linear<Binary>; 2],
     /// The sample point of the pixel.
-    pub at: Sample<'a>,
+    pub at: &'a Sample<'a>,
+    /// The vertices of the triangle, for traces.
+    pub vertices: TriangleVertices<'a>,
     /// The matrix m0 to m3 in register order.
     pub matrix: [f32; 4],
     /// Blue and green bytes of the earlier unit.
@@ -48,22 +49,15 @@ impl Moved<'_> {
         [[m0, m3], [m1, m2]]
     }
 
-    /// Returns the linear functions of a level.
-    pub(crate) fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
-        let shifts = unit.plane_shifts(level);
-        std::array::from_fn(|n| self.planes[n].map(|g| g >> shifts[n]))
+    /// Returns the displacements along u and v, in 128ths of the image.
+    pub(crate) fn offsets(&self) -> [f32; 2] {
+        self.entries().map(|entries| shader::offset(entries, self.blue_green))
     }
 
-    /// Returns the displacement on a level, in 2^-24 of 1/256 texel.
-    pub(crate) fn offsets(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
-        let sides = unit.scale(level);
-        std::array::from_fn(|n| shader::offset(self.entries()[n], self.blue_green, sides[n]))
-    }
-
-    /// INT-4 of the displaced coordinate, with weights that fall short (INT-4t).
-    fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
-        let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
-        std::array::from_fn(|n| self.at.moved_coordinate(&planes[n], offsets[n]))
+    /// Returns the displaced coordinates in 2^-`power` texel of a level.
+    fn on(&self, unit: &PlannedUnit, level: &Level, power: i32, limit: i64) -> [i64; 2] {
+        let (sides, offsets) = (unit.scale(level), self.offsets());
+        std::array::from_fn(|n| shader::moved(self.at.value(&self.st[n]), offsets[n], sides[n], power, limit))
     }
 }
 
@@ -87,16 +81,16 @@ impl Target<'_> {
     }
 
     /// Returns u and v on a level, in 1/256 texel.
-    pub(crate) fn on(&self, unit: &PlannedUnit, level: &Level) -> [Floored; 2] {
+    pub(crate) fn on(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
         let sides = unit.scale(level);
-        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Floored { value: of(n), lowered: 0 });
+        let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];
         match self {
-            Target::Moved(moved) => moved.on(unit, level),
-            Target::Bytes(bytes, scale) => plain(&|n| shader::dependent(bytes[n], sides[n], *scale)),
-            Target::Floats(floats) => plain(&|n| shader::coordinate(floats[n], sides[n])),
+            Target::Moved(moved) => moved.on(unit, level, 8, COORDINATE_LIMIT),
+            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n], *scale)),
+            Target::Floats(floats) => each(&|n| shader::coordinate(floats[n], sides[n])),
             Target::Vector(vector) => {
                 let on_face = Self::on_face(*vector, self.face());
-                plain(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 8))
+                each(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 8))
             }
         }
     }
@@ -108,11 +102,7 @@ impl Target<'_> {
         let sides = unit.scale(level);
         let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];
         Some(match self {
-            Target::Moved(moved) => {
-                let offsets = moved.offsets(unit, level);
-                let limit = 1 << 62;
-                each(&|n| moved.at.moved_quotient(&moved.planes[n], offsets[n], 16).0.clamp(-limit, limit) as i64)
-            }
+            Target::Moved(moved) => moved.on(unit, level, 16, FARTHEST),
             Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n] << 8, *scale)),
             Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n], sides[n])),
             Target::Vector(vector) => {
@@ -177,7 +167,7 @@ impl SampleCoordinates for Dependent<'_> {
         self.target.face()
     }
 
-    fn on(&self, level: &Level) -> [Floored; 2] {
+    fn on(&self, level: &Level) -> [i64; 2] {
         self.target.on(self.unit, level)
     }
 
@@ -205,7 +195,7 @@ impl SampleCoordinates for Dependent<'_> {
         &self,
         report: &Report<'_>,
         level: &Level,
-        floored: [Floored; 2],
+        floored: [i64; 2],
         ideal: [f64; 2],
         observer: &mut O,
     ) {

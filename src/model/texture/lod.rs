@@ -138,11 +138,6 @@ impl Selection {
         (log2_ratio + self.bias).max(self.min_lod).min(self.max_lod)
     }
 
-    /// Returns the largest logarithm below which all are read alike: with the magnification filter, or by the least level of detail.
-    pub(crate) fn least_read(self) -> i32 {
-        self.min_lod.max(0).min(self.max_lod) - self.bias
-    }
-
     /// Like [`levels`], for a unit whose state is set up.
     #[inline(always)]
     pub(crate) fn levels(self, lod: i32) -> (i32, i32, i32) {
@@ -173,25 +168,6 @@ mod tests {
             assert!((exact - f64::from(log)) > -1e-9 && exact - f64::from(log) < 1.0, "{n}: {log} {exact}");
         }
         assert_eq!(log2_128(u128::MAX), 128 * 128 - 1);
-    }
-
-    /// All limits and biases in steps that are no powers of two, with every filter between levels.
-    #[test]
-    fn what_is_below_the_least_that_is_read_is_read_alike() {
-        const STEPS: i32 = 14;
-        let of = |n: i32| 173 * (n % STEPS) - 1200;
-        for n in 0..STEPS.pow(3) {
-            let (bias, min_lod, max_lod) = (of(n), of(n / STEPS), of(n / STEPS.pow(2)));
-            for (rounding, step, fraction) in [(0, 0, 0), (128, 0, 0), (0, 1, 255)] {
-                let selection = Selection { bias, min_lod, max_lod, last: 4, rounding, step, fraction };
-                let read = |log: i32| {
-                    let lod = selection.biased(log);
-                    (lod <= 0, selection.levels(lod.max(0)))
-                };
-                let least = selection.least_read();
-                assert!([1, 2, 100, 10_000].iter().all(|by| read(least - by) == read(least)), "{selection:?}");
-            }
-        }
     }
 
     #[test]

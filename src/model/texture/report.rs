@@ -7,8 +7,8 @@ use super::lod::{Choice, Quad};
 use super::planned::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
-use crate::raster::attribute::Attribute;
-use crate::raster::interpolate::{Floored, Sample};
+use crate::raster::interpolate::Sample;
+use crate::raster::report as raster;
 use crate::rop::blend::compare_operation;
 use crate::state::*;
 use crate::trace::{Observer, Operand, Step, TexelAddress, part, plain, report};
@@ -26,13 +26,6 @@ pub struct Report<'a> {
     pub unit: &'a PlannedUnit,
     /// Prefix of the names of steps, such as `"next."` on the second of two levels.
     pub prefix: &'a str,
-}
-
-/// INT-4t: returns operands for the perspective weights of the vertices, and for whether weights 0 and 2 fall short.
-pub(crate) fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
-    let [first, third] = at.short().map(i64::from);
-    let weights = (0..3).map(|k| plain(format!("P{k}"), at.triangle.p[k]));
-    weights.chain([plain("short0", first), plain("short2", third)]).collect()
 }
 
 /// Returns the name of a unit's block of the chip.
@@ -56,19 +49,23 @@ impl Report<'_> {
         Step::given(&self.block(), rule, self.name(suffix), value)
     }
 
-    /// Reports the values of a linear function at the vertices, and returns them as operands.
-    pub(crate) fn planes<O: Observer>(
+    /// Reports edge functions and weights of a pixel of the quad. Their names begin with `prefix`.
+    pub(crate) fn weights<O: Observer>(&self, prefix: &str, at: &Sample<'_>, pixel: (i64, i64), observer: &mut O) {
+        let (block, triangle) = (self.block(), at.triangle);
+        raster::edges(&block, ("TEX-11", prefix), triangle, pixel, observer);
+        raster::weights(&block, prefix, (at.e, triangle.ratios), at.weights(), None, observer);
+    }
+
+    /// Reports a component of the coordinate set, whose values at the vertices are given, and returns it as an operand.
+    pub(crate) fn component<O: Observer>(
         &self,
-        rule: &'static str,
-        letter: &str,
-        g: &[i64; 3],
+        n: usize,
+        prefix: &str,
+        values: [f32; 3],
+        at: &Sample<'_>,
         observer: &mut O,
-    ) -> Vec<Operand> {
-        let named = |k: usize| self.name(&format!("{letter}{k}"));
-        for (k, g) in g.iter().enumerate() {
-            observer.step(Step::given(&self.block(), rule, named(k), *g));
-        }
-        (0..3).map(|k| plain(named(k), g[k])).collect()
+    ) -> Operand {
+        component(self.unit.index, n, (prefix, values), at, observer)
     }
 
     /// Reports a coordinate on a level.
@@ -76,18 +73,12 @@ impl Report<'_> {
         &self,
         rule: &'static str,
         letter: &str,
-        floored: Floored,
+        value: i64,
         ideal: f64,
         (operation, inputs): (&'static str, Vec<Operand>),
         observer: &mut O,
     ) {
-        let note = (floored.lowered != 0).then(|| match operation {
-            "floor_ratio" | "floor_plane_moved" | "floor_plane_short" => {
-                "weights fall short: another 1/256 texel (INT-4t)".to_string()
-            }
-            _ => "exactly on a 1/256 texel: one step lower (INT-4t)".to_string(),
-        });
-        observer.step(self.step(rule, letter, floored.value).per(256).by(operation, inputs).ideal(ideal).note(note));
+        observer.step(self.step(rule, letter, value).per(256).by(operation, inputs).ideal(ideal));
     }
 
     /// Reports a coordinate of a pixel of the quad.
@@ -120,6 +111,7 @@ impl Report<'_> {
                     name: self.name(&format!("quad{pixel}.{}", ["u", "v"][n])),
                     value: quad[pixel][n],
                     per_one: QUAD_PART,
+                    exponent: 0,
                 };
                 ratio.by("log2_ratio", (0..6).map(|n| coordinate(n / 2, n % 2)).collect())
             }
@@ -221,7 +213,7 @@ impl Report<'_> {
             for (pixel, at) in quad.iter().flatten().enumerate() {
                 for (n, letter) in ["u", "v"].into_iter().enumerate() {
                     let name = of_unit(&format!("quad{pixel}.{letter}"));
-                    inputs.push(Operand { name, value: at[n], per_one: QUAD_PART });
+                    inputs.push(Operand { name, value: at[n], per_one: QUAD_PART, exponent: 0 });
                 }
             }
             inputs
@@ -575,18 +567,16 @@ fn address_operation(mode: AddressMode, border_texels: bool) -> &'static str {
     }
 }
 
-/// Reports a coordinate at the vertices, and returns it and the edge functions as operands. The value is the sum of
-/// their products over D, times 2^exponent.
-pub(super) fn linear<O: Observer>(
+/// Reports a component of a unit's coordinate set, whose values at the vertices are given, and returns it as an operand. The weights have names that
+/// begin with `prefix`.
+pub(super) fn component<O: Observer>(
     index: usize,
     n: usize,
-    attribute: &Attribute,
+    (prefix, values): (&str, [f32; 3]),
     at: &Sample<'_>,
     observer: &mut O,
-) -> Vec<Operand> {
-    let (g, exponent) = attribute.numbers();
-    let named = |k: usize| format!("unit{index}.G_{}{k}", COORDINATES[n]);
-    let planes = [0, 1, 2].map(|k| observer.tell(Step::given(&block(index), "INT-4", named(k), g[k]))).into_iter();
-    let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
-    planes.chain(edges).chain([plain("D", at.d), plain("exponent", exponent)]).collect()
+) -> Operand {
+    let (block, name) = (block(index), format!("unit{index}.coordinate.{}", COORDINATES[n]));
+    let place = raster::Place { block: &block, rule: "INT-4", name: &name, prefix };
+    raster::linear(place, values, at.weights().b, observer)
 }

@@ -1,15 +1,10 @@
 //! TSH-6 to TSH-9, and the use of the dot unit's results: dependent coordinates and colours, in integers.
 
-use super::dot::moved;
+use super::dot;
 use crate::number::convert::{align, factor_byte, shift, split};
+use crate::raster::binary::Binary;
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::DependentScale;
-
-/// Number of fraction bits of an [`offset`] below 1/256 texel.
-pub(crate) const OFFSET_BITS: u32 = 24;
-
-/// Limit of offsets, in 2^-24 of 1/256 texel. Larger ones are outside every image.
-const OFFSET_LIMIT: i128 = 1 << 50;
 
 /// Number of bits that a sum of products keeps. Each product has at most 32, so that the bits that are floored away
 /// cannot reach the next step of any result.
@@ -27,16 +22,16 @@ fn sum_of_products(terms: [(i64, f32); 2]) -> (i128, i32) {
     (terms.map(|(n, e)| shift(n, e - unit)).iter().sum(), unit)
 }
 
-/// TSH-7: returns the displacement of one coordinate by blue and green (two's complement): floor(2^24 256 side f / 128)
-/// with f = m_b B + m_g G in single precision, in 2^-24 of 1/256 texel. `side` is 1 if coordinates are texels. NaN
-/// counts as 0.
-pub fn offset(entries: [f32; 2], blue_green: [u8; 2], side: u32) -> i64 {
-    offset_of(moved(entries, blue_green.map(|byte| f32::from(byte as i8))), side)
+/// TSH-7: returns the displacement of one coordinate by blue and green (two's complement) in 128ths of the image: m_b B + m_g G in single precision.
+pub fn offset(entries: [f32; 2], blue_green: [u8; 2]) -> f32 {
+    dot::moved(entries, blue_green.map(|byte| f32::from(byte as i8)))
 }
 
-/// TSH-7: returns the displacement of one coordinate by f 128ths of the image, in 2^-24 of 1/256 texel.
-pub(crate) fn offset_of(f: f32, side: u32) -> i64 {
-    scaled(f, side, OFFSET_BITS as i32 + 8 - 7, OFFSET_LIMIT)
+/// TSH-7: returns a coordinate of an image of `side` texels that is displaced by `offset` 128ths of the image, in 2^-`power` texel, limited to `limit`.
+/// The sum is exact before the floor. NaN counts as 0.
+pub fn moved(value: Binary, offset: f32, side: u32, power: i32, limit: i64) -> i64 {
+    let offset = if offset.is_nan() { 0.0 } else { offset.clamp(f32::MIN, f32::MAX) };
+    value.floored_sum(Binary::new(offset).scaled(-7), side, power, limit)
 }
 
 /// TSH-8: returns floor(4096 f) of f = c/255 (R/255 scale + offset), limited to 0..=2^20. A negative c counts as 0.
@@ -64,7 +59,7 @@ pub fn dependent(v: u8, side: u32, scale: DependentScale) -> i64 {
 }
 
 /// Returns floor(2^bits side f), limited to `limit` in magnitude. NaN counts as 0.
-fn scaled(f: f32, side: u32, bits: i32, limit: i128) -> i64 {
+pub(crate) fn scaled(f: f32, side: u32, bits: i32, limit: i128) -> i64 {
     if f.is_nan() {
         return 0;
     }
@@ -114,23 +109,28 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// Returns a coordinate of 1/2 that is displaced, in 1/256 texel.
+    fn from_middle(entries: [f32; 2], blue_green: [u8; 2], side: u32) -> i64 {
+        moved(Binary::new(0.5), offset(entries, blue_green), side, 8, COORDINATE_LIMIT)
+    }
+
     #[test]
     fn offsets_by_hand() {
-        let texel = 256 << OFFSET_BITS;
         // B = 64 is one half, and moves by half a texture of 8 texels along u.
-        assert_eq!(offset([1.0, 0.0], [64, 0], 8), 4 * texel);
-        assert_eq!(offset([1.0, 0.0], [192, 0], 8), -4 * texel);
-        assert_eq!(offset([0.5, -0.25], [0, 128], 1), texel / 4);
-        // Slightly below zero is one step down, however small.
-        assert_eq!(offset([-1e-30, 0.0], [1, 0], 1), -1);
+        assert_eq!(from_middle([1.0, 0.0], [64, 0], 8), 2048);
+        assert_eq!(from_middle([1.0, 0.0], [192, 0], 8), 0);
+        assert_eq!(from_middle([0.5, -0.25], [0, 128], 1), 128 + 64);
+        // Slightly below a step is one step down, however small.
+        assert_eq!(from_middle([-1e-30, 0.0], [1, 0], 1), 127);
         // A sum in single precision: a tiny term is lost beside the other, and 0.3 * 10, which is slightly above 3, is
         // 3.
-        assert_eq!(offset([-1e-30, 1.0], [1, 1], 1), texel / 128);
-        assert_eq!(offset([0.3, 1.0], [10, 125], 1), texel);
-        assert_eq!(offset([1e30, 0.0], [1, 0], 1), OFFSET_LIMIT as i64);
-        assert_eq!(offset([1e30, 1e30], [1, 255], 1), 0);
-        // Infinity minus infinity.
-        assert_eq!(offset([f32::MAX, f32::MAX], [2, 254], 1), 0);
+        assert_eq!(from_middle([-1e-30, 1.0], [1, 1], 1), 128 + 2);
+        assert_eq!(from_middle([0.3, 1.0], [10, 125], 1), 128 + 256);
+        assert_eq!(from_middle([1e30, 0.0], [1, 0], 1), COORDINATE_LIMIT);
+        assert_eq!(from_middle([1e30, 1e30], [1, 255], 1), 128);
+        // Infinity, and infinity minus infinity.
+        assert_eq!(from_middle([f32::MAX, 0.0], [254, 0], 1), -COORDINATE_LIMIT);
+        assert_eq!(from_middle([f32::MAX, f32::MAX], [2, 254], 1), 128);
     }
 
     #[test]
@@ -197,15 +197,14 @@ mod tests {
     }
 
     proptest! {
-        /// Compares with integers: the matrix entries and the luminance are multiples of 2^-10.
+        /// Compares with integers: the matrix entries and the luminance are multiples of 2^-10, the coordinate one of 2^-20.
         #[test]
-        fn offsets_are_floors(m in prop::array::uniform2(-40_000..40_000_i32), b: u8, g: u8, side in 0..=12_u32) {
-            let side = 1 << side;
+        fn sums_are_floors(m in prop::array::uniform2(-40_000..40_000_i32), b: u8, g: u8, at in -9_000_000..9_000_000_i64, side in 0..=12_u32) {
             let entries = m.map(|m| m as f32 / 1024.0);
             let n = i64::from(m[0]) * i64::from(b as i8) + i64::from(m[1]) * i64::from(g as i8);
-            let exact = (i128::from(n) * i128::from(side)) << (OFFSET_BITS + 8 - 7 - 10);
-            let limited = exact.clamp(-OFFSET_LIMIT, OFFSET_LIMIT);
-            prop_assert_eq!(i128::from(offset(entries, [b, g], side)), limited);
+            let value = Binary { mantissa: at, exponent: -20 };
+            let exact = ((n << 3) + at) << (side + 8) >> 20;
+            prop_assert_eq!(moved(value, offset(entries, [b, g]), 1 << side, 8, COORDINATE_LIMIT), exact.clamp(-COORDINATE_LIMIT, COORDINATE_LIMIT));
         }
 
         #[test]
@@ -218,8 +217,7 @@ mod tests {
         /// Terms of any size never panic, and stay within the limits.
         #[test]
         fn any_float_is_safe(m: [f32; 2], b: u8, g: u8, c in -256..=255_i32, vector: [f32; 3], side in 0..=12_u32) {
-            let moved = offset(m, [b, g], 1 << side);
-            prop_assert!(i128::from(moved).abs() <= OFFSET_LIMIT);
+            prop_assert!(from_middle(m, [b, g], 1 << side).abs() <= COORDINATE_LIMIT);
             prop_assert!((0..=1 << 20).contains(&luminance(c, b, m)));
             for f in vector {
                 prop_assert!(coordinate(f, 1 << side).abs() <= COORDINATE_LIMIT);

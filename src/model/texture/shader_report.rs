@@ -2,13 +2,11 @@
 
 use super::dependent::{Dependent, Target};
 use super::dot::Reflection;
-use super::report::{COORDINATES, Report, block, linear, shortfall};
-use super::shader::OFFSET_BITS;
+use super::report::{COORDINATES, Report, block, component};
 use super::stage::{Color, Dot};
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
-use crate::raster::attribute::Attribute;
-use crate::raster::interpolate::{Floored, Sample};
+use crate::raster::interpolate::Sample;
 use crate::state::{DependentScale, DotMapping, Level, Named};
 use crate::trace::{Observer, Operand, Step, byte, float, float_step, plain, report};
 
@@ -45,13 +43,12 @@ pub(super) fn constant<L: Lane, O: Observer>(
 pub(super) fn pass_through<L: Lane, O: Observer>(
     index: usize,
     n: usize,
-    attribute: &Attribute,
-    at: &Sample<'_>,
+    (values, at): ([f32; 3], &Sample<'_>),
     v: i64,
     value: L,
     observer: &mut O,
 ) {
-    let inputs = linear(index, n, attribute, at, observer);
+    let inputs = vec![component(index, n, ("", values), at, observer)];
     let part = step(index, "TSH-9", &format!("{}.4096", COORDINATES[n]), v).per(4096).by("floor_number", inputs);
     let inputs = vec![observer.tell(part)];
     let register = format!("texture{index}.{}", channel_name(n));
@@ -62,13 +59,11 @@ pub(super) fn pass_through<L: Lane, O: Observer>(
 pub(super) fn sign<O: Observer>(
     index: usize,
     n: usize,
-    attribute: &Attribute,
-    at: &Sample<'_>,
-    drops_not_negative: bool,
-    negative: bool,
+    (values, at): ([f32; 3], &Sample<'_>),
+    (drops_not_negative, negative): (bool, bool),
     observer: &mut O,
 ) {
-    let inputs = linear(index, n, attribute, at, observer);
+    let inputs = vec![component(index, n, ("", values), at, observer)];
     let operation = if drops_not_negative { "is_not_negative" } else { "is_negative" };
     let dropped = negative != drops_not_negative;
     let note = dropped.then(|| "the fragment is dropped".to_string());
@@ -80,14 +75,13 @@ pub(super) fn sign<O: Observer>(
 pub(super) fn rounded<O: Observer>(
     index: usize,
     n: usize,
-    attribute: &Attribute,
-    at: &Sample<'_>,
+    (values, at): ([f32; 3], &Sample<'_>),
     value: f32,
     ideal: f64,
     observer: &mut O,
 ) -> Operand {
-    let inputs = linear(index, n, attribute, at, observer);
-    let step = single(index, "TSH-4", COORDINATES[n], value, ideal);
+    let inputs = vec![component(index, n, ("", values), at, observer)];
+    let step = single(index, "TSH-4", &format!("{}.rounded", COORDINATES[n]), value, ideal);
     observer.tell(step.by("nearest_float", inputs))
 }
 
@@ -107,9 +101,10 @@ fn previous_name(index: usize, channel: usize) -> String {
 }
 
 /// The parts of a dot product.
-pub(super) struct DotParts<'a> {
+pub(super) struct DotParts {
     pub(super) mapping: DotMapping,
-    pub(super) attributes: &'a [Attribute; 4],
+    /// s, t and r of the vertices.
+    pub(super) values: [[f32; 3]; 3],
     pub(super) coordinates: [f32; 3],
     pub(super) vector: [f32; 3],
     pub(super) products: [f32; 3],
@@ -120,7 +115,7 @@ pub(super) struct DotParts<'a> {
 pub(super) fn dot<O: Observer>(
     index: usize,
     color: &Color,
-    parts: &DotParts<'_>,
+    parts: &DotParts,
     real: ([f64; 3], [f64; 3]),
     at: &Sample<'_>,
     observer: &mut O,
@@ -130,7 +125,7 @@ pub(super) fn dot<O: Observer>(
     let read = |n: usize| plain(previous_name(index, n), color.bytes[n]);
     let mut factors = Vec::new();
     for n in 0..3 {
-        let coordinate = rounded(index, n, &parts.attributes[n], at, parts.coordinates[n], real.0[n], observer);
+        let coordinate = rounded(index, n, (parts.values[n], at), parts.coordinates[n], real.0[n], observer);
         let halves = [vec![read(3), read(0)], vec![read(1), read(2)]];
         let (rule, operation, inputs) = match (parts.mapping, n) {
             (DotMapping::ZeroToOne, _) => ("TSH-1", "remap_zero_to_one", vec![read(n)]),
@@ -171,7 +166,7 @@ pub(super) fn reflection<O: Observer>(
     let step = |what: &str, value: f32, ideal: f64| single(index, "TSH-5", what, value, ideal);
     let eyes = [0, 1, 2].map(|n| match constant {
         true => observer.tell(step(&format!("eye.{}", AXES[n]), eye[n], f64::from(eye[n]))),
-        false => float(name(n + 1, "q"), eye[n]),
+        false => float(name(n + 1, "q.rounded"), eye[n]),
     });
     let eyes = |n: usize| eyes[n].clone();
     let normals = |n: usize| float(name(n + 1, "dot"), normal[n].fixed);
@@ -220,7 +215,7 @@ pub(super) fn coordinates<O: Observer>(
     place: &Dependent<'_>,
     report: &Report<'_>,
     level: &Level,
-    floored: [Floored; 2],
+    floored: [i64; 2],
     ideal: [f64; 2],
     observer: &mut O,
 ) {
@@ -238,23 +233,24 @@ pub(super) fn coordinates<O: Observer>(
         let size = plain("size", sides[axis]);
         let (rule, operation, inputs) = match place.target {
             Target::Moved(moved) => {
-                let offset = moved.offsets(unit, level)[axis];
                 let [along_blue, along_green] = [0, 1].map(|n| {
                     let (entry, value) = ([["m0", "m3"], ["m1", "m2"]][axis][n], moved.entries()[axis][n]);
                     observer.tell(single(index, "TSH-7", entry, value, f64::from(value)))
                 });
                 let [blue, green] =
                     [(2, 0), (1, 1)].map(|(channel, n)| plain(previous_name(index, channel), moved.blue_green[n]));
-                let step = report.step("TSH-7", &format!("offset_{letter}"), offset).per(256 << OFFSET_BITS);
-                let offset = observer.tell(step.by("bump_offset", vec![along_blue, along_green, blue, green, size]));
-                let mut inputs =
-                    report.planes("INT-4", &format!("G_{letter}"), &moved.planes(unit, level)[axis], observer);
-                inputs.extend((0..3).map(|k| plain(format!("E{k}"), moved.at.e[k])));
-                inputs.push(plain("D", moved.at.d));
-                inputs.push(offset);
-                inputs.extend(shortfall(&moved.at));
-                inputs.push(plain("lowered", floored[axis].lowered));
-                ("TSH-7", "floor_plane_moved", inputs)
+                let offset = moved.offsets()[axis];
+                let step = float_step(
+                    &report.block(),
+                    "TSH-7",
+                    report.name(&format!("offset_{letter}")),
+                    offset,
+                    f64::from(offset),
+                );
+                let offset = observer.tell(step.by("bump_offset", vec![along_blue, along_green, blue, green]));
+                let set = moved.vertices.coordinates(unit.stage.coordinate_set);
+                let number = report.component(axis, "", set.map(|vertex| vertex[axis]), moved.at, observer);
+                ("TSH-7", "floor_moved", vec![number, offset, size])
             }
             Target::Bytes(bytes, scale) => {
                 let channel = dependent_channels(place)[axis];

@@ -3,8 +3,8 @@
 use super::coordinates::Coordinates;
 use super::planned::PlannedUnit;
 use super::real::RealColor;
-use crate::raster::attribute::Attribute;
-use crate::raster::setup::Triangle;
+use crate::raster::binary::Binary;
+use crate::raster::weights::Linear;
 use crate::state::{ShaderOperation, ShaderStage, TEXTURE_UNITS, TriangleVertices};
 
 /// A texture shader, reduced to what can reach the frame.
@@ -43,17 +43,17 @@ impl PlannedShaderStage {
 }
 
 /// The coordinates of a stage, set up from a triangle's vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum StageSetup {
     Nothing,
     /// Coordinates on the image of its unit.
     Places(Coordinates),
     /// s, t, r, q, interpolated as numbers.
-    Numbers([Attribute; 4]),
+    Numbers([Linear<Binary>; 4]),
 }
 
 /// The coordinates of the texture shader, set up for one triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaderSetup(pub(super) [StageSetup; TEXTURE_UNITS]);
 
 impl ShaderSetup {
@@ -66,37 +66,24 @@ impl ShaderSetup {
         }
     }
 
-    /// Sets up every stage that runs; those that sample nothing only if their `numbers` are wanted.
-    pub fn new(
-        shader: &PlannedShader,
-        units: &[PlannedUnit],
-        triangle: &Triangle,
-        vertices: TriangleVertices<'_>,
-        numbers: bool,
-    ) -> Self {
+    /// Sets up every stage that runs.
+    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], vertices: TriangleVertices<'_>) -> Self {
         ShaderSetup(std::array::from_fn(|index| {
             let planned = &shader.stages[index];
             if !planned.runs() {
                 return StageSetup::Nothing;
             }
             let set = vertices.coordinates(planned.state.coordinate_set);
-            let component = |n: usize| set.map(|v| v[n]);
+            let component = |n: usize| Linear::new(set.map(|v| v[n]));
             let operation = planned.state.operation;
             let of_numbers = operation.is_dot()
                 || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. });
             match (operation, planned.unit) {
-                (ShaderOperation::Sample, Some(unit)) => {
-                    StageSetup::Places(Coordinates::new(triangle, set, &units[unit]))
+                (ShaderOperation::Sample, Some(unit)) => StageSetup::Places(Coordinates::new(set, &units[unit])),
+                (ShaderOperation::BumpEnvironment { .. }, Some(_)) => {
+                    StageSetup::Places(Coordinates::Plane([component(0), component(1)]))
                 }
-                (ShaderOperation::BumpEnvironment { .. }, Some(unit)) => {
-                    let unit = &units[unit];
-                    let sides = unit.scale(&unit.levels[0]);
-                    let plane = |n: usize| triangle.coordinate(component(n), sides[n]);
-                    StageSetup::Places(Coordinates::Plane([plane(0), plane(1)]))
-                }
-                _ if numbers && of_numbers => {
-                    StageSetup::Numbers([0, 1, 2, 3].map(|n| triangle.attribute(component(n))))
-                }
+                _ if of_numbers => StageSetup::Numbers([0, 1, 2, 3].map(component)),
                 _ => StageSetup::Nothing,
             }
         }))

@@ -55,7 +55,7 @@ pub(crate) fn sample<L: Lane, O: Observer>(
             texel(choice.level) ^ choice.next.map_or(0, |(next, _)| texel(next).rotate_left(16))
         };
         let ideal = |level: &Level| real_on(unit, level, real).map(floored);
-        let fixed = |level: &Level| if L::DECIDES { ideal(level) } else { place.on(level).map(|c| c.value) };
+        let fixed = |level: &Level| if L::DECIDES { ideal(level) } else { place.on(level) };
         observer.decided(Decision::Texel, texels(&fixed), || texels(&ideal));
     }
     let one = |level: usize, prefix: &str, observer: &mut O| {
@@ -121,11 +121,11 @@ pub fn layer<L: Lane, O: Observer>(
     let fixed = place.layer(unit.layers);
     let of = |w: i64| address(unit.state.address_r, nearest(w), unit.layers, false).map(|layer| layer as usize);
     let real = || of(floored(real_coordinate(place.real_r(), unit.layers)));
-    let layer = if L::DECIDES { real() } else { of(fixed.value) };
+    let layer = if L::DECIDES { real() } else { of(fixed) };
     if O::ON {
         let report = Report { unit, prefix: "" };
         place.describe_layer(&report, unit.layers, fixed, observer);
-        report.layer(fixed.value, layer, observer);
+        report.layer(fixed, layer, observer);
     }
     let code = |layer: Option<usize>| layer.map_or(-1, |layer| layer as i64);
     observer.decided(Decision::Layer, code(layer), || code(real()));
@@ -146,7 +146,7 @@ fn coordinates<L: Lane, O: Observer>(
     if O::ON {
         place.describe(report, slice.level, fixed, wanted, observer);
     }
-    (if L::DECIDES { wanted.map(floored) } else { fixed.map(|c| c.value) }, wanted)
+    (if L::DECIDES { wanted.map(floored) } else { fixed }, wanted)
 }
 
 /// TEX-17: filters each tap of a footprint on level 0 and returns their weighted sum.

@@ -26,8 +26,8 @@ pub trait Observer {
     fn step(&mut self, step: Step);
     /// Like [`step`](Self::step), but returns the result as an operand of later steps.
     fn tell(&mut self, step: Step) -> Operand {
-        let Step { name, value, per_one, .. } = &step;
-        let operand = Operand { name: name.clone(), value: *value, per_one: *per_one };
+        let Step { name, value, per_one, exponent, .. } = &step;
+        let operand = Operand { name: name.clone(), value: *value, per_one: *per_one, exponent: *exponent };
         self.step(step);
         operand
     }
@@ -88,6 +88,8 @@ pub struct Operand {
     /// The integer that stands for 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain
     /// integers, [`SINGLE`] for floats.
     pub per_one: i64,
+    /// Power of two that the integer is multiplied by; 0 but for numbers of WGT-1.
+    pub exponent: i32,
 }
 
 /// One application of a rule.
@@ -107,6 +109,8 @@ pub struct Step {
     pub value: i64,
     /// The integer that stands for 1.0, or [`SINGLE`] if the integer is the bit pattern of a single-precision number.
     pub per_one: i64,
+    /// Power of two that the integer is multiplied by; 0 but for numbers of WGT-1.
+    pub exponent: i32,
     /// The float64 ideal, in the unit of [`real`](Self::real).
     pub ideal: Option<f64>,
     /// A remark for the reader, such as a tie, a saturation, or an undefined value.
@@ -139,6 +143,7 @@ impl Step {
             inputs: Vec::new(),
             value: value.into(),
             per_one: 1,
+            exponent: 0,
             ideal: None,
             note: None,
             texel: None,
@@ -188,7 +193,7 @@ impl Step {
         if self.per_one == SINGLE {
             return f64::from(f32::from_bits(self.value as u32));
         }
-        self.value as f64 / self.per_one as f64
+        self.value as f64 * f64::from_bits(((1023 + i64::from(self.exponent)) as u64) << 52) / self.per_one as f64
     }
 }
 
@@ -201,22 +206,22 @@ pub(crate) fn float_step(block: &str, rule: &'static str, name: impl Into<String
 /// Returns a single-precision operand. All NaNs become the same one.
 pub(crate) fn float(name: impl Into<String>, value: f32) -> Operand {
     let value = if value.is_nan() { f32::NAN } else { value };
-    Operand { name: name.into(), value: i64::from(value.to_bits()), per_one: SINGLE }
+    Operand { name: name.into(), value: i64::from(value.to_bits()), per_one: SINGLE, exponent: 0 }
 }
 
 /// Returns a plain integer operand.
 pub fn plain(name: impl Into<String>, value: impl Into<i64>) -> Operand {
-    Operand { name: name.into(), value: value.into(), per_one: 1 }
+    Operand { name: name.into(), value: value.into(), per_one: 1, exponent: 0 }
 }
 
 /// Returns an operand in steps of 1/255.
 pub(crate) fn byte(name: impl Into<String>, value: impl Into<i64>) -> Operand {
-    Operand { name: name.into(), value: value.into(), per_one: 255 }
+    Operand { name: name.into(), value: value.into(), per_one: 255, exponent: 0 }
 }
 
 /// Returns an operand in 256ths.
 pub(crate) fn part(name: impl Into<String>, value: impl Into<i64>) -> Operand {
-    Operand { name: name.into(), value: value.into(), per_one: 256 }
+    Operand { name: name.into(), value: value.into(), per_one: 256, exponent: 0 }
 }
 
 /// Reports of values of a lane: the integer and the ideal, in a unit in which the integer has no fraction.
@@ -232,13 +237,13 @@ pub mod report {
     /// Returns a factor as an operand, in 255ths, or in 510ths if it has a half bit.
     pub(crate) fn factor<L: Lane>(name: impl Into<String>, value: L::Mapped) -> Operand {
         let (value, per_one) = whole(L::observe_factor(value).0, 2, 255);
-        Operand { name: name.into(), value, per_one }
+        Operand { name: name.into(), value, per_one, exponent: 0 }
     }
 
     /// Returns a sum as an operand, in 65025ths, or in a finer unit if half bits are kept.
     pub(crate) fn sum<L: Lane>(name: impl Into<String>, value: L::Full) -> Operand {
         let (value, per_one) = whole(L::observe_sum(value).0, 4, 65025);
-        Operand { name: name.into(), value, per_one }
+        Operand { name: name.into(), value, per_one, exponent: 0 }
     }
 
     /// Returns a step that yields a register or byte.

@@ -152,7 +152,7 @@ mod tests {
         let triangle =
             Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a);
         let triangle = triangle.expect("area");
-        let plane = FogPlane::new(&triangle, Some(*function), [passed(function, Profile::Nv2a, d); 3]);
+        let plane = FogPlane::new(Some(*function), [passed(function, Profile::Nv2a, d); 3]);
         f64::from(plane.at(&Sample::new(&triangle, triangle.edges(3, 3))).byte) / 255.0
     }
 

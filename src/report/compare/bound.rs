@@ -3,7 +3,6 @@
 
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal;
-use ninebit::raster::interpolate::SHORT_BITS;
 use ninebit::state::*;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::trace::Rule;
@@ -29,16 +28,14 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             Some((-1.0 - slack, 1.0 + slack))
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
-        // A floor, one step lower on a tie, and the error of the weights.
-        Rule::Int4 => {
-            floor(coordinate_slack(plan, if policies.plane_loss == PlaneLoss::Finite { SHORTFALL } else { 0.0 }))
-        }
+        // A floor, the error of the weights, and the cuts of the terms.
+        Rule::Int4 => floor(coordinate_slack(plan)),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
         Rule::Tsh4 | Rule::Tsh6 => floor(1e-6),
         // A quotient by q magnifies the error of the weights, as in TEX-15.
         Rule::Tsh7 if projects(plan) => None,
-        Rule::Tsh7 => floor(coordinate_slack(plan, SHORTFALL)),
+        Rule::Tsh7 => floor(coordinate_slack(plan)),
         Rule::Tsh8 => floor(255.0 / 4096.0),
         Rule::Tsh9 => floor(number_slack(plan) + 255.0 / 4096.0),
         // Each byte of a 16-bit half is off by up to the value of the other byte.
@@ -80,26 +77,28 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     }
 }
 
-/// Returns the largest relative error of the triangles' weights, from the block-floating products of w (INT-1) and w itself (INT-6).
+/// Returns the largest relative error of the triangles' weights (WGT-1, INT-6).
 fn weights(plan: &Plan) -> f64 {
     triangles(plan).map(|(draw, vertices)| relative(plan, draw, vertices)).fold(0.0, f64::max)
 }
 
-/// The relative amount by which a weight falls short (INT-4t).
-const SHORTFALL: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
+/// WGT-1: returns the largest error of an interpolated number. Each weight has its relative error, twice because the sum of all is off as well; the
+/// largest term of the sum is a number of the vertices or a difference of them, and up to three terms are cut at its 24th bit.
+fn number_error(relative: f64, values: [f64; 3]) -> f64 {
+    let (low, high) = range(values);
+    let largest = low.abs().max(high.abs()).max(high - low);
+    2.0 * relative * (high - low) + 4.0 * 2.0_f64.powi(-23) * largest
+}
 
-/// Returns the largest error of a texture coordinate, in 256ths of a texel, that is due to weights with their own error plus `besides`. It is the
-/// coordinate's span over a triangle times that relative error, twice because the sum of the weights is off as well.
-fn coordinate_slack(plan: &Plan, besides: f64) -> f64 {
+/// Returns the largest error of a texture coordinate, in 256ths of a texel, that is due to weights and cuts.
+fn coordinate_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
-        let relative = relative(plan, draw, vertices) + besides;
+        let relative = relative(plan, draw, vertices);
         draw.units.iter().flat_map(move |unit| {
             let sets = vertices.coordinates(unit.stage.coordinate_set);
             let sides = unit.scale(&unit.levels[0]);
-            // Planes are floored to 2^-27 of a step.
             [0, 1].map(|axis| {
-                let (low, high) = range(sets.map(|set| f64::from(set[axis])));
-                2.0 * relative * (high - low) * 256.0 * f64::from(sides[axis]) + 2.0_f64.powi(-26)
+                256.0 * f64::from(sides[axis]) * number_error(relative, sets.map(|set| f64::from(set[axis])))
             })
         })
     });
@@ -122,9 +121,10 @@ fn fog_slack(plan: &Plan) -> f64 {
         {
             return 0.0;
         }
-        let ((low, high), largest) = (range(real), real.iter().fold(0.0, |n, d| d.abs().max(n)));
+        let largest = real.iter().fold(0.0, |n, d| d.abs().max(n));
         let rounded = (0..3).map(|k| (f64::from(passed[k]) - real[k]).abs()).fold(0.0, f64::max);
-        let moved = rounded + 2.0 * relative(plan, draw, vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        let cut = 2.0_f64.powi(-23) * largest;
+        let moved = rounded + number_error(relative(plan, draw, vertices), real) + cut;
         // 16 ln 2; the slope of 2^(-32 x^2) is steepest where x^2 is 1 / (64 ln 2).
         let slope = match function.mode {
             FogMode::Linear | FogMode::LinearAbs => p1.abs(),
@@ -141,8 +141,8 @@ fn fog_slack(plan: &Plan) -> f64 {
 fn number_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
         let relative = relative(plan, draw, vertices);
-        let spans = (0..16).map(move |n| range(vertices.coordinates(n / 4).map(|set| f64::from(set[n % 4]))));
-        spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
+        let components = (0..16).map(move |n| vertices.coordinates(n / 4).map(|set| f64::from(set[n % 4])));
+        components.map(move |values| 255.0 * number_error(relative, values))
     });
     slack.fold(1e-6, f64::max)
 }
@@ -161,13 +161,15 @@ fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, TriangleVertice
         .flat_map(|draw| (0..draw.assembly.triangles.len()).map(move |number| (draw, draw.assembly.triangle(number))))
 }
 
+/// Returns the largest relative error of a triangle's weights.
 fn relative(plan: &Plan, draw: &PlannedDraw, vertices: TriangleVertices<'_>) -> f64 {
     let (nearest, farthest) = range(vertices.position(3).map(f64::from));
+    // What e and b lose, and in perspective the ratio of w and its product.
     if !draw.perspective || nearest == farthest {
-        return 0.0;
+        return 2.0 * 2.0_f64.powi(-23);
     }
     let cut = if plan.profile == Profile::Nv10 { 2.0_f64.powi(-15) } else { 0.0 };
-    2.0_f64.powi(-27) * farthest / nearest + 2.0 * cut
+    5.0 * 2.0_f64.powi(-23) + 2.0 * cut
 }
 
 fn range(values: [f64; 3]) -> (f64, f64) {

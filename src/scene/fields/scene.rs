@@ -217,7 +217,7 @@ source! {
         shade_model: Name<state::ShadeModel> = ShadeModel::Smooth,
         /// which vertex gives a flat triangle its colours (RAS-5)
         provoking_vertex: Name<state::ProvokingVertex> = ProvokingVertex::Last,
-        /// colours and coordinates are interpolated in perspective; `false`: linear on screen (INT-1)
+        /// colours and coordinates are interpolated in perspective; `false`: linear on screen (WGT-1)
         perspective: bool = true,
         /// faces not drawn
         cull: Name<state::Cull> = Cull::None,

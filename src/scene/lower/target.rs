@@ -6,6 +6,7 @@ use crate::names::{Index, Targets};
 pub(super) use ninebit::diagnostic::needs_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;
+use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
 
 impl Targets<'_> {
@@ -94,7 +95,7 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
         && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
     {
         buffer.clear = if buffer.format.is_float() {
-            depth::word(buffer.format, depth::Binary::new(depth))
+            depth::word(buffer.format, Binary::new(depth))
         } else {
             convert::depth(depth, buffer.format.bits()) as u32
         };

@@ -1,4 +1,4 @@
-//! RAS-1 to RAS-5, INT-1, NUM-4: every topology, smooth and flat, with and without perspective; float colours; large vertex counts.
+//! RAS-1 to RAS-5, WGT-1, NUM-4: every topology, smooth and flat, with and without perspective; float colours; large vertex counts.
 
 use super::space::without_depth;
 use super::*;

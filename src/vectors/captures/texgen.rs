@@ -68,7 +68,7 @@ fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix
     let vertex = |n: usize| {
         let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
         let made = generated(mode, [x, y].map(f64::from), corners(WHOLE)[n].map(f64::from));
-        let made = matrix.map(|row| row.iter().zip(made).map(|(a, b)| a * b).sum::<f64>() as f32);
+        let made = matrix.map(|row| row.iter().zip(made).map(|(a, b)| a * b).sum::<f64>()).map(space::toward_zero);
         let [x, y, _, w] = space::fixed_function([x, y, 0.0, 1.0]);
         let diffuse = VertexColor::Bytes([255; 4]);
         Vertex { position: [x, y, 0.0, w], diffuse, texture_coordinates: [made; TEXTURE_UNITS], ..Vertex::default() }

@@ -2,7 +2,8 @@
 
 use super::raster::{LARGE, fit, geometry, is_covered, triangle};
 use super::{Column, Conditions, Kind, Reach, Unit, float, named, sized};
-use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
+use ninebit::raster::binary::Binary;
+use ninebit::raster::depth::{DepthPlane, ranged, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
 

@@ -15,7 +15,7 @@ const CURVES: [FogMode; 4] = [FogMode::Exp, FogMode::Exp2, FogMode::ExpAbs, FogM
 /// Returns the fog where all vertices pass this value.
 pub(super) fn factor(function: FogFunction, value: f32) -> Option<ninebit::raster::fog::FogFactor> {
     let triangle = Triangle::new(LARGE, true, Profile::Nv2a)?;
-    Some(FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3])))
+    Some(FogPlane::new(Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3])))
 }
 
 /// Returns a float of a magnitude from 2^-7 to 2^9, with the sign and the fraction of these bits.
@@ -69,7 +69,7 @@ impl Unit for FogFactor {
         results[0] = value.to_bits().into();
         results[1] = match found.from {
             FogStep::Factor(v) | FogStep::Linear(v, _) => v,
-            FogStep::Exponential(q) => q.value.clamp(-(1 << 19), (1 << 19) - 1),
+            FogStep::Exponential(q) => q.clamp(-(1 << 19), (1 << 19) - 1),
             FogStep::NotFinite => 0,
         };
         results[2] = found.byte.into();

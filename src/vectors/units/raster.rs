@@ -1,9 +1,11 @@
 //! Triangles: the pixels that they cover, and the values that they interpolate.
 
 use super::{Column, Conditions, Kind, Reach, Unit, float, put};
+use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
-use ninebit::raster::setup::{Triangle, significant};
+use ninebit::raster::setup::Triangle;
+use ninebit::raster::weights::{Linear, differences};
 use ninebit::state::{DepthFormat, Profile, TriangleVertices, Vertex, Vertices};
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
@@ -110,25 +112,28 @@ impl Unit for Coverage {
     }
 }
 
-/// The weights of the vertices' colours.
-pub(super) struct ColorWeights;
+/// The weights of the vertices.
+pub(super) struct VertexWeights;
 
-impl Unit for ColorWeights {
+impl Unit for VertexWeights {
     known_as!(
-        "color-weights", &["INT-1", "INT-2", "INT-3", "INT-6"],
-        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder", Geometry;
+        "weights", &["WGT-1", "INT-2", "INT-6"],
+        "the weights of a triangle's vertices at a covered pixel, in perspective if their w differ: edge functions, edge numbers e (floats), the reciprocal of their sum as a mantissa and a power of two, the weights b (floats), and those of the colours of vertices 0 and 2 in 256ths", Geometry;
         takes [geometry(), W.map(w)];
         gives [
             Column::results(EDGES, Kind::Signed(36)),
-            Column::results(["mid.p0", "mid.p1", "mid.p2"], Kind::Unsigned(28)),
-            Column::results(["mid.lowered0", "mid.lowered2"], Kind::Unsigned(1)),
+            Column::results(["mid.edge0", "mid.edge1", "mid.edge2"], Kind::Hex(32)),
+            Column::result("mid.reciprocal", Kind::Unsigned(29)),
+            Column::result("mid.reciprocal_power", Kind::Signed(8)),
+            Column::result("mid.dominant", Kind::Unsigned(2)),
+            Column::results(["out.b0", "out.b1", "out.b2"], Kind::Hex(32)),
             Column::results(["out.weight0", "out.weight2"], Kind::Unsigned(9)),
         ]
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4 and 3 4 1, and sixteenths 5 6 5. Then halves and quarters of
-        // a power-of-two area, where no tie is lowered if all w are equal.
+        // a power-of-two area, whose reciprocal is exact.
         let [one, two, other] = [1.0_f32, 2.0, 1.5].map(|w| i64::from(w.to_bits()));
         let positions = [
             [40, 24, 104, 216, 88, 264],
@@ -139,8 +144,17 @@ impl Unit for ColorWeights {
         let three = i64::from(3.0_f32.to_bits());
         let unequal = vec![8, 8, 72, 8, 8, 72, 1, 1, three, one, one];
         let exact = [one, two, other].map(|w| vec![8, 8, 72, 8, 8, 72, 1, 1, w, w, w]);
+        // Edge functions of more than 24 bits, of which all cuts lose something.
+        let large = [
+            [0, 0, 10240, 3, 5, 10239, 100, 300],
+            [0, 0, 10240, 3, 5, 10239, 1, 1],
+            [7, 0, 3, 10240, 10233, 1, 200, 3],
+        ];
+        let large = large
+            .into_iter()
+            .flat_map(|row| [[one; 3], [one, three, other], [other, two, three]].map(|w| [&row[..], &w].concat()));
         let tied = positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat());
-        tied.chain(exact).chain([unequal]).collect()
+        tied.chain(exact).chain([unequal]).chain(large).collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -155,11 +169,71 @@ impl Unit for ColorWeights {
         let Some(triangle) = triangle(inputs, Some(&inputs[8..]), conditions.profile) else { return results.fill(0) };
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
         let weights = sample.weights();
-        results[..3].copy_from_slice(&sample.e);
-        results[3..6].copy_from_slice(&triangle.p());
-        for (n, weight) in weights.into_iter().enumerate() {
-            (results[6 + n], results[8 + n]) = (weight.lowered, weight.value);
+        let bits = |n: Binary| i64::from(n.nearest_f32().to_bits());
+        let edges = sample.e.into_iter().chain(weights.edges.map(bits));
+        let Binary { mantissa, exponent } = weights.reciprocal;
+        let reciprocal = [mantissa, exponent.into(), weights.dominant as i64];
+        put(results, edges.chain(reciprocal).chain(weights.b.map(bits)).chain(sample.color_weights()));
+    }
+}
+
+/// A number of the vertices by their weights.
+pub(super) struct LinearNumber;
+
+impl Unit for LinearNumber {
+    known_as!(
+        "linear", &["WGT-1"],
+        "a number f of three vertices by the weights of vertices 0 and 2 (all floats): the differences (floats), and f as a mantissa and a power of two", Geometry;
+        takes [
+            ["in.b0", "in.b2"].map(|name| Column::float(name, false, 6)),
+            ["in.f0", "in.f1", "in.f2"].map(|name| Column::float(name, true, 5)),
+        ];
+        gives [
+            Column::results(["mid.difference0", "mid.difference2"], Kind::Hex(32)),
+            Column::result("out.mantissa", Kind::Signed(27)),
+            Column::result("out.power", Kind::Signed(10)),
+        ]
+    );
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // The captured pixels of TextureWrapMode, then terms that vanish, cancel, or differ by the last bit that counts.
+        let bits = |row: [f32; 5]| row.map(|n| i64::from(n.to_bits())).to_vec();
+        let tiny = 2.0_f32.powi(-23);
+        let rows = [
+            [0.96875, 0.0, 0.9, 1.1, 1.1],
+            [0.0, 0.03125, 0.9, 0.9, 1.1],
+            [0.5, 0.25, 1.0, 1.0, 1.0],
+            [0.5, 0.25, 0.0, 0.0, 0.0],
+            [1.0, 0.0, 3.0, -1.0, 7.0],
+            [0.5, 0.5, tiny, 1.0, tiny],
+            [0.25, 0.5, 1e30, 1.0, -1e30],
+            [0.25, 0.5, f32::MAX, f32::MIN, 0.0],
+            [0.25, 0.5, 1e-38, 1.5e-38, 1e-45],
+        ];
+        rows.into_iter().map(bits).collect()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        // Weights are at least 2^-78, or 0, and at most 1.
+        inputs[..2].iter().all(|b| *b == 0 || ((127 - 78) << 23..=127 << 23).contains(b))
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        for b in &mut inputs[..2] {
+            let power = 127 - 1 - (*b >> 23) % 12;
+            *b = power << 23 | *b & 0x7f_ffff;
         }
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let [first, third] = [0, 1].map(|n| Binary::new(float(inputs[n])));
+        let f = [2, 3, 4].map(|n| float(inputs[n]));
+        let Binary { mantissa, exponent } = Linear::<Binary>::new(f).at([first, Binary::default(), third]);
+        let zeros = mantissa.trailing_zeros().min(63);
+        put(results, differences(f).map(f32::to_bits));
+        // An odd mantissa, which does not depend on how a number is held.
+        (results[2], results[3]) =
+            if mantissa == 0 { (0, 0) } else { (mantissa >> zeros, i64::from(exponent) + i64::from(zeros)) };
     }
 }
 
@@ -221,44 +295,12 @@ impl Unit for DepthInterpolation {
 
 const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
 
-/// Returns a column of w as bits: powers of two, which yield ties, and others.
+/// Returns a column of w as bits: powers of two, numbers that nv10 cuts and does not cut, and others.
 fn w(name: &str) -> Column {
-    let bits = [1.0_f32, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0].map(|w| i64::from(w.to_bits()));
+    let near_one = [0x3f80_0008, 0x3f80_0100].map(f32::from_bits);
+    let others = [1.0, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0];
+    let bits: Vec<i64> = others.into_iter().chain(near_one).map(|w| w.to_bits().into()).collect();
     Column::listed(name, Kind::Hex(32), &bits)
-}
-
-/// Perspective weights of three vertices.
-pub(super) struct PerspectiveWeights;
-
-impl Unit for PerspectiveWeights {
-    known_as!(
-        "perspective-weights", &["INT-1", "INT-6"],
-        "the perspective weights of three vertices, from their w (floats) with as many bits as the chip uses", Geometry;
-        takes [W.map(|name| Column::float(name, false, 20))];
-        gives [
-            Column::results(["mid.w0", "mid.w1", "mid.w2"], Kind::Hex(32)),
-            Column::results(["out.p0", "out.p1", "out.p2"], Kind::Unsigned(28)),
-        ]
-    );
-
-    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        // RAS-0 has no smaller w.
-        inputs.iter().all(|w| *w >= 107 << 23)
-    }
-
-    fn fit(&self, inputs: &mut [i64]) {
-        for w in inputs {
-            *w = (*w).max(107 << 23);
-        }
-    }
-
-    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let w = [0, 1, 2].map(|n| float(inputs[n]));
-        let Some(mut triangle) = Triangle::new(LARGE, false, conditions.profile) else { return };
-        triangle.weigh(w, true, conditions.profile);
-        put(results, significant(w, conditions.profile).map(f32::to_bits));
-        results[3..].copy_from_slice(&triangle.p());
-    }
 }
 
 /// One colour channel of a pixel.
@@ -294,7 +336,7 @@ pub(super) struct TextureCoordinate;
 
 impl Unit for TextureCoordinate {
     known_as!(
-        "texture-coordinate", &["INT-1", "INT-4", "INT-4t", "INT-6"],
+        "texture-coordinate", &["WGT-1", "INT-4", "INT-6"],
         "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1", Geometry;
         takes [
             geometry(),
@@ -303,14 +345,13 @@ impl Unit for TextureCoordinate {
             Column::listed("in.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512, 4096]),
         ];
         gives [
-            Column::results(["mid.g0", "mid.g1", "mid.g2"], Kind::Signed(56)),
-            Column::result("mid.lowered", Kind::Signed(3)),
+            Column::results(["mid.b0", "mid.b1", "mid.b2", "mid.s"], Kind::Hex(32)),
             Column::result("out.u", Kind::Signed(26)),
         ]
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // The handbook's triangle: u at a tie, hardly above one where S > 0, and hardly below one where S < 0.
+        // The handbook's triangle: u close to a whole number from both sides.
         let one = 0x3f80_0000;
         let above = [0, 0x3180_0000, 0x3200_0000, 0x3280_0000].map(|tiny| [0, tiny, one]);
         let below = [0, 0xb180_0000, 0xb200_0000, 0xb280_0000].map(|tiny| [0, one, tiny]);
@@ -333,13 +374,11 @@ impl Unit for TextureCoordinate {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let triangle = triangle(inputs, Some(&inputs[8..11]), conditions.profile);
-        let Some(mut triangle) = triangle else { return results.fill(0) };
-        triangle.lose(conditions.policies.plane_loss);
+        let Some(triangle) = triangle(inputs, Some(&inputs[8..11]), conditions.profile) else { return results.fill(0) };
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
-        let g = triangle.coordinate([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32)), inputs[14] as u32);
-        let u = sample.coordinate(&g);
-        results[..3].copy_from_slice(&g);
-        (results[3], results[4]) = (u.lowered, u.value);
+        let s = sample.value(&Linear::new([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32))));
+        let bits = |n: Binary| i64::from(n.nearest_f32().to_bits());
+        let u = interpolate::coordinate(s, inputs[14] as u32);
+        put(results, sample.weights().b.map(bits).into_iter().chain([bits(s.first_bits(24)), u]));
     }
 }

@@ -8,7 +8,8 @@ use super::sampling::compared;
 use super::texture::planned;
 use super::{Column, Conditions, Kind, Reach, Unit, color_results, float, named, put, sized};
 use ninebit::number::Blend;
-use ninebit::raster::depth::{Binary, DepthPlane, offset, slope, word};
+use ninebit::raster::binary::Binary;
+use ninebit::raster::depth::{DepthPlane, offset, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{
     self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, DepthTest, FogFunction, FogMode, Named,

@@ -19,7 +19,7 @@ use ninebit::trace::Silent;
 /// Calls `then` with interpolated coordinates, where all vertices have the coordinates (0, 0, r, q).
 fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interpolated<'_>) -> T) -> Option<T> {
     raster::with_place([0.0, 0.0, r, q], |at, vertices| {
-        let coordinates = &Coordinates::new(at.triangle, vertices.coordinates(0), unit);
+        let coordinates = &Coordinates::new(vertices.coordinates(0), unit);
         then(&Interpolated { unit, coordinates, at, pixel: (8, 8), vertices, perspective: false })
     })
 }
@@ -204,7 +204,7 @@ impl Unit for VolumeLayer {
         let unit = PlannedUnit { kind: TextureKind::ThreeDimensional, layers, ..of };
         with_place(&unit, [float(inputs[2]), float(inputs[3])], |place| {
             let found = layer::<i32, _>(&unit, place, &mut Silent);
-            results[0] = place.layer(layers).value;
+            results[0] = place.layer(layers);
             (results[1], results[2]) = (found.is_some().into(), found.unwrap_or(0) as i64);
         });
     }

@@ -6,6 +6,8 @@ use super::{
 };
 use ninebit::number::Lane;
 use ninebit::number::convert::split;
+use ninebit::raster::binary::Binary;
+use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::{DotMapping, Profile, ShaderOperation, ShaderStage};
 use ninebit::texture::chain::Chain;
 use ninebit::texture::stage::{PlannedShader, PlannedShaderStage, ShaderSetup};
@@ -93,7 +95,7 @@ impl CoordinateStage {
         let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
         let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
         let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {
-            let setup = &ShaderSetup::new(shader, &[], at.triangle, vertices, true);
+            let setup = &ShaderSetup::new(shader, &[], vertices);
             let scale = conditions.policies.dependent_scale;
             let chain = Chain { shader, units: &[], setup, textures: &[], vertices, perspective: false, scale };
             chain.run(at, (8, 8), observer)
@@ -133,18 +135,21 @@ pub(super) struct BumpOffset;
 impl Unit for BumpOffset {
     known_as!(
         "bump-offset", &["TSH-7"],
-        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A;
+        "u in 1/256 texel of a coordinate (a float) that blue and green (two's complement) move", Geometry; on NV2A;
         takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096]),
             ["in.entry_blue", "in.entry_green"].map(|name| Column::float(name, true, 3)),
             ["in.blue", "in.green"].map(Column::byte),
+            Column::float("in.s", true, 5),
         ];
-        gives [Column::result("out.offset", Kind::Signed(56))]
+        gives [Column::result("mid.offset", Kind::Hex(32)), Column::result("out.u", Kind::Signed(26))]
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let entries = [1, 2].map(|n| float(inputs[n]));
-        results[0] = shader::offset(entries, [inputs[3] as u8, inputs[4] as u8], inputs[0] as u32);
+        let (offset, s) = (shader::offset(entries, [inputs[3] as u8, inputs[4] as u8]), Binary::new(float(inputs[5])));
+        results[0] = if offset.is_nan() { f32::NAN } else { offset }.to_bits().into();
+        results[1] = shader::moved(s, offset, inputs[0] as u32, 8, COORDINATE_LIMIT);
     }
 }
 

@@ -3,7 +3,6 @@
 use super::raster::with_place;
 use super::{Column, Conditions, Kind, Reach, Unit, float, named, paired, put};
 use ninebit::number::{Lane, Paired};
-use ninebit::raster::interpolate::Sample;
 use ninebit::state::*;
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, real_coordinate};
 use ninebit::texture::cube::Face;
@@ -249,7 +248,7 @@ fn met<O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer
         let ideal = place.real(Some(face)).st.map(|c| real_coordinate(c, level.width));
         place.describe(&Report { unit, prefix: "" }, level, floored, ideal, observer);
     }
-    [face as i64, floored[0].value, floored[1].value]
+    [face as i64, floored[0], floored[1]]
 }
 
 /// A look-up in a cube map by an interpolated direction.
@@ -257,12 +256,9 @@ pub(super) struct CubeDirection;
 
 impl CubeDirection {
     fn run(&self, inputs: &[i64], _: &Conditions, observer: &mut impl Observer) -> [i64; 3] {
-        let (unit, direction) = (cube(inputs[0]), [inputs[1], inputs[2], inputs[3]]);
-        let [x, y, z] = direction.map(|n| n as f32);
+        let (unit, [x, y, z]) = (cube(inputs[0]), [1, 2, 3].map(|n| inputs[n] as f32));
         let found = with_place([x, y, z, 1.0], |at, vertices| {
-            // At the first vertex the direction is the numbers themselves.
-            let at = &Sample::new(at.triangle, [1, 0, 0]);
-            let coordinates = &Coordinates::Direction(direction.map(|n| [n, 0, 0]));
+            let coordinates = &Coordinates::new(vertices.coordinates(0), &unit);
             let place = Interpolated { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
             met(&unit, &place, observer)
         });
@@ -276,7 +272,7 @@ impl Unit for CubeDirection {
         "the face of a cube map in an interpolated direction (whole numbers), and u and v on it in 1/256 texel", Geometry;
         takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512]),
-            ["in.x", "in.y", "in.z"].map(|name| Column::signed(name, 30, -(1 << 28), 1 << 28)),
+            ["in.x", "in.y", "in.z"].map(|name| Column::signed(name, 26, -(1 << 24), 1 << 24)),
         ];
         gives [
             Column::result("out.face", Kind::Name(Face::NAMES)),
@@ -293,7 +289,7 @@ impl Unit for CubeDirection {
             } else if small == 1 && inputs[n] & 8 != 0 {
                 inputs[n] = inputs[1] + inputs[n] % 3;
             }
-            inputs[n] = inputs[n].clamp(-(1 << 28), 1 << 28);
+            inputs[n] = inputs[n].clamp(-(1 << 24), 1 << 24);
         }
     }
 

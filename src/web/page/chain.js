@@ -5,15 +5,20 @@ const CHANNELS = ["r", "g", "b", "a"];
 
 const real = (value, digits = 6) => (value === null || value === undefined ? "" : Number.isInteger(value) && Math.abs(value) > 1e6 ? String(value) : (+value).toPrecision(digits).replace(/\.?0+$/, ""));
 
-const integer = (step) => (step.per_one === 0 ? step.value_text ?? hexadecimal(step.value >>> 0, 8) : step.value_text ?? String(step.value));
+const power = (step) => (step.exponent ? ` 2^${step.exponent}` : "");
+
+const integer = (step) => (step.per_one === 0 ? step.value_text ?? hexadecimal(step.value >>> 0, 8) : (step.value_text ?? String(step.value)) + power(step));
+
+// Of a count, a flag or a weight the real number is the integer.
+const counts = (step) => step.per_one === 1 && !step.exponent;
 
 function hex(step) {
   if (step.per_one === 0) return integer(step);
   const value = BigInt(step.value_text ?? step.value);
-  return (value < 0n ? "-0x" : "0x") + (value < 0n ? -value : value).toString(16).padStart(2, "0");
+  return (value < 0n ? "-0x" : "0x") + (value < 0n ? -value : value).toString(16).padStart(2, "0") + power(step);
 }
 
-const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}`).join(", ")})`;
+const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}${power(input)}`).join(", ")})`;
 
 // `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r. The r of `unit3.r` is a coordinate where it is a number of its own or made of one, else red.
 function place({ name, per_one }) {
@@ -137,9 +142,7 @@ export class Chain {
   }
 
   wire(step, fragment, channel) {
-    // Of a count, a flag or a weight the real number is the integer.
-    const counted = step.per_one === 1;
-    const second = [step.per_one === 0 ? "" : hex(step), counted || step.per_one === 0 ? "" : real(step.real, 4)].filter(Boolean).join(" ");
+    const second = [step.per_one === 0 ? "" : hex(step), counts(step) || step.per_one === 0 ? "" : real(step.real, 4)].filter(Boolean).join(" ");
     return el("button", { className: "wire", title: `${step.name}: ${written(step)}`, "data-fragment": fragment, "data-step": step.id },
       channel ? el("i", {}, channel) : null, el("b", {}, integer(step)),
       second ? el("small", {}, second) : null,
@@ -286,7 +289,7 @@ export class Chain {
       if (details.childElementCount > 1) return;
       const row = (step) => el("tr", {}, el("td", {}, el("button", { className: "wire", "data-fragment": fragment, "data-step": step.id }, step.name)),
         el("td", {}, step.operation === "given" ? "" : written(step)), el("td", { className: "n" }, integer(step)), el("td", { className: "n" }, hex(step)),
-        el("td", { className: "n" }, step.per_one === 1 ? "" : real(step.real)), el("td", { className: "n" }, real(step.ideal)), el("td", {}, step.rule), el("td", {}, step.note ?? ""));
+        el("td", { className: "n" }, counts(step) ? "" : real(step.real)), el("td", { className: "n" }, real(step.ideal)), el("td", {}, step.rule), el("td", {}, step.note ?? ""));
       const head = ["what", "how", "integer", "hex", "real", "ideal", "rule", "note"].map((title) => el("th", { scope: "col" }, title));
       details.append(el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "steps" }, el("table", {}, el("thead", {}, el("tr", {}, head)), el("tbody", {}, steps.map(row)))));
       this.mark(details);
@@ -326,7 +329,7 @@ export class Chain {
     const step = steps[id];
     const entry = (title, value) => (value === "" ? null : el("span", {}, el("dt", {}, title), el("dd", {}, value)));
     bar.replaceChildren(el("b", {}, step.name), el("dl", {}, entry("integer", integer(step)), entry("hex", hex(step)), entry("of", step.per_one > 1 ? String(step.per_one) : ""),
-      entry("real", step.per_one === 1 ? "" : real(step.real)), entry("ideal", real(step.ideal)), entry("depends on", bright.size === 2 ? "1 value" : `${bright.size - 1} values`)),
+      entry("real", counts(step) ? "" : real(step.real)), entry("ideal", real(step.ideal)), entry("depends on", bright.size === 2 ? "1 value" : `${bright.size - 1} values`)),
       ...(step.rule ? [this.badge(step.rule)] : []), ...(step.note ? [el("span", { className: "quiet" }, step.note)] : []),
       el("button", { onclick: () => this.choose(null), "aria-label": "Close" }, "×"), el("div", { className: "formula" }, step.operation === "given" ? "" : written(step)));
   }

@@ -1,30 +1,12 @@
-//! Compares weights, coordinates and faces of the rows with the definition, for millions of pixels.
+//! Compares the frames of both engines for random triangles of all kinds, textures, fogs and depths.
 //!
-//! `NINEBIT_EQUIVALENCE_PIXELS=250000000 cargo test --release --lib rows::equivalence_tests` compares 10^9 quotients of 2D coordinates and
-//! weights. Without the variable a small part of them is compared.
+//! `NINEBIT_EQUIVALENCE_PIXELS=250000000 cargo test --release --lib rows::equivalence_tests` compares many; without the variable, a small part of
+//! them.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::boxes::{HALF_STEP, batch, boxes, is_small};
-use super::direction::coordinates;
-use super::kernels::{PerLane, STEP};
-use super::levels::{MipFetches, fetches, levels};
-use super::planes::inverse;
-use super::quads::Measure;
-use super::setup::{PixelBatch, Setup};
-use super::small::Boxes;
-use super::taps::{Footprints, Pair, PairsOfQuad, taps};
-use super::triangle::InterpolatorKernels;
-use super::triangle::{Interpolators, Varying};
-use super::{BLOCK, Reasons, Rows};
-use crate::engine::TextureWords;
-use crate::engine::context::TriangleContext;
-use crate::engine::walk::Window;
+use super::shading::shader_tests::compare;
 use crate::plan::{Plan, PlanOptions};
-use crate::raster::interpolate::Sample;
-use crate::raster::setup::is_flat;
 use crate::state::*;
-use crate::texture::address::address;
-use crate::texture::coordinates::SampleCoordinates;
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -292,200 +274,19 @@ pub(super) fn scene(
     }
 }
 
-/// Returns options for coordinates on planes that lose a finite amount, or the default ones (INT-4t).
-pub(super) fn options(finite: bool) -> PlanOptions {
-    let mut options = PlanOptions::default();
-    options.policies.choose("INT-4t", usize::from(finite));
-    options
-}
-
-/// Compares the units on planes and the weights of a box of a small triangle with the definition.
-fn compare_small<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    plain: &super::CompiledDraw,
-    window: Window,
-    small: &mut Boxes,
-    varying: &mut Varying,
-    rows: &mut [PerLane<i16>],
-) -> bool {
-    (small.all[0], small.count, small.current) = ((window, 0), 1, 0);
-    small.corners.set(0, context);
-    // Nothing is stored on a surface.
-    small.set_up::<FMA>(std::slice::from_ref(context), plain, 0);
-    if small.has_ratios {
-        small.set_up_ratios::<FMA>(context, plain);
-    }
-    if small.has_levels {
-        small.set_up_levels::<FMA>(context, plain);
-    }
-    let batch = batch::<HALF_STEP>(small.coverage(), 0);
-    let mut done = if small.is_tied() {
-        small.interpolate::<FMA, true>(context, plain, batch, varying, rows)
-    } else {
-        small.interpolate::<FMA, false>(context, plain, batch, varying, rows)
-    };
-    done &= !small.has_ratios || small.interpolate_ratios::<FMA>((context, plain), batch, varying, rows);
-    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
-    done &= !small.has_levels || small.interpolate_levels((context, plain), fetches::<FMA>, batch, varying);
-    let (alone, mut wanted) = (Setup::new(context, &inverse(&context.triangle)), MipFetches::default());
-    if plain.depths_together {
-        small.depths.write::<FMA>(0, batch, context.draw.depth_format, &mut varying.depth);
-    } else {
-        super::depth::depths::<FMA, false>(context, batch, varying.depths());
-    }
-    for n in (0..batch.count).filter(|_| done) {
-        let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
-        for (index, sampler) in plain.samplers.iter().enumerate() {
-            let unit = &context.draw.units[sampler.index];
-            if sampler.mixes {
-                compare_reads(&alone, sampler, batch, n, &varying.reads[index], &mut wanted);
-                continue;
-            }
-            let place = context.sample_coordinates(unit, &sample, batch.pixel(n)).unwrap();
-            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
-            let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
-            assert_eq!(got, wanted, "unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
-            if let Some(super::compiled::Third::Reference(format)) = sampler.third {
-                let (got, wanted) =
-                    (varying.references[index][lane], crate::raster::depth::word(format, place.reference()));
-                assert_eq!(got, wanted, "reference of unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
-            }
-        }
-        let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
-        let slot = usize::from(plain.fog.unwrap());
-        assert_eq!(rows[slot].0[lane], fog, "{:?} {:?} of {:?}", batch.pixel(n), context.draw.fog, context.vertices());
-        if plain.varies(context) {
-            let weights = sample.weights().map(|w| w.value as u16);
-            let got = varying.narrow.each_ref().map(|w| w[lane]);
-            assert_eq!(got, weights, "{:?} of {:?}", batch.pixel(n), context.vertices());
-        }
-        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
-        assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", batch.pixel(n), context.vertices());
-    }
-    done
-}
-
-/// Compares the fetches of a pixel from a texture with levels with those of the definition.
-fn compare_reads(
-    setup: &Setup<'_>,
-    sampler: &super::Sampler,
-    batch: PixelBatch<'_>,
-    n: usize,
-    found: &MipFetches,
-    wanted: &mut MipFetches,
-) {
-    setup.defined_reads(batch, n, sampler, wanted);
-    let of = |reads: &MipFetches| {
-        let lane = batch.lane + n;
-        let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
-        (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
-    };
-    let (unit, vertices) = (sampler.index, setup.context.vertices());
-    assert_eq!(of(found), of(wanted), "unit {unit} {:?} of {vertices:?}", batch.pixel(n));
-}
-
-/// Compares a batch with the definition, pixel by pixel.
-fn compare<const FMA: bool, const ROW: bool>(
-    interpolators: &Interpolators<'_>,
-    compiled: &super::CompiledDraw,
-    batch: PixelBatch<'_>,
-    varying: &mut Varying,
-    rows: &mut [PerLane<i16>],
-) {
-    // Results of an earlier batch must not pass for those of this one.
-    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(u16::MAX));
-    let kernels = InterpolatorKernels {
-        coordinates: coordinates::<FMA>,
-        levels: levels::<FMA>,
-        fetches: fetches::<FMA>,
-        taps: taps::<FMA>,
-    };
-    interpolators.interpolate::<FMA, ROW>(batch, (compiled, &kernels), &[], varying, rows);
-    super::depth::depths::<FMA, ROW>(interpolators.setup.context, batch, varying.depths());
-    let (context, mut wanted, mut taps) = (&interpolators.setup.context, MipFetches::default(), Footprints::default());
-    for n in 0..batch.count {
-        let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
-        let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
-        let lane = batch.lane + n;
-        let weights = sample.weights().map(|w| w.value as u16);
-        let depth = context.depth_word(&sample).unwrap_or(super::depth_words::OUTSIDE);
-        assert_eq!(varying.depth[lane], depth, "({i}, {j}) of {:?}", context.vertices());
-        let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
-        let slot = usize::from(compiled.fog.unwrap());
-        assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices());
-        assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices());
-        for (index, unit) in context.draw.units.iter().enumerate() {
-            let place = context.sample_coordinates(unit, &sample, (i, j)).unwrap();
-            let sampler = &compiled.samplers[index];
-            if sampler.mixes {
-                compare_reads(&interpolators.setup, sampler, batch, n, &varying.reads[index], &mut wanted);
-                continue;
-            }
-            let bias = if compiled.samplers[index].filters { 128 } else { 0 };
-            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
-            let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
-            assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
-            if sampler.pairs > 0 {
-                taps.begin(sampler);
-                Footprints::set(&mut taps.pairs, 0, &PairsOfQuad::defined(unit, place.quad()));
-                for (got, wanted) in varying.footprints[index].pairs.iter().zip(&taps.pairs) {
-                    let of =
-                        |pair: &Pair, lane: usize| (pair.weights[lane], [0, 1].map(|n: usize| pair.offsets[n][lane]));
-                    let (got, wanted) = (of(got, lane), of(wanted, 0));
-                    assert_eq!(got, wanted, "taps of unit {index} ({i}, {j}) of {:?}", context.vertices());
-                }
-            }
-            match &sampler.third {
-                Some(super::compiled::Third::Layer(_, axis)) => {
-                    let layer = |texel: i64| address(unit.state.address_r, texel, unit.layers, false);
-                    let entry = i64::from(axis.first) + i64::from(varying.faces[index][lane]);
-                    let wanted = layer(place.layer(unit.layers).value >> 8);
-                    assert_eq!(layer(entry), wanted, "layers of unit {index} ({i}, {j}) of {:?}", context.vertices());
-                }
-                Some(super::compiled::Third::Reference(format)) => {
-                    let wanted = crate::raster::depth::word(*format, place.reference());
-                    let got = varying.references[index][lane];
-                    assert_eq!(got, wanted, "reference of unit {index} ({i}, {j}) of {:?}", context.vertices());
-                }
-                _ => {}
-            }
-            if unit.kind == TextureKind::Cube {
-                assert_eq!(varying.faces[index][lane], place.face() as u32, "({i}, {j}) of {:?}", context.vertices());
-            }
-        }
-    }
-}
-
-#[test]
-fn rows_interpolate_what_the_definition_does() {
-    rows_interpolate(0x9e37_79b9_7f4a_7c15);
-}
-
-/// Tests the other half of the pixels. The two tests run in parallel.
-#[test]
-fn rows_interpolate_what_the_definition_does_elsewhere() {
-    rows_interpolate(0xbf58_476d_1ce4_e5b9);
-}
-
-/// Compares half of the pixels, at random places.
-fn rows_interpolate(seed: u64) {
-    let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
-    let (wanted, least_drawn) = (all / 2, 10_000);
+/// Draws scenes of random triangles until all instruction sets have drawn so many pixels.
+fn draw(seed: u64, wanted: u64) {
     let mut random = Random::seeded(seed);
-    let (mut pixels, mut drawn, mut with_depths, mut tied, mut round) = (0, 0, 0, 0, 0_u64);
-    // By the kind of coordinates: on planes, divided by q, and both with depths to compare with; on planes with levels.
-    let mut proved = [0; 5];
-    let (mut covers, mut small_boxes, mut reasons) = (Boxes::default(), Boxes::default(), Reasons::default());
-    while pixels < wanted || drawn < least_drawn {
+    let (mut pixels, mut scalar, mut round) = (0, 0, 0_u64);
+    while pixels < wanted {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let depth = random.of(DepthFormat::ALL);
         let fog = fog(&mut random);
-        // The last triangles are small, and so many that building their tables pays.
-        let small = pixels >= wanted;
+        let small = round % 3 == 0;
         let mixes = [0; 2].map(|_| random.below(2) == 0);
-        let mut vertices: Vec<Vertex> =
-            (0..if small { 256 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
+        let count = if small { 400 } else { 6 };
+        let mut vertices: Vec<Vertex> = (0..count).flat_map(|_| triangle(&mut random, small)).collect();
         let third = match random.below(6) {
             0 | 1 => Third::Layers(random.of(AddressMode::ALL)),
             2 | 3 => Third::Reference(random.of(DEPTHS)),
@@ -508,96 +309,21 @@ fn rows_interpolate(seed: u64) {
             }
         }
         let anisotropy = random.of(&[1, 1, 2, 4, 8]);
-        let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));
-        let Ok(plan) = Plan::compile(&scene, &options(round % 3 == 0)) else { continue };
-        let rows_of_plan = Rows::compile(&plan);
-        let [compiled] = &rows_of_plan.draws(&plan, 0..1, &TextureWords::new(&plan, &[], &[]))[..] else {
-            panic!("one")
-        };
-        assert_eq!(compiled.samplers.len(), 4);
-        // Each sampler that small triangles are set up together for is put in every place that a sampler can have.
-        let kinds: Vec<_> = compiled
-            .samplers
-            .iter()
-            .filter(|sampler| sampler.is_plain())
-            .map(|sampler| {
-                let samplers = vec![super::Sampler { shares: None, ..sampler.clone() }; 1 + round as usize % 4];
-                let of_coordinates = 2 * usize::from(sampler.third.is_some()) + usize::from(sampler.index == 2);
-                let kind = if sampler.mixes { 4 } else { of_coordinates };
-                (kind, super::CompiledDraw { samplers, plain: true, ..compiled.clone().into_owned() })
-            })
-            .collect();
-        let draw = &plan.draws[0];
-        let (mut varying, mut rows) = (Varying::default(), vec![PerLane::from_value(0); compiled.rows.len()]);
-        varying.reads.resize(compiled.samplers.len(), MipFetches::default());
-        varying.footprints.resize(compiled.samplers.len(), Footprints::default());
-        varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));
-        let mut planes = Default::default();
-        let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
-        for number in 0..draw.assembly.triangles.len() {
-            let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
-            let interpolators = Interpolators::new(&context, compiled, planes);
-            let triangle = &interpolators.setup.context.triangle;
-            let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
-            let sides = [triangle.rows, triangle.columns].map(|(first, end)| (end - first) as i32);
-            let is_flat = is_flat(context.corners().map(|corner| corner.w), draw.perspective, plan.profile);
-            if is_small(sides.into(), is_flat) {
-                let (mut covered, (first, end)) = (0, triangle.columns);
-                covers.corners.set(0, &context);
-                for part in boxes((window, (first.max(columns.0), end.min(columns.1)))) {
-                    (covers.all[0], covers.count) = ((part, 0), 1);
-                    covers.cover(0);
-                    let coverage = covers.coverage();
-                    if coverage.count == 0 {
-                        continue;
-                    }
-                    let batch = batch::<STEP>(coverage, 0);
-                    let alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
-                    if let Some((kind, plain)) = kinds.get(number % kinds.len().max(1)) {
-                        let done = if round.is_multiple_of(4) {
-                            compare_small::<true>(&alone, plain, part, &mut small_boxes, &mut varying, &mut rows)
-                        } else {
-                            compare_small::<false>(&alone, plain, part, &mut small_boxes, &mut varying, &mut rows)
-                        };
-                        proved[*kind] += u64::from(done);
-                        tied += u64::from(done && small_boxes.is_tied());
-                        with_depths += u64::from(done && plain.depths_together);
-                    }
-                    if round.is_multiple_of(4) {
-                        compare::<true, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
-                    } else {
-                        compare::<false, false>(&interpolators, compiled, batch, &mut varying, &mut rows);
-                    }
-                    (covered, drawn) = (covered + coverage.count, drawn + 1);
-                }
-                let spans = (window.0..window.1).map(|j| triangle.span(j, columns)).map(|(a, b)| (b - a) as usize);
-                assert_eq!(covered, spans.sum::<usize>());
-                pixels += covered as u64;
-            } else {
-                for j in window.0..window.1 {
-                    let (mut i, end) = triangle.span(j, columns);
-                    if i == end {
-                        continue;
-                    }
-                    interpolators.begin_row::<false>((i, j), end - i, compiled, &mut varying);
-                    while i < end {
-                        let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
-                        let batch = PixelBatch::row((i, j), count, 0);
-                        if round.is_multiple_of(4) {
-                            compare::<true, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
-                        } else {
-                            compare::<false, true>(&interpolators, compiled, batch, &mut varying, &mut rows);
-                        }
-                        i += count as i64;
-                        pixels += count as u64;
-                    }
-                }
-            }
-            planes = interpolators.given_back(&mut reasons);
+        let mut scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));
+        if random.below(3) == 0 {
+            scene.profile = Profile::Nv10;
         }
+        let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
+        let (drawn, by_scalar) = compare(&plan, &format!("round {round}"));
+        (pixels, scalar) = (pixels + drawn, scalar + by_scalar);
     }
-    println!(
-        "{pixels} pixels, {drawn} boxes of small triangles, {proved:?} of them proved at once, {with_depths} with depths, {tied} with ties; definition: {reasons:?}"
-    );
-    assert!(proved.iter().all(|boxes| *boxes > drawn / 200) && with_depths > drawn / 20 && tied > drawn / 50);
+    println!("{pixels} pixels of {round} scenes, {scalar} of them by the scalar engine");
+    assert!(scalar * 4 < pixels);
+}
+
+#[test]
+fn frames_are_those_of_the_definition() {
+    let all = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000);
+    draw(0x243f_6a88_85a3_08d3, all / 2);
+    draw(0x1319_8a2e_0370_7344, all / 2);
 }

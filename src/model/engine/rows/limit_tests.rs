@@ -1,10 +1,11 @@
 //! Compares kernels with the definition where all numbers of a pixel lie at the ends of their ranges.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use super::graph::Graph;
-use super::kernels::{BLOCK, Lanes, PerLane, run};
+use super::lanes::{BLOCK, Lanes, PerLane};
 use super::lattice::{self, pick};
-use super::node::{Input, Node, Value};
+use super::shading::graph::Graph;
+use super::shading::kernels::run;
+use super::shading::node::{Input, Node, Value};
 use crate::algebra::Algebra;
 use crate::combiner::direct::Direct;
 use crate::combiner::general::{dot, output, third};

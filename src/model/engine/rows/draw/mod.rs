@@ -1,0 +1,223 @@
+//! From triangles to lanes, and from lanes to blocks.
+//!
+//! ```text
+//! for each triangle that may cover pixels of the band:
+//!     for each row, or each pair of rows where quads are taken:
+//!         the covered columns become lanes of the block, after those of the row above
+//!         if the block is full:  interpolate the triangle's lanes, finish the block
+//!     interpolate the triangle's lanes
+//! finish the block:  sample or shade, combine, store
+//! ```
+
+mod block;
+mod compile;
+mod isa;
+mod job;
+mod triangle;
+
+pub(crate) use block::Block;
+pub(crate) use compile::Rows;
+pub use isa::Isa;
+pub(crate) use isa::Kernels;
+
+use crate::engine::context::TriangleContext;
+use crate::engine::rows::geometry::shape::Shape;
+use crate::engine::rows::geometry::spans::{ROWS, Spans};
+use crate::engine::rows::lanes::{BLOCK, Lanes, Run};
+use crate::engine::rows::sampling::fetch::Reader;
+use crate::engine::rows::sampling::quads::PixelQuads;
+use crate::engine::rows::store;
+use crate::engine::walk::{self, Band, Window};
+use job::Job;
+
+/// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
+pub(crate) fn run(kernels: &Kernels, job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    let Job { plan, draw, compiled, .. } = *job;
+    let rows = band.rows();
+    if walk::windows(draw, rows).next().is_none() {
+        return 0;
+    }
+    (kernels.begin)(compiled, block, band);
+    let mut context = TriangleContext::vacant(plan, draw);
+    let mut drawing = Drawing { kernels, job, band, block, shaded: 0 };
+    for window in walk::windows(draw, rows) {
+        for number in job.triangles {
+            if context.set_up(*number as usize, window.0) {
+                drawing.triangle(window, &context);
+            }
+        }
+    }
+    drawing.finish();
+    drawing.shaded
+}
+
+/// What draws the triangles of a job on a band.
+struct Drawing<'d, 'b> {
+    kernels: &'d Kernels,
+    job: &'d Job<'d>,
+    band: &'d mut Band<'b>,
+    block: &'d mut Block,
+    /// Number of pixels that were covered.
+    shaded: u64,
+}
+
+/// A triangle and its lanes in the block.
+struct Drawn<'t> {
+    context: &'t TriangleContext<'t>,
+    shape: Shape,
+    /// The first lane, run and entry of quads that belong to it.
+    lane: usize,
+    run: usize,
+    quads: usize,
+    /// Whether its functions are set up.
+    is_set_up: bool,
+}
+
+impl Drawing<'_, '_> {
+    /// Draws a triangle.
+    fn triangle(&mut self, window: Window, context: &TriangleContext<'_>) {
+        let (triangle, draw) = (&context.triangle, self.job.draw);
+        let takes_quads = self.job.compiled.takes_quads;
+        let within = |of: (i64, i64), limits: (i64, i64)| (of.0.max(limits.0), of.1.min(limits.1));
+        let (rows, columns) = (within(triangle.rows, window.0), within(triangle.columns, window.1));
+        if rows.0 >= rows.1 || columns.0 >= columns.1 {
+            return;
+        }
+        let w = context.corners().map(|corner| corner.w);
+        let shape = Shape::new(triangle, w, (draw.perspective, self.job.plan.profile), takes_quads);
+        let (lane, run, quads) = (self.block.used, self.block.runs.len(), self.block.quads.len());
+        let mut drawn = Drawn { context, shape, lane, run, quads, is_set_up: false };
+        let mut spans = Spans::default();
+        // Even, so that no quad is divided.
+        for top in (rows.0 & !1..rows.1).step_by(ROWS) {
+            (self.kernels.find_spans)(&drawn.shape, top, columns, &mut spans);
+            let count = (rows.1 - top).min(ROWS as i64) as usize;
+            let span = |n: usize| {
+                let is_drawn = n < count && top + n as i64 >= rows.0;
+                if is_drawn { (i64::from(spans.first[n]), i64::from(spans.end[n])) } else { (0, 0) }
+            };
+            if takes_quads {
+                for n in (0..count).step_by(2) {
+                    self.pair(top + n as i64, [span(n), span(n + 1)], &mut drawn);
+                }
+            } else {
+                for n in 0..count {
+                    self.row(top + n as i64, span(n), &mut drawn);
+                }
+            }
+        }
+        self.close(&mut drawn);
+    }
+
+    /// Adds the covered pixels of a row.
+    #[inline(always)]
+    fn row(&mut self, j: i64, (mut i, end): (i64, i64), drawn: &mut Drawn<'_>) {
+        while i < end {
+            let count = ((end - i) as usize).min(BLOCK);
+            if self.block.used == BLOCK || self.is_taken((i, j), count) {
+                self.finish_within(drawn);
+            }
+            let count = count.min(BLOCK - self.block.used);
+            let lane = self.block.used;
+            self.block.add((i, j), count);
+            self.cover((i, j), lane, count);
+            i += count as i64;
+        }
+    }
+
+    /// Adds all pixels of the quads that a triangle meets in two rows.
+    fn pair(&mut self, top: i64, spans: [(i64, i64); 2], drawn: &mut Drawn<'_>) {
+        let (mut low, mut high) = (i64::MAX, i64::MIN);
+        for (first, end) in spans.into_iter().filter(|(first, end)| first < end) {
+            (low, high) = (low.min(first & !1), high.max((end + 1) & !1));
+        }
+        while low < high {
+            // Two rows fill a block at most.
+            let columns = (high - low).min(BLOCK as i64 / 2);
+            let covered = spans.map(|(first, end)| (first.max(low), end.min(low + columns)));
+            let count = |n: usize| (covered[n].1 - covered[n].0).max(0) as usize;
+            let at = |n: usize| (covered[n].0, top + n as i64);
+            let is_taken = |n: usize| count(n) > 0 && self.is_taken(at(n), count(n));
+            if 2 * columns as usize > BLOCK - self.block.used || is_taken(0) || is_taken(1) {
+                self.finish_within(drawn);
+            }
+            let (upper, lower) = (self.block.used, self.block.used + columns as usize);
+            self.block.quads.add(PixelQuads { upper, lower, count: columns as usize / 2 });
+            for (n, first) in [upper, lower].into_iter().enumerate() {
+                self.block.add((low, top + n as i64), columns as usize);
+                if count(n) > 0 {
+                    self.cover(at(n), first + (covered[n].0 - low) as usize, count(n));
+                }
+            }
+            low += columns;
+        }
+    }
+
+    /// Notes that lanes have pixels that the triangle covers.
+    #[inline(always)]
+    fn cover(&mut self, pixel: (i64, i64), lane: usize, count: usize) {
+        let run = Run::new(lane, self.band.index(pixel), count);
+        self.block.runs.push(run);
+        if self.job.compiled.reads_surface {
+            store::mark(&mut self.block.taken, &[run]);
+        }
+        self.shaded += count as u64;
+    }
+
+    /// Computes what a triangle's lanes in the block read, but those that the depth test takes out.
+    fn close(&mut self, drawn: &mut Drawn<'_>) {
+        let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
+        let Drawn { context, shape, lane, run, quads, is_set_up } = drawn;
+        if block.used == *lane {
+            return;
+        }
+        if job.draw.depth_test.is_some() {
+            (kernels.test_depths)(context, shape, job, block, (*lane, *run), self.band);
+            if block.runs.len() == *run {
+                (block.used, _) = (*lane, block.quads.truncate(*quads));
+                return;
+            }
+        }
+        if !std::mem::replace(is_set_up, true) {
+            (kernels.set_up)(context, shape, job, block);
+        }
+        // Whole vectors, of which the next triangle overwrites what is too much.
+        let lanes = *lane..*lane + (block.used - *lane).next_multiple_of(8);
+        (kernels.interpolate)(context, shape, job, block, lanes);
+    }
+
+    /// Finishes the block although more pixels of a triangle follow.
+    fn finish_within(&mut self, drawn: &mut Drawn<'_>) {
+        self.close(drawn);
+        self.finish();
+        (drawn.lane, drawn.run, drawn.quads) = (0, 0, 0);
+    }
+
+    /// Returns whether the draw reads the surface and the block has lanes for some of these pixels already.
+    #[inline(always)]
+    fn is_taken(&self, pixel: (i64, i64), count: usize) -> bool {
+        self.job.compiled.reads_surface && self.block.is_taken(self.band, pixel, count)
+    }
+
+    /// Computes a block and stores it.
+    fn finish(&mut self) {
+        let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
+        if block.used == 0 {
+            return;
+        }
+        block.work.lanes = Lanes::first(block.used);
+        if job.compiled.shader.is_some() {
+            (kernels.shade)(job, block);
+        } else {
+            for (n, sampler) in job.compiled.samplers.iter().enumerate() {
+                let unit = &job.draw.units[sampler.index];
+                let wanted = job.compiled.textures[sampler.unit];
+                let reader = Reader { filter: job.filter, unit, sampler, wanted };
+                let Block { pixels, places, quads, work, sampled, rows, .. } = block;
+                (kernels.sample)(reader, pixels, &mut places[sampler.shares.unwrap_or(n)], quads, work, sampled, rows);
+            }
+        }
+        (kernels.flush)(job, block, self.band);
+        block.quads.truncate(0);
+    }
+}

@@ -1,0 +1,113 @@
+//! Everything that varies across a triangle, for the lanes that it has in a block.
+
+use super::block::Block;
+use super::job::Job;
+use crate::engine::context::TriangleContext;
+use crate::engine::rows::geometry::shape::Shape;
+use crate::engine::rows::interpolate::coordinates::Coordinates;
+use crate::engine::rows::interpolate::estimates::Estimates;
+use crate::engine::rows::interpolate::fog::Fog;
+use crate::engine::rows::interpolate::{Weighted, colors, numbers};
+use crate::engine::rows::shading::compiled::CompiledDraw;
+use crate::raster::weights::Linear;
+use std::ops::Range;
+
+/// The functions of a triangle besides colours and depths. Those of another triangle are replaced.
+#[derive(Debug, Default)]
+pub(crate) struct Functions {
+    /// Coordinates of the samplers.
+    coordinates: Vec<Coordinates>,
+    /// Numbers of the texture shader.
+    numbers: Vec<Linear<f64>>,
+    fog: Option<Fog>,
+    /// Floors of colour weights and coordinates, if the triangle has no other function and all are estimated.
+    estimates: Estimates,
+    is_estimated: bool,
+}
+
+impl Functions {
+    /// Sets up a triangle.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, context: &TriangleContext<'_>, shape: &Shape, compiled: &CompiledDraw) {
+        let (draw, vertices) = (context.draw, context.vertices());
+        self.coordinates.clear();
+        for sampler in &compiled.samplers {
+            let unit = &draw.units[sampler.index];
+            let of =
+                if sampler.interpolates() { Coordinates::new(unit, sampler, vertices) } else { Default::default() };
+            self.coordinates.push(of);
+        }
+        self.numbers.clear();
+        for (stage, component, _) in compiled.shader.iter().flat_map(|shader| &shader.varying) {
+            let set = compiled.shader.as_ref().map_or(0, |shader| shader.stages[*stage].state.coordinate_set);
+            self.numbers.push(Linear::new(vertices.coordinate(set, *component)));
+        }
+        self.fog = compiled.fog.map(|_| Fog::new(draw.fog.function.as_ref(), vertices.fog()));
+        let is_plain = compiled.shader.is_none() && self.fog.is_none() && !compiled.takes_quads;
+        self.is_estimated = is_plain && self.estimates.set(shape, &compiled.samplers, &self.coordinates);
+    }
+}
+
+/// Interpolates everything that a draw reads in some lanes.
+#[inline(always)]
+pub(crate) fn interpolate(
+    context: &TriangleContext<'_>,
+    shape: &Shape,
+    job: &Job<'_>,
+    block: &mut Block,
+    lanes: Range<usize>,
+) {
+    let compiled = job.compiled;
+    let (primary, secondary) = (&context.primary, &context.secondary);
+    let varies = compiled.varies(primary, secondary);
+    let Block { pixels, functions, undecided, places, workshop, colors, rows, .. } = block;
+    let Functions { estimates, is_estimated, .. } = functions;
+    // All lanes, or those that no estimate decides. There is one call of each function, or compilers would not inline what it calls for each lane.
+    let all = match is_estimated {
+        true => {
+            let colors = varies.then_some(&mut *colors);
+            let count = undecided.estimate((estimates, &compiled.samplers), (pixels, lanes.clone()), colors, places);
+            0..count.next_multiple_of(8)
+        }
+        false => lanes.clone(),
+    };
+    let (own, weights) = match is_estimated {
+        true => (&mut undecided.pixels, &mut undecided.colors),
+        false => (&mut *pixels, &mut *colors),
+    };
+    if (varies || compiled.interpolates()) && !all.is_empty() {
+        own.weigh(shape, all.clone(), compiled.takes_quads);
+        if varies {
+            colors::weigh(own, all.clone(), weights);
+        }
+    }
+    if *is_estimated && varies {
+        undecided.scatter_colors(lanes.clone(), colors);
+    }
+    for (slots, of) in [(&compiled.primary, primary), (&compiled.secondary, secondary)] {
+        colors::color(slots, of, lanes.clone(), colors, rows);
+    }
+    if all.is_empty() {
+        return;
+    }
+    let b = if *is_estimated { &undecided.pixels.b } else { &pixels.b };
+    let weights = Weighted::new(b, all.clone(), !compiled.takes_quads);
+    for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&functions.coordinates).zip(places) {
+        if sampler.interpolates() {
+            let own = if *is_estimated { &mut undecided.place } else { &mut *place };
+            coordinates.place(sampler, weights, all.clone(), own);
+            if *is_estimated {
+                undecided.scatter_place(lanes.clone(), place);
+            }
+        }
+    }
+    if let Some(shader) = &compiled.shader {
+        let all = shader.varying.iter().zip(&functions.numbers).zip(&mut workshop.numbers);
+        for (((_, _, purpose), number), out) in all {
+            numbers::numbers(*purpose, number, weights, &mut out[lanes.clone()]);
+        }
+    }
+    if let (Some(slot), Some(fog)) = (compiled.fog, &functions.fog) {
+        fog.factors(weights, &mut rows[usize::from(slot)][lanes]);
+    }
+}

@@ -1,0 +1,84 @@
+//! A triangle as loops over lanes take it.
+#![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
+
+use crate::raster::setup::{Triangle, significant};
+use crate::raster::weights::{Number, ratios};
+use crate::state::Profile;
+
+/// RAS-2 and WGT-1: the numbers of a triangle from which the weights at its pixels follow. Edge functions have at most 39 bits.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shape {
+    /// Changes of the edge functions from column to column, and from row to row, and their values at pixel (0, 0).
+    pub(crate) a: [f64; 3],
+    pub(crate) b: [f64; 3],
+    pub(crate) c: [f64; 3],
+    /// What is taken off the edge functions where they are compared with 0 (RAS-3): 1 for edges that belong to the other triangle.
+    pub(super) owed: [f64; 3],
+    /// Ratios of the w of the vertices, if these differ.
+    pub(crate) ratios: Option<[f64; 3]>,
+    /// The reciprocal R of the edge numbers' sum, if it is the same at all pixels that are computed, and nothing is cut off edge functions.
+    pub(super) reciprocal: Option<f64>,
+}
+
+impl Shape {
+    /// Returns a triangle with these w. `around` says that pixels beside it are computed, too.
+    #[inline(always)]
+    pub(crate) fn new(
+        triangle: &Triangle,
+        w: [f32; 3],
+        (perspective, profile): (bool, Profile),
+        around: bool,
+    ) -> Shape {
+        let w = significant(w, profile);
+        let is_flat = !perspective | ((w[0] == w[1]) & (w[1] == w[2]));
+        let real = |n: [i64; 3]| [n[0] as f64, n[1] as f64, n[2] as f64];
+        let owed = |k: usize| if triangle.owns[k] { 0.0 } else { 1.0 };
+        // The last bit that any of them has.
+        let all = (0..3).fold(0, |all, k| all | triangle.a[k] | triangle.b[k] | triangle.c[k]);
+        let largest = (0..3).fold(0, |largest: i64, k| largest.max(triangle.a[k].abs() + triangle.b[k].abs()));
+        let reach = triangle.doubled_area + if around { 2 * largest } else { 0 };
+        let is_whole = reach < 1 << (24 + all.trailing_zeros().min(30));
+        Shape {
+            a: real(triangle.a),
+            b: real(triangle.b),
+            c: real(triangle.c),
+            owed: [owed(0), owed(1), owed(2)],
+            ratios: (!is_flat).then(|| ratios(w.map(f64::from))),
+            reciprocal: is_whole.then(|| (triangle.doubled_area as f64).reciprocal()),
+        }
+    }
+
+    /// Returns the doubled area in 1/256 pixel, the sum of the edge functions at every pixel.
+    #[inline(always)]
+    pub(crate) fn area(&self) -> f64 {
+        self.c[0] + self.c[1] + self.c[2]
+    }
+
+    /// RAS-2: returns the edge functions of a pixel.
+    #[inline(always)]
+    pub(crate) fn edges(&self, x: f64, y: f64) -> [f64; 3] {
+        let edge = |k: usize| self.a[k] * x + (self.b[k] * y + self.c[k]);
+        [edge(0), edge(1), edge(2)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::raster::binary::Binary;
+
+    #[test]
+    fn ratios_are_those_of_the_definition() {
+        let mut random = Random::seeded(16);
+        let mut triangle = Triangle::default();
+        assert!(triangle.place([0, 160, 0], [0, 0, 160]));
+        for round in 0..100_000 {
+            let mut w = || f32::from_bits((107 + (random.bits() % 40) as u32) << 23 | (random.bits() >> 41) as u32);
+            let w = [w(), w(), w()];
+            let shape = Shape::new(&triangle, w, (true, Profile::Nv2a), round % 2 == 0);
+            let wanted = ratios(w.map(Binary::new)).map(|ratio| ratio.mantissa as f64 * 2_f64.powi(ratio.exponent));
+            assert_eq!(shape.ratios, Some(wanted), "{w:?}");
+        }
+    }
+}

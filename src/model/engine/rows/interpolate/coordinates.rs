@@ -1,0 +1,194 @@
+//! INT-4, TEX-12, TEX-15, VOL-1 and SHD-1 on rows: where the lanes of a triangle sample a texture.
+#![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
+
+use super::depths::word;
+use super::{Weighted, quotient};
+use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, smaller};
+use crate::engine::rows::sampling::facing::Facing;
+use crate::engine::rows::sampling::place::{FARTHEST, Place};
+use crate::engine::rows::sampling::sampler::{Sampler, Third};
+use crate::raster::weights::Linear;
+use crate::state::TriangleVertices;
+use crate::texture::coordinates::wrapped;
+use crate::texture::planned::PlannedUnit;
+use std::ops::Range;
+
+/// The coordinates of a sampler across a triangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Coordinates {
+    /// s, t and, of a cube map, r; otherwise q.
+    numbers: [Linear<f64>; 3],
+    kind: Kind,
+    /// r, if layers or references follow from it.
+    r: Linear<f64>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Kind {
+    /// q is 1 at all vertices.
+    #[default]
+    Plane,
+    Ratio,
+    Direction,
+}
+
+impl Coordinates {
+    /// Sets up a triangle. A stage that moves coordinates ignores q.
+    #[inline(always)]
+    pub(crate) fn new(unit: &PlannedUnit, sampler: &Sampler, vertices: TriangleVertices<'_>) -> Coordinates {
+        let [a, b, c] = vertices.coordinates(unit.stage.coordinate_set);
+        let component = |n: usize| [a[n], b[n], c[n]];
+        let (q, r) = (component(3), component(2));
+        // CYL-1 is not for coordinates that are moved.
+        let [a, b, c] = if sampler.moves { [a, b, c] } else { wrapped(unit, [a, b, c]) };
+        let (s, t) = (Linear::new([a[0], b[0], c[0]]), Linear::new([a[1], b[1], c[1]]));
+        let kind = match sampler.cube {
+            true => Kind::Direction,
+            false if q == [1.0; 3] => Kind::Plane,
+            false => Kind::Ratio,
+        };
+        let third = if kind == Kind::Direction { r } else { q };
+        let r = if sampler.third.is_some() { Linear::new(r) } else { Linear::default() };
+        Coordinates { numbers: [s, t, Linear::new(third)], kind, r }
+    }
+
+    /// Computes where lanes sample, or the coordinates that a stage of the texture shader moves.
+    #[inline(always)]
+    pub(crate) fn place(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+        if sampler.moves {
+            return self.components(weights, lanes, place);
+        }
+        match (self.kind, sampler.takes_quads()) {
+            (Kind::Plane, false) => self.on_plane(sampler, weights, lanes.clone(), place),
+            (Kind::Ratio, false) => self.divided(sampler, weights, lanes.clone(), place),
+            (Kind::Direction, false) => self.on_faces(sampler, weights, lanes.clone(), place),
+            (Kind::Direction, true) => {
+                self.on_faces(sampler, weights, lanes.clone(), place);
+                self.components(weights, lanes.clone(), place);
+                // Smaller levels take no more bits.
+                for (at, fine) in place.at.iter().zip(&mut place.fine) {
+                    let (at, fine) = (&at[lanes.clone()], &mut fine[lanes.clone()]);
+                    for n in 0..at.len() {
+                        fine[n] = 256.0 * f64::from(at[n]);
+                    }
+                }
+            }
+            (_, true) => {
+                self.components(weights, lanes.clone(), place);
+                self.finely(sampler, lanes.clone(), place);
+                if sampler.pairs > 0 {
+                    place.settle(lanes.clone(), sampler.bias());
+                }
+            }
+        }
+        match &sampler.third {
+            Some(Third::Layer(layers, axis)) => {
+                let scale = 256.0 * f64::from(*layers);
+                // The lanes of another use, before the axis limits them.
+                let out = &mut place.references[lanes.clone()];
+                match self.kind {
+                    Kind::Ratio => weights
+                        .each_quotient(&self.r, &self.numbers[2], out, |r, q| limited(quotient(scale * r, q)) as u32),
+                    _ => weights.each(&self.r, out, |r| limited(scale * r) as u32),
+                }
+                let (layers, images) = (&mut place.references[lanes.clone()], &mut place.images[lanes]);
+                for n in 0..images.len() {
+                    let mut at = [layers[n] as i32];
+                    axis.reduce(&mut at);
+                    images[n] = axis.entry(at[0].max(axis.low).min(axis.high)) as u32;
+                }
+            }
+            Some(Third::Reference(format)) => {
+                let out = &mut place.references[lanes];
+                match self.kind {
+                    Kind::Ratio => {
+                        weights.each_quotient(&self.r, &self.numbers[2], out, |r, q| word(*format, quotient(r, q)));
+                    }
+                    _ => weights.each(&self.r, out, |r| word(*format, r)),
+                }
+            }
+            None => {}
+        }
+    }
+
+    /// Returns s and t if floors of them are all that a sampler takes.
+    #[inline(always)]
+    pub(super) fn plane(&self, sampler: &Sampler) -> Option<[Linear<f64>; 2]> {
+        let [s, t, _] = self.numbers;
+        let is_plane = self.kind == Kind::Plane && !sampler.moves && !sampler.takes_quads() && sampler.third.is_none();
+        is_plane.then_some([s, t])
+    }
+
+    /// INT-4: floors of linear functions.
+    #[inline(always)]
+    fn on_plane(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+        let bias = sampler.bias();
+        for axis in 0..2 {
+            let scale = 256.0 * f64::from(sampler.sides[axis]);
+            let out = &mut place.at[axis][lanes.clone()];
+            weights.each(&self.numbers[axis], out, |f| limited(scale * f) - bias);
+        }
+    }
+
+    /// TEX-15: floors of quotients of two linear functions.
+    #[inline(always)]
+    fn divided(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+        let bias = sampler.bias();
+        for axis in 0..2 {
+            let scale = 256.0 * f64::from(sampler.sides[axis]);
+            let out = &mut place.at[axis][lanes.clone()];
+            // Numbers of 26 bits: the quotient is further from whole numbers up to the limit than doubles round.
+            let of = |s: f64, q: f64| limited(quotient(scale * s, q)) - bias;
+            weights.each_quotient(&self.numbers[axis], &self.numbers[2], out, of);
+        }
+    }
+
+    /// TEX-12: the face of each lane, and the floors of where it samples on it.
+    #[inline(always)]
+    fn on_faces(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+        let (bias, middle) = (sampler.bias(), 128.0 * f64::from(sampler.sides[0]));
+        let [x, y, z] = self.numbers;
+        let Place { at: [u, v], images, .. } = place;
+        let (u, v, images) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut images[lanes.clone()]);
+        let weights = weights.lanes(lanes.len());
+        for n in 0..lanes.len() {
+            let direction = [weights.at(&x, n), weights.at(&y, n), weights.at(&z, n)];
+            let facing = Facing::new(direction);
+            let [s, t, m] = facing.components(direction);
+            images[n] = facing.number() as i32 as u32;
+            // The zero vector has the coordinates 0.
+            let (middle, by) = if m > 0.0 { (middle, m) } else { (0.0, 1.0) };
+            u[n] = limited(middle + (middle * s / by).floor()) - bias;
+            v[n] = limited(middle + (middle * t / by).floor()) - bias;
+        }
+    }
+
+    /// Keeps s, t and q, or a direction, for quads.
+    #[inline(always)]
+    fn components(&self, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+        for (number, out) in self.numbers.iter().zip(&mut place.direction) {
+            weights.each(number, &mut out[lanes.clone()], |f| f);
+        }
+    }
+
+    /// Computes the coordinates of lanes in 1/65536 texel from s, t and q.
+    #[inline(always)]
+    fn finely(&self, sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
+        let Place { fine, direction: [s, t, q], .. } = place;
+        for (axis, from) in [s, t].into_iter().enumerate() {
+            let (out, from, q) = (&mut fine[axis][lanes.clone()], &from[lanes.clone()], &q[lanes.clone()]);
+            let scale = 65536.0 * f64::from(sampler.sides[axis]);
+            if self.kind == Kind::Plane {
+                for n in 0..out.len() {
+                    out[n] = (scale * from[n]).floor();
+                }
+                continue;
+            }
+            for n in 0..out.len() {
+                let (s, q) = (scale * from[n], q[n] + 0.0);
+                let floor = if q == 0.0 { quotient(s, q) } else { floor_of_quotient(s, q) };
+                out[n] = smaller(larger(floor, -FARTHEST), FARTHEST);
+            }
+        }
+    }
+}

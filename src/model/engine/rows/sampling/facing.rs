@@ -1,0 +1,65 @@
+//! TEX-12 on rows: the face that a direction meets, without branches.
+#![allow(clippy::float_arithmetic, reason = "signs of components, and small whole numbers")]
+
+use crate::texture::cube::Face;
+use std::ops::Neg;
+
+/// A component of a direction.
+pub(crate) trait Component: Copy + PartialOrd + Neg<Output = Self> + Default {
+    fn magnitude(self) -> Self;
+}
+
+impl Component for f32 {
+    #[inline(always)]
+    fn magnitude(self) -> f32 {
+        self.abs()
+    }
+}
+
+impl Component for f64 {
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        self.abs()
+    }
+}
+
+/// TEX-12: the face that a direction meets.
+#[derive(Clone, Copy)]
+pub(crate) struct Facing {
+    on_x: bool,
+    on_y: bool,
+    /// Whether the major component is negative.
+    is_negative: bool,
+}
+
+impl Facing {
+    /// Chooses X before Y and Y before Z, as `Face::from_direction`. One choice at a time, because compilers turn nested ones into branches.
+    #[inline(always)]
+    pub(crate) fn new<T: Component>([x, y, z]: [T; 3]) -> Facing {
+        let (a, b, c) = (x.magnitude(), y.magnitude(), z.magnitude());
+        let on_x = (a >= b) & (a >= c);
+        let on_y = !on_x & (b >= c);
+        let major = if on_y { y } else { z };
+        let major = if on_x { x } else { major };
+        Facing { on_x, on_y, is_negative: major < T::default() }
+    }
+
+    /// Returns s, t and the major component of a direction on the face. The last is not positive if the direction points away from it.
+    #[inline(always)]
+    pub(crate) fn components<T: Component>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        let turned = |v: T| if self.is_negative { -v } else { v };
+        let other = turned(if self.on_x { -z } else { x });
+        let s = if self.on_y { x } else { other };
+        let t = if self.on_y { turned(z) } else { -y };
+        let major = if self.on_y { y } else { z };
+        [s, t, turned(if self.on_x { x } else { major })]
+    }
+
+    /// Returns the number of the face, as a float.
+    #[inline(always)]
+    pub(crate) fn number(self) -> f32 {
+        let axis = if self.on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
+        let axis = if self.on_x { Face::PositiveX as u32 as f32 } else { axis };
+        axis + if self.is_negative { 1.0 } else { 0.0 }
+    }
+}

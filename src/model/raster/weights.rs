@@ -1,0 +1,567 @@
+//! WGT-1: the weights of a triangle's vertices at a pixel, and the numbers that are interpolated by them.
+//!
+//! ```text
+//! e_k = cut_24(E_k), with unequal w cut_24(e_k r_k)     r_k = cut_24(w_1 R(w_k)), R as below
+//! S   = sum of e_k, each cut at the 29th bit of the largest
+//! R   = floor(2^s / S - 3/16) 2^-s, 29 bits
+//! b_k = cut_24(e_k R);  the dominant one is 1 less the other two, rounded up to 24 bits
+//! f   = f_1 + b_0 (f_0 - f_1) + b_2 (f_2 - f_1), each term cut at the 24th bit of the largest
+//! ```
+//!
+//! The text is generic over [`Number`]. [`Binary`] is the definition, in integers; `f64` holds every number exactly, so
+//! that loops over it are the fast engine's; [`Real`] cuts nothing and is the ideal.
+
+use super::binary::Binary;
+
+/// A number of the interpolator. Products of two are exact, and nothing is rounded but where a method says so.
+pub trait Number: Copy {
+    /// The binary exponent of a positive number; less than any of these for all other numbers.
+    type Exponent: Copy + PartialOrd;
+
+    /// Converts an edge function, of at most 39 bits.
+    fn from_edge(edge: i64) -> Self;
+    /// Converts a finite number.
+    fn from_f32(number: f32) -> Self;
+    /// Returns the number toward zero to its first 24 significant bits.
+    fn cut(self) -> Self;
+    /// Returns the product.
+    fn times(self, other: Self) -> Self;
+    /// Returns the sum of the terms, each toward zero to a multiple of the `BITS`th bit of the largest magnitude.
+    fn aligned_sum<const BITS: i32>(terms: [Self; 3]) -> Self;
+    /// Returns the sum of edge numbers for a [`reciprocal`](Self::reciprocal): an [`aligned_sum`](Self::aligned_sum) of 29 bits. Outside of a
+    /// triangle it may come to 0; then it is the last of these bits.
+    fn sum_of_edges(edges: [Self; 3]) -> Self;
+    /// Returns floor(2^s / self - 3/16) 2^-s with the s that leaves 29 bits, exactly 1 / self for a power of two. The sign is kept.
+    fn reciprocal(self) -> Self;
+    /// Returns 1 - a - b, its magnitude rounded up to 24 significant bits.
+    fn rest(a: Self, b: Self) -> Self;
+    /// The same of weights that are not negative, as those of covered pixels.
+    #[inline(always)]
+    fn rest_of_weights(a: Self, b: Self) -> Self {
+        Self::rest(a, b)
+    }
+    /// Returns the exponent.
+    fn exponent(self) -> Self::Exponent;
+    /// Returns `self` where `condition` holds, otherwise `other`.
+    fn or(self, condition: bool, other: Self) -> Self;
+}
+
+/// The weights of a pixel and the numbers on the way to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights<N> {
+    /// Edge numbers e_k.
+    pub edges: [N; 3],
+    /// Their sum S.
+    pub sum: N,
+    /// The reciprocal R of the sum.
+    pub reciprocal: N,
+    /// e_k R, cut.
+    pub shares: [N; 3],
+    /// Index of the dominant weight, which is the rest of the others.
+    pub dominant: usize,
+    /// The weights b_k.
+    pub b: [N; 3],
+}
+
+impl<N: Number> Weights<N> {
+    /// Returns the weights where the edge functions are `e`. `ratios` are the [`ratios`] of the vertices if their w differ.
+    #[inline(always)]
+    pub fn new(e: [N; 3], ratios: Option<[N; 3]>) -> Weights<N> {
+        let edges = edge_numbers(e, ratios);
+        let sum = N::sum_of_edges(edges);
+        let reciprocal = sum.reciprocal();
+        let shares = shares(edges, reciprocal);
+        let dominance = dominance(shares);
+        let dominant = if dominance[0] { 0 } else { 1 + usize::from(dominance[1]) };
+        Weights { edges, sum, reciprocal, shares, dominant, b: completed::<N, false>(shares) }
+    }
+}
+
+/// WGT-1: returns the ratios r_k of positive w of the vertices: w_1 times the reciprocal of w_k, cut to 24 bits. r_1 is 1.
+#[inline(always)]
+pub fn ratios<N: Number>(w: [N; 3]) -> [N; 3] {
+    let ratio = |k: usize| w[1].times(w[k].reciprocal()).cut();
+    [ratio(0), N::from_edge(1), ratio(2)]
+}
+
+/// WGT-1: returns the edge numbers e_k.
+#[inline(always)]
+pub fn edge_numbers<N: Number>(e: [N; 3], ratios: Option<[N; 3]>) -> [N; 3] {
+    let e = [e[0].cut(), e[1].cut(), e[2].cut()];
+    match ratios {
+        Some(r) => [e[0].times(r[0]).cut(), e[1], e[2].times(r[2]).cut()],
+        None => e,
+    }
+}
+
+/// WGT-1: returns e_k R, cut to 24 bits.
+#[inline(always)]
+pub fn shares<N: Number>(edges: [N; 3], reciprocal: N) -> [N; 3] {
+    [edges[0].times(reciprocal).cut(), edges[1].times(reciprocal).cut(), edges[2].times(reciprocal).cut()]
+}
+
+/// WGT-1: returns whether the first and whether the third weight dominates. The second does if neither does. Among weights of the same exponent
+/// the first precedes the second, the second the third and the third the first; of three, the third dominates.
+#[inline(always)]
+pub fn dominance<N: Number>(b: [N; 3]) -> [bool; 2] {
+    let [x, y, z] = [b[0].exponent(), b[1].exponent(), b[2].exponent()];
+    let first = (x >= y) & (x > z);
+    [first, !(first | ((y >= z) & (y > x)))]
+}
+
+/// WGT-1: returns the weights of shares: the dominant one is the rest of the others. `COVERED` says that no share is negative.
+#[inline(always)]
+pub fn completed<N: Number, const COVERED: bool>(b: [N; 3]) -> [N; 3] {
+    let [first, third] = dominance(b);
+    let (one, other) = (b[1].or(first | third, b[2]), b[2].or(first, b[0]));
+    // The two that do not dominate: 1 and 2, 0 and 2, or 0 and 1.
+    let rest = if COVERED { N::rest_of_weights(one, other) } else { N::rest(one, other) };
+    [rest.or(first, b[0]), b[1].or(first | third, rest), rest.or(third, b[2])]
+}
+
+/// A number of the vertices, as [`Linear::at`] takes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Linear<N> {
+    /// f_1.
+    pub second: N,
+    /// f_0 - f_1.
+    pub first: N,
+    /// f_2 - f_1.
+    pub third: N,
+}
+
+impl<N: Number> Linear<N> {
+    /// Returns the number with the finite values `f` at the vertices.
+    #[inline(always)]
+    pub fn new(f: [f32; 3]) -> Linear<N> {
+        let [first, third] = differences(f);
+        Linear { second: N::from_f32(f[1]), first: N::from_f32(first), third: N::from_f32(third) }
+    }
+
+    /// WGT-1: returns the terms b_0 (f_0 - f_1), f_1 and b_2 (f_2 - f_1).
+    #[inline(always)]
+    pub fn terms(&self, b: [N; 3]) -> [N; 3] {
+        [b[0].times(self.first), self.second, b[2].times(self.third)]
+    }
+
+    /// WGT-1: returns the number where the weights are `b`: at most 26 bits.
+    #[inline(always)]
+    pub fn at(&self, b: [N; 3]) -> N {
+        N::aligned_sum::<24>(self.terms(b))
+    }
+}
+
+/// WGT-1: returns a - b in binary32, to nearest. A difference below 2^-126 is 0, and one that is too large the largest number.
+#[allow(clippy::float_arithmetic, reason = "WGT-1 names binary32 for differences")]
+#[inline(always)]
+pub fn difference(a: f32, b: f32) -> f32 {
+    let difference = (a - b).clamp(f32::MIN, f32::MAX);
+    if difference.abs() < f32::MIN_POSITIVE { 0.0 } else { difference }
+}
+
+/// WGT-1: returns the [`difference`]s f_0 - f_1 and f_2 - f_1.
+#[inline(always)]
+pub fn differences(f: [f32; 3]) -> [f32; 2] {
+    [difference(f[0], f[1]), difference(f[2], f[1])]
+}
+
+impl Number for Binary {
+    type Exponent = i32;
+
+    #[inline]
+    fn from_edge(edge: i64) -> Binary {
+        Binary { mantissa: edge, exponent: 0 }
+    }
+
+    #[inline]
+    fn from_f32(number: f32) -> Binary {
+        Binary::new(number)
+    }
+
+    #[inline]
+    fn cut(self) -> Binary {
+        self.first_bits(24)
+    }
+
+    #[inline]
+    fn times(self, other: Binary) -> Binary {
+        Binary { mantissa: self.mantissa * other.mantissa, exponent: self.exponent + other.exponent }
+    }
+
+    #[inline]
+    fn aligned_sum<const BITS: i32>(terms: [Binary; 3]) -> Binary {
+        let Some(top) = terms.iter().filter(|term| term.mantissa != 0).map(|term| term.top()).max() else {
+            return Binary::default();
+        };
+        let unit = top - BITS;
+        Binary { mantissa: terms.into_iter().map(|term| term.steps(unit)).sum(), exponent: unit }
+    }
+
+    #[inline]
+    fn sum_of_edges(edges: [Binary; 3]) -> Binary {
+        let sum = Binary::aligned_sum::<29>(edges);
+        if sum.mantissa == 0 { Binary { mantissa: 1, ..sum } } else { sum }
+    }
+
+    #[inline]
+    fn reciprocal(self) -> Binary {
+        let sum = self.mantissa.unsigned_abs();
+        let length = 63 - sum.leading_zeros() as i32;
+        let (mantissa, scale) = if sum.is_power_of_two() {
+            (1 << 28, 28 + length)
+        } else {
+            // floor(2^s / sum - 3/16)
+            ((((1 << (29 + length + 4)) - 3 * sum) / (16 * sum)) as i64, 29 + length)
+        };
+        Binary { mantissa: self.mantissa.signum() * mantissa, exponent: -self.exponent - scale }
+    }
+
+    fn rest(a: Binary, b: Binary) -> Binary {
+        // Weights are at least 2^-78 and, outside of the triangle, less than 2^32, so that nothing falls below this unit.
+        const UNIT: i32 = -92;
+        let fixed = |n: Binary| match n.exponent - UNIT {
+            up if up >= 0 => i128::from(n.mantissa) << up.min(126),
+            down => i128::from(n.mantissa) >> (-down).min(127),
+        };
+        let rest = (1 << -UNIT) - fixed(a) - fixed(b);
+        let magnitude = rest.unsigned_abs();
+        let dropped = (128 - magnitude.leading_zeros() as i32 - 24).max(0);
+        let kept = (magnitude + ((1 << dropped) - 1)) >> dropped;
+        Binary { mantissa: kept as i64 * rest.signum() as i64, exponent: UNIT + dropped }
+    }
+
+    #[inline]
+    fn exponent(self) -> i32 {
+        if self.mantissa > 0 { self.top() } else { i32::MIN }
+    }
+
+    #[inline]
+    fn or(self, condition: bool, other: Binary) -> Binary {
+        if condition { self } else { other }
+    }
+}
+
+/// Fraction bits of a double that [`Number::cut`] keeps: the first 24 bits, of which one is not stored.
+const CUT: u64 = !0 << 29;
+const EXPONENT: u64 = 0x7ff << 52;
+const BIAS: u64 = 1023;
+
+/// Every number of WGT-1 is a double: products have 48 and 53 bits, and exponents stay within 256 of 0.
+#[allow(clippy::float_arithmetic, reason = "no operation rounds, but where the text corrects it")]
+impl Number for f64 {
+    type Exponent = f64;
+
+    #[inline(always)]
+    fn from_edge(edge: i64) -> f64 {
+        edge as f64
+    }
+
+    #[inline(always)]
+    fn from_f32(number: f32) -> f64 {
+        number.into()
+    }
+
+    #[inline(always)]
+    fn cut(self) -> f64 {
+        f64::from_bits(self.to_bits() & CUT)
+    }
+
+    #[inline(always)]
+    fn times(self, other: f64) -> f64 {
+        self * other
+    }
+
+    #[inline(always)]
+    fn aligned_sum<const BITS: i32>(terms: [f64; 3]) -> f64 {
+        let (sum, unit) = aligned::<BITS>(terms);
+        sum * unit
+    }
+
+    #[inline(always)]
+    fn sum_of_edges(edges: [f64; 3]) -> f64 {
+        let (sum, unit) = aligned::<29>(edges);
+        (if sum == 0.0 { 1.0 } else { sum }) * unit
+    }
+
+    /// The quotient is correct to half of its 53rd bit. That can reach the floor at the 29th only from below, and whether it did is decided by
+    /// the exact product: with m the 31 bits of the sum and k the floor, k is too large if (16 k + 3) m > 2^63.
+    #[inline(always)]
+    fn reciprocal(self) -> f64 {
+        const KEPT: u64 = !0 << 24;
+        let quotient = (1.0 / self).to_bits();
+        let floor = quotient.wrapping_sub(3 << 20) & KEPT;
+        let k = (floor >> 24 & 0x0fff_ffff) | 1 << 28;
+        let m = (self.to_bits() >> 22 & 0x3fff_ffff) | 1 << 30;
+        let above = ((k * m) << 4).wrapping_add(3 * m) >> 63;
+        let is_power = quotient << 12 == 0;
+        f64::from_bits(if is_power { quotient } else { floor.wrapping_sub(above << 24) })
+    }
+
+    #[inline(always)]
+    fn rest(a: f64, b: f64) -> f64 {
+        let sum = a + b;
+        let rest = 1.0 - sum;
+        // The parts that both roundings lose. They matter where the rest looks like a number of 24 bits and is nearer to 0 than the exact one,
+        // which takes a negative weight.
+        let part = sum - a;
+        let lost = ((1.0 - rest) - sum) - ((a - (sum - part)) + (b - part));
+        let up = (rest.to_bits() & !CUT != 0) | (lost * rest > 0.0);
+        f64::from_bits((rest.to_bits() & CUT).wrapping_add(if up { 1 << 29 } else { 0 }))
+    }
+
+    /// 1 less the larger weight is exact, or both are so small that the rest rounds up to 1. What the other subtraction loses is exact, too: if the exact
+    /// rest is larger, it is no number of 24 bits, which the last bit then says.
+    #[inline(always)]
+    fn rest_of_weights(a: f64, b: f64) -> f64 {
+        let (larger, smaller) = if a > b { (a, b) } else { (b, a) };
+        let most = 1.0 - larger;
+        let rest = most - smaller;
+        let lost = (most - rest) - smaller;
+        f64::from_bits((rest.to_bits() | u64::from(lost > 0.0)).wrapping_add(!CUT) & CUT)
+    }
+
+    #[inline(always)]
+    fn exponent(self) -> f64 {
+        f64::from_bits(if self > 0.0 { self.to_bits() & EXPONENT } else { 0 })
+    }
+
+    #[inline(always)]
+    fn or(self, condition: bool, other: f64) -> f64 {
+        if condition { self } else { other }
+    }
+}
+
+/// Returns the [reciprocal](Number::reciprocal) of a number above 0, and whether it may be a last bit too large, which is one in 2^24.
+#[allow(clippy::float_arithmetic, reason = "a quotient whose rounding is looked at")]
+#[inline(always)]
+pub fn likely_reciprocal(sum: f64) -> (f64, bool) {
+    let quotient = (1.0 / sum).to_bits();
+    let lowered = quotient.wrapping_sub(3 << 20);
+    let is_power = quotient << 12 == 0;
+    (f64::from_bits(if is_power { quotient } else { lowered & !0 << 24 }), lowered << 40 == 0)
+}
+
+/// Returns the sum of terms, each toward zero in steps of the `BITS`th bit of the largest, and such a step.
+#[allow(clippy::float_arithmetic, reason = "powers of two, and sums below 2^32")]
+#[inline(always)]
+fn aligned<const BITS: i32>(terms: [f64; 3]) -> (f64, f64) {
+    let below = BITS as u64 - 1;
+    let power = |term: f64| f64::from_bits(term.to_bits() & EXPONENT);
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let top = larger(larger(power(terms[0]), power(terms[1])), power(terms[2])).to_bits();
+    // Without any term both are some finite numbers.
+    let scale = f64::from_bits(((BIAS + BIAS + below) << 52).wrapping_sub(top));
+    let unit = f64::from_bits(top.wrapping_sub(below << 52));
+    let sum = (terms[0] * scale).trunc() + (terms[1] * scale).trunc() + (terms[2] * scale).trunc();
+    (sum, unit)
+}
+
+/// A real number: the ideal, which cuts nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Real(pub f64);
+
+#[allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
+impl Number for Real {
+    type Exponent = f64;
+
+    fn from_edge(edge: i64) -> Real {
+        Real(edge as f64)
+    }
+
+    fn from_f32(number: f32) -> Real {
+        Real(number.into())
+    }
+
+    fn cut(self) -> Real {
+        self
+    }
+
+    fn times(self, other: Real) -> Real {
+        Real(self.0 * other.0)
+    }
+
+    fn aligned_sum<const BITS: i32>([a, b, c]: [Real; 3]) -> Real {
+        Real(a.0 + b.0 + c.0)
+    }
+
+    fn sum_of_edges(edges: [Real; 3]) -> Real {
+        Real::aligned_sum::<29>(edges)
+    }
+
+    fn reciprocal(self) -> Real {
+        Real(1.0 / self.0)
+    }
+
+    fn rest(a: Real, b: Real) -> Real {
+        Real(1.0 - a.0 - b.0)
+    }
+
+    fn exponent(self) -> f64 {
+        self.0.exponent()
+    }
+
+    fn or(self, condition: bool, other: Real) -> Real {
+        if condition { self } else { other }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_arithmetic, reason = "choosing numbers")]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn double(n: Binary) -> f64 {
+        n.mantissa as f64 * 2_f64.powi(n.exponent)
+    }
+
+    /// Returns numbers of up to `bits` bits at which roundings change: powers of two, their neighbours, ties, runs of ones, and random ones.
+    fn boundary(random: &mut Random, bits: u32) -> i64 {
+        let top = random.bits() % u64::from(bits) + 1;
+        let low = random.bits() % top;
+        let one = |n: u64| 1_i64 << n;
+        let n = match random.bits() % 8 {
+            0 => one(top - 1),
+            1 => one(top - 1) - 1,
+            2 => one(top - 1) + 1,
+            3 => one(top - 1) + one(low) - 1,
+            4 => one(top - 1) - one(low),
+            5 => one(top - 1) + one(low),
+            6 => (random.bits() >> (64 - top)) as i64 & !(one(low) - 1),
+            _ => (random.bits() >> (64 - top)) as i64,
+        };
+        n.clamp(0, one(u64::from(bits)) - 1)
+    }
+
+    fn w(random: &mut Random) -> f32 {
+        let mantissa = boundary(random, 23) as u32;
+        f32::from_bits((127 - 20 + (random.bits() % 40) as u32) << 23 | mantissa)
+    }
+
+    fn value(random: &mut Random) -> f32 {
+        let exponent = match random.bits() % 4 {
+            0 => random.bits() % 255,
+            1 => 100 + random.bits() % 50,
+            2 => 126 + random.bits() % 3,
+            _ => return if random.bits().is_multiple_of(2) { 0.0 } else { -0.0 },
+        };
+        f32::from_bits(((random.bits() % 2) as u32) << 31 | (exponent as u32) << 23 | boundary(random, 23) as u32)
+    }
+
+    /// Compares doubles with the definition, inside and outside of triangles.
+    #[test]
+    fn doubles_are_the_definition() {
+        let mut random = Random::seeded(65);
+        for step in 0..1_500_000 {
+            let mut e: [i64; 3] = std::array::from_fn(|_| boundary(&mut random, 37));
+            if step % 7 == 0 {
+                e[1] = e[0];
+            }
+            if step % 3 == 0 {
+                let k = (random.bits() % 3) as usize;
+                e[k] = -e[k];
+            }
+            if e.iter().sum::<i64>() <= 0 {
+                continue;
+            }
+            let corners = [w(&mut random), w(&mut random), w(&mut random)];
+            let ratios = (step % 4 > 0).then(|| super::ratios(corners.map(Binary::new)));
+            let exact = Weights::<Binary>::new(e.map(Binary::from_edge), ratios);
+            let found = Weights::<f64>::new(e.map(f64::from_edge), ratios.map(|r| r.map(double)));
+            let context = || format!("{e:?} {corners:?} {exact:?} {found:?}");
+            assert_eq!(exact.edges.map(double), found.edges, "{}", context());
+            assert_eq!(double(exact.sum), found.sum, "{}", context());
+            assert_eq!(double(exact.reciprocal), found.reciprocal, "{}", context());
+            assert_eq!(exact.shares.map(double), found.shares, "{}", context());
+            assert_eq!(exact.b.map(double), found.b, "{}", context());
+            assert_eq!(exact.dominant, found.dominant);
+            let f = [value(&mut random), value(&mut random), value(&mut random)];
+            let [exact, found] = [double(Linear::<Binary>::new(f).at(exact.b)), Linear::<f64>::new(f).at(found.b)];
+            assert_eq!(exact, found, "{f:?} {}", context());
+        }
+    }
+
+    /// Rests of weights that are not negative, many of them hardly beside a number of 24 bits.
+    #[test]
+    fn rests_of_weights_are_rests() {
+        let mut random = Random::seeded(29);
+        for step in 0..1_000_000 {
+            let mut weight = || {
+                let (mantissa, down) = (boundary(&mut random, 24), random.bits() % 60);
+                let down = down as i32 + 1;
+                Binary { mantissa, exponent: -down - bits_of(mantissa) }
+            };
+            let (a, mut b) = (weight(), weight());
+            if step % 2 == 0 {
+                // So that the sum hardly differs from a multiple of 2^-25.
+                let beyond = (1_i64 << 24) - (step & 3);
+                let unit = a.exponent;
+                b = Binary { mantissa: beyond, exponent: unit - 24 };
+            }
+            if double(a) + double(b) > 0.7 {
+                continue;
+            }
+            let rest = |a: Binary, b: Binary| double(Binary::rest(a, b));
+            assert_eq!(f64::rest_of_weights(double(a), double(b)), rest(a, b), "{a:?} {b:?}");
+            assert_eq!(f64::rest_of_weights(double(b), double(a)), rest(a, b), "{a:?} {b:?}");
+        }
+    }
+
+    fn bits_of(n: i64) -> i32 {
+        64 - n.leading_zeros() as i32
+    }
+
+    /// The likely reciprocal is the reciprocal unless it says that it may not be.
+    #[test]
+    fn likely_reciprocals_are_right_or_open() {
+        let mut random = Random::seeded(24);
+        let mut open = 0;
+        for _ in 0..1_000_000 {
+            let sum = boundary(&mut random, 31).clamp(1, 3 << 29) as f64;
+            let (likely, is_open) = likely_reciprocal(sum);
+            assert!(is_open || likely == sum.reciprocal(), "{sum}");
+            open += u32::from(is_open);
+        }
+        assert!(open < 100, "{open}");
+    }
+
+    /// Compares reciprocals with their statement in 128 bits for sums of all lengths.
+    #[test]
+    fn reciprocals_by_their_statement() {
+        let mut random = Random::seeded(3);
+        for _ in 0..200_000 {
+            let sum = boundary(&mut random, 31).clamp(1, 3 << 29);
+            let Binary { mantissa, exponent } = Binary { mantissa: sum, exponent: 0 }.reciprocal();
+            let (sum, mantissa) = (sum as u128, mantissa as u128);
+            if sum.is_power_of_two() {
+                assert_eq!(mantissa * sum, 1 << -exponent);
+                continue;
+            }
+            // mantissa <= 2^s / sum - 3/16 < mantissa + 1
+            assert!(
+                (16 * mantissa + 3) * sum <= 16 << -exponent && (16 * mantissa + 19) * sum > 16 << -exponent,
+                "{sum}"
+            );
+            assert!((1 << 28..1 << 29).contains(&mantissa), "{sum}");
+        }
+    }
+
+    #[test]
+    fn a_number_worked_by_hand() {
+        // A captured pixel: s of .89999998, 1.10000002, 1.10000002 where b_0 is 124/128 is .90625, texel 232 of 256. The exact value lies below.
+        let b = [(124, -7), (0, 0), (0, 0)].map(|(mantissa, exponent)| Binary { mantissa, exponent });
+        let s = Linear::<Binary>::new([0.9, 1.1, 1.1]).at(b);
+        assert_eq!(double(s), 0.90625);
+        let b = [(0, 0), (0, 0), (4, -7)].map(|(mantissa, exponent)| Binary { mantissa, exponent });
+        assert!(double(Linear::<Binary>::new([0.9, 0.9, 1.1]).at(b)) < 0.90625);
+    }
+
+    #[test]
+    fn equal_weights_go_round() {
+        let of = |n: [i64; 3]| dominance(n.map(Binary::from_edge));
+        assert_eq!(
+            [of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])],
+            [[true, false], [false, false], [false, true], [false, true]]
+        );
+    }
+}
