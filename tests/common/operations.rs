@@ -12,7 +12,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("clipped-triangle", "a vertex of three positions of four floats", 377, &[]),
     ("coverage", "six positions, a pixel", 99, &[]),
     ("clip", "a pixel by the surface clip and two rectangles", 169, &[]),
-    ("weights", "six positions, a pixel, three w", 110, &[]),
+    ("weights", "six positions, a pixel, three w", 111, &[]),
     ("linear", "two weights and three numbers", 154, &[]),
     ("color-interpolation", "three colours by two weights", 41, &[]),
     ("color-interpolation", "two colours by one weight", 25, &["color-interpolation/edge"]),

@@ -206,7 +206,7 @@ async function tests() {
   await opened("mirror-ball.html");
   await browser.value(`(() => { inspector.choose([128, 128]); inspector.chain.fill(); })()`);
   const boxes = await browser.value(`[...document.querySelectorAll("#chain .box")].map((box) => [box.querySelector(".name").textContent, box.querySelector(".how").textContent])`);
-  assert.ok(["s", "t", "r"].every((name) => boxes.some(([each]) => each === name)), JSON.stringify(boxes));
+  assert.ok(["s", "t", "r"].map((axis) => `coordinate.${axis}`).every((name) => boxes.some(([each]) => each === name)), JSON.stringify(boxes));
   assert.deepEqual(boxes.filter(([name, how]) => (/^unit\d$/.test(name) && !how.startsWith("mix ")) || (how.startsWith("float ") && /unit\d/.test(how))), []);
   sound("mirror-ball.html");
 

@@ -20,10 +20,9 @@ function hex(step) {
 
 const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}${power(input)}`).join(", ")})`;
 
-// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r. The r of `unit3.r` is a coordinate where it is a number of its own or made of one, else red.
-function place({ name, per_one }) {
-  const coordinate = /^unit\d\.r(\.4096|\.drops)?$/.exec(name);
-  if (coordinate && (coordinate[1] || per_one === 0)) return { row: name, channel: "" };
+// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r. The r of `unit3.r` is red, but not where it is a coordinate or made of one.
+function place({ name }) {
+  if (/^unit\d\.(coordinate\.r|quad\d\.r|r\.(rounded|4096|drops)$)/.test(name)) return { row: name, channel: "" };
   const parts = name.split(".");
   const at = parts.findIndex((part, n) => n > 0 && CHANNELS.includes(part));
   if (at < 0) return { row: name, channel: "" };
