@@ -301,10 +301,8 @@ impl Number for f64 {
     fn rest(a: f64, b: f64) -> f64 {
         let sum = a + b;
         let rest = 1.0 - sum;
-        // The parts that both roundings lose. They matter where the rest looks like a number of 24 bits and is nearer to 0 than the exact one,
-        // which takes a negative weight.
-        let part = sum - a;
-        let lost = ((1.0 - rest) - sum) - ((a - (sum - part)) + (b - part));
+        // The parts that both roundings lose. They matter where the rest looks like a number of 24 bits and is nearer to 0 than the exact one.
+        let lost = ((1.0 - rest) - sum) - lost_by_sum(a, b);
         let up = (rest.to_bits() & !CUT != 0) | (lost * rest > 0.0);
         f64::from_bits((rest.to_bits() & CUT).wrapping_add(if up { 1 << 29 } else { 0 }))
     }
@@ -331,10 +329,19 @@ impl Number for f64 {
     }
 }
 
+/// Returns what the sum of two doubles loses by rounding, exactly.
+#[allow(clippy::float_arithmetic, reason = "the error of a sum is a double")]
+#[inline(always)]
+pub(crate) fn lost_by_sum(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    let part = sum - a;
+    (a - (sum - part)) + (b - part)
+}
+
 /// Returns the [reciprocal](Number::reciprocal) of a number above 0, and whether it may be a last bit too large, which is one in 2^24.
 #[allow(clippy::float_arithmetic, reason = "a quotient whose rounding is looked at")]
 #[inline(always)]
-pub fn likely_reciprocal(sum: f64) -> (f64, bool) {
+pub(crate) fn likely_reciprocal(sum: f64) -> (f64, bool) {
     let quotient = (1.0 / sum).to_bits();
     let lowered = quotient.wrapping_sub(3 << 20);
     let is_power = quotient << 12 == 0;

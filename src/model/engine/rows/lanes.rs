@@ -2,6 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "floors and roundings to whole numbers, which are exact")]
 
 use crate::raster::interpolate::COORDINATE_LIMIT;
+use crate::raster::weights::lost_by_sum;
 use std::ops::{Deref, DerefMut};
 
 /// Number of pixels of a block.
@@ -200,8 +201,7 @@ pub(crate) fn limited(at: f64) -> i32 {
 #[inline(always)]
 pub(crate) fn floor_of_sum(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    let part = sum - a;
-    let lost = (a - (sum - part)) + (b - part);
+    let lost = lost_by_sum(a, b);
     let floor = sum.floor();
     // The exact sum lies below a whole one.
     if (floor == sum) & (lost < 0.0) { floor - 1.0 } else { floor }

@@ -12,7 +12,7 @@ use crate::engine::rows::geometry::weights::{CHUNK, Passes, Pixels};
 use crate::engine::rows::lanes::{PerLane, floor_within, larger};
 use crate::raster::binary::Binary;
 use crate::raster::depth;
-use crate::raster::weights::{Number, difference, dominance, ratios, shares};
+use crate::raster::weights::{Number, difference, dominance, lost_by_sum, ratios, shares};
 use crate::state::DepthFormat;
 use std::ops::Range;
 
@@ -73,8 +73,7 @@ fn rest(a: f64, b: f64) -> f64 {
     let sum = a + b;
     let rest = 1.0 - sum;
     // What both roundings lost. It matters where the rest looks like a number of 24 bits.
-    let part = sum - a;
-    let lost = ((1.0 - rest) - sum) - ((a - (sum - part)) + (b - part));
+    let lost = ((1.0 - rest) - sum) - lost_by_sum(a, b);
     let cut = rest.cut();
     f64::from_bits(cut.to_bits() - if (cut == rest) & (lost < 0.0) { 1 << 29 } else { 0 })
 }

@@ -54,8 +54,7 @@ impl<'a> Weighted<'a> {
     fn number(self, number: &Linear<f64>, out: &mut [f64]) {
         let (weights, number) = (self.lanes(out.len()), *number);
         let Linear { second, first, third } = number;
-        let power = larger(second.exponent(), (-second).exponent());
-        let (a, b) = (larger(first.exponent(), (-first).exponent()), larger(third.exponent(), (-third).exponent()));
+        let [power, a, b] = [second, first, third].map(|n| n.abs().exponent());
         if weights.are_covered && second != 0.0 && power >= larger(a, b) {
             // Steps of the last of 24 bits.
             let unit = power * (1.0 / f64::from(1 << 23));
