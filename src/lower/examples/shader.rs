@@ -2,14 +2,13 @@
 //!
 //! `cargo run -p ninebit-lower --example shader`
 
-use ninebit::state::{Combiners, GeneralStage, Register};
+use ninebit::state::{Combiners, Component, GeneralStage, Portion, Register};
 use ninebit_lower::{Function, Language, Named, Options};
 
 fn main() {
-    let mut stage = GeneralStage::default();
-    stage.rgb.inputs[0].register = Register::Texture0;
-    stage.rgb.inputs[1].register = Register::PrimaryColor;
-    stage.rgb.ab_output = Register::Spare0;
+    let rgb = Portion { ab_output: Register::Spare0, ..Portion::idle(Component::Rgb) };
+    let rgb = rgb.a(Register::Texture0.rgb()).b(Register::PrimaryColor.rgb());
+    let stage = GeneralStage { rgb, ..GeneralStage::default() };
     let program = Combiners { stages: vec![stage], ..Combiners::default() };
     let function = Function::of_program(&program, &Options::default());
     let named = Named { name: "shade".to_string(), about: "texture times colour".to_string(), function: &function };

@@ -63,7 +63,32 @@ impl Default for Draw {
     }
 }
 
+impl Vertex {
+    /// Returns the default vertex at (x, y, 0, 1).
+    pub fn at(x: f32, y: f32) -> Vertex {
+        Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() }
+    }
+}
+
 impl Draw {
+    /// Returns the default draw of vertices, each once and in order: three of them make a triangle.
+    pub fn of(vertices: impl Into<Vertices>) -> Draw {
+        let vertices = vertices.into();
+        // A plan takes far fewer than an index can name.
+        let indices = (0..u32::try_from(vertices.len()).unwrap_or(u32::MAX)).collect();
+        Draw { vertices, indices, ..Draw::default() }
+    }
+
+    /// Returns the default draw of a rectangle from the upper left corner of the target, whose sizes are in pixels. Over it s and t of every
+    /// coordinate set run from 0 to 1.
+    pub fn rectangle(width: f32, height: f32) -> Draw {
+        let corner =
+            |(x, s), (y, t)| Vertex { texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS], ..Vertex::at(x, y) };
+        let ([left, right], [top, bottom]) = ([(0.0, 0.0), (width, 1.0)], [(0.0, 0.0), (height, 1.0)]);
+        let corners = vec![corner(left, top), corner(right, top), corner(left, bottom), corner(right, bottom)];
+        Draw { topology: Topology::TriangleStrip, ..Draw::of(corners) }
+    }
+
     /// Returns the draw with a texture bound to unit `index`, which samples it with coordinate set `index`. A unit that does something else by the
     /// texture shader goes on doing it, with this texture.
     ///

@@ -7,6 +7,7 @@
 mod column;
 mod combiner;
 mod default;
+mod inputs;
 mod named;
 mod policy;
 mod primitive;

@@ -261,6 +261,18 @@ pub struct Texture {
     pub image: TextureImage,
 }
 
+impl Texture {
+    /// Returns a two-dimensional texture named `texture`, of one level without a border, from its [words](Texels::words). `size` is in texels.
+    ///
+    /// [`Plan::compile`](crate::plan::Plan::compile) refuses a size that the chip cannot address, and words that are too few or too many.
+    pub fn from_words(format: TextureFormat, size: [u32; 2], words: impl Into<Arc<[u32]>>) -> Texture {
+        let [width, height] = size;
+        let texels = Texels { width, height, levels: 1, layers: 1, border: false, words: words.into() };
+        let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
+        Texture { name: "texture".into(), kind, format, image }
+    }
+}
+
 /// The texels of a texture: given by the scene, or the contents of an earlier render target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureImage {

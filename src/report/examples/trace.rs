@@ -8,15 +8,14 @@ use ninebit::state::{Combiners, Draw, FinalRegister, Profile, Scene, SurfaceForm
 use ninebit_report::trace_text;
 
 fn main() {
-    let mut combiners = Combiners::default();
-    combiners.final_combiner.inputs[3].register = FinalRegister::PrimaryColor; // D
-    let corner = |x: f32, y: f32, diffuse| Vertex { position: [x, y, 0.0, 1.0], diffuse, ..Vertex::default() };
+    let combiners = Combiners::showing(FinalRegister::PrimaryColor);
+    let corner = |x: f32, y: f32, diffuse| Vertex { diffuse, ..Vertex::at(x, y) };
     let vertices = vec![
         corner(0.0, 0.0, VertexColor::Bytes([255, 0, 0, 255])),
         corner(8.0, 0.0, VertexColor::Bytes([0, 255, 0, 255])),
         corner(0.0, 8.0, VertexColor::Bytes([0, 0, 255, 255])),
     ];
-    let draw = Draw { vertices: vertices.into(), indices: [0, 1, 2].into(), combiners, ..Draw::default() };
+    let draw = Draw { combiners, ..Draw::of(vertices) };
     let targets = vec![Target::new(8, 8, SurfaceFormat::A8R8G8B8)];
     let scene = Scene { profile: Profile::Nv2a, targets, draws: vec![draw], ..Scene::default() };
     match Plan::compile(&scene, &PlanOptions::default()) {
