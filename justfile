@@ -31,6 +31,10 @@ charts:
 dependencies:
     .ci/check-dependencies
 
+# Pack what is published and build each package by itself; nothing is uploaded
+packages:
+    .ci/check-packages
+
 # Run each fuzz target for some seconds, with a corpus if one is named
 fuzz SECONDS *CORPUS:
     fuzz/run {{ SECONDS }} {{ CORPUS }}

@@ -151,7 +151,8 @@ fn files_are_read_in_one_place() {
 /// Returns the folder and the manifest of each crate.
 fn manifests() -> Vec<(PathBuf, String)> {
     let folders = std::fs::read_dir(at("src")).unwrap().map(|entry| entry.unwrap().path());
-    let mut folders: Vec<PathBuf> = folders.filter(|folder| folder.join("Cargo.toml").exists()).collect();
+    let mut folders: Vec<PathBuf> =
+        folders.chain([at("vectors")]).filter(|folder| folder.join("Cargo.toml").exists()).collect();
     folders.sort();
     let text = |folder: &PathBuf| std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
     folders.into_iter().map(|folder| (folder.clone(), text(&folder))).collect()
@@ -169,7 +170,9 @@ fn crates_are_listed() {
         };
         let dependencies = package.split("\n[dependencies]\n").nth(1).unwrap_or("").split("\n[").next().unwrap();
         let own = dependencies.lines().filter(|line| line.starts_with("ninebit"));
-        let named = own.map(|line| format!("`{}`", line.split([' ', '.', '=']).next().unwrap()));
+        // The model by its alias.
+        let own = own.map(|line| line.split([' ', '.', '=']).next().unwrap());
+        let named = own.map(|name| if name == "ninebit" { "`ninebit-model`".to_owned() } else { format!("`{name}`") });
         let uses = named.collect::<Vec<_>>().join(", ");
         table += &format!("| `{}` | `{}` | {} | {uses} |\n", name(&folder), field("name"), field("description"));
     }

@@ -157,8 +157,7 @@ fn read(bench: &Bench, block: &Block) {
             assert_eq!(status, Some(0), "{place}: {printed}");
         }
         "ron" if block.text.contains("sha256:") => {
-            ninebit_cli::expectation::Expectation::parse(&block.text)
-                .unwrap_or_else(|error| panic!("{place}: {error}"));
+            ninebit::expectation::Expectation::parse(&block.text).unwrap_or_else(|error| panic!("{place}: {error}"));
         }
         "ron" => {
             let loaded = ninebit_scene::parse(&block.text, Path::new("block.ron"), &Limits::default());

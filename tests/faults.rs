@@ -72,7 +72,7 @@ fn run_as_program(arguments: &[OsString]) -> ExitCode {
     ninebit_files::files::watch();
     faults::plant(operation, planted);
     // Panics are not caught here: one ends the process with a status of its own.
-    let exit = ninebit_cli::run(&arguments[1..]);
+    let exit = ninebit::run(&arguments[1..]);
     if planted > 0 && !faults::is_due(operation) {
         eprintln!("{CAME}");
     }

@@ -1,7 +1,7 @@
 //! Holds texel fetch and filter against TEX-1 to TEX-9, TEX-18, VOL-1 and SHD-1 where weights end or tie, where indices leave the image, and
 //! where words are extreme.
 //!
-//! Numbers come from the lattice of `tests/common`. Each pixel's coordinate lies half a step of 1/256 texel above a whole one, where no rounding of
+//! Numbers come from `engine/rows/lattice.rs`. Each pixel's coordinate lies half a step of 1/256 texel above a whole one, where no rounding of
 //! weights reaches the next. What it shows is computed here from the rules; only blocks and words are decoded by the oracle.
 
 use std::collections::BTreeSet;

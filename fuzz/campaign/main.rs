@@ -124,7 +124,7 @@ fn inside(arguments: &[String]) -> Outcome {
     // Resets the peak of resident memory, on systems that can.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let begin = Instant::now();
-    let exit = catch_unwind(AssertUnwindSafe(|| ninebit_cli::run(&arguments))).ok();
+    let exit = catch_unwind(AssertUnwindSafe(|| ninebit::run(&arguments))).ok();
     Outcome { exit, panic: PANIC.lock().unwrap().take(), time: begin.elapsed(), peak: status("VmHWM:") }
 }
 

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-use ninebit::diagnostic::ErrorKind;
+use ninebit::diagnostic::{DOCUMENTS, ErrorKind};
 use ninebit::frame::Surface;
 use ninebit::limits::{self, FileLimit};
 use ninebit_files::picture::{digest, hexadecimal};
@@ -158,7 +158,7 @@ impl ExpectationError {
         let help = match self {
             ExpectationError::TooLarge(_) => "is it an expectation? `ninebit replay --bless` writes one",
             ExpectationError::Text(_) => {
-                "its fields are in `docs/scene-format.md`; `ninebit replay --bless` writes one"
+                return format!("its fields are in {DOCUMENTS}/scene-format.md; `ninebit replay --bless` writes one");
             }
             ExpectationError::Path(error) => return error.help(),
             ExpectationError::Image(error) => error.help(),

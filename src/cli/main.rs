@@ -1,5 +1,5 @@
 //! The program `ninebit`: runs the command line and exits with its status.
 
 fn main() -> std::process::ExitCode {
-    ninebit_cli::main()
+    ninebit::main()
 }

@@ -1,6 +1,6 @@
 //! The page of `ninebit inspect`: markup, style, scripts, the model as a WebAssembly module, and a scene, in one file that loads nothing else.
 //!
-//! Its scripts are modules in `src/web/page`. A page that is opened from a file cannot import modules, so they are joined into one inline script. The
+//! Its scripts are modules in `src/cli/page`. A page that is opened from a file cannot import modules, so they are joined into one inline script. The
 //! page's content security policy allows that script and that style by their hashes, WebAssembly, and nothing else.
 
 use base64::Engine as _;
@@ -10,19 +10,19 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 /// The markup, with placeholders for the other parts.
-const MARKUP: &str = include_str!("../web/page/page.html");
-const STYLE: &str = include_str!("../web/page/style.css");
+const MARKUP: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/style.css");
 /// The scripts, each after those that it imports.
 const MODULES: [&str; 6] = [
-    include_str!("../web/page/elements.js"),
-    include_str!("../web/page/model.js"),
-    include_str!("../web/page/view.js"),
-    include_str!("../web/page/chain.js"),
-    include_str!("../web/page/change.js"),
-    include_str!("../web/page/main.js"),
+    include_str!("page/elements.js"),
+    include_str!("page/model.js"),
+    include_str!("page/view.js"),
+    include_str!("page/chain.js"),
+    include_str!("page/change.js"),
+    include_str!("page/main.js"),
 ];
 /// The WebAssembly module that `src/web/build` makes from `src/web`.
-const MODULE: &[u8] = include_bytes!("../web/module.wasm.gz");
+const MODULE: &[u8] = include_bytes!("page/module.wasm.gz");
 
 /// Returns the page with the given title and a scene's data.
 pub(crate) fn page(title: &str, data: &Value) -> String {

@@ -5,6 +5,9 @@ use std::sync::Arc;
 
 use crate::state::Profile;
 
+/// The address of the documents that messages name.
+pub const DOCUMENTS: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs");
+
 /// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {

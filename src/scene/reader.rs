@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::assets::Assets;
-use super::diagnostic::{Diagnostic, needs_nv2a};
+use super::diagnostic::{DOCUMENTS, Diagnostic, needs_nv2a};
 use super::names::{Names, Targets, Textures};
 use super::notation::{Fault, FaultKind, Notation};
 use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
@@ -473,7 +473,7 @@ impl<'a> Reader<'a> {
     /// Makes the finding of a fault in the notation.
     fn syntax(&self, Fault { kind, place }: Fault) -> Diagnostic {
         let at = shorten(&self.notation.text[place.clone()]);
-        let examples = "see docs/scene-format.md for examples";
+        let examples = format!("see {DOCUMENTS}/scene-format.md for examples");
         let (message, help) = match &kind {
             FaultKind::Nesting => {
                 let message = format!("more than {} levels of brackets inside each other", self.limits.nesting);
@@ -507,7 +507,7 @@ impl<'a> Reader<'a> {
                 "something follows the end of the scene".into(),
                 "a scene is one value in parentheses: look for a bracket that was closed too early",
             ),
-            FaultKind::Character(c) => (format!("`{}` is not expected here", c.escape_debug()), examples),
+            FaultKind::Character(c) => (format!("`{}` is not expected here", c.escape_debug()), examples.as_str()),
             FaultKind::Extension => {
                 (format!("there is no RON extension `{at}`"), "leave the `#![enable(...)]` line out")
             }

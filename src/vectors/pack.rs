@@ -138,15 +138,10 @@ impl Hashing {
     }
 }
 
-/// Path and text of the files that every pack has besides its tables.
-const ALWAYS: [(&str, &str); 6] = [
-    ("LICENSE", include_str!("../../vectors/LICENSE")),
-    ("schema/layout.schema.json", include_str!("../../vectors/schema/layout.schema.json")),
-    ("schema/leaf.schema.json", include_str!("../../vectors/schema/leaf.schema.json")),
-    ("schema/manifest.schema.json", include_str!("../../vectors/schema/manifest.schema.json")),
-    ("schema/row.schema.json", include_str!("../../vectors/schema/row.schema.json")),
-    ("schema/sweep.schema.json", include_str!("../../vectors/schema/sweep.schema.json")),
-];
+/// Returns path and text of the files that every pack has besides its tables.
+fn always() -> impl Iterator<Item = (&'static str, &'static str)> {
+    std::iter::once(("LICENSE", ninebit_data::LICENSE)).chain(ninebit_data::SCHEMAS)
+}
 
 /// Returns the digests as lines of `sha256sum`.
 fn sums(files: &[File]) -> String {
@@ -199,7 +194,7 @@ fn write(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
     let written: Result<Vec<Vec<File>>, VectorError> = on_threads(0, tables);
     let written = written?;
     let mut files: Vec<File> = written.into_iter().flatten().collect();
-    for (path, text) in ALWAYS {
+    for (path, text) in always() {
         let mut file = Hashing::create(folder, path.to_owned())?;
         file.add(text)?;
         files.push(file.finish("", 0)?);
@@ -283,7 +278,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     let inside = |file: &File| {
         let name = file.path.strip_prefix("units/").unwrap_or_default();
         let plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_'));
-        (!name.is_empty() && plain && !name.contains("..")) || ALWAYS.iter().any(|(path, _)| *path == file.path)
+        (!name.is_empty() && plain && !name.contains("..")) || always().any(|(path, _)| path == file.path)
     };
     if let Some(file) = manifest.files.iter().find(|file| !inside(file)) {
         return Err(invalid(&format!("`{:.60}` is no file of a pack", file.path), "export the pack again"));

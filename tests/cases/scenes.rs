@@ -8,8 +8,8 @@ use std::slice;
 
 use libtest_mimic::{Failed, Trial};
 use ninebit::engine::RenderOptions;
-use ninebit_cli::expectation::Expectation;
-use ninebit_cli::replay::{Entry, Options, Outcome, find, replay, report};
+use ninebit::expectation::Expectation;
+use ninebit::replay::{Entry, Options, Outcome, find, replay, report};
 
 const FOLDER: &str = "vectors/scenes";
 

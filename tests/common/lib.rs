@@ -14,6 +14,7 @@
 pub mod blocks;
 pub mod changed_scene;
 pub mod frames;
+#[path = "../../src/model/engine/rows/lattice.rs"]
 pub mod lattice;
 pub mod metamorphic;
 pub mod random_program;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use ninebit_cli::expectation::Expectation;
-use ninebit_cli::replay::find;
+use ninebit::expectation::Expectation;
+use ninebit::replay::find;
 
 /// The folder, beside the scenes that need it, of images that are not part of the repository.
 pub const CAPTURED: &str = "captured/";

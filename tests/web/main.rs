@@ -26,7 +26,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-const WASM: &str = "src/web/module.wasm.gz";
+const WASM: &str = "src/cli/page/module.wasm.gz";
 
 fn main() {
     repository::enter();

@@ -3,6 +3,7 @@
 use super::*;
 use std::cell::Cell;
 
+use ninebit::diagnostic::DOCUMENTS;
 use ninebit::limits::EVALUATORS;
 use ninebit_files::output::{make_folder, write_below, write_file};
 use ninebit_files::read::{self, Kind, ReadError};
@@ -164,7 +165,7 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     }
     if measured.techniques.is_empty() {
         let message = format!("no scene in `{}` says what its picture ought to show", shown::path(&arguments.scenes));
-        let help = "give scenes a `truth: (lights: [...])`; docs/scene-format.md describes it";
+        let help = format!("give scenes a `truth: (lights: [...])`; {DOCUMENTS}/scene-format.md describes it");
         return Err(Failure::invalid("NB0396", message, help));
     }
     for (name, surface) in &surfaces {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use ninebit::diagnostic::DOCUMENTS;
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::shown;
@@ -81,7 +82,7 @@ pub(crate) fn load_with_truth(
     loaded.affordable(work.pixels).map_err(refused)?;
     let Some(truth) = loaded.truth else {
         let message = format!("`{}` does not say what its picture ought to show", shown::path(path));
-        let help = "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it";
+        let help = format!("give the scene a `truth: (lights: [...])`; {DOCUMENTS}/scene-format.md describes it");
         return Err(Failure::invalid("NB0396", message, help));
     };
     Ok(((loaded.scene, loaded.plan.under(policies)), truth))

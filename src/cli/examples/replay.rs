@@ -1,8 +1,8 @@
 //! Compares the scenes of a folder with their expectations, as a program's own tests may do.
 //!
-//! `cargo run -p ninebit-cli --example replay`
+//! `cargo run -p ninebit --example replay`
 
-use ninebit_cli::replay::{Options, find, replay, report};
+use ninebit::replay::{Options, find, replay, report};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../vectors/scenes/fog");

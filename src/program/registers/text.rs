@@ -1,7 +1,7 @@
 //! Reads register words as text: lines with a name or method and its words, as in drivers, logs of pushbuffers and the Xbox's shader definitions.
 
 use crate::{Part, Place, Places, Span};
-use ninebit::diagnostic::Diagnostic;
+use ninebit::diagnostic::{DOCUMENTS, Diagnostic};
 use ninebit::state::{Combiners, Named, Profile};
 
 use super::{Refusal, RegisterWords, Word, decode, word_of};
@@ -192,7 +192,7 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
             Some(method) => format!("{method:#06x} is no method of the combiners"),
             None => format!("`{}` is no register of the combiners", name.text),
         };
-        let help = format!("docs/registers.md lists the words and methods of {}", chip.name());
+        let help = format!("{DOCUMENTS}/registers.md lists the words and methods of {}", chip.name());
         findings.push(finding("NB0204", name.span.clone(), message, "not known", help));
         return;
     };

@@ -1,29 +1,25 @@
-//! Image files that the test programs load (MIT); `vectors/captures/images` holds them and their licence.
+//! Image files that the test programs load (MIT).
 
 use super::images::Color;
 use ninebit::state::TextureFormat;
+use ninebit_data::images;
+pub(super) use ninebit_data::images::{NORMALS, SEEN, WATER};
 use ninebit_files::texels;
-
-macro_rules! file {
-    ($name:literal) => {
-        include_bytes!(concat!("../../../vectors/captures/images/", $name))
-    };
-}
 
 /// A compressed image: name, format, size in texels, number of mip levels, and the bytes of its DDS file.
 pub(super) type Compressed = (&'static str, TextureFormat, [u32; 2], u32, &'static [u8]);
 
 /// The compressed images of Texture_DXT.
 pub(super) const COMPRESSED: [Compressed; 9] = [
-    ("plasma_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_dxt1.dds")),
-    ("plasma_alpha_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_alpha_dxt1.dds")),
-    ("plasma_dxt3", TextureFormat::Dxt3, [32, 32], 6, file!("plasma_dxt3.dds")),
-    ("plasma_alpha_dxt3", TextureFormat::Dxt3, [32, 32], 6, file!("plasma_alpha_dxt3.dds")),
-    ("plasma_dxt5", TextureFormat::Dxt5, [32, 32], 6, file!("plasma_dxt5.dds")),
-    ("plasma_alpha_dxt5", TextureFormat::Dxt5, [32, 32], 6, file!("plasma_alpha_dxt5.dds")),
-    ("64x256_bands_dxt1", TextureFormat::Dxt1, [64, 256], 9, file!("64x256_bands_dxt1.dds")),
-    ("64x256_bands_dxt3", TextureFormat::Dxt3, [64, 256], 9, file!("64x256_bands_dxt3.dds")),
-    ("64x256_bands_dxt5", TextureFormat::Dxt5, [64, 256], 9, file!("64x256_bands_dxt5.dds")),
+    ("plasma_dxt1", TextureFormat::Dxt1, [32, 32], 6, images::PLASMA_DXT1),
+    ("plasma_alpha_dxt1", TextureFormat::Dxt1, [32, 32], 6, images::PLASMA_ALPHA_DXT1),
+    ("plasma_dxt3", TextureFormat::Dxt3, [32, 32], 6, images::PLASMA_DXT3),
+    ("plasma_alpha_dxt3", TextureFormat::Dxt3, [32, 32], 6, images::PLASMA_ALPHA_DXT3),
+    ("plasma_dxt5", TextureFormat::Dxt5, [32, 32], 6, images::PLASMA_DXT5),
+    ("plasma_alpha_dxt5", TextureFormat::Dxt5, [32, 32], 6, images::PLASMA_ALPHA_DXT5),
+    ("64x256_bands_dxt1", TextureFormat::Dxt1, [64, 256], 9, images::BANDS_DXT1),
+    ("64x256_bands_dxt3", TextureFormat::Dxt3, [64, 256], 9, images::BANDS_DXT3),
+    ("64x256_bands_dxt5", TextureFormat::Dxt5, [64, 256], 9, images::BANDS_DXT5),
 ];
 
 /// Size of a DDS file's header in bytes; the blocks follow it.
@@ -33,13 +29,6 @@ const DDS_HEADER: usize = 128;
 pub(super) fn blocks(format: TextureFormat, file: &[u8]) -> Vec<u32> {
     texels::from_bytes(file.get(DDS_HEADER..).unwrap_or_default(), format)
 }
-
-/// An object-space normal map of a cube, unfolded, 256 x 256.
-pub(super) const NORMALS: &[u8] = file!("cube_normals_object_space.png");
-/// A bump map of waves, 128 x 128.
-pub(super) const WATER: &[u8] = file!("water_bump_map.png");
-/// The image that the bump map displaces, 128 x 128.
-pub(super) const SEEN: &[u8] = file!("bump_map_test_image.png");
 
 /// Decodes a PNG file. Returns a function from column and row to the pixel's colour.
 pub(super) fn pixels(file: &[u8]) -> impl Fn(u32, u32) -> Color + use<> {

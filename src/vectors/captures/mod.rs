@@ -35,6 +35,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::*;
+use ninebit_data::FRAMES;
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -46,8 +47,6 @@ pub const SIZE: (u32, u32) = (640, 480);
 
 /// The repository and commit that the captures come from.
 pub const SOURCE: &str = "abaire/nxdk_pgraph_tests_golden_results (CC0-1.0), commit 902343e2";
-
-const TABLE: &str = include_str!("../../../vectors/captures/frames.tsv");
 
 /// The part of the frame buffer that a capture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -215,7 +214,7 @@ const SUITES: &[Suite] = &[
 pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut all = Vec::new();
     let mut unmatched = Vec::new();
-    let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
+    let rows: Vec<_> = FRAMES.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
         let mut drawn = Frames::default();
         make(&mut drawn);

@@ -26,7 +26,6 @@ mod geometry;
 mod interpolate;
 mod lanes;
 #[cfg(test)]
-#[path = "../../../../tests/common/lattice.rs"]
 mod lattice;
 #[cfg(test)]
 mod limit_tests;

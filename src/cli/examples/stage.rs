@@ -7,12 +7,13 @@ use ninebit::combiner::registers::Registers;
 use ninebit::state::*;
 
 fn main() {
-    let input = |register| CombinerInput { register, mapping: InputMapping::ExpandNormal, component: Component::Rgb };
-    let mut rgb = Portion { ab_output: Register::Spare0, ..Portion::idle(Component::Rgb) };
-    (rgb.inputs[0], rgb.inputs[1]) = (input(Register::Texture0), input(Register::PrimaryColor));
-    let mut program =
-        Combiners { stages: vec![GeneralStage { rgb, ..GeneralStage::default() }], ..Combiners::default() };
-    program.final_combiner.inputs[3].register = FinalRegister::Spare0; // D
+    let [a, b] = [Register::Texture0, Register::PrimaryColor].map(|read| read.rgb().mapped(InputMapping::ExpandNormal));
+    let rgb = Portion { ab_output: Register::Spare0, ..Portion::idle(Component::Rgb) }.a(a).b(b);
+    let program = Combiners {
+        stages: vec![GeneralStage { rgb, ..GeneralStage::default() }],
+        final_combiner: FinalCombiner::default().d(FinalRegister::Spare0.rgb()),
+        ..Combiners::default()
+    };
     let (mut exact, mut worst) = (0, 0);
     for (a, b) in (0..=255).flat_map(|a| (0..=255).map(move |b| (a, b))) {
         let mut registers = Registers::new();
