@@ -17,10 +17,8 @@ fn compile(scene: &Scene) -> Result<Plan, Vec<PlanError>> {
 
 /// Returns a texture of 4 x 4 texels of one colour.
 fn texture() -> Texture {
-    let texels =
-        Texels { width: 4, height: 4, levels: 1, layers: 1, border: false, words: vec![0xff80_4020; 16].into() };
-    let image = TextureImage::Texels(texels);
-    Texture { name: "grey".to_owned(), kind: TextureKind::TwoDimensional, format: TextureFormat::A8R8G8B8, image }
+    let texture = Texture::from_words(TextureFormat::A8R8G8B8, [4, 4], vec![0xff80_4020; 16]);
+    Texture { name: "grey".to_owned(), ..texture }
 }
 
 const STENCIL_TEST: StencilTest = StencilTest {
