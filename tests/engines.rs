@@ -257,6 +257,25 @@ fn engines_agree_on_sums_of_depths_at_a_limit() {
     }
 }
 
+/// Two rows of a sliver's quads lie further apart than a block is wide, so that blocks of quads have no pixel.
+#[test]
+fn engines_agree_on_slivers() {
+    for test in ["", "alpha_test: (function: Greater, reference: 0),"] {
+        for y in [1.0625, 1.125] {
+            let text = format!(
+                "(version: 1, profile: Nv2a, targets: [(width: 640, height: 4, depth: Z16)],
+                  textures: {{ \"t\": (source: Checker(width: 64, height: 64, cell: 4, colors: ((255, 0, 9), (3, 200, 90, 0))), levels: All) }},
+                  draws: [(depth_test: (function: LessOrEqual, vertex_depths: Steps), {test}
+                    textures: [(texture: \"t\", min_filter: Linear, mag_filter: Linear, mip_filter: Linear)],
+                    program: Combiners(stages: [(rgb: (a: Texture0, b: Texture0, ab: Spare0))], final_combiner: (d: Spare0, g: Texture0)),
+                    vertices: Window([(position: (0, 0.3125, 9), t0: (0, 0)), (position: (600, 1.6875, 9), t0: (9, 0)), (position: (300, {y}, 9), t0: (0, 7)),
+                      (position: (0, 2, 8)), (position: (640, 2, 8), t0: (9, 0)), (position: (0, 4, 8), t0: (0, 9))]))])"
+            );
+            agree_on(&text, &format!("{y} {test}"));
+        }
+    }
+}
+
 /// Scenes of the repository, changed at random: each once, or as often as `NINEBIT_ENGINE_CHANGES` says.
 #[test]
 fn engines_agree_on_changed_scenes() {

@@ -137,6 +137,11 @@ impl Drawing<'_, '_> {
             let covered = spans.map(|(first, end)| (first.max(low), end.min(low + columns)));
             let count = |n: usize| (covered[n].1 - covered[n].0).max(0) as usize;
             let at = |n: usize| (covered[n].0, top + n as i64);
+            // The spans of a sliver lie far apart.
+            if count(0) + count(1) == 0 {
+                low += columns;
+                continue;
+            }
             let is_taken = |n: usize| count(n) > 0 && self.is_taken(at(n), count(n));
             if 2 * columns as usize > BLOCK - self.block.used || is_taken(0) || is_taken(1) {
                 self.finish_within(drawn);
