@@ -5,8 +5,21 @@ use std::sync::Arc;
 
 use crate::state::Profile;
 
-/// The address of the documents that messages name.
-pub const DOCUMENTS: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs");
+/// Where the documents stand that messages name: at the repository's address, once it has one.
+pub const DOCUMENTS: &str = match is_placeholder(env!("CARGO_PKG_REPOSITORY")) {
+    true => "docs",
+    false => concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs"),
+};
+
+/// Returns whether an address leads nowhere.
+const fn is_placeholder(address: &str) -> bool {
+    let (address, placeholder) = (address.as_bytes(), b"https://example.org/");
+    let mut n = 0;
+    while n < placeholder.len() && n < address.len() && address[n] == placeholder[n] {
+        n += 1;
+    }
+    n == placeholder.len()
+}
 
 /// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
