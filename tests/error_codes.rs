@@ -7,8 +7,8 @@ use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays and rules.
-const OTHERS: [&str; 5] = ["07", "08", "10", "12", "13"];
+/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays, rules and planes.
+const OTHERS: [&str; 6] = ["07", "08", "10", "12", "13", "14"];
 
 /// A row of the page's tables.
 pub struct Row {
@@ -95,7 +95,7 @@ fn exit(code: &str) -> u8 {
         "NB12" if code == "NB1207" => 5,
         "NB12" => 3,
         "NB08" if code == "NB0802" => 5,
-        "NB13" => 2,
+        "NB13" | "NB14" => 2,
         _ => 6,
     }
 }

@@ -61,6 +61,7 @@ mod files;
 mod metamorphic;
 mod op;
 mod oracle;
+mod planes;
 mod readme;
 mod registers;
 mod replay;

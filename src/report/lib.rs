@@ -3,12 +3,14 @@
 //! * [`trace_text`], [`trace_json`] and [`side_by_side`](fn@side_by_side): the integers of one pixel, and of two compared.
 //! * [`compare`]: comparison with the same frame in ideal float64 arithmetic, split by the rules that cause differences.
 //! * [`explain`]: what a plan computes, as equations, and what it costs.
+//! * [`planes`]: values that traces name as arrays, of all pixels of a rectangle.
 //! * [`Shaded`]: how many pixels a scene shades, and about how long that takes.
 //! * [`vocabulary`]: the fields, names and operations of traces.
 
 pub mod compare;
 pub mod explain;
 mod json;
+pub mod planes;
 mod side_by_side;
 mod text;
 pub mod vocabulary;

@@ -17,6 +17,8 @@ use ninebit::limits::Limits;
 
 /// The file of a family, which has been read and is well formed.
 pub(super) struct Family {
+    /// Name of the file, as the scene writes it.
+    name: String,
     file: Arc<File>,
 }
 
@@ -43,13 +45,24 @@ pub(super) fn find(
     if inside.check::<source::Family<'_>>(&file.source.text).and_then(|raw| inside.read(&raw)).is_none() {
         return Err(inside.diagnostics.into_iter().map(|finding| finding.inside(&file)).collect());
     }
-    Ok(Some(Family { file }))
+    let name = reader.read(&named).unwrap_or_default();
+    Ok(Some(Family { name, file }))
 }
 
 impl Family {
     /// Returns the text of the file.
     pub(super) fn text(&self) -> &str {
         &self.file.source.text
+    }
+
+    /// Returns the text of the file under the name that the scene gives it.
+    pub(super) fn into_source(self) -> Source {
+        Source { name: self.name, text: Arc::unwrap_or_clone(self.file).source.text }
+    }
+
+    /// Returns the text of the file, to be changed.
+    pub(super) fn text_mut(&mut self) -> &mut String {
+        &mut Arc::make_mut(&mut self.file).source.text
     }
 
     /// Turns a finding about the joined texts into one about the scene or about the family's file.

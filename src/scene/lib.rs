@@ -4,6 +4,8 @@
 //! [`Diagnostic`]s that point into the text, all of them at once. `docs/scene-format.md` describes the format.
 
 pub mod assets;
+pub mod change;
+pub mod data;
 pub mod dds;
 pub mod diff;
 mod error;
@@ -61,6 +63,8 @@ pub struct Loaded {
     pub draw_spans: Vec<DrawSpans>,
     /// What the picture ought to show, if the scene has a truth.
     pub truth: Option<Truth>,
+    /// The file of the scene's family as it was read: its name in the scene, and its text after all changes.
+    pub family: Option<Source>,
 }
 
 impl Loaded {
@@ -95,6 +99,19 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
 /// # Errors
 /// Those of [`load`].
 pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
+    load_changed(path, limits, assets, &[])
+}
+
+/// Like [`load_with`], but changes the scene before it is read. Findings and places are about the changed text.
+///
+/// # Errors
+/// Those of [`load`]; a change that leads nowhere.
+pub fn load_changed(
+    path: &Path,
+    limits: &Limits,
+    assets: &dyn Assets,
+    changes: &[change::Change],
+) -> Result<Loaded, SceneError> {
     let name = shown::lossless(path);
     let fail = |finding: Diagnostic, text: String| SceneError {
         diagnostics: vec![finding],
@@ -114,7 +131,7 @@ pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Lo
     };
     let bytes = bytes.map_err(|error| fail(finding(error), String::new()))?;
     match String::from_utf8(bytes) {
-        Ok(text) => parse_with(&text, path, limits, assets),
+        Ok(text) => parse_changed(&text, path, limits, assets, changes),
         Err(error) => {
             let at = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
@@ -142,7 +159,21 @@ pub fn load_program(
     profile: Profile,
     limits: &Limits,
 ) -> Result<(Scene, Plan), SceneError> {
-    let mut reader = reader::Reader::new("", Path::new(""), limits, &Folder);
+    load_program_with(path, language, profile, limits, &Folder)
+}
+
+/// Like [`load_program`], but reads the file from `assets`.
+///
+/// # Errors
+/// Those of [`load_program`].
+pub fn load_program_with(
+    path: &Path,
+    language: ProgramLanguage,
+    profile: Profile,
+    limits: &Limits,
+    assets: &dyn Assets,
+) -> Result<(Scene, Plan), SceneError> {
+    let mut reader = reader::Reader::new("", Path::new(""), limits, assets);
     reader.profile = profile;
     let found = lower::program_file(&mut reader, path, language);
     let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);
@@ -165,17 +196,42 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
 /// # Errors
 /// Those of [`parse`].
 pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let source = Source { name: shown::lossless(origin), text: text.to_owned() };
-    if text.len() as u64 > limits.scene_bytes {
-        let source = Source { text: String::new(), ..source };
-        return Err(SceneError { diagnostics: vec![too_large(limits.scene_file())], suppressed: 0, source });
-    }
+    parse_changed(text, origin, limits, assets, &[])
+}
+
+/// Like [`parse_with`], but changes the scene before it is read. Findings and places are about the changed text.
+///
+/// # Errors
+/// Those of [`parse`]; a change that leads nowhere.
+pub fn parse_changed(
+    text: &str,
+    origin: &Path,
+    limits: &Limits,
+    assets: &dyn Assets,
+    changes: &[change::Change],
+) -> Result<Loaded, SceneError> {
+    let mut source =
+        Source { name: shown::lossless(origin), text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned() };
     let folder = origin.parent().unwrap_or(Path::new(""));
-    let family = match family::find(text, folder, limits, assets) {
-        Ok(family) => family,
-        Err(diagnostics) => return Err(SceneError { diagnostics, suppressed: 0, source }),
+    let find = |source: &Source| {
+        if source.text.len() as u64 > limits.scene_bytes {
+            let source = Source { text: String::new(), ..source.clone() };
+            return Err(SceneError { diagnostics: vec![too_large(limits.scene_file())], suppressed: 0, source });
+        }
+        family::find(&source.text, folder, limits, assets).map_err(|diagnostics| SceneError {
+            diagnostics,
+            suppressed: 0,
+            source: source.clone(),
+        })
     };
+    let mut family = find(&source)?;
+    for change in changes {
+        change.apply(&mut source.text, family.as_mut().map(family::Family::text_mut))?;
+        if change.path() == "family" {
+            family = find(&source)?;
+        }
+    }
+    let text = source.text.as_str();
     // Both texts are joined, so that a place in either is one number of bytes.
     let whole = family.as_ref().map(|family| format!("{text}\n{}", family.text()));
     let whole = whole.as_deref().unwrap_or(text);
@@ -192,7 +248,8 @@ pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Asset
             if let Some(family) = &family {
                 spans.iter_mut().for_each(|draw| family.keep_inside(draw, text));
             }
-            Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans: spans, truth })
+            let family = family.map(family::Family::into_source);
+            Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans: spans, truth, family })
         }
         None => Err(SceneError { diagnostics, suppressed, source }),
     }

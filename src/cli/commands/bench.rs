@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     #[command(flatten)]
     engine: EngineArguments,
     #[command(flatten)]
@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             last = now;
             spent
         };
-        let (_, plan) = load_to_draw(path, &arguments.policies, arguments.work, context)?;
+        let (_, plan) = load_to_draw(path, &arguments.state, arguments.work, context)?;
         let load_microseconds = lap();
         let renderer = Renderer::new(&plan, &options);
         let prepare_microseconds = lap();

@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", requires = "scene")]
     target: Option<String>,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     #[command(flatten)]
     work: WorkArguments,
     /// How to print the result
@@ -64,8 +64,11 @@ struct SceneFindings<'a> {
 
 /// Compares two pictures.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    if arguments.scene.is_none() && !arguments.policies.is_empty() {
-        return Err(Failure::usage("a policy has no effect without a scene", "name the scene with `--scene SCENE`"));
+    if arguments.scene.is_none() && !arguments.state.is_empty() {
+        return Err(Failure::usage(
+            "`--policy` and `--set` have no effect without a scene",
+            "name the scene with `--scene SCENE`",
+        ));
     }
     let destination = arguments.output.as_ref();
     picture::beside_report(destination)?;
@@ -96,7 +99,7 @@ fn scene_findings<'a>(
     difference: &Difference,
     context: Context,
 ) -> Result<SceneFindings<'a>, Failure> {
-    let (scene, plan) = load_to_draw(path, &arguments.policies, arguments.work, context)?;
+    let (scene, plan) = load_to_draw(path, &arguments.state, arguments.work, context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let name = scene.targets[target].name.clone();
     let (width, height) = (scene.targets[target].width, scene.targets[target].height);

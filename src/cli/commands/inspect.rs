@@ -8,7 +8,6 @@ use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::render;
 use ninebit::state::POLICIES;
 use ninebit_scene::assets::Gathered;
-use ninebit_scene::load_with;
 use serde_json::Value;
 
 use super::scene::refused;
@@ -22,27 +21,27 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "PAGE.html", value_parser = picture::output("html"))]
     output: Destination,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     #[command(flatten)]
     work: WorkArguments,
 }
 
 /// Writes a page that shows the scene and computes it in the browser.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let policies = arguments.policies.policies()?;
+    let policies = arguments.state.policies()?;
     let gathered = Gathered::default();
-    let loaded = load_with(&arguments.scene, &Limits::default(), &gathered).map_err(refused)?;
+    let loaded = arguments.state.load(&arguments.scene, &gathered, context)?;
     loaded.affordable(arguments.work.pixels).map_err(refused)?;
-    if !loaded.warnings.is_empty() {
-        terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
-    }
     arguments.output.check()?;
     // The page does not reveal the folder of the scene.
     let name = match arguments.scene.file_name() {
         Some(name) if arguments.scene != Path::new("-") => shown::path(Path::new(name)),
         _ => "scene.ron".to_owned(),
     };
-    let bundle = gathered.bundle();
+    let mut bundle = gathered.bundle();
+    if let Some(family) = loaded.family {
+        bundle.files.insert(family.name, family.text.into_bytes());
+    }
     let files: BTreeMap<&String, String> =
         bundle.files.iter().map(|(name, bytes)| (name, STANDARD.encode(bytes))).collect();
     let data = json!({

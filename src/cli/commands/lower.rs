@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     /// Only this draw, numbered from 0
     #[arg(long, value_name = "N")]
     draw: Option<usize>,
@@ -86,7 +86,7 @@ impl Form {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let Some(path) = &arguments.source else { return generic(arguments) };
     let alone = arguments.program.language(path).is_some();
-    let scene = arguments.program.scene(path, &arguments.policies, context)?;
+    let scene = arguments.program.scene(path, &arguments.state, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
     let out = match arguments.to.language() {
         Some(language) => functions(arguments, path, language, &scene, &draws, alone)?,
@@ -97,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 
 /// Prints or writes the generic text.
 fn generic(arguments: &Arguments) -> Result<(), Failure> {
-    let text = Generic { chip: arguments.program.profile, policies: arguments.policies.policies()? };
+    let text = Generic { chip: arguments.program.profile, policies: arguments.state.policies()? };
     match (arguments.to, &arguments.output) {
         (Form::C99, Some(folder)) => {
             let Sources { header, source } = text.c99();
@@ -153,7 +153,7 @@ fn functions(
     alone: bool,
 ) -> Result<String, Failure> {
     let options = Options {
-        policies: arguments.policies.policies()?,
+        policies: arguments.state.policies()?,
         uniform: arguments.uniform,
         textures: if arguments.textures == Given::Words { Textures::Words } else { Textures::Registers },
         fragment: arguments.fragment,

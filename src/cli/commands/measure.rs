@@ -14,7 +14,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     #[command(flatten)]
     work: WorkArguments,
     /// A picture of the truth itself, rounded, a PNG; of one scene
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     }
     let scenes: Vec<&Path> = arguments.scenes.iter().map(PathBuf::as_path).collect();
     let measured = each(&scenes, context, |path| {
-        let ((scene, plan), truth) = load_with_truth(path, &arguments.policies, arguments.work, context)?;
+        let ((scene, plan), truth) = load_with_truth(path, &arguments.state, arguments.work, context)?;
         picture.map_or(Ok(()), Destination::check)?;
         let accuracy = measure(&scene, &plan, &truth).ok_or_else(|| Failure::unseen(path))?;
         if let Some(picture) = picture {

@@ -18,6 +18,7 @@ mod lower;
 mod measure;
 mod op;
 mod picture;
+mod planes;
 mod policies;
 mod program_file;
 mod registers;
@@ -57,7 +58,7 @@ use cost::Cost;
 use engine::EngineArguments;
 use exit::{Exit, Failure, Report};
 use program_file::ProgramArguments;
-use scene::{PolicyArguments, SceneArguments, WorkArguments, chosen_target, load_to_draw};
+use scene::{PolicyArguments, SceneArguments, StateArguments, WorkArguments, chosen_target, load_to_draw};
 use terminal::{ColorChoice, Level, Progress};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
@@ -79,6 +80,11 @@ enum Command {
     Render(render::Arguments),
     /// Print how one pixel came to be, integer by integer
     Trace(trace::Arguments),
+    /// Write values that traces name as arrays, of all pixels of a picture
+    ///
+    /// Without names it lists those that the scene has. The file is one of NumPy, for `numpy.load`: of each name an array of rows, columns, and channels
+    /// where the name stands for several.
+    Planes(planes::Arguments),
     /// Write a page that shows a scene in any browser: click a pixel, see its integers, change a stage
     ///
     /// The page holds the scene, its textures and the model itself as WebAssembly. It needs no network and no server.
@@ -163,6 +169,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Check(arguments) => check::run(&arguments, context),
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
+        Command::Planes(arguments) => planes::run(&arguments, context),
         Command::Inspect(arguments) => inspect::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Measure(arguments) => measure::run(&arguments, context),

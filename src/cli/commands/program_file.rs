@@ -9,7 +9,7 @@ use ninebit::plan::Plan;
 use ninebit::state::{Named, Profile, Scene};
 use ninebit_scene::{ProgramLanguage, load_program};
 
-use super::scene::{PolicyArguments, load, refused_beside};
+use super::scene::{StateArguments, load, refused_beside};
 use super::{Context, Failure};
 
 /// Returns the language that a file's extension implies.
@@ -57,10 +57,10 @@ impl ProgramArguments {
     }
 
     /// Reads the scene, or the program where the file is one.
-    pub(crate) fn scene(&self, path: &Path, policies: &PolicyArguments, context: Context) -> Result<Scene, Failure> {
+    pub(crate) fn scene(&self, path: &Path, state: &StateArguments, context: Context) -> Result<Scene, Failure> {
         match self.language(path) {
             Some(language) => Ok(self.read(path, language, context)?.0),
-            None => Ok(load(path, policies, context)?.0),
+            None => Ok(load(path, state, context)?.0),
         }
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     program: ProgramArguments,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     /// Only this draw, numbered from 0
     #[arg(long, value_name = "N")]
     draw: Option<usize>,
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
 
 /// Prints the programs of a scene, or a program from a file of its own, as register words.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let scene = arguments.program.scene(&arguments.source, &arguments.policies, context)?;
+    let scene = arguments.program.scene(&arguments.source, &arguments.state, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
     let words =
         draws.iter().map(|(number, draw)| (*number, &draw.name, describe(&encode(&draw.combiners, scene.profile))));

@@ -9,6 +9,8 @@ use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::{Draw, Policies, Scene};
 use ninebit_files::catch_panic::catch_panic;
+use ninebit_scene::assets::{Assets, Folder};
+use ninebit_scene::change::Change;
 use ninebit_scene::truth::Truth;
 use ninebit_scene::{self as scene, Loaded, SceneError};
 use serde::Serialize;
@@ -22,7 +24,17 @@ pub(crate) struct SceneArguments {
     /// The scene file, `-` for standard input
     pub(crate) scene: PathBuf,
     #[command(flatten)]
+    state: StateArguments,
+}
+
+/// Arguments that change what is drawn.
+#[derive(Debug, Default, Args)]
+pub(crate) struct StateArguments {
+    #[command(flatten)]
     policies: PolicyArguments,
+    /// Put a value at a place of the scene or its family: `draws[0].program.constants[0]=(255, 128, 0, 255)`, `names.vectors.sun=(0, 0, 1)`
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    changes: Vec<String>,
 }
 
 /// The limit of work for commands that draw.
@@ -44,29 +56,29 @@ pub(crate) struct PolicyArguments {
 impl SceneArguments {
     /// Reads, checks and plans the scene; warnings go to stderr.
     pub(crate) fn load(&self, context: Context) -> Result<(Scene, Plan), Failure> {
-        load(&self.scene, &self.policies, context)
+        load(&self.scene, &self.state, context)
     }
 
     /// Like [`load`](Self::load), but refuses a scene that takes more work than allowed.
     pub(crate) fn load_to_draw(&self, work: WorkArguments, context: Context) -> Result<(Scene, Plan), Failure> {
-        load_to_draw(&self.scene, &self.policies, work, context)
+        load_to_draw(&self.scene, &self.state, work, context)
     }
 }
 
 /// Reads, checks and plans the scene file at `path`; warnings go to stderr.
-pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Scene, Plan), Failure> {
-    let (loaded, policies) = read(path, policies, context)?;
+pub(crate) fn load(path: &Path, state: &StateArguments, context: Context) -> Result<(Scene, Plan), Failure> {
+    let (loaded, policies) = read(path, state, context)?;
     Ok((loaded.scene, loaded.plan.under(policies)))
 }
 
 /// Like [`load`], but refuses a scene that takes more work than allowed.
 pub(crate) fn load_to_draw(
     path: &Path,
-    policies: &PolicyArguments,
+    state: &StateArguments,
     work: WorkArguments,
     context: Context,
 ) -> Result<(Scene, Plan), Failure> {
-    let (loaded, policies) = read(path, policies, context)?;
+    let (loaded, policies) = read(path, state, context)?;
     loaded.affordable(work.pixels).map_err(refused)?;
     Ok((loaded.scene, loaded.plan.under(policies)))
 }
@@ -74,11 +86,11 @@ pub(crate) fn load_to_draw(
 /// Reads, checks and plans a scene with a ground truth. Returns an error if it has none, or takes more work than allowed.
 pub(crate) fn load_with_truth(
     path: &Path,
-    policies: &PolicyArguments,
+    state: &StateArguments,
     work: WorkArguments,
     context: Context,
 ) -> Result<((Scene, Plan), Truth), Failure> {
-    let (loaded, policies) = read(path, policies, context)?;
+    let (loaded, policies) = read(path, state, context)?;
     loaded.affordable(work.pixels).map_err(refused)?;
     let Some(truth) = loaded.truth else {
         let message = format!("`{}` does not say what its picture ought to show", shown::path(path));
@@ -88,13 +100,33 @@ pub(crate) fn load_with_truth(
     Ok(((loaded.scene, loaded.plan.under(policies)), truth))
 }
 
-fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
-    let policies = policies.policies()?;
-    let loaded = scene::load(path, &Limits::default()).map_err(refused)?;
-    if !loaded.warnings.is_empty() {
-        terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
+/// Reads and checks the scene file at `path`; warnings go to stderr.
+fn read(path: &Path, state: &StateArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
+    let policies = state.policies.policies()?;
+    Ok((state.load(path, &Folder, context)?, policies))
+}
+
+impl StateArguments {
+    /// Returns whether nothing is changed.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.policies.is_empty() && self.changes.is_empty()
     }
-    Ok((loaded, policies))
+
+    /// Returns the policies of the command line.
+    pub(crate) fn policies(&self) -> Result<Policies, Failure> {
+        self.policies.policies()
+    }
+
+    /// Reads, changes and checks the scene file at `path`, with the files that it names from `assets`; warnings go to stderr.
+    pub(crate) fn load(&self, path: &Path, assets: &dyn Assets, context: Context) -> Result<Loaded, Failure> {
+        let changes: Result<Vec<Change>, _> = self.changes.iter().map(|change| change.parse()).collect();
+        let loaded =
+            scene::load_changed(path, &Limits::default(), assets, &changes.map_err(refused)?).map_err(refused)?;
+        if !loaded.warnings.is_empty() {
+            terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
+        }
+        Ok(loaded)
+    }
 }
 
 impl PolicyArguments {

@@ -62,18 +62,24 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 const MAX_PIXELS: u64 = 4096;
 
 fn rectangle(text: &str) -> Result<[u32; 4], String> {
-    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-    let Some(&[x, y, columns, rows]) = numbers.as_deref() else {
-        return Err("not of the form X,Y,COLUMNS,ROWS, for example 320,240,4,4".to_string());
-    };
+    let [x, y, columns, rows] = rectangle_of(text)?;
     match u64::from(columns) * u64::from(rows) {
-        0 => Err("it has no pixels".to_string()),
         pixels if pixels > MAX_PIXELS => Err(format!("it has {pixels} pixels; {MAX_PIXELS} are the most")),
         _ => Ok([x, y, columns, rows]),
     }
 }
 
-fn outside(scene: &Scene, error: &TraceError) -> Failure {
+/// Parses a rectangle of pixels: its first column and row, columns and rows.
+pub(super) fn rectangle_of(text: &str) -> Result<[u32; 4], String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[_, _, columns, rows]) if columns == 0 || rows == 0 => Err("it has no pixels".to_string()),
+        Some(&[x, y, columns, rows]) => Ok([x, y, columns, rows]),
+        _ => Err("not of the form X,Y,COLUMNS,ROWS, for example 320,240,4,4".to_string()),
+    }
+}
+
+pub(super) fn outside(scene: &Scene, error: &TraceError) -> Failure {
     let help = match error {
         TraceError::Pixel { width, height, .. } => {
             format!("columns run from 0 to {}, rows from 0 to {}", width - 1, height - 1)

@@ -85,6 +85,18 @@ pub struct Pictures {
     pub(crate) truth: Vec<Option<[f64; 3]>>,
 }
 
+impl Pictures {
+    /// Returns R, G, B, A of the picture, row by row from the top.
+    pub fn shown(&self) -> &[[u8; 4]] {
+        &self.shown
+    }
+
+    /// Returns R, G, B of the truth, 0 to 1; `None` where a pixel is not measured.
+    pub fn truth(&self) -> &[Option<[f64; 3]>] {
+        &self.truth
+    }
+}
+
 /// Measures a scene against its truth. Returns `None` if no pixel with a truth is drawn.
 pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let visible = Visible::new(plan, truth, TARGET);

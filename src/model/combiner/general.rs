@@ -362,7 +362,7 @@ pub fn values<L: Lane, O: Observer>(
         load_constants(stage.constants, registers, &mut direct);
     }
     let values = evaluate(stage, mux_select, registers, &mut direct);
-    if O::ON {
+    if O::ON && report::wanted(stage, observer) {
         report::stage(stage, mux_select, &values, registers, policies, observer);
     }
     write(stage, &values, registers, &mut Direct::new(policies, observer).only(sites));

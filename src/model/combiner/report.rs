@@ -25,6 +25,13 @@ pub(crate) fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], obser
     }
 }
 
+/// Returns whether a step of a stage is wanted: one of its values, or a register that it writes.
+pub(super) fn wanted<O: Observer>(stage: &PlannedStage, observer: &O) -> bool {
+    let written = [&stage.rgb.portion, &stage.alpha.portion].map(|p| [p.ab_output, p.cd_output, p.sum_output]);
+    let registers = written.as_flattened().iter().map(|register| registers::name(*register));
+    registers.into_iter().any(|name| observer.wants(&[name])) || observer.wants(&[&format!("stage{}.", stage.index)])
+}
+
 /// Reports a stage in the order of a trace: what it reads, computes and writes.
 pub(super) fn stage<L: Lane, O: Observer>(
     stage: &PlannedStage,
@@ -40,12 +47,19 @@ pub(super) fn stage<L: Lane, O: Observer>(
         rgb.mux(spare0, mux_select, policies, values.takes_cd, observer);
     }
     for (portion, report) in [(&stage.rgb, &rgb), (&stage.alpha, &alpha)] {
+        if !observer.wants(&[&report.prefix]) {
+            continue;
+        }
         for product in 0..2 {
             report.inputs(portion, product, registers, policies, observer);
         }
     }
-    rgb.values(&stage.rgb, 0, &values.rgb, values.takes_cd, policies, observer);
-    alpha.values(&stage.alpha, 3, &values.alpha, values.takes_cd, policies, observer);
+    if rgb.wanted(&PRODUCT_NAMES, observer) {
+        rgb.values(&stage.rgb, 0, &values.rgb, values.takes_cd, policies, observer);
+    }
+    if alpha.wanted(&PRODUCT_NAMES, observer) {
+        alpha.values(&stage.alpha, 3, &values.alpha, values.takes_cd, policies, observer);
+    }
     rgb.writes(&stage.rgb, 0, &values.rgb, observer);
     alpha.writes(&stage.alpha, 3, &values.alpha, observer);
 }
@@ -65,6 +79,12 @@ impl StageReport {
             prefix: format!("stage{stage}.{portion}"),
             stage,
         }
+    }
+
+    /// Returns whether a value of the portion is wanted whose name begins with one of these.
+    fn wanted<O: Observer>(&self, names: &[&str], observer: &O) -> bool {
+        observer.wants(&[&self.prefix])
+            && names.iter().any(|name| observer.wants(&[&[&self.prefix, ".", *name, "."].concat()]))
     }
 
     fn mux<L: Lane, O: Observer>(
@@ -98,14 +118,17 @@ impl StageReport {
         observer: &mut O,
     ) {
         for n in [2 * product, 2 * product + 1] {
+            if !self.wanted(&[INPUT_NAMES[n]], observer) {
+                continue;
+            }
             let input = &planned.portion.inputs[n];
             let read = self.read_channels(planned, product);
             for channel in (0..4).filter(|c| read >> c & 1 != 0) {
                 let source = source_channel(input, channel);
                 let x = registers.read(input.register, source);
                 let [factor] = mapping::map([x], input.mapping, policies);
-                let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
-                let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
+                let name = [&self.prefix, ".", INPUT_NAMES[n], ".", channel_name(channel)].concat();
+                let operand = [registers::name(input.register), ".", channel_name(source)].concat();
                 observer.step(
                     report::factor_step::<L>(&self.block, mapping::rule(input.mapping).name(), name, factor)
                         .by(mapping::operation(input.mapping), vec![report::register(operand, x)]),
@@ -135,7 +158,8 @@ impl StageReport {
             for c in 0..N {
                 let channel = first + c;
                 let blue = n < 2 && planned.blue_to_alpha[n] && channel == 2;
-                if planned.live[n] >> channel & 1 == 0 && !blue {
+                let live = planned.live[n] >> channel & 1 != 0 || blue;
+                if !live || !observer.wants(&[&self.product_name(n, channel)]) {
                     continue;
                 }
                 let raw = if n == 2 { values.third[c].sum } else { values.products[n][c].sum };
@@ -169,7 +193,7 @@ impl StageReport {
         observer: &mut O,
     ) {
         let operand = |n: usize, c: usize| {
-            let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(first + c));
+            let name = [&self.prefix, ".", INPUT_NAMES[n], ".", channel_name(first + c)].concat();
             report::factor::<L>(name, values.factors[n][c])
         };
         let (rule, operation) = match rounding {
@@ -178,9 +202,12 @@ impl StageReport {
             None => ("CMB-6", "product"),
         };
         for c in (0..N).filter(|c| needed >> (first + c) & 1 != 0) {
+            let name = self.product_name(product, first + c);
+            if !observer.wants(&[&name]) {
+                continue;
+            }
             let pairs = if rounding.is_some() { 0..N } else { c..c + 1 };
             let inputs = pairs.flat_map(|c| [operand(2 * product, c), operand(2 * product + 1, c)]).collect();
-            let name = self.product_name(product, first + c);
             let raw = values.products[product][c].sum;
             observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
         }
@@ -225,7 +252,7 @@ impl StageReport {
         let base = self.product_name(n, channel);
         let mut last = (base.clone(), raw.rounded());
         let mut step = |suffix: &str, rule, operation, v: L, first: bool| {
-            let name = format!("{base}.{suffix}");
+            let name = [&base, ".", suffix].concat();
             let operand = if first { report::sum::<L>(&base, raw) } else { report::register(last.0.clone(), last.1) };
             let changed = v.observe().0 != last.1.observe().0;
             let note = (suffix == "output" && changed).then(|| "saturated".to_string());
@@ -268,7 +295,9 @@ impl StageReport {
     ) {
         let portion = &planned.portion;
         let destinations = [portion.ab_output, portion.cd_output, portion.sum_output];
-        for (n, destination) in destinations.into_iter().enumerate() {
+        let wanted = |register: &Register| observer.wants(&[registers::name(*register)]);
+        let wanted = destinations.each_ref().map(wanted);
+        for (n, destination) in destinations.into_iter().enumerate().filter(|(n, _)| wanted[*n]) {
             for c in (0..N).filter(|c| planned.live[n] >> (first + c) & 1 != 0) {
                 self.write(destination, first + c, values.outputs[n][c], n, "CMB-1", observer);
             }
@@ -288,15 +317,15 @@ impl StageReport {
         observer: &mut O,
     ) {
         let source_channel = if rule == "CMB-11" { 2 } else { channel };
-        let source = format!("{}.output", self.product_name(n, source_channel));
-        let name = format!("{}.{}", registers::name(destination), channel_name(channel));
+        let source = [&self.product_name(n, source_channel), ".output"].concat();
+        let name = [registers::name(destination), ".", channel_name(channel)].concat();
         observer.step(
             report::register_step(&self.block, rule, name, value).by("write", vec![report::register(source, value)]),
         );
     }
 
     fn product_name(&self, n: usize, channel: usize) -> String {
-        format!("{}.{}.{}", self.prefix, PRODUCT_NAMES[n], channel_name(channel))
+        [&self.prefix, ".", PRODUCT_NAMES[n], ".", channel_name(channel)].concat()
     }
 }
 

@@ -9,6 +9,7 @@ mod bins;
 pub mod context;
 mod counting;
 pub mod pixel;
+mod planes;
 mod report;
 mod rows;
 mod texture_words;
@@ -17,6 +18,7 @@ mod unseen;
 pub mod walk;
 
 pub use counting::{DrawCounts, Shaded, affordable, count, fragments, shaded};
+pub use planes::{FRAGMENT_NAMES, Plane, PlaneOptions, plane_names, planes};
 pub use rows::Isa;
 use rows::Kernels;
 pub use texture_words::TextureWords;

@@ -81,19 +81,20 @@ impl TriangleContext<'_> {
         let draw = self.draw;
         let mut sample = Sample::new(&self.triangle, fragment.e);
         sample.ideal = fragment.weights;
-        if O::ON {
+        if O::ON && observer.wants(&["E", "e", "w", "r0", "r2", "S", "R", "b"]) {
             let w = significant(self.vertices().position(3), self.plan.profile);
             reports::setup(&sample, fragment.pixel, w, self.barycentrics(&sample), observer);
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);
         self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer)?;
-        if O::ON {
+        let constants = O::ON && observer.wants(&["constant"]);
+        if constants {
             reports::stage_constants(0, draw, observer);
         }
         for stage in &draw.stages {
             general::run(stage, draw.mux_select, &self.plan.policies, &mut registers, observer);
-            if O::ON {
+            if constants {
                 // The next stage may have other constants.
                 reports::stage_constants(stage.index + 1, draw, observer);
             }
@@ -121,7 +122,7 @@ impl TriangleContext<'_> {
         // Equal bytes at all three vertices need no weights, because C W0 + C W1 + C W2 is 256 C.
         let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
             let weights = sample.color_weights();
-            if O::ON && sets.iter().any(|s| s.1 != 0) {
+            if O::ON && sets.iter().any(|s| s.1 != 0) && observer.wants(&["W"]) {
                 reports::weights(sample, weights, self.barycentrics(sample), observer);
             }
             weights
@@ -161,7 +162,7 @@ impl TriangleContext<'_> {
                     }
                 }
             }
-            if O::ON {
+            if O::ON && observer.wants(&[name, "vertex"]) {
                 let output =
                     draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
                 for channel in (0..4).filter(|c| live >> c & 1 != 0) {
@@ -199,7 +200,7 @@ impl TriangleContext<'_> {
                 Some(_) => Rule::Fog4,
             };
             let factor = observer.observe(rule, L::value(i32::from(found.byte), ideal));
-            if O::ON {
+            if O::ON && observer.wants(&["fog", "vertex"]) {
                 self.report_fog(sample, plane, found, factor, observer);
             }
             factor
@@ -209,7 +210,7 @@ impl TriangleContext<'_> {
             }
             L::ONE
         };
-        if O::ON {
+        if O::ON && observer.wants(&["fog"]) {
             for (channel, value) in [r, g, b].into_iter().enumerate() {
                 let name = format!("fog.{}", channel_name(channel));
                 observer.step(report::register_step("fog", "NUM-5", name, value));
@@ -386,7 +387,7 @@ impl TriangleContext<'_> {
         if draw.write_mask != 0 {
             observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
         }
-        if O::ON {
+        if O::ON && observer.wants(&["sto", "surface"]) {
             self.report_store(&channels, fragment.stored, word, memory, observer);
         }
         Some(Stored { word, channels })

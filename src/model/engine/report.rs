@@ -338,13 +338,16 @@ impl TriangleContext<'_> {
         for channel in (0..4).filter(|c| bits[*c] & draw.write_mask != 0 && draw.final_combiner.live >> c & 1 != 0) {
             let from = if draw.blend.is_some() && draw.blended >> channel & 1 != 0 { "blend" } else { "fragment" };
             let value = channels[channel].observe().0;
-            inputs.push(byte(format!("{from}.{}", channel_name(channel)), value));
+            inputs.push(byte([from, ".", channel_name(channel)].concat(), value));
         }
         let note = format!("{word:#010x}");
         observer.step(Step::given(BLOCK, "ROP-5", "stored.word", word).by("store", inputs).note(note));
         let shown = surface::show(draw.surface, word);
         for channel in 0..4 {
-            let name = format!("stored.{}", channel_name(channel));
+            let name = ["stored.", channel_name(channel)].concat();
+            if !observer.wants(&[&name]) {
+                continue;
+            }
             let kept = draw.written >> channel & 1 != 0;
             let ideal = channels[channel].observe().1.filter(|_| kept);
             let inputs = vec![

@@ -199,9 +199,7 @@ impl<'a> Tracer<'a> {
         let mut count = 0_u64;
         for (_, planned) in tracer.draws().filter(|(index, _)| tracer.keeps(*index)) {
             let mut context = TriangleContext::vacant(plan, planned);
-            count += (0..planned.assembly.triangles.len())
-                .filter(|n| covered(&mut context, *n, pixel).is_some())
-                .count() as u64;
+            count += (0..planned.assembly.triangles.len()).filter(|n| covered(&mut context, *n, pixel)).count() as u64;
         }
         tracer.left_out = count.saturating_sub(fragments);
         Ok(tracer)
@@ -264,8 +262,8 @@ impl<'a> Tracer<'a> {
         let at = self.at();
         let word = frames.surfaces[self.target].words[at];
         let depth = frames.surfaces[self.target].depth.get(at).copied().unwrap_or(0);
-        let depth = DepthStencil::new(depth);
-        let mut pixel = Pixel { word, depth, ideal: cleared_colors(description, at).map(f64::from) };
+        let mut pixel = Pixel::new(word, depth, cleared_colors(description, at));
+        let place = (i64::from(self.pixel.0), i64::from(self.pixel.1));
         let mut passed_over = self.left_out;
         let mut finished = 0;
         for (index, planned) in self.draws() {
@@ -277,15 +275,17 @@ impl<'a> Tracer<'a> {
             let textures = texture_words.images();
             let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
-                let Some(e) = covered(&mut context, number, self.pixel) else { continue };
+                if !covered(&mut context, number, self.pixel) {
+                    continue;
+                }
                 context.complete();
                 if !self.keeps(index) || passed_over > 0 {
                     passed_over -= u64::from(self.keeps(index));
-                    pixel.shade(planned, &context, self.pixel, e, &textures, &mut Silent);
+                    pixel.shade(planned, &context, place, &textures, &mut Silent);
                     continue;
                 }
                 let mut recorder = Recorder::default();
-                let stored = pixel.shade(planned, &context, self.pixel, e, &textures, &mut recorder);
+                let stored = pixel.shade(planned, &context, place, &textures, &mut recorder);
                 each(DrawTrace {
                     draw: index,
                     name: planned.name.clone(),
@@ -302,18 +302,14 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// Returns the edge functions of triangle `number` at a pixel that it covers. Texture coordinates and fog are not set up.
-fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> Option<[i64; 3]> {
+/// Returns whether triangle `number` covers a pixel. Texture coordinates and fog are not set up.
+fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> bool {
     let (i, j) = (i64::from(x), i64::from(y));
-    if !context.set_up(number, (j, j + 1)) {
-        return None;
-    }
-    let e = context.triangle.edges(i, j);
-    context.triangle.covers(e).then_some(e)
+    context.set_up(number, (j, j + 1)) && context.triangle.covers(context.triangle.edges(i, j))
 }
 
-/// The contents of the traced pixel.
-struct Pixel {
+/// The contents of a traced pixel.
+pub(super) struct Pixel {
     word: u32,
     depth: DepthStencil,
     /// Contents of a surface of real numbers: R, G, B and A in 255ths.
@@ -321,17 +317,21 @@ struct Pixel {
 }
 
 impl Pixel {
+    /// Creates a pixel of a surface that nothing is drawn into yet.
+    pub(super) fn new(word: u32, depth: u32, colors: [u8; 4]) -> Pixel {
+        Pixel { word, depth: DepthStencil::new(depth), ideal: colors.map(f64::from) }
+    }
+
     /// Shades one fragment. Returns whether it was stored.
-    fn shade<O: Observer>(
+    pub(super) fn shade<O: Observer>(
         &mut self,
         planned: &PlannedDraw,
         context: &TriangleContext<'_>,
-        (x, y): (u32, u32),
-        e: [i64; 3],
+        pixel: (i64, i64),
         textures: &[Image<'_, Paired>],
         observer: &mut O,
     ) -> bool {
-        let pixel = (i64::from(x), i64::from(y));
+        let e = context.triangle.edges(pixel.0, pixel.1);
         let fragment = Fragment { pixel, e, stored: self.word, weights: None };
         let fixed = surface::read(planned.surface, self.word);
         let destination = std::array::from_fn(|n| Paired { fixed: i32::from(fixed[n]), ideal: self.ideal[n] });

@@ -28,9 +28,13 @@ pub struct Report<'a> {
     pub prefix: &'a str,
 }
 
+/// The numbers of units, as names have them. Names are made of parts, which takes a third of the time of formatting: planes have one for every value of every
+/// pixel.
+const UNITS: [&str; 4] = ["0", "1", "2", "3"];
+
 /// Returns the name of a unit's block of the chip.
 pub(crate) fn block(index: usize) -> String {
-    format!("texture unit {index}")
+    ["texture unit ", UNITS[index]].concat()
 }
 
 impl Report<'_> {
@@ -41,7 +45,23 @@ impl Report<'_> {
 
     /// Returns the name of a value of this unit.
     pub(crate) fn name(&self, suffix: &str) -> String {
-        format!("unit{}.{}{suffix}", self.unit.index, self.prefix)
+        ["unit", UNITS[self.unit.index], ".", self.prefix, suffix].concat()
+    }
+
+    /// Returns whether a step of this unit is wanted whose name begins with one of these.
+    pub(super) fn wanted<O: Observer>(&self, suffixes: &[&str], observer: &O) -> bool {
+        let own = self.name("");
+        observer.wants(&[&own]) && suffixes.iter().any(|suffix| observer.wants(&[&[&own, *suffix].concat()]))
+    }
+
+    /// Returns whether a step is wanted by which a lane is filtered.
+    pub(super) fn lane_wanted<O: Observer>(&self, lane: usize, observer: &O) -> bool {
+        self.wanted(&[self.lane(lane), "row"], observer)
+    }
+
+    /// Returns whether a channel of this unit's register is wanted.
+    pub(super) fn register_wanted<O: Observer>(&self, observer: &O) -> bool {
+        observer.wants(&[&["texture", UNITS[self.unit.index], "."].concat()])
     }
 
     /// Returns a step of this unit.
@@ -285,7 +305,7 @@ impl Report<'_> {
         observer: &mut O,
     ) -> u32 {
         let block = self.block();
-        let texel_name = |what: &str| self.name(&format!("texel{suffix}.{what}"));
+        let texel_name = |what: &str| self.name(&["texel", suffix, ".", what].concat());
         let mut place = Vec::new();
         if let Some(at) = texel.at {
             let (sizes, modes) = ([slice.level.width, slice.level.height], self.unit.modes());
@@ -326,7 +346,7 @@ impl Report<'_> {
         suffix: &str,
         observer: &mut O,
     ) {
-        let texel_name = |what: &str| self.name(&format!("texel{suffix}.{what}"));
+        let texel_name = |what: &str| self.name(&["texel", suffix, ".", what].concat());
         let word = self.fetched(slice, words, texel, index, suffix, observer);
         for lane in (0..4).filter(|lane| self.unit.live_lanes() >> lane & 1 != 0) {
             let signed = self.unit.signed_lane(lane);
@@ -485,8 +505,8 @@ impl Report<'_> {
     ) {
         let suffix = channel_name(channel);
         let (rule, operation) = if self.unit.state.signed[channel] { ("TEX-18", "double") } else { ("NUM-1", "write") };
-        let inputs = vec![self.lane_operand(self.name(&format!("{from}{suffix}")), value)];
-        let name = format!("texture{}.{suffix}", self.unit.index);
+        let inputs = vec![self.lane_operand(self.name(&[from, suffix].concat()), value)];
+        let name = ["texture", UNITS[self.unit.index], ".", suffix].concat();
         observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
     }
 

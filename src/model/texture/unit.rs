@@ -132,6 +132,25 @@ pub fn layer<L: Lane, O: Observer>(
     layer
 }
 
+/// Beginnings of the names of steps by which coordinates are computed, after those of the unit.
+const COORDINATE_STEPS: &[&str] = &[
+    "coordinate",
+    "face",
+    "u",
+    "v",
+    "offset",
+    "m",
+    "vector",
+    "product",
+    "dot",
+    "eye",
+    "toward",
+    "square",
+    "scale",
+    "reflection",
+    "previous",
+];
+
 /// Returns u and v on a level in 1/256 texel, and those of the ideal if something uses them.
 #[inline(always)]
 fn coordinates<L: Lane, O: Observer>(
@@ -143,7 +162,7 @@ fn coordinates<L: Lane, O: Observer>(
 ) -> ([i64; 2], [f64; 2]) {
     let fixed = place.on(slice.level);
     let wanted = if O::ON || O::MEASURES || L::DECIDES { real_on(slice.unit, slice.level, real) } else { [0.0; 2] };
-    if O::ON {
+    if O::ON && report.wanted(COORDINATE_STEPS, observer) {
         place.describe(report, slice.level, fixed, wanted, observer);
     }
     (if L::DECIDES { wanted.map(floored) } else { fixed }, wanted)
@@ -248,7 +267,7 @@ fn fetched<L: Lane, O: Observer>(
             let mut expand = |texel: &Texel| lanes::<L, O>(unit, image, texel, observer);
             let [t0, t1, t2, t3] = &texels;
             let channels = [expand(t0), expand(t1), expand(t2), expand(t3)];
-            if O::ON {
+            if O::ON && report.wanted(&["texel"], observer) {
                 for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
                     let index = [(dx, x + (n & 1) as i64), (dy, y + (n >> 1) as i64)];
                     let suffix = format!("{dx}{dy}");
@@ -278,7 +297,7 @@ pub fn footprint_weights<L: Lane, O: Observer>(
     };
     let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))]
         .map(|weight| observer.observe_weight::<L>(rule, weight));
-    if O::ON {
+    if O::ON && report.wanted(&["x", "y", "weight"], observer) {
         report.linear::<L, O>([u, v], [x, y], weights, observer);
     }
     ([x, y], weights)
@@ -306,7 +325,9 @@ pub fn mix<L: Lane, O: Observer>(
     });
     if O::ON {
         for lane in (0..4).filter(|c| live >> c & 1 != 0) {
-            report.filter(lane, of(lane), weights, out[lane], observer);
+            if report.lane_wanted(lane, observer) {
+                report.filter(lane, of(lane), weights, out[lane], observer);
+            }
         }
     }
     out
@@ -354,11 +375,12 @@ pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str,
         return load_halves(value, from, &report, observer);
     }
     let mut register = value;
+    let reported = O::ON && report.register_wanted(observer);
     for channel in 0..4 {
         if unit.state.signed[channel] {
             register[channel] = observer.observe(Rule::Tex18, value[channel].signed_texel());
         }
-        if O::ON && unit.live >> channel & 1 != 0 {
+        if reported && unit.live >> channel & 1 != 0 {
             report.register(from, channel, value[channel], register[channel], observer);
         }
     }

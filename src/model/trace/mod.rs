@@ -22,6 +22,10 @@ pub trait Observer {
     const MEASURES: bool = false;
     /// Whether work is counted. The pipe then computes nothing that is not needed.
     const COUNTS: bool = false;
+    /// Returns whether some step is wanted whose name begins with one of these. Groups of steps ask before they are described.
+    fn wants(&self, _prefixes: &[&str]) -> bool {
+        Self::ON
+    }
     /// Receives the application of a rule.
     fn step(&mut self, step: Step);
     /// Like [`step`](Self::step), but returns the result as an operand of later steps.
@@ -77,6 +81,26 @@ impl Observer for Recorder {
 
 /// The value of `per_one` for single-precision numbers, whose integer is their bit pattern (TSH-4).
 pub const SINGLE: i64 = 0;
+
+/// The unit of an integer: the number is value 2^`exponent` / `per_one`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// The integer that stands for 1.0, or [`SINGLE`] for the bits of a single-precision number.
+    pub per_one: i64,
+    /// Power of two that the integer is multiplied by.
+    pub exponent: i32,
+}
+
+impl Unit {
+    /// Returns the real number that an integer stands for.
+    #[allow(clippy::float_arithmetic, reason = "display of the real value")]
+    pub fn real(self, value: i64) -> f64 {
+        if self.per_one == SINGLE {
+            return f64::from(f32::from_bits(value as u32));
+        }
+        value as f64 * f64::from_bits(((1023 + i64::from(self.exponent)) as u64) << 52) / self.per_one as f64
+    }
+}
 
 /// A named operand of a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,12 +212,13 @@ impl Step {
     }
 
     /// Returns the real number that the integer stands for.
-    #[allow(clippy::float_arithmetic, reason = "display of the real value")]
     pub fn real(&self) -> f64 {
-        if self.per_one == SINGLE {
-            return f64::from(f32::from_bits(self.value as u32));
-        }
-        self.value as f64 * f64::from_bits(((1023 + i64::from(self.exponent)) as u64) << 52) / self.per_one as f64
+        self.unit().real(self.value)
+    }
+
+    /// Returns the unit of the integer.
+    pub fn unit(&self) -> Unit {
+        Unit { per_one: self.per_one, exponent: self.exponent }
     }
 }
 

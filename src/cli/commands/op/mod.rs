@@ -21,7 +21,7 @@ use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
 
 use super::program_file::ProgramArguments;
-use super::{Context, Exit, Failure, Format, PolicyArguments, Report, vectors};
+use super::{Context, Exit, Failure, Format, PolicyArguments, Report, StateArguments, vectors};
 use command_line::CommandLine;
 use inputs::{Assignment, Contents, FourInputs};
 use operation::{Column, Common, ProfileArgument, Setup, columns, set};

@@ -8,7 +8,7 @@ use ninebit_scene::ProgramLanguage;
 use ninebit_vectors::unit::Conditions;
 use ninebit_vectors::units::ConfiguredProgram;
 
-use super::{Assignment, Common, Context, Failure, PolicyArguments, ProgramArguments, Setup, inputs};
+use super::{Assignment, Common, Context, Failure, ProgramArguments, Setup, StateArguments, inputs};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(long = "in", value_name = "REGISTER=VALUES", value_parser = inputs::assignment)]
     registers: Vec<Assignment>,
     #[command(flatten)]
-    policies: PolicyArguments,
+    state: StateArguments,
     #[command(flatten)]
     common: Common,
 }
@@ -34,7 +34,7 @@ const OWN: [Register; 4] = [Register::ConstantColor0, Register::ConstantColor1, 
 
 /// Runs a whole pixel program.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let policies = arguments.policies.policies()?;
+    let policies = arguments.state.policies()?;
     let mut columns = inputs::register_columns();
     inputs::assign(&mut columns, &arguments.registers)?;
     let own = |n: usize| OWN.iter().any(|register| n / 4 == *register as usize);

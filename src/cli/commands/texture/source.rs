@@ -12,7 +12,7 @@ use ninebit_files::texels;
 use ninebit_scene::image::{self, Contents, ImageLimits};
 
 use super::{Arguments, Context, Failure};
-use crate::commands::scene::{PolicyArguments, load, load_to_draw};
+use crate::commands::scene::{StateArguments, load, load_to_draw};
 
 /// A texture and how it is read.
 pub(super) struct Opened {
@@ -44,7 +44,7 @@ pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Fa
     }
     let path = Path::new(&arguments.texture);
     if path.extension().is_some_and(|extension| extension == "ron") {
-        let (scene, _) = load(path, &PolicyArguments::default(), context)?;
+        let (scene, _) = load(path, &StateArguments::default(), context)?;
         return Err(Failure::usage(format!("which texture of `{name}`?"), known(&scene, &name)));
     }
     of_file(arguments, path, name.clone())
@@ -106,7 +106,7 @@ fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -
         let help = "leave out `--profile` and `--format`";
         return Err(Failure::usage("a scene says itself what its profile and formats are", help));
     }
-    let (scene, plan) = load_to_draw(path, &PolicyArguments::default(), arguments.work, context)?;
+    let (scene, plan) = load_to_draw(path, &StateArguments::default(), arguments.work, context)?;
     let Some(index) = scene.textures.iter().position(|known| known.name == texture) else {
         let message = format!("the scene has no texture `{texture}`");
         return Err(Failure::usage(message, known(&scene, &shown::path(path))));
