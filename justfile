@@ -44,6 +44,10 @@ readers:
     vectors/harness/install
     vectors/harness/check
 
+# The package for Python: its wheel, and its tests
+python *OPTIONS:
+    src/python/check {{ OPTIONS }}
+
 # The workloads beside llvmpipe
 peers *OPTIONS:
     benches/peers/compare.sh {{ OPTIONS }}
