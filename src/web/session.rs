@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use ninebit::diagnostic::{Diagnostic, Severity, Source};
-use ninebit::engine::trace;
+use ninebit::engine::{PlaneOptions, plane_names, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
-use ninebit::state::{Draw, Named, POLICIES, Policies, Scene};
+use ninebit::state::{Draw, Named, POLICIES, Policies, Rectangle, Scene};
+use ninebit_report::planes::{PlanesError, plane_arrays};
 use ninebit_report::trace_value;
 use ninebit_scene::assets::Bundle;
 use ninebit_scene::image::{ImageLimits, Rgba, decode};
@@ -29,6 +30,8 @@ use crate::{Refused, frame, program, shader, tree};
 /// | `heat` | `target`, `against`: `ideal`, `picture`, or an object as `values` | `differing`, `regions`, and the picture |
 /// | `picture` | `name`; the file's bytes, PNG or TGA | `width`, `height`; `heat` compares with it |
 /// | `trace` | `target`, `pixel` | `trace`: the document of docs/trace-format.md |
+/// | `planes` | `target`, `names`, `rectangle` (first column and row, columns, rows) | `width`, `height`, `planes`: of each step `name`, `step`, `kind` (`int32` or `uint32`) and `per_one`; and as picture their values, plane after plane, each the four bytes of a little-endian word |
+/// | `plane_names` | `target` | `names` of values, each with its block |
 /// | `alternatives` | `target`, `pixel` | `rules`: what the pixel would be under each value of each rule |
 /// | `outline` | | `tree`: the values of the scene's text with their places |
 /// | `program` | `draw` | `program`: its state, its words, its text |
@@ -113,6 +116,19 @@ impl Session {
                 let plan = self.plan(number("until").ok())?;
                 let trace = trace(plan, target, pixel, None).map_err(|error| error.to_string())?;
                 Ok(json!({ "trace": trace_value(plan, &trace) }))
+            }
+            "planes" => {
+                let target = self.target(number("target")?)?;
+                let (answer, words) = planes(self.plan(number("until").ok())?, target, request)?;
+                self.picture = words;
+                Ok(answer)
+            }
+            "plane_names" => {
+                let target = self.target(number("target")?)?;
+                let options = PlaneOptions { target, rectangle: None, draw: None, dropped: false, threads: 1 };
+                let names =
+                    plane_names(self.plan(number("until").ok())?, &options).map_err(|error| error.to_string())?;
+                Ok(json!({ "names": names }))
             }
             "alternatives" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
@@ -226,6 +242,42 @@ fn policies(values: &Value) -> Result<Policies, Refused> {
 fn pixel(request: &Value) -> Result<(u32, u32), Refused> {
     let at = |n: usize| request["pixel"][n].as_u64().and_then(|n| u32::try_from(n).ok());
     at(0).zip(at(1)).ok_or_else(|| "`pixel` is not two numbers".to_owned())
+}
+
+/// Returns the description of planes, and their values.
+fn planes(plan: &Plan, target: usize, request: &Value) -> Result<(Value, Vec<[u8; 4]>), Refused> {
+    let names = request["names"].as_array().into_iter().flatten();
+    let names: Option<Vec<String>> = names.map(|name| name.as_str().map(str::to_owned)).collect();
+    let names = names.filter(|names| !names.is_empty()).ok_or("`names` is not a list of texts")?;
+    let number = |n: usize| request["rectangle"][n].as_u64().and_then(|n| u32::try_from(n).ok());
+    let rectangle = match request.get("rectangle") {
+        None | Some(Value::Null) => None,
+        Some(_) => {
+            let [x, y, width, height] = [0, 1, 2, 3].map(number);
+            let all =
+                x.zip(y).zip(width.zip(height)).map(|((x, y), (width, height))| Rectangle { x, y, width, height });
+            Some(all.ok_or("`rectangle` is not four numbers")?)
+        }
+    };
+    let options = PlaneOptions { target, rectangle, draw: None, dropped: false, threads: 1 };
+    let found = plane_arrays(plan, &names, &options).map_err(|error| match &error {
+        PlanesError::Unknown { .. } => format!("{} {error}; {}", PlanesError::UNKNOWN, error.help()),
+        PlanesError::Place(_) => error.to_string(),
+    })?;
+    let (mut words, mut described) = (Vec::new(), Vec::new());
+    for array in &found.arrays {
+        for (step, plane) in array.steps.iter().zip(&array.planes) {
+            let signed = plane.values.iter().all(|value| i32::try_from(*value).is_ok());
+            if !signed && plane.values.iter().any(|value| u32::try_from(*value).is_err()) {
+                return Err(format!("`{step}` has values of more than 32 bits"));
+            }
+            words.extend(plane.values.iter().map(|value| (*value as u32).to_le_bytes()));
+            let per_one: Vec<i64> = plane.units.iter().map(|unit| unit.per_one).collect();
+            let kind = if signed { "int32" } else { "uint32" };
+            described.push(json!({ "name": array.name, "step": step, "kind": kind, "per_one": per_one.first() }));
+        }
+    }
+    Ok((json!({ "width": found.rectangle.width, "height": found.rectangle.height, "planes": described }), words))
 }
 
 fn drawn(scene: &Scene, number: usize) -> Result<&Draw, Refused> {

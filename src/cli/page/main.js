@@ -454,7 +454,7 @@ async function openPage(script) {
     const data = JSON.parse($("data").textContent);
     const view = new View(() => {}, () => {});
     const preview = view.preview(data.picture);
-    const model = await Model.load($("module").textContent.trim());
+    const model = await Model.load(bytesOf($("module").textContent.trim()));
     window.inspector = new Page(data, model, new Background(script), view);
     window.inspector.times.preview = await preview;
     window.inspector.times.first = performance.now() - started;

@@ -1,14 +1,13 @@
 // The model: a WebAssembly module that takes JSON and gives JSON and pictures. A fault of it ends the instance; a new one takes over where that stood.
 
-import { bytesOf } from "./elements.js";
-
 // Compiled while it is inflated.
 const compiled = (bytes) =>
   WebAssembly.compileStreaming(new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")), { headers: { "Content-Type": "application/wasm" } }));
 
 export class Model {
-  static async load(base64) {
-    return new Model({ module: await compiled(bytesOf(base64)), files: new Map(), standing: {} });
+  // From the module's bytes as gzip left them.
+  static async load(bytes) {
+    return new Model({ module: await compiled(bytes), files: new Map(), standing: {} });
   }
 
   // What another model needs to stand where this one does can be sent to another thread.
