@@ -35,6 +35,11 @@ dependencies:
 packages:
     .ci/check-packages
 
+# What a release has and Linux can build, and its check
+dist OUT:
+    dist/build {{ OUT }}
+    dist/check {{ OUT }}
+
 # Run each fuzz target for some seconds, with a corpus if one is named
 fuzz SECONDS *CORPUS:
     fuzz/run {{ SECONDS }} {{ CORPUS }}
