@@ -340,7 +340,7 @@ fn drawn<'py>(py: Python<'py>, surface: &Surface, target: &ninebit::state::Targe
     let stencils = target
         .depth
         .filter(|depth| depth.format.has_stencil())
-        .map(|_| PyArray1::from_vec(py, surface.depth.iter().map(|word| *word as u8).collect::<Vec<u8>>()));
+        .map(|_| PyArray1::from_vec(py, surface.depth.iter().map(|word| (word >> 24) as u8).collect::<Vec<u8>>()));
     let rgba = PyArray1::from_slice(py, surface.rgba8().as_flattened());
     let words = PyArray1::from_slice(py, &surface.words);
     Ok((target.name.clone(), target.format.name(), surface.width, surface.height, words, rgba, depths, stencils))

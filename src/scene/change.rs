@@ -3,7 +3,6 @@
 //! A path names fields, indexes of lists and keys of tables. What a word says about a value, as `Combiners` in `Combiners(...)`, needs no step of its own.
 //! A change is one of text: the value is written as in a scene file, and is read with the rest of the scene.
 
-use std::fmt::Write;
 use std::str::FromStr;
 
 use ninebit::diagnostic::{Diagnostic, Source};
@@ -11,7 +10,7 @@ use ninebit::place::Span;
 
 use super::error::SceneError;
 use super::fields as source;
-use super::form::{Described, Form};
+use super::form::{Described, Form, Kind};
 use super::notation::{Notation, trim, word};
 use super::raw::Raw;
 use super::source::renamed;
@@ -203,12 +202,12 @@ fn find(text: &str, form: fn() -> Form, change: &Change) -> Result<Edit, Box<Dia
         let at = Walk { notation: &notation, change, number: n };
         match at.step(here, step)? {
             Next::Value(next) => here = next,
-            Next::Absent(place, before, after) => {
-                let value = at.nested(new)?;
+            Next::Absent(place, before, after, form) => {
+                let value = at.nested(new, form)?;
                 return Ok(Edit { place: place..place, text: format!("{before}{value}{after}"), written: false });
             }
-            Next::Named(place, before, after) => {
-                let value = at.nested(new)?;
+            Next::Named(place, before, after, form) => {
+                let value = at.nested(new, form)?;
                 return Ok(Edit { place, text: format!("{before}{value}{after}"), written: true });
             }
         }
@@ -226,10 +225,10 @@ struct Here<'a> {
 enum Next<'a> {
     /// To a value that is written.
     Value(Here<'a>),
-    /// To a field that is not written: where it is to be inserted, and the texts around the value.
-    Absent(usize, String, String),
-    /// Into a value that is only named: its range, and the texts around the value of the field in its place.
-    Named(Span, String, String),
+    /// To a field that is not written: where it is to be inserted, the texts around the value, and its form.
+    Absent(usize, String, String, KnownForm),
+    /// Into a value that is only named: its range, the texts around the value of the field in its place, and that field's form.
+    Named(Span, String, String, KnownForm),
 }
 
 struct Walk<'a, 'n> {
@@ -344,7 +343,8 @@ impl<'a> Walk<'a, '_> {
         }
         let start = self.notation.range(value).start + 1;
         let before = if table { format!("\"{name}\": ") } else { format!("{}: ", renamed(name)) };
-        Ok(Next::Absent(start, before, if parts.is_empty() { String::new() } else { ", ".to_owned() }))
+        let form = if table { element(form) } else { known.map(|(_, form)| *form) };
+        Ok(Next::Absent(start, before, if parts.is_empty() { String::new() } else { ", ".to_owned() }, form))
     }
 
     /// Takes a step into a value that is only named.
@@ -360,9 +360,9 @@ impl<'a> Walk<'a, '_> {
             && let Form::Fields(fields) = of()
         {
             let fields = fields();
-            if fields.iter().any(|(field, _)| field == name) {
+            if let Some((_, form)) = fields.iter().find(|(field, _)| field == name) {
                 let before = if own == name { format!("({own}: ") } else { format!("({own}: {value}, {name}: ") };
-                return Ok(Next::Named(self.notation.range(value), before, ")".to_owned()));
+                return Ok(Next::Named(self.notation.range(value), before, ")".to_owned(), Some(*form)));
             }
             let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
             return Err(self.nowhere(step, format!("there is no `{}` here", shorten(name)), listed(&names, name)));
@@ -371,20 +371,45 @@ impl<'a> Walk<'a, '_> {
         Err(self.nowhere(step, format!("{} is a name", shorten(value)), Some(help)))
     }
 
-    /// Returns the text of a value that is not written yet, inside the fields that the rest of the path names.
-    fn nested(&self, value: &str) -> Result<String, Box<Diagnostic>> {
-        let rest = &self.change.steps[self.number + 1..];
-        let mut text = String::new();
-        for step in rest {
-            match &step.to {
-                Label::Name(name) => _ = write!(text, "({name}: "),
-                Label::Index(_) => {
-                    let message = "the list is not written in the scene";
-                    return Err(self.nowhere(step, message, Some("set the whole list".to_owned())));
+    /// Returns the text of a value that is not written yet, inside the structures and tables that the rest of the path names.
+    fn nested(&self, value: &str, mut form: KnownForm) -> Result<String, Box<Diagnostic>> {
+        let (mut text, mut ends) = (String::new(), Vec::new());
+        for step in &self.change.steps[self.number + 1..] {
+            let Label::Name(name) = &step.to else {
+                let help = Some("set the whole list".to_owned());
+                return Err(self.nowhere(step, "the list is not written in the scene", help));
+            };
+            let described = match form.map(|form| form()) {
+                Some(Form::OrName(of, _)) => Some(of()),
+                described => described,
+            };
+            let (open, end) = match described {
+                Some(Form::Table(of)) => {
+                    form = Some(of);
+                    (format!("{{ \"{name}\": "), " }")
                 }
-            }
+                Some(Form::Fields(fields)) => {
+                    let fields = fields();
+                    let Some((_, of)) = fields.iter().find(|(field, _)| *field == renamed(name)) else {
+                        let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
+                        let message = format!("there is no `{}` here", shorten(name));
+                        return Err(self.nowhere(step, message, listed(&names, name)));
+                    };
+                    form = Some(*of);
+                    (format!("({}: ", renamed(name)), ")")
+                }
+                None | Some(Form::Value(Kind::Other)) => {
+                    form = None;
+                    (format!("({name}: "), ")")
+                }
+                Some(_) => return Err(self.nowhere(step, "a value of this kind has no fields", None)),
+            };
+            text += &open;
+            ends.push(end);
         }
-        Ok(format!("{text}{value}{}", ")".repeat(rest.len())))
+        text += value;
+        text.extend(ends.into_iter().rev());
+        Ok(text)
     }
 
     fn nowhere(&self, step: &Step, message: impl Into<String>, help: Option<String>) -> Box<Diagnostic> {
@@ -454,6 +479,7 @@ mod tests {
             ("draws[0].vertices[1].diffuse=(1, 2, 3)", "(position: (8, 0))", "(diffuse: (1, 2, 3), position: (8, 0))"),
             ("draws[0].textures[0].mag_filter=Linear", "[\"stone\"]", "[(texture: \"stone\", mag_filter: Linear)]"),
             ("names.vectors.moon=(1, 0, 0)", "{ \"sun\"", "{\"moon\": (1, 0, 0),  \"sun\""),
+            ("names.colors.red=(255, 0, 0)", "(vectors:", "(colors: { \"red\": (255, 0, 0) }, vectors:"),
         ] {
             assert_eq!(changed(change), Ok(SCENE.replacen(old, new, 1)), "{change}");
         }
@@ -465,6 +491,8 @@ mod tests {
             ("draws[1].name=\"a\"", "NB0114", "there are 1, numbered from 0"),
             ("draws[0].progam.constants[0]=1", "NB0114", "did you mean `program`?"),
             ("names.vectors.sun.x=1", "NB0114", ""),
+            ("names.colors.red.x=1", "NB0114", "no fields"),
+            ("draws[0].depth_test.func=Less", "NB0114", "did you mean `function`?"),
             ("draws[\"wal\"].name=\"a\"", "NB0114", "did you mean `wall`?"),
             ("draws[0].name.x=1", "NB0114", "is a name"),
             ("draws[0].indexes[3]=1", "NB0114", ""),

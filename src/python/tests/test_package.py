@@ -39,10 +39,10 @@ def test_a_frame_is_the_programs(stone, tmp_path):
 
 def test_depth_and_stencil_are_arrays():
     scene = ninebit.Scene(
-        "(version: 1, profile: Nv2a, targets: [(width: 8, height: 4, depth: Z24S8, clear: (depth: 7, stencil: 3))], draws: [])"
+        "(version: 1, profile: Nv2a, targets: [(width: 8, height: 4, depth: Z24S8, clear: (depth: 0.5, stencil: 3))], draws: [])"
     )
     frame = scene.render()
-    assert frame.depth.shape == (4, 8) and (frame.depth == 7).all() and (frame.stencil == 3).all()
+    assert frame.depth.shape == (4, 8) and (frame.depth == frame.depth[0, 0]).all() and abs(int(frame.depth[0, 0]) - (1 << 23)) <= 1 and (frame.stencil == 3).all()
     assert ninebit.Scene.load(STONE).render().depth is None
 
 

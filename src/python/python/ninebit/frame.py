@@ -93,8 +93,8 @@ class Planes(Mapping[str, np.ndarray]):
     def real(self, name: str) -> np.ndarray:
         """Returns the numbers that the integers stand for, float64; NaN where a pixel has none."""
         values, per_one = self._values[name], self.per_one[name]
-        floats = (values.astype(np.int64) & 0xFFFFFFFF).astype(np.uint32).view(np.float32).astype(np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
+            floats = (values.astype(np.int64) & 0xFFFFFFFF).astype(np.uint32).view(np.float32).astype(np.float64)
             numbers = np.ldexp(values.astype(np.float64), self.exponent[name]) / per_one
         numbers = np.where(per_one == 0, floats, numbers)
         return np.where(self.present[name], numbers, np.nan)
