@@ -56,6 +56,7 @@ pub(crate) fn evaluate<'py>(
     let fail = |failure| exception(py, failure);
     let conditions = conditions(profile, &policies).map_err(fail)?;
     let combiners = combiners(program, language, conditions.profile).map_err(fail)?;
+    let outputs = written(&combiners);
     let mut given = Vec::new();
     for (register, values) in inputs {
         let found = INPUTS.iter().find(|known| name(**known) == register);
@@ -78,13 +79,14 @@ pub(crate) fn evaluate<'py>(
                 return Err(Failure::argument(message, "255 is 1.0; clip the array"));
             }
         }
-        let mut results = vec![vec![0_i16; pixels * 4]; OUTPUTS.len() + 1];
-        let context = Context { combiners: &combiners, profile: conditions.profile, policies: &conditions.policies };
+        let mut results = vec![vec![0_i16; pixels * 4]; outputs.len() + 1];
+        let (profile, policies) = (conditions.profile, &conditions.policies);
+        let context = Context { combiners: &combiners, outputs: &outputs, profile, policies };
         on_threads(1, || context.run(&given, pixels, &mut results));
         Ok(results)
     })?;
     let dict = PyDict::new(py);
-    for (key, values) in OUTPUTS.iter().map(|register| name(*register)).chain(["fragment"]).zip(results) {
+    for (key, values) in outputs.iter().map(|register| name(*register)).chain(["fragment"]).zip(results) {
         dict.set_item(key, PyArray1::from_vec(py, values))?;
     }
     Ok(dict)
@@ -101,9 +103,17 @@ fn combiners(text: String, language: &str, profile: Profile) -> Result<Combiners
     Ok(scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default())
 }
 
+/// Returns the registers that a program writes; SPARE0's alpha begins as that of TEXTURE0.
+fn written(combiners: &Combiners) -> Vec<Register> {
+    let portions = combiners.stages.iter().flat_map(|stage| [&stage.rgb, &stage.alpha]);
+    let written: Vec<Register> = portions.flat_map(|p| [p.ab_output, p.cd_output, p.sum_output]).collect();
+    OUTPUTS.into_iter().filter(|register| *register == Register::Spare0 || written.contains(register)).collect()
+}
+
 /// A program and what it runs under.
 struct Context<'a> {
     combiners: &'a Combiners,
+    outputs: &'a [Register],
     profile: Profile,
     policies: &'a Policies,
 }
@@ -116,36 +126,34 @@ impl Context<'_> {
         while !muxes && pixel + LANES <= pixels {
             let read =
                 |values: &[i16], c: usize| Lanes16(std::array::from_fn(|n| i32::from(values[(pixel + n) * 4 + c])));
-            let out = self.at(inputs, read);
-            for (result, value) in results.iter_mut().zip(out) {
-                for (c, lanes) in value.into_iter().enumerate() {
-                    (0..LANES).for_each(|n| result[(pixel + n) * 4 + c] = lanes.0[n] as i16);
-                }
-            }
+            self.at(inputs, read, |at, c, lanes: Lanes16<i32>| {
+                let out = &mut results[at][pixel * 4..][..LANES * 4];
+                (0..LANES).for_each(|n| out[n * 4 + c] = lanes.0[n] as i16);
+            });
             pixel += LANES;
         }
         for pixel in pixel..pixels {
-            let out = self.at(inputs, |values: &[i16], c: usize| i32::from(values[pixel * 4 + c]));
-            for (result, value) in results.iter_mut().zip(out) {
-                (0..4).for_each(|c| result[pixel * 4 + c] = value[c] as i16);
-            }
+            let read = |values: &[i16], c: usize| i32::from(values[pixel * 4 + c]);
+            self.at(inputs, read, |at, c, value: i32| results[at][pixel * 4 + c] = value as i16);
         }
     }
 
-    /// Runs the program on the registers that `read` makes of the inputs. Returns the outputs and the fragment.
+    /// Runs the program on the registers that `read` makes of the inputs, and passes each channel of the outputs and, after them, of the fragment.
     fn at<L: Lane>(
         &self,
         inputs: &[(Register, Vec<i16>)],
         read: impl Fn(&[i16], usize) -> L,
-    ) -> [[L; 4]; OUTPUTS.len() + 1] {
+        mut put: impl FnMut(usize, usize, L),
+    ) {
         let mut registers = Registers::new();
         for (register, values) in inputs {
             registers.load(*register, [0, 1, 2, 3].map(|c| read(values, c)));
         }
         let bytes = |constants: [[u8; 4]; 2], _| constants.map(|constant| constant.map(L::byte));
         let fragment = self.combiners.observed(&mut registers, bytes, (self.profile, self.policies), &mut Silent);
-        std::array::from_fn(|n| {
-            OUTPUTS.get(n).map_or(fragment, |register| [0, 1, 2, 3].map(|c| registers.read(*register, c)))
-        })
+        for (n, register) in self.outputs.iter().enumerate() {
+            (0..4).for_each(|c| put(n, c, registers.read(*register, c)));
+        }
+        (0..4).for_each(|c| put(self.outputs.len(), c, fragment[c]));
     }
 }

@@ -94,11 +94,9 @@ pub const FRAGMENT_NAMES: [&str; 3] = ["fragment.draw", "fragment.triangle", "fr
 /// # Errors
 /// The target or the draw does not exist, or the rectangle is not inside the target.
 pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<Vec<Plane>, TraceError> {
-    let mut sorted: Vec<&str> = names.iter().map(String::as_str).collect();
-    sorted.sort_unstable();
+    let wanted = Wanted::new(names);
     let record = |pixels| Values {
-        names,
-        sorted: sorted.clone(),
+        wanted: &wanted,
         planes: vec![Plane::blank(pixels); names.len()],
         found: vec![None; names.len()],
     };
@@ -145,11 +143,52 @@ struct Value {
     unit: Unit,
 }
 
-/// Keeps the values of some names.
-struct Values<'a> {
+/// Names whose values are kept, prepared for the comparison with every step of every pixel.
+struct Wanted<'a> {
     names: &'a [String],
+    /// A few bytes of each name, which differ for most names that differ.
+    keys: Vec<u32>,
+    /// Which of [`FRAGMENT_NAMES`] each name is.
+    own: Vec<Option<usize>>,
     /// The names in the order of texts.
     sorted: Vec<&'a str>,
+    /// Whether a name begins with a byte.
+    first: [bool; 256],
+}
+
+impl<'a> Wanted<'a> {
+    fn new(names: &'a [String]) -> Wanted<'a> {
+        let mut sorted: Vec<&str> = names.iter().map(String::as_str).collect();
+        sorted.sort_unstable();
+        let mut first = [false; 256];
+        names.iter().filter_map(|name| name.bytes().next()).for_each(|byte| first[usize::from(byte)] = true);
+        Wanted {
+            names,
+            keys: names.iter().map(|name| Wanted::key(name)).collect(),
+            own: names.iter().map(|name| FRAGMENT_NAMES.iter().position(|own| own == name)).collect(),
+            sorted,
+            first,
+        }
+    }
+
+    fn key(name: &str) -> u32 {
+        let bytes = name.as_bytes();
+        let at = |n: usize| bytes.get(n).copied().unwrap_or(0);
+        u32::from_le_bytes([bytes.len() as u8, at(4), at(bytes.len() / 2), at(bytes.len().saturating_sub(1))])
+    }
+
+    fn has_prefix(&self, prefix: &str) -> bool {
+        // Most groups of steps have other first letters.
+        prefix.bytes().next().is_none_or(|byte| self.first[usize::from(byte)]) && {
+            let at = self.sorted.partition_point(|name| *name < prefix);
+            self.sorted.get(at).is_some_and(|name| name.starts_with(prefix))
+        }
+    }
+}
+
+/// Keeps the values of some names.
+struct Values<'a> {
+    wanted: &'a Wanted<'a>,
     planes: Vec<Plane>,
     /// Values of the fragment that is shaded.
     found: Vec<Option<Value>>,
@@ -159,13 +198,13 @@ impl Observer for Values<'_> {
     const ON: bool = true;
 
     fn wants(&self, prefixes: &[&str]) -> bool {
-        let first = |prefix: &&str| self.sorted.get(self.sorted.partition_point(|name| name < prefix));
-        prefixes.iter().any(|prefix| first(prefix).is_some_and(|name| name.starts_with(prefix)))
+        prefixes.iter().any(|prefix| self.wanted.has_prefix(prefix))
     }
 
     fn step(&mut self, step: Step) {
-        for (name, found) in self.names.iter().zip(&mut self.found) {
-            if *name == step.name {
+        let key = Wanted::key(&step.name);
+        for (n, found) in self.found.iter_mut().enumerate() {
+            if self.wanted.keys[n] == key && self.wanted.names[n] == step.name {
                 let ideal = step.ideal.unwrap_or(f64::NAN);
                 *found = Some(Value { value: step.value, ideal, unit: step.unit() });
             }
@@ -179,12 +218,9 @@ impl Record for Values<'_> {
     }
 
     fn end(&mut self, pixel: usize, fragment: [i64; 3]) {
-        for (n, name) in self.names.iter().enumerate() {
-            let own = FRAGMENT_NAMES.iter().position(|own| own == name).map(|at| Value {
-                value: fragment[at],
-                ideal: f64::NAN,
-                unit: Unit { per_one: 1, exponent: 0 },
-            });
+        for (n, own) in self.wanted.own.iter().enumerate() {
+            let own =
+                own.map(|at| Value { value: fragment[at], ideal: f64::NAN, unit: Unit { per_one: 1, exponent: 0 } });
             if let Some(value) = own.or(self.found[n]) {
                 self.planes[n].put(pixel, value);
             }

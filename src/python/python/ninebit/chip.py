@@ -26,7 +26,7 @@ def evaluate(
     an array for each register that a pixel brings, `primary`, `secondary`, `fog` (0 to 255) and `texture0` to `texture3` (-256 to 255); the last axis
     is R, G, B, A, and the others are broadcast. 255 is 1.0. Registers that are not given hold 0.
 
-    Returns the registers that the program leaves, and `fragment`, the colour that reaches the raster operations: int16 in the same form.
+    Returns the registers that the program writes, and `fragment`, the colour that reaches the raster operations: int16 in the same form.
     """
     if not isinstance(program, str):
         lines = [f"{key if isinstance(key, str) else f'{key:#06x}'} {word:#010x}" for key, word in program.items()]
