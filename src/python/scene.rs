@@ -123,9 +123,7 @@ impl Scene {
     /// Name, format, width and height of each target.
     #[getter]
     fn targets(&self) -> Vec<(&str, &'static str, u32, u32)> {
-        let target = |t: &'_ ninebit::state::Target| (t.format.name(), t.width, t.height);
-        let all = self.loaded.scene.targets.iter();
-        all.map(|t| (t.name.as_str(), target(t).0, target(t).1, target(t).2)).collect()
+        self.loaded.scene.targets.iter().map(|t| (t.name.as_str(), t.format.name(), t.width, t.height)).collect()
     }
 
     /// Names of the draws.
