@@ -21,9 +21,12 @@ mod report;
 use ninebit::plan::Plan;
 use ninebit::rop::surface;
 use ninebit::state::{Named, Scene};
+use ninebit::threads::on_threads;
 use ninebit::trace::Part;
 use ninebit_report::compare::{CompareOptions, Comparison, Mode, Statistics, compare};
-use ninebit_scene::truth::{Truth, TruthFrame, Visible};
+use ninebit_scene::truth::{Space, Truth, TruthFrame, Visible};
+use ninebit_scene::vector::Vector;
+use rayon::prelude::*;
 
 pub use banding::Banding;
 pub use cost::{FrameCost, HardwareCost};
@@ -100,7 +103,7 @@ impl Pictures {
 /// Measures a scene against its truth. Returns `None` if no pixel with a truth is drawn.
 pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let visible = Visible::new(plan, truth, TARGET);
-    let ideal = visible.evaluate(|_| None);
+    let ideal = evaluate(&visible, |_| None);
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let technique = compare(plan, &options);
     let shown = shown(plan);
@@ -112,7 +115,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     }
     let drawn = technique.errors.iter().filter(|errors| errors[0].is_finite()).count();
     let read = truth.shading_normal.map(|register| normals::read(scene, plan, truth, register, &measured));
-    let quantised = read.as_ref().map(|read| visible.evaluate(|at| Some(((*read.ideal.get(at)?)?, read.space))));
+    let quantised = read.as_ref().map(|read| evaluate(&visible, |at| Some(((*read.ideal.get(at)?)?, read.space))));
     let mut errors = [Statistics::default(); 3];
     let (mut inputs, mut method) = (Statistics::default(), Statistics::default());
     for at in &measured {
@@ -147,6 +150,13 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
         cost: HardwareCost::from_scene(scene, plan, pixels),
         pictures: Pictures { width: ideal.width, height: ideal.height, shown, truth: wanted },
     })
+}
+
+/// Computes the truth of the pixels, on all cores. `given` is that of [`Visible::row`].
+fn evaluate(visible: &Visible<'_>, given: impl Fn(usize) -> Option<(Vector, Space)> + Sync) -> TruthFrame {
+    let (width, height) = visible.size();
+    let rows = || (0..height).into_par_iter().flat_map_iter(|row| visible.row(row, &given)).collect();
+    TruthFrame { width, height, pixels: on_threads(0, rows) }
 }
 
 /// Returns a channel of a pixel's truth, in steps of 1/255.

@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use crate::vector::{Vector, dot, unit_or_zero, wide};
 use ninebit::engine::walk::{self, Band};
 use ninebit::engine::{RenderOptions, TextureWords, cleared, render};
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::Plan;
 use ninebit::raster::ideal::Outline;
 use ninebit::state::{TriangleVertices, Vertex, VertexColor};
 use ninebit::trace::Silent;
@@ -49,7 +49,9 @@ pub struct TruthFrame {
 
 /// Computes the truth of a target. Each pixel shows the last draw with a truth that stored a fragment there.
 pub fn evaluate(plan: &Plan, truth: &Truth, target: usize) -> TruthFrame {
-    Visible::new(plan, truth, target).evaluate(|_| None)
+    let visible = Visible::new(plan, truth, target);
+    let (width, height) = visible.size();
+    TruthFrame { width, height, pixels: (0..height).flat_map(|row| visible.row(row, |_| None)).collect() }
 }
 
 /// The triangle that each pixel of a target shows, of which the truth can be computed several times.
@@ -88,18 +90,45 @@ impl<'a> Visible<'a> {
         Visible { plan, truth, target, shown }
     }
 
-    /// Computes the truth of the pixels. For a pixel's index, `given` may return a normal of any length with its space, in place of the truth's own.
-    pub fn evaluate(&self, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
+    /// Returns width and height of the target in pixels.
+    pub fn size(&self) -> (u32, u32) {
         let target = &self.plan.targets()[self.target];
-        let (width, height) = (target.width, target.height);
-        let pixels = self.shown.iter().enumerate().map(|(at, shown)| {
-            let (draw, triangle) = (*shown)?;
-            let mesh = self.truth.meshes.get(draw)?.as_ref()?;
-            let pixel = (at as u32 % width, at as u32 / width);
-            let point = point(&self.plan.draws()[draw], mesh, triangle, pixel)?;
-            Some(shade(self.truth, &point, given(at)))
+        (target.width, target.height)
+    }
+
+    /// Computes the truth of the pixels of a row. For a pixel's index in the target, `given` may return a normal of any length with its space, in place of
+    /// the truth's own.
+    pub fn row(&self, row: u32, given: impl Fn(usize) -> Option<(Vector, Space)>) -> Vec<Option<Pixel>> {
+        let width = self.size().0 as usize;
+        // Neighbours mostly belong to one triangle.
+        let mut last: Option<((usize, usize), Option<Corners<'_>>)> = None;
+        let pixels = (0..width).map(|column| {
+            let at = row as usize * width + column;
+            let shown = self.shown[at]?;
+            if last.as_ref().is_none_or(|(triangle, _)| *triangle != shown) {
+                last = Some((shown, self.corners(shown)));
+            }
+            let corners = last.as_ref()?.1.as_ref()?;
+            Some(shade(self.truth, &corners.point((column as u32, row)), given(at)))
         });
-        TruthFrame { width, height, pixels: pixels.collect() }
+        pixels.collect()
+    }
+
+    /// Returns a triangle of a mesh; `None` if clipping has made a corner of it, or if it has no area.
+    fn corners(&self, (draw, triangle): (usize, usize)) -> Option<Corners<'_>> {
+        let mesh = self.truth.meshes.get(draw)?.as_ref()?;
+        let planned = &self.plan.draws()[draw];
+        let triangles = &planned.assembly.triangles;
+        if triangle >= triangles.len() {
+            return None;
+        }
+        let corners = triangles.vertices(triangle).map(|v| v as usize);
+        if corners.iter().any(|corner| *corner >= mesh.positions.len()) {
+            return None;
+        }
+        let vertices = planned.assembly.triangle(triangle);
+        let outline = Outline::new(vertices.positions(), planned.perspective)?;
+        Some(Corners { mesh, corners, vertices, outline })
     }
 }
 
@@ -113,29 +142,30 @@ struct Point<'a> {
     weights: [f64; 3],
 }
 
-/// Finds the point at the centre of a pixel. Returns `None` if clipping has made a corner of the triangle.
-fn point<'a>(planned: &'a PlannedDraw, mesh: &Mesh, triangle: usize, (column, row): (u32, u32)) -> Option<Point<'a>> {
-    let triangles = &planned.assembly.triangles;
-    if triangle >= triangles.len() {
-        return None;
+/// A triangle of a mesh.
+struct Corners<'a> {
+    mesh: &'a Mesh,
+    corners: [usize; 3],
+    vertices: TriangleVertices<'a>,
+    outline: Outline,
+}
+
+impl<'a> Corners<'a> {
+    /// Finds the point at the centre of a pixel.
+    fn point(&self, (column, row): (u32, u32)) -> Point<'a> {
+        let (mesh, corners) = (self.mesh, self.corners);
+        let weights = self.outline.weights(i64::from(column), i64::from(row));
+        let mix = |values: &[[f32; 3]]| mixed(weights, corners.map(|corner| wide(values[corner])));
+        let texture = corners.map(|corner| mesh.texture_coordinates[corner].map(f64::from));
+        let coordinates = [0, 1].map(|n| (0..3).map(|k| weights[k] * texture[k][n]).sum());
+        Point {
+            position: mix(&mesh.positions),
+            basis: [mix(&mesh.tangents), mix(&mesh.binormals), mix(&mesh.normals)].map(unit_or_zero),
+            coordinates,
+            planned: self.vertices,
+            weights,
+        }
     }
-    let corners = triangles.vertices(triangle).map(|v| v as usize);
-    if corners.iter().any(|corner| *corner >= mesh.positions.len()) {
-        return None;
-    }
-    let vertices = planned.assembly.triangle(triangle);
-    let outline = Outline::new(vertices.positions(), planned.perspective)?;
-    let weights = outline.weights(i64::from(column), i64::from(row));
-    let mix = |values: &[[f32; 3]]| mixed(weights, corners.map(|corner| wide(values[corner])));
-    let texture = corners.map(|corner| mesh.texture_coordinates[corner].map(f64::from));
-    let coordinates = [0, 1].map(|n| (0..3).map(|k| weights[k] * texture[k][n]).sum());
-    Some(Point {
-        position: mix(&mesh.positions),
-        basis: [mix(&mesh.tangents), mix(&mesh.binormals), mix(&mesh.normals)].map(unit_or_zero),
-        coordinates,
-        planned: vertices,
-        weights,
-    })
 }
 
 fn mixed(weights: [f64; 3], values: [Vector; 3]) -> Vector {
