@@ -16,7 +16,7 @@ use ninebit_report::planes::{PlanesError, plane_arrays};
 use ninebit_scene as scene;
 
 fn options(rectangle: Option<Rectangle>) -> PlaneOptions {
-    PlaneOptions { target: 0, rectangle, draw: None, dropped: false, threads: 1 }
+    PlaneOptions { rectangle, ideal: true, threads: 1, ..PlaneOptions::default() }
 }
 
 /// Returns the last step of each name among the stored fragments of a pixel, but those of draws that change nothing.
@@ -54,6 +54,11 @@ fn planes_hold_what_traces_say() {
             let complaint = complaint(name, plane, &steps[name]);
             assert_eq!(complaint, None, "{} at {x},{y}", path.display());
         };
+        let integers = planes(&plan, &names, &PlaneOptions { ideal: false, ..options }).expect("inside");
+        for (plane, whole) in integers.iter().zip(&found) {
+            let same = (&plane.values, &plane.units, &plane.unit_of) == (&whole.values, &whole.units, &whole.unit_of);
+            assert!(same && plane.ideals.is_empty(), "{}", path.display());
+        }
         found.iter().zip(&names).for_each(|(plane, name)| check(plane, name));
         let triangles: usize = plan.draws().iter().map(|draw| draw.assembly.triangles.len()).sum();
         let reads_targets = plan.draws().iter().any(|draw| plan.reads_target(draw));

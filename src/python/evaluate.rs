@@ -57,15 +57,15 @@ pub(crate) fn evaluate<'py>(
     let conditions = conditions(profile, &policies).map_err(fail)?;
     let combiners = combiners(program, language, conditions.profile).map_err(fail)?;
     let outputs = written(&combiners);
-    let mut given = Vec::new();
-    for (register, values) in inputs {
+    let mut given: Vec<(Register, &[i16])> = Vec::new();
+    for (register, values) in &inputs {
         let found = INPUTS.iter().find(|known| name(**known) == register);
         let Some(found) = found else {
             let names: Vec<&str> = INPUTS.iter().map(|register| name(*register)).collect();
             let message = format!("`{register}` is no input of a program");
             return Err(fail(Failure::argument(message, format!("pass {}", names.join(", ")))));
         };
-        given.push((*found, values.as_array().to_vec()));
+        given.push((*found, values.as_slice()?));
     }
     let results = detached(py, || {
         for (register, values) in &given {
@@ -74,7 +74,8 @@ pub(crate) fn evaluate<'py>(
             } else {
                 -256
             };
-            if values.iter().any(|value| !(least..=255).contains(value)) {
+            let (lowest, highest) = values.iter().fold((0, 0), |(l, h), v| (*v.min(&l), *v.max(&h)));
+            if lowest < least || highest > 255 {
                 let message = format!("`{}` holds {least} to 255", name(*register));
                 return Err(Failure::argument(message, "255 is 1.0; clip the array"));
             }
@@ -119,7 +120,7 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    fn run(&self, inputs: &[(Register, Vec<i16>)], pixels: usize, results: &mut [Vec<i16>]) {
+    fn run(&self, inputs: &[(Register, &[i16])], pixels: usize, results: &mut [Vec<i16>]) {
         let muxes = self.combiners.stages.iter().any(|stage| stage.rgb.mux || stage.alpha.mux);
         let mut pixel = 0;
         // Lanes take the same decisions, and a mux decides by the pixel.
@@ -141,7 +142,7 @@ impl Context<'_> {
     /// Runs the program on the registers that `read` makes of the inputs, and passes each channel of the outputs and, after them, of the fragment.
     fn at<L: Lane>(
         &self,
-        inputs: &[(Register, Vec<i16>)],
+        inputs: &[(Register, &[i16])],
         read: impl Fn(&[i16], usize) -> L,
         mut put: impl FnMut(usize, usize, L),
     ) {

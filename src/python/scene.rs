@@ -1,5 +1,6 @@
 //! Scenes: read, changed, drawn, traced, measured.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -57,9 +58,11 @@ struct Drawing {
 }
 
 impl Scene {
-    fn plan(&self, drawing: Drawing) -> Result<Plan, Failure> {
+    fn plan(&self, drawing: Drawing) -> Result<Cow<'_, Plan>, Failure> {
         self.loaded.affordable(drawing.work)?;
-        Ok(self.loaded.plan.clone().under(drawing.policies))
+        let plan = &self.loaded.plan;
+        let same = plan.policies == drawing.policies;
+        Ok(if same { Cow::Borrowed(plan) } else { Cow::Owned(plan.clone().under(drawing.policies)) })
     }
 
     fn target(&self, name: Option<&str>) -> Result<usize, Failure> {
@@ -181,15 +184,15 @@ impl Scene {
     fn plane_names(&self, py: Python<'_>, target: Option<&str>) -> PyResult<Vec<(String, String)>> {
         detached(py, || {
             let plan = self.plan(Scene::drawing(&[], None)?)?;
-            let options =
-                PlaneOptions { target: self.target(target)?, rectangle: None, draw: None, dropped: false, threads: 1 };
+            let options = PlaneOptions { target: self.target(target)?, ..PlaneOptions::default() };
             engine::plane_names(&plan, &options)
                 .map(|names| names.into_iter().collect())
                 .map_err(|error| Failure::argument(error.to_string(), "name a target of the scene"))
         })
     }
 
-    /// Computes planes. Returns of each name: channels, values, ideals, whether a pixel has a value, integers for 1.0, powers of two.
+    /// Computes planes. Returns of each name: channels, values, ideals or `None`, whether a
+    /// pixel has a value, integers for 1.0, powers of two. The last three are one number where it is that of all pixels.
     #[allow(clippy::too_many_arguments, reason = "the package names them")]
     fn planes<'py>(
         &self,
@@ -199,6 +202,7 @@ impl Scene {
         rectangle: Option<[u32; 4]>,
         draw: Option<usize>,
         dropped: bool,
+        ideal: bool,
         threads: usize,
         policies: Vec<String>,
         work: Option<u64>,
@@ -206,8 +210,8 @@ impl Scene {
         let found = detached(py, || {
             let plan = self.plan(Scene::drawing(&policies, work)?)?;
             let rectangle = rectangle.map(|[x, y, width, height]| Rectangle { x, y, width, height });
-            let options =
-                PlaneOptions { target: self.target(target)?, rectangle, draw, dropped, threads: threads_of(threads)? };
+            let (target, threads) = (self.target(target)?, threads_of(threads)?);
+            let options = PlaneOptions { target, rectangle, draw, dropped, ideal, threads };
             plane_arrays(&plan, &names, &options).map_err(|error| {
                 let code = matches!(error, PlanesError::Unknown { .. }).then_some(PlanesError::UNKNOWN);
                 Failure::Plain(code, error.to_string(), error.help())
@@ -218,12 +222,24 @@ impl Scene {
                 true => PyArray1::from_vec(py, array.interleaved(|p, n| p.values[n] as i32)).into_any(),
                 false => PyArray1::from_vec(py, array.interleaved(|p, n| p.values[n])).into_any(),
             };
-            let ideals = PyArray1::from_vec(py, array.interleaved(|p, n| p.ideals[n])).into_any();
-            let present = PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).is_some())).into_any();
-            let per_one =
-                PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).map_or(1, |unit| unit.per_one))).into_any();
-            let exponent =
-                PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).map_or(0, |unit| unit.exponent))).into_any();
+            let ideals = match ideal {
+                true => PyArray1::from_vec(py, array.interleaved(|p, n| p.ideals[n])).into_any(),
+                false => py.None().into_bound(py),
+            };
+            let present = match array.is_whole() {
+                true => PyArray1::from_slice(py, &[true]).into_any(),
+                false => PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).is_some())).into_any(),
+            };
+            let per_one = match array.per_one() {
+                Some(per_one) => PyArray1::from_slice(py, &[per_one]).into_any(),
+                None => PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).map_or(1, |unit| unit.per_one)))
+                    .into_any(),
+            };
+            let exponent = match array.has_exponents() {
+                false => PyArray1::from_slice(py, &[0_i32]).into_any(),
+                true => PyArray1::from_vec(py, array.interleaved(|p, n| p.unit(n).map_or(0, |unit| unit.exponent)))
+                    .into_any(),
+            };
             let channels = array.planes.len().into_pyobject(py)?.into_any();
             PyTuple::new(py, [channels, values, ideals, present, per_one, exponent])
         };
@@ -298,17 +314,12 @@ impl Scene {
     ) -> PyResult<(String, Bound<'py, PyArray1<f32>>)> {
         let (text, errors) = detached(py, || {
             let plan = self.plan(Scene::drawing(&policies, work)?)?;
-            let mode = match mode {
-                "free" => Mode::Free,
-                "follow" => Mode::Follow,
-                "per-op" => Mode::PerOp,
-                _ => {
-                    return Err(Failure::argument(
-                        format!("there is no mode `{mode}`"),
-                        "write free, follow or per-op",
-                    ));
-                }
-            };
+            let mode = Mode::from_name(mode).ok_or_else(|| {
+                Failure::argument(
+                    format!("there is no mode `{mode}`"),
+                    format!("write one of {}", Mode::NAMES.join(", ")),
+                )
+            })?;
             let options = CompareOptions {
                 mode,
                 target: self.target(target)?,

@@ -125,7 +125,7 @@ impl Session {
             }
             "plane_names" => {
                 let target = self.target(number("target")?)?;
-                let options = PlaneOptions { target, rectangle: None, draw: None, dropped: false, threads: 1 };
+                let options = PlaneOptions { target, threads: 1, ..PlaneOptions::default() };
                 let names =
                     plane_names(self.plan(number("until").ok())?, &options).map_err(|error| error.to_string())?;
                 Ok(json!({ "names": names }))
@@ -259,7 +259,7 @@ fn planes(plan: &Plan, target: usize, request: &Value) -> Result<(Value, Vec<[u8
             Some(all.ok_or("`rectangle` is not four numbers")?)
         }
     };
-    let options = PlaneOptions { target, rectangle, draw: None, dropped: false, threads: 1 };
+    let options = PlaneOptions { target, rectangle, threads: 1, ..PlaneOptions::default() };
     let found = plane_arrays(plan, &names, &options).map_err(|error| match &error {
         PlanesError::Unknown { .. } => format!("{} {error}; {}", PlanesError::UNKNOWN, error.help()),
         PlanesError::Place(_) => error.to_string(),

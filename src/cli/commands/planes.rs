@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         rectangle: arguments.rectangle.map(|[x, y, width, height]| Rectangle { x, y, width, height }),
         draw: arguments.draw,
         dropped: arguments.dropped,
+        ideal: arguments.ideal,
         threads: arguments.threads,
     };
     let Some(output) = &arguments.output else {

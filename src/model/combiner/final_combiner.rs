@@ -215,7 +215,7 @@ pub fn values<L: Lane, O: Observer>(
         load_constants(planned.state.constants, registers, &mut direct);
     }
     let values = evaluate(&planned.state, registers, &mut direct);
-    if O::ON && observer.wants(&["final.", "fragment."]) {
+    if O::ON && observer.wants_any(&["final.", "fragment."]) {
         report_all(planned, &values, profile, policies, registers, observer);
     }
     values

@@ -29,7 +29,8 @@ pub(crate) fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], obser
 pub(super) fn wanted<O: Observer>(stage: &PlannedStage, observer: &O) -> bool {
     let written = [&stage.rgb.portion, &stage.alpha.portion].map(|p| [p.ab_output, p.cd_output, p.sum_output]);
     let registers = written.as_flattened().iter().map(|register| registers::name(*register));
-    registers.into_iter().any(|name| observer.wants(&[name])) || observer.wants(&[&format!("stage{}.", stage.index)])
+    let prefixes = [false, true].map(|alpha| StageReport::new(stage.index, alpha).prefix);
+    registers.into_iter().chain(prefixes).any(|name| observer.wants(&[name])) || observer.wants(&[MUXES[stage.index]])
 }
 
 /// Reports a stage in the order of a trace: what it reads, computes and writes.
@@ -47,7 +48,7 @@ pub(super) fn stage<L: Lane, O: Observer>(
         rgb.mux(spare0, mux_select, policies, values.takes_cd, observer);
     }
     for (portion, report) in [(&stage.rgb, &rgb), (&stage.alpha, &alpha)] {
-        if !observer.wants(&[&report.prefix]) {
+        if !observer.wants(&[report.prefix]) {
             continue;
         }
         for product in 0..2 {
@@ -66,25 +67,40 @@ pub(super) fn stage<L: Lane, O: Observer>(
 
 /// The reports of one portion of a stage, with names for its steps.
 struct StageReport {
-    block: String,
-    prefix: String,
+    block: &'static str,
+    prefix: &'static str,
     stage: usize,
 }
 
+/// Writes a table of texts with the number of each general stage.
+macro_rules! of_stages {
+    ($before:literal, $after:literal) => {
+        of_stages!($before, $after: "0" "1" "2" "3" "4" "5" "6" "7")
+    };
+    ($before:literal, $after:literal: $($n:literal)*) => {
+        [$(concat!($before, $n, $after)),*]
+    };
+}
+
+// Planes have a name for every value of every pixel: formatting these would take a fifth of their time.
+/// Largest number of general stages of a profile.
+const MAX_STAGES: usize = 8;
+const RGB_BLOCKS: [&str; MAX_STAGES] = of_stages!("general stage ", " rgb");
+const ALPHA_BLOCKS: [&str; MAX_STAGES] = of_stages!("general stage ", " alpha");
+const MUX_BLOCKS: [&str; MAX_STAGES] = of_stages!("general stage ", " mux");
+const RGB_PREFIXES: [&str; MAX_STAGES] = of_stages!("stage", ".rgb");
+const ALPHA_PREFIXES: [&str; MAX_STAGES] = of_stages!("stage", ".alpha");
+const MUXES: [&str; MAX_STAGES] = of_stages!("stage", ".mux");
+
 impl StageReport {
     fn new(stage: usize, alpha: bool) -> Self {
-        let portion = if alpha { "alpha" } else { "rgb" };
-        StageReport {
-            block: format!("general stage {stage} {portion}"),
-            prefix: format!("stage{stage}.{portion}"),
-            stage,
-        }
+        let (blocks, prefixes) = if alpha { (&ALPHA_BLOCKS, &ALPHA_PREFIXES) } else { (&RGB_BLOCKS, &RGB_PREFIXES) };
+        StageReport { block: blocks[stage], prefix: prefixes[stage], stage }
     }
 
     /// Returns whether a value of the portion is wanted whose name begins with one of these.
     fn wanted<O: Observer>(&self, names: &[&str], observer: &O) -> bool {
-        observer.wants(&[&self.prefix])
-            && names.iter().any(|name| observer.wants(&[&[&self.prefix, ".", *name, "."].concat()]))
+        observer.wants(&[self.prefix]) && names.iter().any(|name| observer.wants(&[self.prefix, ".", name, "."]))
     }
 
     fn mux<L: Lane, O: Observer>(
@@ -100,9 +116,8 @@ impl StageReport {
             MuxSelect::Msb => "mux_msb",
             MuxSelect::Lsb => "mux_lsb",
         };
-        let name = format!("stage{}.mux", self.stage);
         observer.step(
-            Step::given(&format!("general stage {} mux", self.stage), "CMB-10", name, takes_cd)
+            Step::given(MUX_BLOCKS[self.stage], "CMB-10", MUXES[self.stage], takes_cd)
                 .by(operation, vec![report::register("spare0.a", spare0_alpha)])
                 .note(if takes_cd { "set: takes CD" } else { "clear: takes AB" }.to_string()),
         );
@@ -127,10 +142,10 @@ impl StageReport {
                 let source = source_channel(input, channel);
                 let x = registers.read(input.register, source);
                 let [factor] = mapping::map([x], input.mapping, policies);
-                let name = [&self.prefix, ".", INPUT_NAMES[n], ".", channel_name(channel)].concat();
+                let name = [self.prefix, ".", INPUT_NAMES[n], ".", channel_name(channel)].concat();
                 let operand = [registers::name(input.register), ".", channel_name(source)].concat();
                 observer.step(
-                    report::factor_step::<L>(&self.block, mapping::rule(input.mapping).name(), name, factor)
+                    report::factor_step::<L>(self.block, mapping::rule(input.mapping).name(), name, factor)
                         .by(mapping::operation(input.mapping), vec![report::register(operand, x)]),
                 );
             }
@@ -159,7 +174,7 @@ impl StageReport {
                 let channel = first + c;
                 let blue = n < 2 && planned.blue_to_alpha[n] && channel == 2;
                 let live = planned.live[n] >> channel & 1 != 0 || blue;
-                if !live || !observer.wants(&[&self.product_name(n, channel)]) {
+                if !live || !observer.wants(&self.product_parts(n, channel)) {
                     continue;
                 }
                 let raw = if n == 2 { values.third[c].sum } else { values.products[n][c].sum };
@@ -193,7 +208,7 @@ impl StageReport {
         observer: &mut O,
     ) {
         let operand = |n: usize, c: usize| {
-            let name = [&self.prefix, ".", INPUT_NAMES[n], ".", channel_name(first + c)].concat();
+            let name = [self.prefix, ".", INPUT_NAMES[n], ".", channel_name(first + c)].concat();
             report::factor::<L>(name, values.factors[n][c])
         };
         let (rule, operation) = match rounding {
@@ -202,14 +217,14 @@ impl StageReport {
             None => ("CMB-6", "product"),
         };
         for c in (0..N).filter(|c| needed >> (first + c) & 1 != 0) {
-            let name = self.product_name(product, first + c);
-            if !observer.wants(&[&name]) {
+            if !observer.wants(&self.product_parts(product, first + c)) {
                 continue;
             }
+            let name = self.product_name(product, first + c);
             let pairs = if rounding.is_some() { 0..N } else { c..c + 1 };
             let inputs = pairs.flat_map(|c| [operand(2 * product, c), operand(2 * product + 1, c)]).collect();
             let raw = values.products[product][c].sum;
-            observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
+            observer.step(report::sum_step::<L>(self.block, rule, name, raw).by(operation, inputs));
         }
     }
 
@@ -229,14 +244,14 @@ impl StageReport {
         ];
         let (rule, operation) = match (selected, rounding) {
             (Some(takes_cd), _) => {
-                inputs.push(plain(format!("stage{}.mux", self.stage), takes_cd));
+                inputs.push(plain(MUXES[self.stage], takes_cd));
                 ("CMB-10", "select")
             }
             (None, SumRounding::Each) => ("CMB-7", "add_rounded"),
             (None, SumRounding::Once) => ("CMB-7", "add"),
         };
         let name = self.product_name(2, channel);
-        observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
+        observer.step(report::sum_step::<L>(self.block, rule, name, raw).by(operation, inputs));
     }
 
     /// Reports rounding, bias, scale and saturation of output `n` (AB, CD, sum) in `channel`.
@@ -250,16 +265,18 @@ impl StageReport {
         observer: &mut O,
     ) {
         let base = self.product_name(n, channel);
-        let mut last = (base.clone(), raw.rounded());
-        let mut step = |suffix: &str, rule, operation, v: L, first: bool| {
-            let name = [&base, ".", suffix].concat();
-            let operand = if first { report::sum::<L>(&base, raw) } else { report::register(last.0.clone(), last.1) };
-            let changed = v.observe().0 != last.1.observe().0;
-            let note = (suffix == "output" && changed).then(|| "saturated".to_string());
-            observer.step(
-                report::register_step(&self.block, rule, name.clone(), v).by(operation, vec![operand]).note(note),
-            );
-            last = (name, v);
+        let mut last = ("", raw.rounded());
+        let mut step = |suffix: &'static str, rule, operation, v: L, first: bool| {
+            if observer.wants(&[&base, ".", suffix]) {
+                let named = |suffix: &str| [&base, ".", suffix].concat();
+                let operand =
+                    if first { report::sum::<L>(&base, raw) } else { report::register(named(last.0), last.1) };
+                let changed = v.observe().0 != last.1.observe().0;
+                let note = (suffix == "output" && changed).then(|| "saturated".to_string());
+                let step = report::register_step(self.block, rule, named(suffix), v);
+                observer.step(step.by(operation, vec![operand]).note(note));
+            }
+            last = (suffix, v);
         };
         match policies.output_rounding {
             OutputRounding::BeforeScale => {
@@ -320,12 +337,16 @@ impl StageReport {
         let source = [&self.product_name(n, source_channel), ".output"].concat();
         let name = [registers::name(destination), ".", channel_name(channel)].concat();
         observer.step(
-            report::register_step(&self.block, rule, name, value).by("write", vec![report::register(source, value)]),
+            report::register_step(self.block, rule, name, value).by("write", vec![report::register(source, value)]),
         );
     }
 
+    fn product_parts(&self, n: usize, channel: usize) -> [&'static str; 5] {
+        [self.prefix, ".", PRODUCT_NAMES[n], ".", channel_name(channel)]
+    }
+
     fn product_name(&self, n: usize, channel: usize) -> String {
-        [&self.prefix, ".", PRODUCT_NAMES[n], ".", channel_name(channel)].concat()
+        self.product_parts(n, channel).concat()
     }
 }
 

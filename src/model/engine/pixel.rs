@@ -81,7 +81,7 @@ impl TriangleContext<'_> {
         let draw = self.draw;
         let mut sample = Sample::new(&self.triangle, fragment.e);
         sample.ideal = fragment.weights;
-        if O::ON && observer.wants(&["E", "e", "w", "r0", "r2", "S", "R", "b"]) {
+        if O::ON && observer.wants_any(&["E", "e", "w", "r0", "r2", "S", "R", "b"]) {
             let w = significant(self.vertices().position(3), self.plan.profile);
             reports::setup(&sample, fragment.pixel, w, self.barycentrics(&sample), observer);
         }
@@ -162,7 +162,7 @@ impl TriangleContext<'_> {
                     }
                 }
             }
-            if O::ON && observer.wants(&[name, "vertex"]) {
+            if O::ON && observer.wants_any(&[name, "vertex"]) {
                 let output =
                     draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
                 for channel in (0..4).filter(|c| live >> c & 1 != 0) {
@@ -200,7 +200,7 @@ impl TriangleContext<'_> {
                 Some(_) => Rule::Fog4,
             };
             let factor = observer.observe(rule, L::value(i32::from(found.byte), ideal));
-            if O::ON && observer.wants(&["fog", "vertex"]) {
+            if O::ON && observer.wants_any(&["fog", "vertex"]) {
                 self.report_fog(sample, plane, found, factor, observer);
             }
             factor
@@ -387,7 +387,7 @@ impl TriangleContext<'_> {
         if draw.write_mask != 0 {
             observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
         }
-        if O::ON && observer.wants(&["sto", "surface"]) {
+        if O::ON && observer.wants_any(&["sto", "surface"]) {
             self.report_store(&channels, fragment.stored, word, memory, observer);
         }
         Some(Stored { word, channels })

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use super::tracing::{Pixel, TraceError};
 use super::{BAND, TextureWords, cleared, cleared_colors, draw_defined, walk};
+use crate::number::{Lane, Paired};
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::Rectangle;
 use crate::texture::planned::Image;
@@ -15,7 +16,7 @@ use crate::trace::{Observer, Step, Unit};
 use rayon::prelude::*;
 
 /// Which fragments are observed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlaneOptions {
     /// Number of the target.
     pub target: usize,
@@ -25,6 +26,8 @@ pub struct PlaneOptions {
     pub draw: Option<usize>,
     /// Whether fragments that a test drops count. Otherwise a pixel shows its last stored fragment.
     pub dropped: bool,
+    /// Whether the ideals are computed, too.
+    pub ideal: bool,
     /// Number of threads; 0 for one per core. The result does not depend on it.
     pub threads: usize,
 }
@@ -34,7 +37,7 @@ pub struct PlaneOptions {
 pub struct Plane {
     /// The integers; 0 where the pixel has none.
     pub values: Vec<i64>,
-    /// The float64 ideals, in the unit of the real number; NaN where there is none.
+    /// The float64 ideals, in the unit of the real number; NaN where there is none. Empty unless they were asked for.
     pub ideals: Vec<f64>,
     /// The units that occur.
     pub units: Vec<Unit>,
@@ -46,10 +49,10 @@ impl Plane {
     /// Index of the unit of a pixel without a value.
     pub const ABSENT: u16 = u16::MAX;
 
-    fn blank(pixels: usize) -> Plane {
+    fn blank(pixels: usize, ideal: bool) -> Plane {
         Plane {
             values: vec![0; pixels],
-            ideals: vec![f64::NAN; pixels],
+            ideals: vec![f64::NAN; if ideal { pixels } else { 0 }],
             units: Vec::new(),
             unit_of: vec![Plane::ABSENT; pixels],
         }
@@ -71,7 +74,9 @@ impl Plane {
 
     fn put(&mut self, pixel: usize, value: Value) {
         self.values[pixel] = value.value;
-        self.ideals[pixel] = value.ideal;
+        if let Some(ideal) = self.ideals.get_mut(pixel) {
+            *ideal = value.ideal;
+        }
         self.unit_of[pixel] = self.number(value.unit);
     }
 
@@ -97,10 +102,13 @@ pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<V
     let wanted = Wanted::new(names);
     let record = |pixels| Values {
         wanted: &wanted,
-        planes: vec![Plane::blank(pixels); names.len()],
+        planes: vec![Plane::blank(pixels, options.ideal); names.len()],
         found: vec![None; names.len()],
     };
-    let bands = observe(plan, options, |_| true, record)?;
+    let bands = match options.ideal {
+        true => observe::<Paired, _>(plan, options, |_| true, record)?,
+        false => observe::<i32, _>(plan, options, |_| true, record)?,
+    };
     let mut planes = vec![Plane::default(); names.len()];
     for band in &bands {
         planes.iter_mut().zip(&band.planes).for_each(|(plane, part)| plane.append(part));
@@ -116,7 +124,7 @@ pub fn plane_names(plan: &Plan, options: &PlaneOptions) -> Result<BTreeMap<Strin
     let area = Area::new(plan, options)?;
     let pixels = u64::from(area.rectangle.width) * u64::from(area.rectangle.height);
     let step = (pixels / 256).isqrt().max(1) as i64;
-    let bands = observe(plan, options, |(x, y)| x % step == 0 && y % step == 0, |_| Names::default())?;
+    let bands = observe::<i32, _>(plan, options, |(x, y)| x % step == 0 && y % step == 0, |_| Names::default())?;
     let mut names = BTreeMap::new();
     for band in bands {
         names.extend(band.names);
@@ -143,46 +151,57 @@ struct Value {
     unit: Unit,
 }
 
+/// The first bytes of a text, the first of them the most significant, and their number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Beginning {
+    bytes: u128,
+    count: usize,
+}
+
+impl Beginning {
+    const BYTES: usize = 16;
+
+    /// Returns the beginning of parts that are joined.
+    #[inline]
+    fn new(parts: &[&str]) -> Beginning {
+        let (mut bytes, mut count) = (0_u128, 0);
+        for part in parts {
+            for byte in part.bytes().take(Beginning::BYTES - count) {
+                bytes = bytes << 8 | u128::from(byte);
+                count += 1;
+            }
+        }
+        // Nothing cannot be shifted by all bits.
+        Beginning { bytes: bytes.checked_shl(8 * (Beginning::BYTES - count) as u32).unwrap_or(0), count }
+    }
+
+    /// Returns whether one of some texts may begin with this one: bytes after the sixteenth are not compared.
+    #[inline]
+    fn begins_any(self, texts: &[u128]) -> bool {
+        let mask = !u128::MAX.checked_shr(8 * self.count as u32).unwrap_or(0);
+        // Without branches, which some ten texts are not worth.
+        texts.iter().fold(false, |any, text| any | ((self.bytes ^ text) & mask == 0))
+    }
+}
+
 /// Names whose values are kept, prepared for the comparison with every step of every pixel.
 struct Wanted<'a> {
     names: &'a [String],
-    /// A few bytes of each name, which differ for most names that differ.
-    keys: Vec<u32>,
+    beginnings: Vec<Beginning>,
     /// Which of [`FRAGMENT_NAMES`] each name is.
     own: Vec<Option<usize>>,
-    /// The names in the order of texts.
-    sorted: Vec<&'a str>,
-    /// Whether a name begins with a byte.
-    first: [bool; 256],
+    /// The beginnings in ascending order, each once.
+    sorted: Vec<u128>,
 }
 
 impl<'a> Wanted<'a> {
     fn new(names: &'a [String]) -> Wanted<'a> {
-        let mut sorted: Vec<&str> = names.iter().map(String::as_str).collect();
+        let beginnings: Vec<Beginning> = names.iter().map(|name| Beginning::new(&[name])).collect();
+        let mut sorted: Vec<u128> = beginnings.iter().map(|beginning| beginning.bytes).collect();
         sorted.sort_unstable();
-        let mut first = [false; 256];
-        names.iter().filter_map(|name| name.bytes().next()).for_each(|byte| first[usize::from(byte)] = true);
-        Wanted {
-            names,
-            keys: names.iter().map(|name| Wanted::key(name)).collect(),
-            own: names.iter().map(|name| FRAGMENT_NAMES.iter().position(|own| own == name)).collect(),
-            sorted,
-            first,
-        }
-    }
-
-    fn key(name: &str) -> u32 {
-        let bytes = name.as_bytes();
-        let at = |n: usize| bytes.get(n).copied().unwrap_or(0);
-        u32::from_le_bytes([bytes.len() as u8, at(4), at(bytes.len() / 2), at(bytes.len().saturating_sub(1))])
-    }
-
-    fn has_prefix(&self, prefix: &str) -> bool {
-        // Most groups of steps have other first letters.
-        prefix.bytes().next().is_none_or(|byte| self.first[usize::from(byte)]) && {
-            let at = self.sorted.partition_point(|name| *name < prefix);
-            self.sorted.get(at).is_some_and(|name| name.starts_with(prefix))
-        }
+        sorted.dedup();
+        let own = names.iter().map(|name| FRAGMENT_NAMES.iter().position(|own| own == name)).collect();
+        Wanted { names, beginnings, own, sorted }
     }
 }
 
@@ -197,14 +216,20 @@ struct Values<'a> {
 impl Observer for Values<'_> {
     const ON: bool = true;
 
-    fn wants(&self, prefixes: &[&str]) -> bool {
-        prefixes.iter().any(|prefix| self.wanted.has_prefix(prefix))
+    fn wants(&self, parts: &[&str]) -> bool {
+        let (beginning, sorted) = (Beginning::new(parts), &self.wanted.sorted[..]);
+        if sorted.len() <= 16 {
+            return beginning.begins_any(sorted);
+        }
+        // Of all names that are not less, the least begins so if any does.
+        let least = sorted.partition_point(|name| *name < beginning.bytes);
+        beginning.begins_any(&sorted[least..sorted.len().min(least + 1)])
     }
 
     fn step(&mut self, step: Step) {
-        let key = Wanted::key(&step.name);
+        let beginning = Beginning::new(&[&step.name]);
         for (n, found) in self.found.iter_mut().enumerate() {
-            if self.wanted.keys[n] == key && self.wanted.names[n] == step.name {
+            if self.wanted.beginnings[n] == beginning && self.wanted.names[n] == step.name {
                 let ideal = step.ideal.unwrap_or(f64::NAN);
                 *found = Some(Value { value: step.value, ideal, unit: step.unit() });
             }
@@ -282,7 +307,7 @@ struct Band<R> {
 }
 
 /// Draws the pixels of a rectangle. Fragments that count, of pixels that `chosen` names, are observed by the record of their band.
-fn observe<R: Record>(
+fn observe<L: Lane + Sync, R: Record>(
     plan: &Plan,
     options: &PlaneOptions,
     chosen: impl Fn((i64, i64)) -> bool + Sync,
@@ -316,7 +341,7 @@ fn observe<R: Record>(
                 finished = index;
             }
             let words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
-            let images = words.images();
+            let images = words.images::<L>();
             let counts = options.draw.is_none_or(|only| only == index);
             let columns = (i64::from(x), i64::from(x + width));
             let draw = |band: &mut Band<R>| {
@@ -334,17 +359,17 @@ fn observe<R: Record>(
 }
 
 /// A draw, and which of its fragments count.
-struct Drawn<'a> {
+struct Drawn<'a, L> {
     plan: &'a Plan,
     planned: &'a PlannedDraw,
     index: usize,
-    images: &'a [Image<'a, crate::number::Paired>],
+    images: &'a [Image<'a, L>],
     columns: (i64, i64),
     counts: bool,
     dropped: bool,
 }
 
-impl Drawn<'_> {
+impl<L: Lane> Drawn<'_, L> {
     fn shade<R: Record>(&self, band: &mut Band<R>, chosen: &impl Fn((i64, i64)) -> bool) {
         let (first, end) = self.columns;
         let width = (end - first) as usize;

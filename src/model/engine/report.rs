@@ -344,10 +344,10 @@ impl TriangleContext<'_> {
         observer.step(Step::given(BLOCK, "ROP-5", "stored.word", word).by("store", inputs).note(note));
         let shown = surface::show(draw.surface, word);
         for channel in 0..4 {
-            let name = ["stored.", channel_name(channel)].concat();
-            if !observer.wants(&[&name]) {
+            if !observer.wants(&["stored.", channel_name(channel)]) {
                 continue;
             }
+            let name = ["stored.", channel_name(channel)].concat();
             let kept = draw.written >> channel & 1 != 0;
             let ideal = channels[channel].observe().1.filter(|_| kept);
             let inputs = vec![

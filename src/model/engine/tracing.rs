@@ -6,7 +6,7 @@ use std::fmt;
 use super::context::TriangleContext;
 use super::pixel::{DepthStencil, Fragment};
 use super::{TextureWords, cleared, cleared_colors, draw_defined};
-use crate::number::Paired;
+use crate::number::{Lane, Paired};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
 use crate::rop::surface;
@@ -272,7 +272,7 @@ impl<'a> Tracer<'a> {
                 finished = index;
             }
             let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
-            let textures = texture_words.images();
+            let textures = texture_words.images::<Paired>();
             let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
                 if !covered(&mut context, number, self.pixel) {
@@ -323,23 +323,25 @@ impl Pixel {
     }
 
     /// Shades one fragment. Returns whether it was stored.
-    pub(super) fn shade<O: Observer>(
+    pub(super) fn shade<L: Lane, O: Observer>(
         &mut self,
         planned: &PlannedDraw,
         context: &TriangleContext<'_>,
         pixel: (i64, i64),
-        textures: &[Image<'_, Paired>],
+        textures: &[Image<'_, L>],
         observer: &mut O,
     ) -> bool {
         let e = context.triangle.edges(pixel.0, pixel.1);
         let fragment = Fragment { pixel, e, stored: self.word, weights: None };
         let fixed = surface::read(planned.surface, self.word);
-        let destination = std::array::from_fn(|n| Paired { fixed: i32::from(fixed[n]), ideal: self.ideal[n] });
+        let destination = std::array::from_fn(|n| L::value(i32::from(fixed[n]), || self.ideal[n]));
         let stored = context.shade(&fragment, &mut self.depth, Some(destination), textures, observer);
         let Some(stored) = stored else { return false };
         self.word = stored.word;
         for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
-            self.ideal[n] = stored.channels[n].ideal.clamp(0.0, 255.0);
+            if let (_, Some(ideal)) = stored.channels[n].observe() {
+                self.ideal[n] = ideal.clamp(0.0, 255.0);
+            }
         }
         true
     }

@@ -30,7 +30,7 @@ pub struct Report<'a> {
 
 /// The numbers of units, as names have them. Names are made of parts, which takes a third of the time of formatting: planes have one for every value of every
 /// pixel.
-const UNITS: [&str; 4] = ["0", "1", "2", "3"];
+pub(super) const UNITS: [&str; 4] = ["0", "1", "2", "3"];
 
 /// Returns the name of a unit's block of the chip.
 pub(crate) fn block(index: usize) -> String {
@@ -50,18 +50,8 @@ impl Report<'_> {
 
     /// Returns whether a step of this unit is wanted whose name begins with one of these.
     pub(super) fn wanted<O: Observer>(&self, suffixes: &[&str], observer: &O) -> bool {
-        let own = self.name("");
-        observer.wants(&[&own]) && suffixes.iter().any(|suffix| observer.wants(&[&[&own, *suffix].concat()]))
-    }
-
-    /// Returns whether a step is wanted by which a lane is filtered.
-    pub(super) fn lane_wanted<O: Observer>(&self, lane: usize, observer: &O) -> bool {
-        self.wanted(&[self.lane(lane), "row"], observer)
-    }
-
-    /// Returns whether a channel of this unit's register is wanted.
-    pub(super) fn register_wanted<O: Observer>(&self, observer: &O) -> bool {
-        observer.wants(&[&["texture", UNITS[self.unit.index], "."].concat()])
+        let any = |suffix: &str| observer.wants(&["unit", UNITS[self.unit.index], ".", self.prefix, suffix]);
+        any("") && suffixes.iter().any(|suffix| any(suffix))
     }
 
     /// Returns a step of this unit.
@@ -190,19 +180,20 @@ impl Report<'_> {
         observer: &mut O,
     ) {
         for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
-            let inputs = vec![part(self.name(letter), coordinate[n])];
-            for step in 0..2 {
-                let name = self.name(&format!("{axis}{step}"));
-                let operation = if step == 0 { "linear_texel" } else { "linear_texel_next" };
-                observer.step(Step::given(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs.clone()));
+            let inputs = || vec![part(self.name(letter), coordinate[n])];
+            if self.wanted(&[axis], observer) {
+                for step in 0..2 {
+                    let name = self.name(&format!("{axis}{step}"));
+                    let operation = if step == 0 { "linear_texel" } else { "linear_texel_next" };
+                    observer.step(Step::given(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs()));
+                }
             }
-            let (weight, ideal) = L::observe_weight(weights[n]);
-            observer.step(
-                self.step("TEX-6", &format!("weight_{letter}"), weight)
-                    .per(256)
-                    .by("linear_weight", inputs)
-                    .ideal(ideal),
-            );
+            let suffix = ["weight_u", "weight_v"][n];
+            if self.wanted(&[suffix], observer) {
+                let (weight, ideal) = L::observe_weight(weights[n]);
+                let step = self.step("TEX-6", suffix, weight).per(256);
+                observer.step(step.by("linear_weight", inputs()).ideal(ideal));
+            }
         }
     }
 
@@ -530,7 +521,7 @@ impl Report<'_> {
     }
 
     /// Returns the name of a lane.
-    fn lane(&self, lane: usize) -> &'static str {
+    pub(super) fn lane(&self, lane: usize) -> &'static str {
         match self.unit.format {
             TextureFormat::R16B16 | TextureFormat::Y16 => ["hi", "lo", "", ""][lane],
             _ => channel_name(lane),

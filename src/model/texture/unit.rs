@@ -8,7 +8,7 @@ use super::fetch::{Slice, Texel, lanes};
 use super::filter::{bilinear, lerp, linear, nearest};
 use super::lod::{self, Choice};
 use super::planned::{Image, PlannedUnit};
-use super::report::{Report, filtered};
+use super::report::{Report, UNITS, filtered};
 use super::{color_key, shadow};
 use crate::number::Lane;
 use crate::raster::interpolate::COORDINATE_LIMIT;
@@ -325,7 +325,7 @@ pub fn mix<L: Lane, O: Observer>(
     });
     if O::ON {
         for lane in (0..4).filter(|c| live >> c & 1 != 0) {
-            if report.lane_wanted(lane, observer) {
+            if report.wanted(&[report.lane(lane), "row"], observer) {
                 report.filter(lane, of(lane), weights, out[lane], observer);
             }
         }
@@ -375,7 +375,7 @@ pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str,
         return load_halves(value, from, &report, observer);
     }
     let mut register = value;
-    let reported = O::ON && report.register_wanted(observer);
+    let reported = O::ON && observer.wants(&["texture", UNITS[unit.index], "."]);
     for channel in 0..4 {
         if unit.state.signed[channel] {
             register[channel] = observer.observe(Rule::Tex18, value[channel].signed_texel());

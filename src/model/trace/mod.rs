@@ -22,9 +22,13 @@ pub trait Observer {
     const MEASURES: bool = false;
     /// Whether work is counted. The pipe then computes nothing that is not needed.
     const COUNTS: bool = false;
-    /// Returns whether some step is wanted whose name begins with one of these. Groups of steps ask before they are described.
-    fn wants(&self, _prefixes: &[&str]) -> bool {
+    /// Returns whether some step is wanted whose name begins with these parts, joined. Groups of steps ask before they are described.
+    fn wants(&self, _parts: &[&str]) -> bool {
         Self::ON
+    }
+    /// Returns whether some step is wanted whose name begins with one of these.
+    fn wants_any(&self, beginnings: &[&str]) -> bool {
+        beginnings.iter().any(|beginning| self.wants(&[beginning]))
     }
     /// Receives the application of a rule.
     fn step(&mut self, step: Step);

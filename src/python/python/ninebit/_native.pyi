@@ -36,6 +36,7 @@ class Scene:
         rectangle: Optional[Tuple[int, int, int, int]],
         draw: Optional[int],
         dropped: bool,
+        ideal: bool,
         threads: int,
         policies: Sequence[str],
         work: Optional[int],

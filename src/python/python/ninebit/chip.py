@@ -38,7 +38,7 @@ def evaluate(
     shape = np.broadcast_shapes(*(array.shape for array in arrays.values())) if arrays else (4,)
     given = []
     for name, array in arrays.items():
-        if array.size and (array.min() < -32768 or array.max() > 32767):
+        if array.dtype.itemsize > 1 and array.dtype != np.int16 and array.size and (array.min() < -32768 or array.max() > 32767):
             raise NinebitError(f"`{name}` holds -256 to 255", help="255 is 1.0; clip the array")
         given.append((name, np.ascontiguousarray(np.broadcast_to(array, shape), np.int16).ravel()))
     pixels = int(np.prod(shape[:-1], dtype=np.int64))

@@ -62,7 +62,7 @@ class Planes(Mapping[str, np.ndarray]):
     Values that do not fit are int64. A pixel without a value has 0.
     """
 
-    def __init__(self, names: List[str], width: int, height: int, arrays: List[Tuple[Any, ...]], ideal: bool) -> None:
+    def __init__(self, names: List[str], width: int, height: int, arrays: List[Tuple[Any, ...]]) -> None:
         self._values: Dict[str, np.ndarray] = {}
         self.present: Dict[str, np.ndarray] = {}
         """Which pixels have a value."""
@@ -75,10 +75,10 @@ class Planes(Mapping[str, np.ndarray]):
         for name, (channels, values, ideals, present, per_one, exponent) in zip(names, arrays):
             shape = (height, width) if channels == 1 else (height, width, channels)
             self._values[name] = values.reshape(shape)
-            self.present[name] = present.reshape(shape)
-            self.per_one[name] = per_one.reshape(shape)
-            self.exponent[name] = exponent.reshape(shape)
-            if ideal:
+            for found, of in ((present, self.present), (per_one, self.per_one), (exponent, self.exponent)):
+                # One number for all pixels, or one for each.
+                of[name] = np.broadcast_to(found, shape) if found.size == 1 else found.reshape(shape)
+            if ideals is not None:
                 self.ideal[name] = ideals.reshape(shape)
 
     def __getitem__(self, name: str) -> np.ndarray:

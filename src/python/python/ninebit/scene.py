@@ -174,9 +174,9 @@ class Scene:
         `fragment.draw`, `fragment.triangle` and `fragment.stored` say of which fragment the values are.
         """
         width, height, arrays = self._native().planes(
-            list(names), target, rectangle, draw, dropped, threads, policy_texts(policies), work
+            list(names), target, rectangle, draw, dropped, ideal, threads, policy_texts(policies), work
         )
-        return Planes(list(names), width, height, arrays, ideal)
+        return Planes(list(names), width, height, arrays)
 
     def trace(
         self,
