@@ -70,6 +70,39 @@ fn scenes_become_pages() {
 }
 
 #[test]
+fn scenes_become_a_gallery() {
+    let bench = Bench::new();
+    let scene = "(version: 1, profile: Nv10, targets: [(width: 3, height: 2)], draws: [])";
+    std::fs::create_dir_all(bench.path("scenes/deep")).unwrap();
+    bench.write("scenes/second.ron", scene);
+    bench.write("scenes/deep/first.ron", format!("// A <b>title</b>: what it shows.\n{scene}"));
+    bench.write("scenes/bad.ron", "(version: 1, profile: Nv30)");
+    let run = bench.run("gallery scenes/deep scenes -o site");
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("bad.ron") && run.stderr.contains("NB0204"), "{}", run.stderr);
+    let read = |path: &str| std::fs::read_to_string(bench.path(path)).unwrap();
+    let index = read("site/index.html");
+    // The places are shown in the order that they were named in.
+    let titles = ["A &lt;b&gt;title&lt;/b&gt;", "What it shows.", "Second"].map(|title| index.find(title).unwrap());
+    assert!(titles.is_sorted() && index.contains("2 scenes") && !index.contains("bad"), "{titles:?}");
+    let linked = |attribute: &str| {
+        let links = index.split(attribute).skip(1).map(|rest| rest.split('"').next().unwrap().to_owned());
+        links.collect::<Vec<_>>()
+    };
+    let links = [linked("href=\""), linked("src=\"")].concat();
+    assert_eq!(links.len(), 4);
+    links.iter().for_each(|link| assert!(bench.path("site").join(link).is_file(), "{link}"));
+    let page = read("site/scenes/scenes-second.html");
+    assert!(page.contains("src=\"../inspector.js\"") && page.contains(scene) && page.len() < 100_000);
+    // A gallery is replaced as a whole; another folder is not touched.
+    bench.run("gallery scenes/deep -o site --title Two").text();
+    assert!(!bench.path("site/scenes/scenes-second.html").exists() && read("site/index.html").contains("<h1>Two</h1>"));
+    bench.run("gallery scenes -o scenes").failed(2, "exists, and is no gallery");
+    bench.run("gallery scenes/bad.ron -o none").failed(2, "no scene to show");
+    assert!(!bench.path("none").exists());
+}
+
+#[test]
 fn a_wrong_command_line_is_status_2() {
     let bench = Bench::new();
     bench.write("height.png", PNG);

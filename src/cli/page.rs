@@ -13,10 +13,12 @@ use sha2::{Digest, Sha256};
 const MARKUP: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// The scripts, each after those that it imports.
-const MODULES: [&str; 6] = [
+const MODULES: [&str; 8] = [
     include_str!("page/elements.js"),
     include_str!("page/model.js"),
     include_str!("page/view.js"),
+    include_str!("page/strip.js"),
+    include_str!("page/listing.js"),
     include_str!("page/chain.js"),
     include_str!("page/change.js"),
     include_str!("page/main.js"),
@@ -24,23 +26,66 @@ const MODULES: [&str; 6] = [
 /// The WebAssembly module that `src/web/build` makes from `src/web`.
 const MODULE: &[u8] = include_bytes!("page/module.wasm.gz");
 
-/// Returns the page with the given title and a scene's data.
-pub(crate) fn page(title: &str, data: &Value) -> String {
+/// Returns the page with the given title, a scene's data and what all pages hold. It needs no other file.
+pub(crate) fn page(title: &str, data: &Value, common: &Value) -> String {
     let script = joined();
-    let policy = format!(
-        "default-src 'none'; script-src {} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
-        source_hash(&script),
-        source_hash(STYLE)
-    );
-    let title = format!("{} - Ninebit", escaped(title));
-    // Escaped so that no data can end its element.
-    let data = data.to_string().replace('<', "\\u003c");
+    let policy = policy(&source_hash(&script));
     let parts = [
-        ("policy", policy),
-        ("title", title),
-        ("style", STYLE.to_owned()),
+        format!("<style>{STYLE}</style>"),
+        json_of(data),
+        json_of(common),
+        STANDARD.encode(MODULE),
+        format!("<script>{script}</script>"),
+    ];
+    filled(&policy, title, parts)
+}
+
+/// Returns the page of a scene beside others: script, module and what all pages hold are in the file `shared`, which [`shared`] returns.
+pub(crate) fn page_beside(title: &str, data: &Value, shared: &str) -> String {
+    // A page that was opened from a file is of no origin that `'self'` could name.
+    let policy = policy(&format!("'self' file: {}", source_hash(&joined())));
+    let parts = [
+        format!("<style>{STYLE}</style>"),
+        json_of(data),
+        String::new(),
+        String::new(),
+        format!("<script src=\"{shared}\"></script>"),
+    ];
+    filled(&policy, title, parts)
+}
+
+/// Returns the file that pages share. It puts their script into them, so that a second thread can be given its text.
+pub(crate) fn shared(common: &Value) -> String {
+    let text = |text: &str| json_of(&Value::from(text));
+    format!(
+        "\"use strict\";\ndocument.getElementById(\"common\").textContent = {};\ndocument.getElementById(\"module\").textContent = {};\ndocument.body.append(Object.assign(document.createElement(\"script\"), {{ textContent: {} }}));\n",
+        text(&json_of(common)),
+        text(&STANDARD.encode(MODULE)),
+        text(&joined())
+    )
+}
+
+fn policy(scripts: &str) -> String {
+    format!(
+        "default-src 'none'; script-src {scripts} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
+        source_hash(STYLE)
+    )
+}
+
+/// Returns JSON that cannot end its element.
+fn json_of(value: &Value) -> String {
+    value.to_string().replace('<', "\\u003c")
+}
+
+/// Fills the markup: style, data, common data, module, script.
+fn filled(policy: &str, title: &str, [style, data, common, module, script]: [String; 5]) -> String {
+    let parts = [
+        ("policy", policy.to_owned()),
+        ("title", format!("{} - Ninebit", escaped(title))),
+        ("style", style),
         ("data", data),
-        ("module", STANDARD.encode(MODULE)),
+        ("common", common),
+        ("module", module),
         ("script", script),
     ];
     let mut page = String::with_capacity(3 << 20);
@@ -106,15 +151,15 @@ mod tests {
     #[test]
     fn what_a_scene_says_ends_no_element() {
         let data = json!({ "text": "</script><script>alert(1)</script><!--" });
-        let page = page("<b>&", &data);
-        assert_eq!(page.matches("</script>").count(), 3);
+        let page = page("<b>&", &data, &json!({}));
+        assert_eq!(page.matches("</script>").count(), 4);
         assert!(!page.contains("alert(1)</") && page.contains("<title>&lt;b&gt;&amp; - Ninebit</title>"));
         assert_eq!(page.matches("{{").count(), 0, "a place was not filled");
     }
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let page = page("scene", &json!({}));
+        let page = page("scene", &json!({}), &json!({}));
         for form in ["src=", "http://", "https://", "@import", "url(", " style=", "onclick=", "\nimport "] {
             let found = page.find(form);
             assert_eq!(found, None, "{form}: {:?}", found.map(|at| &page[at.saturating_sub(60)..at + 60]));

@@ -495,6 +495,12 @@ fn page() -> Result<(), Failed> {
         inspect(&scene, &at(&format!("{name}.html")));
     }
 
+    let gallery = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+        .args(["gallery", "vectors/scenes/fog", "vectors/scenes/dot3/lit-stone.ron", "-o"])
+        .arg(at("gallery"))
+        .status();
+    assert!(gallery.unwrap().success());
+
     // The values that the page has to show, computed by the library.
     let pixel = (200, 300);
     let traced = trace(&loaded.plan, 0, pixel, None).unwrap();

@@ -9,7 +9,7 @@ import { Browser } from "./browser.mjs";
 const [, , folder, wanted, pictures] = process.argv;
 const expected = JSON.parse(readFileSync(wanted, "utf8"));
 const address = (name) => pathToFileURL(join(folder, name)).href;
-const ready = 'window.inspector?.times.first !== undefined || document.getElementById("message").textContent !== ""';
+const ready = 'window.inspector?.times.first !== undefined || document.getElementById("message")?.textContent.startsWith("This page cannot be shown")';
 const browser = await Browser.start();
 const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
 const median = (list) => list.sort((a, b) => a - b)[list.length >> 1];
@@ -46,8 +46,45 @@ async function tests() {
   assert.deepEqual(await browser.value("inspector.at"), [expected.pixel[0] + 1, expected.pixel[1]]);
   await browser.press("ArrowLeft");
 
+  // The strip: the pixel's way, which ends with what is stored; a cell leads to its unit. What carries there is folded.
+  const way = await browser.value(`[...document.querySelectorAll("#chain .strip .cell")].map((cell) => [cell.querySelector(".title").textContent, cell.querySelector(".how").textContent, [...cell.querySelectorAll(".channel")].map((each) => +each.textContent)])`);
+  assert.deepEqual([way[0][0], way.at(-1)[0]], ["texture 0", "stored"], JSON.stringify(way));
+  assert.ok(way.some(([title, how]) => title === "stage 0, AB" && how === "texture 0 · constant 0 → spare 0"), JSON.stringify(way));
+  const [red, green, blue] = expected.shown.match(/\d+/g).map(Number);
+  assert.deepEqual(way.at(-1)[2], red === green && green === blue ? [red] : [red, green, blue]);
+  await browser.value(`document.querySelector('#chain .strip .cell[data-block="texture unit 0"]').click()`);
+  assert.equal(await browser.value(`document.activeElement.closest(".unit")?.getAttribute("aria-label")`), "texture unit 0");
+  assert.deepEqual(await browser.value(`[...document.querySelectorAll("#chain details.folded")].map((each) => [each.open, each.querySelector(".unit").getAttribute("aria-label")]).filter(([open]) => open)`), []);
+
+  // Help, by its key.
+  await browser.value("inspector.view.canvas.focus()");
+  await browser.press("?");
+  assert.equal(await browser.value('document.getElementById("guide").open'), true);
+  await browser.value('document.getElementById("guide").close()');
+
+  // The program beside what its lines yield: it is changed as one types, and says what is wrong where.
+  await browser.value('document.getElementById("tab-program").click()');
+  const type = (from, to, event) => browser.value(`(async () => { const area = document.querySelector(".listing textarea"); area.value = area.value.replace(${JSON.stringify(from)}, ${JSON.stringify(to)}); area.dispatchEvent(new Event("${event}"));
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); return [...document.querySelectorAll(".beside .row")].map((row) => row.textContent); })()`);
+  const stage = way.find(([title]) => title === "stage 0, AB")[2];
+  assert.ok((await type("", "", "input")).includes(stage.join("")), `${stage}`);
+  assert.ok((await type("expand(tex0)", "expand(tex9)", "input")).some((row) => row.startsWith("✗ there is no register")));
+  assert.equal(await digest(), expected.digest);
+  await type("expand(tex9)", "unsigned(tex0)", "input");
+  assert.equal(await digest(), expected.edited);
+  await type("unsigned(tex0)", "expand(tex0)", "change");
+  assert.equal(await digest(), expected.digest);
+  if (await browser.value("inspector.past.length > 0")) await browser.value('document.getElementById("undo").click()');
+
+  // Fields are found by words of their path.
+  await browser.value('document.getElementById("tab-change").click()');
+  const seek = (words) => browser.value(`(() => { const field = document.querySelector("#change input[type=search]"); field.value = "${words}"; field.dispatchEvent(new Event("input")); return [...document.querySelectorAll("#change [role=status] .label")].map((each) => each.textContent); })()`);
+  assert.ok((await seek("draws constants")).every((path) => path.includes("constants")) && (await seek("draws constants")).length === 2);
+  assert.deepEqual([await seek("no such field"), await seek("")], [[], []]);
+  await browser.value('document.getElementById("tab-chain").click()');
+
   // A slice: what a value depends on stays bright, the rest does not.
-  const slice = await browser.value(`(() => { inspector.chain.fill(); const wires = [...document.querySelectorAll("#chain .wire")]; wires.at(-1).click();
+  const slice = await browser.value(`(() => { inspector.chain.fill(); const wires = [...document.querySelectorAll("#chain .wire")]; [...document.querySelectorAll('#chain .unit[aria-label="store"] .wire')].at(-1).click();
     return [document.querySelectorAll("#chain .wire.bright").length, wires.length, document.getElementById("wire").hidden]; })()`);
   assert.ok(slice[0] > 20 && slice[0] < slice[1] && slice[2] === false, `${slice}`);
 
@@ -97,11 +134,13 @@ async function tests() {
   await browser.value('document.getElementById("reset").click()');
   const long = (length) => browser.value(`inspector.commit(inspector.data.text + "\\n// " + "\u00e9#".repeat(${length}))`);
   await long(150_000);
+  await browser.value("inspector.toAddress()");
   const [longLink, longText] = [await browser.value("location.href"), await browser.value("inspector.text")];
   sound("stone.html");
   await opened("stone.html", { url: longLink });
   assert.equal((await browser.value("inspector.text")) === longText, true, "the link of a long change has another text");
-  await long(400_000);
+  // What cannot be compressed.
+  await browser.value(`inspector.commit(inspector.data.text + "\\n// " + Array.from({ length: 30 }, () => [...crypto.getRandomValues(new Uint8Array(60000))].map((n) => n.toString(36)).join("")).join(""))`);
   await browser.value("inspector.link()");
   assert.deepEqual([await browser.value("location.hash"), (await text("message")).startsWith("The changes are too long for a link")], ["", true]);
   sound("stone.html");
@@ -202,6 +241,29 @@ async function tests() {
   assert.equal(await browser.value("inspector.until"), expected.steps.length - 2);
   sound("steps.html");
 
+  // A gallery opened as a file: filters, and a scene that shares script and module with others, a second thread included.
+  const only = (page, asked) => assert.deepEqual(browser.complaints(page).filter((each) => each !== `asked for ${asked}` && !each.endsWith(".png")), [], page);
+  const gallery = address("gallery/index.html");
+  await browser.open(gallery);
+  await browser.until('document.querySelectorAll(".scenes li").length === 4 && [...document.images].every((image) => image.complete && image.naturalWidth > 0)');
+  await browser.value(`[...document.querySelectorAll("button.tag")].find((button) => button.dataset.tag === "fog").click()`);
+  assert.deepEqual(await browser.value(`[document.getElementById("count").textContent, [...document.querySelectorAll(".scenes li")].filter((each) => each.getClientRects().length).length]`), ["3 of 4 scenes", 3]);
+  await browser.value(`(() => { document.querySelector('button.tag[aria-pressed="true"]').click(); const search = document.getElementById("search"); search.value = "stone"; search.dispatchEvent(new Event("input")); })()`);
+  assert.equal(await text("count"), "1 of 4 scenes");
+  for (const [width, dark] of [[1280, false], [390, true]]) {
+    await browser.open(gallery, { width, dark });
+    await browser.until('document.querySelectorAll(".scenes li").length === 4');
+    assert.deepEqual([(await browser.value(`(${faint})()`)).found, await browser.value("document.documentElement.scrollWidth > innerWidth")], [[], false]);
+  }
+  only(gallery, gallery);
+  const beside = await browser.value(`[...document.querySelectorAll(".scenes a")].map((link) => link.href).find((link) => link.includes("lit-stone"))`);
+  await opened("", { url: beside });
+  assert.equal(await digest(), expected.digest);
+  await compare("ideal");
+  await browser.until("inspector.times.heat !== undefined");
+  assert.equal(await text("regions-sum"), expected.ideal);
+  only(beside, address("gallery/inspector.js"));
+
   // The coordinate r of a texture shader is no red of a register.
   await opened("mirror-ball.html");
   await browser.value(`(() => { inspector.choose([128, 128]); inspector.chain.fill(); })()`);
@@ -224,7 +286,7 @@ async function tests() {
 
   // Words pasted in become the program.
   await browser.value('document.getElementById("tab-program").click()');
-  await browser.value(`(() => { const area = document.querySelector("#program textarea"); area.value = ${JSON.stringify(expected.words)}; [...document.querySelectorAll("#program button")].at(-1).click(); })()`);
+  await browser.value(`(() => { const area = document.querySelector('textarea[aria-label="Program to paste"]'); area.value = ${JSON.stringify(expected.words)}; [...document.querySelectorAll("#program button")].at(-1).click(); })()`);
   assert.equal(await digest(), expected.pasted);
 
   // While a colour is dragged the picture follows; one step of undo takes back the whole of it.

@@ -7,6 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::render;
 use ninebit::state::POLICIES;
+use ninebit_scene::Loaded;
 use ninebit_scene::assets::Gathered;
 use serde_json::Value;
 
@@ -38,36 +39,54 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Some(name) if arguments.scene != Path::new("-") => shown::path(Path::new(name)),
         _ => "scene.ron".to_owned(),
     };
+    // Policies may draw another picture than the one that is shown before the module is compiled.
+    let picture = if policies == loaded.plan.policies { first_picture(&loaded.plan) } else { None };
+    let mut data = scene_data(&name, loaded, gathered, picture.as_ref())?;
+    data["chosen"] = chosen(&policies);
+    Ok(arguments.output.write(page::page(&name, &data, &common()).as_bytes())?)
+}
+
+/// Returns what a page holds of its scene. `picture` is shown before the module is compiled.
+pub(super) fn scene_data(
+    name: &str,
+    loaded: Loaded,
+    gathered: Gathered,
+    picture: Option<&Picture>,
+) -> Result<Value, Failure> {
     let mut bundle = gathered.bundle();
     if let Some(family) = loaded.family {
         bundle.files.insert(family.name, family.text.into_bytes());
     }
     let files: BTreeMap<&String, String> =
         bundle.files.iter().map(|(name, bytes)| (name, STANDARD.encode(bytes))).collect();
-    let data = json!({
+    let png = picture.map(|(width, height, pixels)| encode_png(*width, *height, pixels, Compression::Small));
+    Ok(json!({
         "name": name,
-        "picture": first_picture(&loaded.plan, &policies)?,
-        "version": env!("CARGO_PKG_VERSION"),
+        "picture": png.transpose()?.map(|png| STANDARD.encode(png)),
         "text": loaded.source.text,
         "files": files,
-        "chosen": chosen(&policies),
+        "chosen": {},
+    }))
+}
+
+/// Returns what all pages hold: the handbook and the policies.
+pub(super) fn common() -> Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
         "policies": alternatives(),
         "rules": page::rules(),
         "undecided": { "none": undecided::sentence([], "this pixel"), "some": undecided::sentence(["{}"], "this pixel") },
-    });
-    Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
+    })
 }
 
-/// Returns the first target as a PNG, which is shown before the module is compiled. Returns `None` if the chosen policies may draw another picture.
-fn first_picture(plan: &Plan, policies: &Policies) -> Result<Option<String>, Failure> {
-    if *policies != plan.policies {
-        return Ok(None);
-    }
+/// Width, height and opaque pixels, row by row.
+pub(super) type Picture = (u32, u32, Vec<[u8; 4]>);
+
+/// Draws the first target, opaque, whatever alpha it has. `None` if there is no target.
+pub(super) fn first_picture(plan: &Plan) -> Option<Picture> {
     let frames = render(plan, &RenderOptions::default());
-    let Some(surface) = frames.surfaces.first() else { return Ok(None) };
-    // The page's picture is opaque, whatever alpha the target has.
-    let pixels: Vec<[u8; 4]> = surface.rgba8().into_iter().map(|[r, g, b, _]| [r, g, b, 255]).collect();
-    Ok(Some(STANDARD.encode(encode_png(surface.width, surface.height, &pixels, Compression::Small)?)))
+    let surface = frames.surfaces.first()?;
+    Some((surface.width, surface.height, surface.rgba8().into_iter().map(|[r, g, b, _]| [r, g, b, 255]).collect()))
 }
 
 /// Returns the rules that have alternatives.

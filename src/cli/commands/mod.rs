@@ -11,6 +11,7 @@ mod diff;
 mod engine;
 mod exit;
 mod explain;
+mod gallery;
 mod generate;
 mod inspect;
 mod limits;
@@ -89,6 +90,11 @@ enum Command {
     ///
     /// The page holds the scene, its textures and the model itself as WebAssembly. It needs no network and no server.
     Inspect(inspect::Arguments),
+    /// Write a site of scenes: an index of pictures with filters, each of which opens in the inspector
+    ///
+    /// The site needs no network and no server. What its pages share, the model above all, is one file. A scene is called as the comment at its head says
+    /// before a colon, `// A lit ring: ...`, or as its file.
+    Gallery(gallery::Arguments),
     /// Compare a scene with float64 arithmetic of the vendor's real-number text
     Compare(compare::Arguments),
     /// Measure how far pictures are from what they ought to show, why, and what they cost the chip
@@ -171,6 +177,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Planes(arguments) => planes::run(&arguments, context),
         Command::Inspect(arguments) => inspect::run(&arguments, context),
+        Command::Gallery(arguments) => gallery::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Measure(arguments) => measure::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),

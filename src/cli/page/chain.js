@@ -1,5 +1,6 @@
 // The chain of integers of one pixel: a card for each unit, from the raster to the store.
 import { $, choice, colorField, el, hexadecimal, swatch } from "./elements.js";
+import { differs, strip } from "./strip.js";
 
 const CHANNELS = ["r", "g", "b", "a"];
 
@@ -59,8 +60,25 @@ export class Chain {
     const fragments = trace.draws.map((fragment, n) => this.fragment(fragment, n, n === trace.draws.length - 1));
     const none = trace.draws.length ? [] : [el("p", {}, "No triangle covers this pixel: it shows the clear.")];
     const left = trace.left_out ? [el("p", { className: "quiet" }, `${trace.left_out} earlier fragments are not shown.`)] : [];
-    this.panel.replaceChildren(head, ...none, ...left, ...fragments);
+    const last = trace.draws.at(-1);
+    const way = last ? [el("p", { className: "quiet caption" }, "The way of this pixel through the chip, unit by unit. 255 stands for 1.0, · is a dot product. ",
+      el("span", { className: "off" }, "float64 +1.2"), " is how far exact arithmetic would be from the chip's integer. A click opens the unit."), strip(last, (block) => this.reveal(block))] : [];
+    this.panel.replaceChildren(head, ...way, ...none, ...left, ...fragments);
     this.choose(null);
+  }
+
+  // Goes to a unit of the last fragment.
+  reveal(block) {
+    const fragment = [...this.panel.querySelectorAll(".fragment")].at(-1);
+    if (!fragment) return;
+    fragment.open = true;
+    const card = [...fragment.querySelectorAll(".unit")].find((each) => each.getAttribute("aria-label") === block);
+    if (!card) return;
+    const folded = card.closest("details.folded");
+    if (folded) folded.open = true;
+    this.fill([card]);
+    card.scrollIntoView({ block: "start" });
+    card.querySelector("button, select, input")?.focus({ preventScroll: true });
   }
 
   fragment(fragment, number, open) {
@@ -75,11 +93,23 @@ export class Chain {
     const details = el("details", { className: "fragment", open }, summary);
     // What is not looked at is not built.
     const build = () => {
-      if (details.childElementCount === 1) details.append(...blocks.map((block) => this.unit(block, fragment, number)));
+      if (details.childElementCount === 1) details.append(...this.ordered(blocks, fragment, number));
     };
     if (open) build();
     details.addEventListener("toggle", build);
     return details;
+  }
+
+  // What a reader looks for comes first: combiners, texture units, tests and store. What carries there is one line until it is opened.
+  ordered(blocks, fragment, number) {
+    const rank = (name) => (/^general stage \d+$/.test(name) ? 3 : /^(general stage|final)/.test(name) ? 0 : /^texture (unit|shader)/.test(name) ? 1 : /^(rasteriser|interpolation|fog)/.test(name) ? 3 : 2);
+    const sorted = blocks.map((block, n) => [rank(block.name), n, block]).sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+    return sorted.map(([at, , block]) => {
+      const card = this.unit(block, fragment, number);
+      if (at !== 3) return card;
+      const yields = [...this.rows(block.steps)].filter(([row]) => /^(primary|secondary|fog|E0|E1|E2|W0|W1|W2|constant\d)$/.test(row)).map(([row, cells]) => `${row} ${cells.map(({ step }) => integer(step)).join(" ")}`);
+      return el("details", { className: "folded" }, el("summary", {}, el("b", {}, block.name), ` ${yields.join(", ")}`), card);
+    });
   }
 
   unit({ name, steps }, fragment, number) {
@@ -141,11 +171,20 @@ export class Chain {
   }
 
   wire(step, fragment, channel) {
-    const second = [step.per_one === 0 ? "" : hex(step), counts(step) || step.per_one === 0 ? "" : real(step.real, 4)].filter(Boolean).join(" ");
-    return el("button", { className: "wire", title: `${step.name}: ${written(step)}`, "data-fragment": fragment, "data-step": step.id },
-      channel ? el("i", {}, channel) : null, el("b", {}, integer(step)),
-      second ? el("small", {}, second) : null,
-      step.ideal === null || step.ideal === undefined ? null : el("small", { title: "ideal" }, `≈ ${real(step.ideal, 4)}`));
+    const more = [hex(step), counts(step) || step.per_one === 0 ? "" : real(step.real), step.ideal === null || step.ideal === undefined ? "" : `float64 ${real(step.ideal)}`].filter(Boolean).join(", ");
+    // The real number says something where the integer is none, and the ideal where it would be another integer.
+    const beside = step.per_one === 0 && !counts(step) ? real(step.real, 4) : differs(step) ? `float64 ${(step.ideal * step.per_one).toFixed(1)}` : "";
+    return el("button", { className: `wire ${channel.length === 1 ? channel : ""}`, title: `${step.name}: ${written(step)}\n${more}`, "data-fragment": fragment, "data-step": step.id },
+      channel ? el("i", {}, channel) : null, el("b", {}, integer(step)), beside ? el("small", {}, beside) : null);
+  }
+
+  // One for each channel, or one for R, G and B where they say the same.
+  wires(cells, fragment) {
+    const said = ({ step }) => `${integer(step)} ${differs(step) ? real(step.ideal) : ""}`;
+    const colors = cells.filter(({ channel }) => ["r", "g", "b"].includes(channel));
+    const equal = colors.length === 3 && new Set(colors.map(said)).size === 1;
+    const shown = equal ? [{ channel: "rgb", step: colors[0].step }, ...cells.filter((cell) => !colors.includes(cell))] : cells;
+    return el("div", { className: "wires" }, shown.map(({ channel, step }) => this.wire(step, fragment, channel)));
   }
 
   box(row, cells, fragment, extra) {
@@ -156,7 +195,7 @@ export class Chain {
     const rules = [...new Set(cells.map(({ step: each }) => each.rule).filter(Boolean))];
     // A single value stands beside its name.
     return el("div", { className: cells.length === 1 && !extra ? "box single" : "box" }, el("span", { className: "name" }, short(row)), el("span", { className: "how" }, how), rules.map((rule) => this.badge(rule)), extra ?? null,
-      el("div", { className: "wires" }, cells.map(({ channel, step: each }) => this.wire(each, fragment, channel))));
+      this.wires(cells, fragment));
   }
 
   // A general stage as the vendor draws it: inputs, products, sum, outputs.
@@ -211,6 +250,12 @@ export class Chain {
       columns.get(at).push(this.box(row, cells, fragment, name.startsWith("final") ? this.finalPick(row, draw) : null));
     }
     const sorted = [...columns].sort(([a], [b]) => a - b).map(([, boxes]) => el("div", { className: "stack" }, boxes));
+    // The inputs A to G stand in their order, whatever was computed first.
+    for (const stack of sorted) {
+      const letter = (box) => box.querySelector(".name").textContent;
+      const inputs = [...stack.children].filter((box) => /^[A-G]$/.test(letter(box))).sort((a, b) => letter(a).localeCompare(letter(b)));
+      stack.prepend(...inputs);
+    }
     const flow = el("div", { className: "flow" }, sorted);
     flow.style.gridTemplateColumns = `repeat(${Math.max(sorted.length, 2)}, minmax(0, 1fr))`;
     return name.startsWith("final") ? el("div", {}, this.finalSettings(draw), flow) : flow;

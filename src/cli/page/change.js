@@ -6,6 +6,9 @@ const bytes = (text) => {
   return match && match.slice(1).filter((part) => part !== undefined).map(Number);
 };
 
+// A scene may have more fields than somebody would read.
+const MOST_FOUND = 100;
+
 const FIRST = { color: "(255, 255, 255)", whole: "0", number: "0" };
 
 export class Change {
@@ -15,7 +18,32 @@ export class Change {
   }
 
   show(tree) {
-    $("change").replaceChildren(el("p", { className: "quiet" }, "Each field changes its place in the scene's text. The picture follows while you drag."), this.policies(), this.node(tree, "scene"));
+    const all = el("div", {}, this.policies(), this.node(tree, "scene"));
+    const found = el("div", { role: "status" });
+    const seek = () => {
+      this.sought = search.value;
+      all.hidden = search.value.trim() !== "";
+      found.replaceChildren(...(all.hidden ? this.search(tree, search.value.trim().toLowerCase()) : []));
+    };
+    const search = el("input", { type: "search", value: this.sought ?? "", placeholder: "Search: a field or a value", "aria-label": "Search the scene", oninput: seek });
+    $("change").replaceChildren(el("p", { className: "quiet" }, "Each field changes its place in the scene's text. The picture follows while you drag."), search, found, all);
+    seek();
+  }
+
+  // The fields whose path or value has all words, as fields with their path.
+  search(tree, text) {
+    const words = text.split(/\s+/);
+    const found = [];
+    const walk = (node, path) => {
+      const name = node.parts?.find((part) => part.label === "name" && part.text)?.text ?? "";
+      const here = [...path, `${node.label}${name ? ` ${name}` : ""}`];
+      if (node.parts) return node.parts.forEach((part) => walk(part, here));
+      const said = `${here.join(" ")} ${node.text ?? ""}`.toLowerCase();
+      if (words.every((word) => said.includes(word))) found.push([here, node]);
+    };
+    walk(tree, []);
+    const shown = found.slice(0, MOST_FOUND).map(([path, node]) => el("div", { className: "field" }, el("span", { className: "label" }, path.slice(1).join(" › ")), this.field(node)));
+    return [el("p", { className: "quiet" }, found.length > MOST_FOUND ? `${found.length} fields, of which these are the first` : `${found.length} field${found.length === 1 ? "" : "s"}`), ...shown];
   }
 
   // Opens the groups on the way to a part of the scene, and goes to the last of them that is there.

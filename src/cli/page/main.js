@@ -2,11 +2,24 @@
 import { Chain } from "./chain.js";
 import { Change } from "./change.js";
 import { $, base64Of, bytesOf, choice, colorField, el, swatch } from "./elements.js";
+import { Listing } from "./listing.js";
 import { Background, Model, serve } from "./model.js";
 import { View } from "./view.js";
 
-const encoded = (value) => base64Of(new TextEncoder().encode(JSON.stringify(value))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-const decoded = (text) => JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
+const addressOf = (bytes) => base64Of(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+const fromAddress = (text) => bytesOf(text.replaceAll("-", "+").replaceAll("_", "/"));
+const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+
+// A state as an address has it. A long one is compressed, and begins with a letter that no other does.
+const LONG_STATE = 2000;
+async function encoded(value) {
+  const bytes = new TextEncoder().encode(JSON.stringify(value));
+  return bytes.length < LONG_STATE ? addressOf(bytes) : `z${addressOf(await through(bytes, new CompressionStream("deflate-raw")))}`;
+}
+async function decoded(text) {
+  const bytes = text.startsWith("z") ? await through(fromAddress(text.slice(1)), new DecompressionStream("deflate-raw")) : fromAddress(text);
+  return JSON.parse(new TextDecoder().decode(bytes));
+}
 
 // Browsers open no address that is much longer.
 const LONGEST_ADDRESS = 1_000_000;
@@ -21,7 +34,10 @@ class Page {
     this.programs = new Map();
     for (const [name, bytes] of Object.entries(data.files)) model.file(name, bytesOf(bytes));
     this.wire();
-    this.apply(this.fromAddress());
+  }
+
+  async begin() {
+    this.apply(await this.fromAddress());
   }
 
   wire() {
@@ -32,6 +48,7 @@ class Page {
     on("reset", () => this.commit(this.data.text, { ...this.data.chosen }));
     on("save", () => this.save());
     on("link", () => this.link());
+    on("help", () => $("guide").showModal());
     on("in", () => this.view.scale(1.25, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
     on("out", () => this.view.scale(0.8, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
     on("fit", () => this.view.fit());
@@ -39,6 +56,7 @@ class Page {
     $("channels").addEventListener("change", (event) => { this.view.channels = event.target.value; this.redraw(); });
     $("against").addEventListener("change", (event) => { this.against = event.target.value; this.redraw(); });
     document.addEventListener("keydown", (event) => {
+      if (event.key === "?" && !event.target.matches("textarea, input") && !document.querySelector("dialog[open]")) $("guide").showModal();
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.matches("textarea, input")) return;
       event.preventDefault();
       (event.shiftKey ? $("redo") : $("undo")).click();
@@ -60,7 +78,7 @@ class Page {
       const file = event.dataTransfer.files[0];
       if (file) this.dropped(file.name, new Uint8Array(await file.arrayBuffer()));
     });
-    window.addEventListener("hashchange", () => { if (location.hash.slice(1) !== this.address) this.apply(this.fromAddress()); });
+    window.addEventListener("hashchange", async () => { if (location.hash.slice(1) !== this.address) this.apply(await this.fromAddress()); });
   }
 
   say(text) {
@@ -97,6 +115,7 @@ class Page {
     const findings = answer.findings.map((finding) => el("div", { className: `finding ${finding.severity}`, tabindex: 0, onclick: () => this.mark(finding) }, finding.rendered.trimEnd()));
     if (answer.suppressed) findings.push(el("p", {}, `and ${answer.suppressed} more`));
     $("findings").replaceChildren(...findings);
+    this.findings = answer.findings;
     if (!answer.scene) return false;
     this.scene = answer.scene;
     this.programs.clear();
@@ -146,12 +165,15 @@ class Page {
     this.follow(() => this.spliced(span, value));
   }
 
-  follow(text) {
+  follow(text, then = () => {}) {
     cancelAnimationFrame(this.pending);
     this.pending = requestAnimationFrame(() => {
       const started = performance.now();
       const changed = text();
-      if (changed !== null && this.open(changed)) this.redraw(true);
+      if (changed !== null) {
+        if (this.open(changed)) this.redraw(true);
+        then(changed);
+      }
       this.times.drag = performance.now() - started;
     });
   }
@@ -191,7 +213,7 @@ class Page {
 
   // --- the address: pixel, target, policies, and where the text differs from the one that was opened
 
-  toAddress() {
+  async toAddress() {
     const [was, is] = [this.data.text, this.text];
     let start = 0;
     while (start < Math.min(was.length, is.length) && was[start] === is[start]) start++;
@@ -204,18 +226,21 @@ class Page {
     if (was !== is) state.e = [start, was.length - end, is.slice(start, is.length - end)];
     const policies = Object.fromEntries(Object.entries(this.policies).filter(([rule, value]) => this.data.chosen[rule] !== value));
     if (Object.keys(policies).length) state.v = policies;
-    const address = Object.keys(state).length ? encoded(state) : "";
+    const turn = (this.turn = (this.turn ?? 0) + 1);
+    const address = Object.keys(state).length ? await encoded(state) : "";
+    // What was asked for since is later.
+    if (turn !== this.turn) return;
     this.linked = address.length <= LONGEST_ADDRESS;
     this.address = this.linked ? address : "";
     history.replaceState(null, "", `#${this.address}`);
   }
 
   // Takes what the address holds. Returns what is to be said of it.
-  fromAddress() {
+  async fromAddress() {
     this.address = location.hash.slice(1);
     if (!this.address || this.address === "pixel") return "";
     try {
-      const { p, t = 0, u = null, e, v = {} } = decoded(this.address);
+      const { p, t = 0, u = null, e, v = {} } = await decoded(this.address);
       const whole = (value) => Number.isInteger(value) && value >= 0;
       if (Array.isArray(p) && p.length === 2 && p.every(whole)) this.at = p;
       this.target = whole(t) ? t : 0;
@@ -229,7 +254,7 @@ class Page {
   }
 
   async link() {
-    this.toAddress();
+    await this.toAddress();
     if (!this.linked) return this.say("The changes are too long for a link. Save RON keeps them.");
     try {
       await navigator.clipboard.writeText(location.href);
@@ -259,7 +284,25 @@ class Page {
     this.redraw();
     const { width, height } = targets[this.target];
     if (this.at && (this.at[0] >= width || this.at[1] >= height)) this.at = null;
-    this.choose(this.at ?? [Math.floor(width / 2), Math.floor(height / 2)], true);
+    this.choose(this.at ?? this.middle(width, height));
+  }
+
+  // The pixel nearest to the middle, on its row or column, that is not of one colour with the corner, a light one if there is any: most likely something is drawn there.
+  middle(width, height) {
+    const [x, y] = [Math.floor(width / 2), Math.floor(height / 2)];
+    const corner = this.bytesAt([0, 0]).join();
+    const drawn = (pixel) => this.bytesAt(pixel).join() !== corner;
+    const light = (pixel) => Math.max(...this.bytesAt(pixel).slice(0, 3)) >= 96;
+    let dark = null;
+    for (let far = 0; far < Math.max(x, y); far++) {
+      for (const pixel of [[x - far, y], [x + far, y], [x, y - far], [x, y + far]]) {
+        if (pixel[0] >= 0 && pixel[0] < width && pixel[1] >= 0 && pixel[1] < height && drawn(pixel)) {
+          if (light(pixel)) return pixel;
+          dark ??= pixel;
+        }
+      }
+    }
+    return dark ?? [x, y];
   }
 
   redraw(dragging = false) {
@@ -369,7 +412,7 @@ class Page {
         this.times.chain = performance.now() - started;
       },
       rules: () => this.sides(this.model.ask({ do: "alternatives", target, until, pixel }).rules),
-      change: () => this.sound ? this.change.show(this.model.ask({ do: "outline" }).tree) : $("change").replaceChildren(el("p", {}, "The text has errors: mend it under Text, or undo.")),
+      change: () => this.sound ? this.change.show(this.model.ask({ do: "outline" }).tree) : $("change").replaceChildren(el("p", {}, "The text has errors: mend it under Scene text, or undo.")),
       program: () => this.programPanel(),
       text: () => this.textPanel(),
     };
@@ -406,13 +449,43 @@ class Page {
     const languages = { RegisterWords: "register words", CombinerText: "combiner language", CombinerCalls: "calls of OpenGL", scene: "as a scene writes it" };
     const paste = () => { const answer = this.tried(() => this.model.ask({ do: "paste", draw, language, program: area.value })); if (answer) this.commit(answer.text); };
     const words = program.words.map((word) => el("tr", {}, el("td", {}, word.method), el("td", {}, word.name), el("td", {}, word.value), el("td", {}, word.meaning)));
-    const origin = program.origin.length ? [el("p", { className: "quiet" }, "The program was written for an API. A change of its combiners writes it anew in the combiner language; Text has it as it was written.")] : [];
+    const origin = program.origin.length ? [el("p", { className: "quiet" }, "The program was written for an API. A change of its combiners writes it anew in the combiner language; Scene text has it as it was written.")] : [];
     $("program").replaceChildren(
       el("div", { className: "bar" }, el("label", {}, "Draw ", choice(draws.map((each) => `${each.number} ${each.name}`), `${draw} ${draws[draw].name}`, "Draw", (value) => { this.programOf = parseInt(value, 10); this.programPanel(); }))),
-      ...origin, el("h2", {}, "In the combiner language"), el("pre", { tabindex: 0 }, program.text), ...constants,
+      ...origin, el("h2", {}, "In the combiner language"), el("p", { className: "quiet" }, `Beside each line stands what it yields at pixel ${this.at.join(", ")}. The picture follows while you type.`), this.listing(draw, program.text), ...constants,
       el("h2", {}, "As register words"), el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "register words" }, el("table", {}, el("thead", {}, el("tr", {}, ["method", "register", "value", "meaning"].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, words))),
       el("h2", {}, "Paste a program"), area,
       el("div", { className: "bar" }, el("select", { "aria-label": "Language", onchange: (event) => (language = event.target.value) }, Object.entries(languages).map(([value, name]) => el("option", { value }, name))), el("button", { onclick: paste }, "Use it")));
+  }
+
+  // The last fragment of a draw at the pixel.
+  fragmentOf(draw) {
+    const { target, until, at: pixel } = this;
+    return this.tried(() => this.model.ask({ do: "trace", target, until, pixel }).trace.draws.findLast((each) => each.draw === draw));
+  }
+
+  // A program as text, with the values of the pixel.
+  listing(draw, text) {
+    const pasted = (program) => this.tried(() => this.model.ask({ do: "paste", draw, language: "CombinerText", program }));
+    const changed = (program, then) => {
+      this.follow(() => {
+        // A text that could not be read stands in the model: the page's own is the one that is changed.
+        this.open(this.text);
+        return pasted(program)?.text ?? null;
+      }, (whole) => {
+        // The program stands on lines of its own in the scene's text.
+        const first = whole.slice(0, Math.max(0, whole.indexOf(program))).split("\n").length;
+        const findings = this.findings.filter(({ severity }) => severity === "error").map(({ line, message }) => ({ line: line - first, message }));
+        then(findings.length ? null : this.fragmentOf(draw), findings);
+      });
+    };
+    const commit = (program) => {
+      cancelAnimationFrame(this.pending);
+      this.open(this.text);
+      const answer = pasted(program);
+      if (answer) this.commit(answer.text);
+    };
+    return new Listing({ text, label: "The program in the combiner language", fragment: this.fragmentOf(draw), changed, commit, reveal: (block) => { this.tab("chain"); this.chain.reveal(block); } }).element;
   }
 
   textPanel() {
@@ -451,11 +524,13 @@ class Page {
 async function openPage(script) {
   const started = performance.now();
   try {
-    const data = JSON.parse($("data").textContent);
+    const data = { ...JSON.parse($("common").textContent), ...JSON.parse($("data").textContent) };
     const view = new View(() => {}, () => {});
     const preview = view.preview(data.picture);
     const model = await Model.load(bytesOf($("module").textContent.trim()));
-    window.inspector = new Page(data, model, new Background(script), view);
+    const page = new Page(data, model, new Background(script), view);
+    await page.begin();
+    window.inspector = page;
     window.inspector.times.preview = await preview;
     window.inspector.times.first = performance.now() - started;
     window.inspector.times.opened = performance.now();
