@@ -84,7 +84,8 @@ static void print_number(const char *before, float number)
 static void print_mesh(void)
 {
     int per_layer = COLUMNS * ROWS, layers = (CELLS + per_layer - 1) / per_layer;
-    printf("// W6: W1 on 10,000 triangles of 50 pixels, in perspective. Written by benches/peers/llvmpipe.c.\n"
+    printf("// DOT3 on ten thousand small triangles: This benchmark (W6) takes the dot product of W1 on 10,000 triangles of 50 pixels, in perspective.\n"
+           "// Written by benches/peers/llvmpipe.c.\n"
            "(\n    version: 1,\n    profile: Nv2a,\n    targets: [(name: \"frame\", width: %d, height: %d)],\n"
            "    textures: {\n        \"normals\": (source: File(\"normal.png\")),\n    },\n    draws: [\n    (\n"
            "        name: \"mesh\",\n        vertices: Window([\n", WIDTH, HEIGHT);

@@ -152,8 +152,9 @@ pub fn lod_bias() -> String {
         square_of_levels(&format!("bias {bias}"), from, 64.0, &format!(", lod_bias: {bias}"))
     });
     level_scene(
-        "A texture of eight levels at one eighth of its size, under fifteen biases of the lod: which level, which two, and how\n\
-         they mix (TEX-9, TEX-6).",
+        "Mipmaps under fifteen LOD biases: This scene repeats part of a frame captured from an Xbox, a texture of eight\n\
+         levels at one eighth of its size, under fifteen biases of the lod. It shows which level is read, or which two, and\n\
+         how they mix (TEX-9, TEX-6).",
         draws.collect(),
     )
 }
@@ -165,7 +166,8 @@ pub fn nested_levels() -> String {
         square_of_levels(&format!("level {n}"), [160.0 - side, 272.0 - side / 2.0], side, "")
     });
     level_scene(
-        "A texture of eight levels at its own size and at every half of it down to 1/128 (TEX-9, TEX-11).",
+        "Mipmaps at eight sizes: This scene repeats part of a frame captured from an Xbox, a texture of eight levels at its\n\
+         own size and at every half of it down to 1/128 (TEX-9, TEX-11).",
         draws.collect(),
     )
 }
@@ -202,7 +204,8 @@ pub fn border() -> String {
             .line(&format!("textures: [(texture: \"stripes\", address: {mode}, min_filter: Nearest)],"))
     });
     let sheet = Sheet {
-        comment: "Address modes: nine quads each, which together show a texture from -1 to 2 along both sides (TEX-7).",
+        comment: "Five texture address modes: This scene repeats part of a frame captured from an Xbox, five address modes of nine\n\
+                  quads each, which together show a texture from -1 to 2 along both sides (TEX-7).",
         shown: 0,
         opaque: false,
         clear: GREY,
@@ -218,7 +221,8 @@ pub fn border_texels() -> String {
     let draw = Draw::new("border texels", &nine_quads(4, [-0.125, 0.0, 1.0, 1.125]))
         .line("textures: [(texture: \"stripes\", address: ClampToBorder, min_filter: Nearest)],");
     let sheet = Sheet {
-        comment: "A texture with border texels: nine quads, the outer ones four texels wide (TEX-7).",
+        comment: "Texture with border texels: This scene repeats part of a frame captured from an Xbox, a texture with border texels\n\
+                  on nine quads, the outer ones four texels wide (TEX-7).",
         shown: 0,
         opaque: false,
         clear: GREY,
@@ -270,7 +274,8 @@ pub fn cube_map() -> String {
     let texture = format!("\"checkers\": (kind: Cube, source: Faces(\n{faces})),");
     let line = "textures: [(texture: \"checkers\", min_filter: Nearest)],";
     let sheet = Sheet {
-        comment: "Two cubes under a cube map that is looked up with their corners. q is 0, which nobody asks for (TEX-12).",
+        comment: "Two cubes under a cube map: This scene repeats a frame captured from an Xbox, two cubes under a cube map that is\n\
+                  looked up with their corners. q is 0, and the lookup does not read it (TEX-12).",
         shown: 0,
         opaque: false,
         clear: "(0x12, 0x12, 0x12, 0xfe)",
@@ -308,7 +313,8 @@ pub fn dot_cube() -> String {
                 DotProduct, mapping: MinusOneToOneGl),\n                (operation: DotProduct, previous: 0, mapping: \
                 MinusOneToOneGl),\n                (operation: DotProductCube, previous: 0, mapping: MinusOneToOneGl),\n            ],";
     let sheet = Sheet {
-        comment: "Three dot products of a normal map with a matrix give the direction in which a cube map is looked up (TSH-2, TSH-4).\n\
+        comment: "Cube map by three dot products: This scene repeats a frame captured from an Xbox, in which three dot products of a\n\
+                  normal map with a matrix give the direction that looks up a cube map (TSH-2, TSH-4).\n\
                   \n\
                   The normal map is not part of the repository: see README.md.",
         shown: 3,
@@ -344,7 +350,8 @@ pub fn dot_2d() -> String {
         )
         .line("texture_shader: [Sample, DotProduct, (operation: DotProduct2D, previous: 0)],");
     let sheet = Sheet {
-        comment: "Two dot products of a normal map with interpolated vectors are the coordinates of a texture (TSH-1, TSH-4).\n\
+        comment: "Texture lookup by two dot products: This scene repeats a frame captured from an Xbox, in which two dot products of\n\
+                  a normal map with interpolated vectors are the coordinates of a texture (TSH-1, TSH-4).\n\
                   \n\
                   The images are not part of the repository: see README.md.",
         shown: 2,
@@ -385,7 +392,8 @@ pub fn bump_matrices() -> String {
             .line(&format!("texture_shader: [Sample, BumpEnvironment(matrix: {matrix})],"))
     });
     let sheet = Sheet {
-        comment: "A texture whose coordinates blue and green of another move, by eight matrices (TSH-7). Both are rectangles: what is added \
+        comment: "Eight bump environment matrices: This scene repeats part of a frame captured from an Xbox, a texture whose\n\
+                  coordinates are moved by blue and green of another, by eight matrices (TSH-7). Both are rectangles: what is added\n\
                   is texels.\n\
                   \n\
                   The images are not part of the repository: see README.md.",
@@ -417,8 +425,9 @@ pub fn bump_signs() -> String {
             .line("texture_shader: [Sample, BumpEnvironment(matrix: (0, -0.1, 0.3, 0))],")
     });
     let sheet = Sheet {
-        comment: "A bump map of two channels with a step across one half, filtered (TEX-6): as unsigned bytes the step is small, as two's\n\
-                  complement it runs from the largest number to the smallest (TEX-18). What moves the squares is signed either way (TSH-7).",
+        comment: "Signed and unsigned bump maps: This scene repeats a frame captured from an Xbox, a bump map of two channels with a\n\
+                  step across one half, filtered (TEX-6). As unsigned bytes the step is small; as two's complement it runs from the\n\
+                  largest number to the smallest (TEX-18). What moves the squares is signed either way (TSH-7).",
         shown: 1,
         opaque: false,
         clear: GREY,
