@@ -1,6 +1,6 @@
 //! The command `ninebit gallery`: a site of scenes, each of which opens in the inspector.
 
-use super::inspect::{Picture, common, first_picture, scene_data};
+use super::inspect::{Heading, Picture, common, first_picture, scene_data};
 use super::scene::isolated;
 use super::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -123,7 +123,7 @@ fn exhibit(path: &Path, name: &str, site: &Path, work: WorkArguments) -> Result<
         first_picture(&loaded.plan).ok_or_else(|| Failure::usage("the scene has no target", "give it one"))?;
     let file = name.replace('/', "-");
     let (folder, own) = name.rsplit_once('/').unwrap_or(("", name));
-    let (title, about) = heading(&loaded.source.text, own);
+    let Heading { title, about } = Heading::new(&loaded.source.text, own);
     let (tags, size) = (tags(&loaded.scene), (picture.0, picture.1));
     let thumbnail = thumbnail(&picture);
     let png = encode_png(thumbnail.0, thumbnail.1, &thumbnail.2, Compression::Small)?;
@@ -133,31 +133,6 @@ fn exhibit(path: &Path, name: &str, site: &Path, work: WorkArguments) -> Result<
     let text = page::page_beside(&title, &data, &format!("../{SHARED}"));
     write_below(&site.join("scenes").join(format!("{file}.html")), text.as_bytes())?;
     Ok(Exhibit { folder: folder.to_owned(), file, title, about, tags, size })
-}
-
-/// Returns title and text of a scene from the comment at its head: `// Title: text`, or a text alone, whose scene is called by its file.
-fn heading(text: &str, file: &str) -> (String, String) {
-    let lines = text.lines().map_while(|line| line.trim_start().strip_prefix("//"));
-    let comment = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-    let called = || {
-        let mut words = file.replace(['-', '_'], " ");
-        if let Some(first) = words.get_mut(..1) {
-            first.make_ascii_uppercase();
-        }
-        words
-    };
-    match comment.split_once(": ") {
-        // A colon later on is one of a sentence.
-        Some((title, rest)) if !title.contains(['.', ',', ';', '(']) && title.len() <= 60 => {
-            (title.to_owned(), capital(rest))
-        }
-        _ => (called(), comment),
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Returns the units of the chip and the techniques that a scene uses, as filters name them.
@@ -296,17 +271,6 @@ fn index(title: &str, exhibits: &[Exhibit]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn headings() {
-        let said = |text: &str| heading(text, "lit-stone");
-        assert_eq!(said("// A ring: it is lit.\n// Twice.\n("), ("A ring".into(), "It is lit. Twice.".into()));
-        assert_eq!(
-            said("// It is lit, as follows: twice.\n("),
-            ("Lit stone".into(), "It is lit, as follows: twice.".into())
-        );
-        assert_eq!(said("("), ("Lit stone".into(), String::new()));
-    }
 
     #[test]
     fn folders_around() {

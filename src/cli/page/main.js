@@ -41,7 +41,7 @@ class Page {
   }
 
   wire() {
-    $("scene-name").textContent = this.data.name;
+    $("scene-name").textContent = this.data.title ? `${this.data.title} (${this.data.name})` : this.data.name;
     const on = (id, act) => $(id).addEventListener("click", act);
     on("undo", () => this.step(this.past, this.future));
     on("redo", () => this.step(this.future, this.past));
