@@ -28,7 +28,7 @@ use crate::{Refused, frame, program, shader, tree};
 /// | `draw` | `target` | `width`, `height`, `digest`, and the picture |
 /// | `depth` | `target` | `width`, `height`, the `low`est and `high`est depth, and as picture the words: 24 bits of depth, the lowest byte first, and the stencil |
 /// | `heat` | `target`, `against`: `ideal`, `picture`, or an object as `values` | `differing`, `regions`, and the picture |
-/// | `picture` | `name`; the file's bytes, PNG or TGA | `width`, `height`; `heat` compares with it |
+/// | `picture` | `name`; the file's bytes, PNG or TGA, or `width`, `height` and R, G, B, A of each pixel | `width`, `height`, and the picture; `heat` compares with it |
 /// | `trace` | `target`, `pixel` | `trace`: the document of docs/trace-format.md |
 /// | `planes` | `target`, `names`, `rectangle` (first column and row, columns, rows) | `width`, `height`, `planes`: of each step `name`, `step`, `kind` (`int32` or `uint32`) and `per_one`; and as picture their values, plane after plane, each the four bytes of a little-endian word |
 /// | `plane_names` | `target` | `names` of values, each with its block |
@@ -86,9 +86,13 @@ impl Session {
                 Ok(json!({}))
             }
             "picture" => {
-                let read = decode(&file, Path::new(text("name")?), &ImageLimits::default());
-                let picture = read.map_err(|error| format!("{}: {error}; {}", error.code(), error.help()))?;
+                let picture = match (number("width"), number("height")) {
+                    (Ok(width), Ok(height)) => raw(&file, width, height)?,
+                    _ => decode(&file, Path::new(text("name")?), &ImageLimits::default())
+                        .map_err(|error| format!("{}: {error}; {}", error.code(), error.help()))?,
+                };
                 let size = json!({ "width": picture.width(), "height": picture.height() });
+                self.picture = picture.pixels().to_vec();
                 self.second = Some(picture);
                 Ok(size)
             }
@@ -278,6 +282,14 @@ fn planes(plan: &Plan, target: usize, request: &Value) -> Result<(Value, Vec<[u8
         }
     }
     Ok((json!({ "width": found.rectangle.width, "height": found.rectangle.height, "planes": described }), words))
+}
+
+/// Returns the picture of R, G, B, A, row by row from the top.
+fn raw(bytes: &[u8], width: usize, height: usize) -> Result<Rgba, Refused> {
+    let (pixels, rest) = bytes.as_chunks();
+    let fits = width > 0 && height > 0 && width.checked_mul(height) == Some(pixels.len()) && rest.is_empty();
+    let columns = u32::try_from(width).ok().filter(|_| fits).ok_or("the bytes are not width times height pixels")?;
+    Ok(Rgba::new(columns, pixels.to_vec()))
 }
 
 fn drawn(scene: &Scene, number: usize) -> Result<&Draw, Refused> {

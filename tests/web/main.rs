@@ -273,6 +273,7 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"edit","draw":0,"path":["stages",0,"rgb","inputs",9,"mapping"],"value":"Zero"}"#,
         r#"{"do":"edit","draw":0,"path":["constants",0],"value":[1,2,300,4]}"#,
         r#"{"do":"paste","draw":0,"language":"Fortran","program":""}"#,
+        r#"{"do":"picture","name":"","width":3,"height":2}"#,
     ] {
         assert!(ask(request)["error"].is_string(), "{request}");
     }

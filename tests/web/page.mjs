@@ -151,6 +151,7 @@ async function tests() {
   assert.ok((await text("rules")).includes("CMB-3"));
   await browser.value(`inspector.choose(${JSON.stringify(expected.pixel)})`);
   assert.equal(await browser.value('document.querySelector("#rules p").textContent'), expected.undecided);
+  await browser.until(`document.querySelectorAll("#rules canvas.small").length > 0 && [...document.querySelectorAll("#rules canvas.small")].every((canvas) => canvas.width > 0)`);
   await browser.value('inspector.policy("CMB-3", "literal")');
   assert.equal(await digest(), expected.literal);
   await browser.value('document.getElementById("undo").click()');
@@ -171,6 +172,28 @@ async function tests() {
   await compare("CMB-3=literal");
   await pause(300);
   assert.equal(await text("regions-sum"), expected.against_literal);
+  // Both pictures: beside each other, in turn, parted.
+  const shownAs = (way) => browser.value(`(() => { const select = document.getElementById("way"); select.value = "${way}"; select.dispatchEvent(new Event("change"));
+    const v = inspector.view, at = (sheet) => [...sheet.getContext("2d").getImageData(${expected.pixel[0]}, ${expected.pixel[1]}, 1, 1).data].slice(0, 3).join(", "); return [v.way, at(v.sheet), v.other ? at(v.other) : null]; })()`);
+  const pixelUnder = await browser.value(`inspector.bytesAt(${JSON.stringify(expected.pixel)}, inspector.elsewhere({ policies: inspector.under("CMB-3=literal") })).slice(0, 3).join(", ")`);
+  const own = expected.shown.split(", ").slice(0, 3).join(", ");
+  assert.notEqual(pixelUnder, own);
+  for (const way of ["side by side", "blink", "swipe"]) assert.deepEqual(await shownAs(way), [way, own, pixelUnder]);
+  assert.equal((await shownAs("difference"))[2], null);
+  assert.equal(await digest(), expected.digest);
+  // The state before, and another scene.
+  await set("Mapping of stage 0 rgb", "UnsignedIdentity");
+  await compare("before");
+  const changedPixels = await text("regions-sum");
+  assert.ok(/^[1-9]\d* pixels differ/.test(changedPixels), changedPixels);
+  assert.equal((await shownAs("swipe"))[2], own);
+  await browser.value('document.getElementById("undo").click()');
+  await browser.value(`inspector.dropped("other.ron", new TextEncoder().encode(${JSON.stringify(expected.text)}))`);
+  assert.equal(await text("regions-sum"), changedPixels);
+  assert.equal(await digest(), expected.digest);
+  await browser.value(`inspector.dropped("broken.ron", new TextEncoder().encode("(version: 1, profil: Nv2a)"))`);
+  assert.ok((await text("message")).startsWith("broken.ron cannot be drawn"), await text("message"));
+  assert.equal(await digest(), expected.digest);
   await compare("");
   assert.equal(await text("regions-sum"), "", "what was compared before is still there to be read");
 

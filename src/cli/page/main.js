@@ -4,7 +4,7 @@ import { Change } from "./change.js";
 import { $, base64Of, bytesOf, choice, colorField, el, swatch } from "./elements.js";
 import { Listing } from "./listing.js";
 import { Background, Model, serve } from "./model.js";
-import { View } from "./view.js";
+import { View, sheetOf } from "./view.js";
 
 const addressOf = (bytes) => base64Of(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 const fromAddress = (text) => bytesOf(text.replaceAll("-", "+").replaceAll("_", "/"));
@@ -55,6 +55,7 @@ class Page {
     $("target").addEventListener("change", (event) => { this.target = +event.target.value; this.until = null; this.at = null; this.refresh(); });
     $("channels").addEventListener("change", (event) => { this.view.channels = event.target.value; this.redraw(); });
     $("against").addEventListener("change", (event) => { this.against = event.target.value; this.redraw(); });
+    $("way").addEventListener("change", (event) => { this.way = event.target.value; this.redraw(); this.view.fit(); });
     document.addEventListener("keydown", (event) => {
       if (event.key === "?" && !event.target.matches("textarea, input") && !document.querySelector("dialog[open]")) $("guide").showModal();
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.matches("textarea, input")) return;
@@ -273,7 +274,7 @@ class Page {
     const shown = ["colour", "R", "G", "B", "A", ...(targets[this.target].depth ? ["depth", "stencil"] : [])];
     if (!shown.includes(this.view.channels)) this.view.channels = "colour";
     $("channels").replaceChildren(...shown.map((name) => el("option", { selected: name === this.view.channels }, name)));
-    const options = [["", "nothing"], ["ideal", "float64"], ...(this.second ? [["picture", this.second]] : []), ...alternatives];
+    const options = [["", "nothing"], ["ideal", "float64"], ...(this.past.length ? [["before", "the state before"]] : []), ...(this.second ? [["picture", this.second]] : []), ...alternatives];
     if (!options.some(([value]) => value === this.against)) this.against = "";
     $("against").replaceChildren(...options.map(([value, name]) => el("option", { value, selected: value === this.against }, name)));
     if (this.until !== null && this.until >= draws.length - 1) this.until = null;
@@ -315,14 +316,61 @@ class Page {
     const memory = ["depth", "stencil"].includes(this.view.channels);
     this.depth = memory ? this.tried(() => this.model.picture({ do: "depth", target, until })) : null;
     $("against").disabled = memory;
-    const request = { do: "heat", target, until, against: against.includes("=") ? { ...this.policies, [against.split("=")[0]]: against.split("=")[1] } : against };
-    const heat = against && against !== "ideal" && !memory ? this.tried(() => this.model.picture(request)) : null;
+    const asked = against && !memory;
+    if (asked && against === "before") this.tried(() => this.take(this.before()));
+    const other = { before: "picture" }[against] ?? against;
+    const request = { do: "heat", target, until, against: against.includes("=") ? this.under(against) : other };
+    const heat = asked && against !== "ideal" ? this.tried(() => this.model.picture(request)) : null;
+    // Of float64 there is the difference alone.
+    const ways = heat ? ["difference", "side by side", "blink", "swipe"] : [];
+    if (!ways.includes(this.way)) this.way = "difference";
+    $("way-part").hidden = !heat;
+    $("way").replaceChildren(...ways.map((way) => el("option", { selected: way === this.way }, way)));
+    const beside = heat && this.way !== "difference" ? this.tried(() => this.otherPicture(against)) : null;
     this.differences(heat);
-    this.view.show(heat ?? this.depth ?? picture);
+    this.view.beside(beside, this.way);
+    this.view.show((beside ? null : heat) ?? this.depth ?? picture);
     if (against === "ideal" && !memory && !dragging) this.later(request);
     if (this.depth) $("legend").replaceChildren(this.view.channels === "depth" ? `depths ${this.depth.low} (black) to ${this.depth.high} (white)` : "stencils 0 (black) to 255 (white)");
     this.times.redraw = performance.now() - started;
     this.times.digest = picture.digest;
+  }
+
+  under(policy) {
+    const [rule, value] = policy.split("=");
+    return { ...this.policies, [rule]: value };
+  }
+
+  // Draws another scene, or this one under other policies, and brings back what stands.
+  elsewhere({ policies = this.policies, text = null, name = this.data.name }) {
+    const { target, until } = this;
+    try {
+      this.model.ask({ do: "policies", values: policies });
+      if (text !== null) {
+        const { scene, findings } = this.model.ask({ do: "open", text, name });
+        if (!scene) throw new Error(`${name} cannot be drawn: ${findings[0].message}`);
+      }
+      return this.model.picture({ do: "draw", target, until });
+    } finally {
+      this.model.ask({ do: "policies", values: this.policies });
+      if (text !== null) this.model.ask({ do: "open", text: this.text, name: this.data.name });
+    }
+  }
+
+  before() {
+    const { text, policies } = this.past.at(-1) ?? this;
+    return this.elsewhere({ policies, text });
+  }
+
+  // The picture that is compared with.
+  otherPicture(against) {
+    if (against.includes("=")) return this.elsewhere({ policies: this.under(against) });
+    return against === "before" ? this.before() : this.taken;
+  }
+
+  // Makes a picture the one that is compared with.
+  take({ width, height, pixels }, name = "") {
+    this.model.ask({ do: "picture", name, width, height }, new Uint8Array(pixels.buffer, pixels.byteOffset, pixels.byteLength));
   }
 
   // A comparison that takes seconds. Until it is there the picture stands for itself.
@@ -354,8 +402,15 @@ class Page {
     $("regions").replaceChildren(...heat.regions.map(item));
   }
 
+  // A picture, or another scene with the same files.
   dropped(name, bytes) {
-    const picture = this.tried(() => this.model.ask({ do: "picture", name }, bytes));
+    const scene = () => {
+      const drawn = this.elsewhere({ text: new TextDecoder().decode(bytes), name });
+      this.take(drawn, name);
+      return drawn;
+    };
+    const picture = this.tried(() => name.endsWith(".ron") ? scene() : this.model.picture({ do: "picture", name }, bytes));
+    if (picture) this.taken = picture;
     if (!picture) return;
     this.second = name;
     this.against = "picture";
@@ -429,11 +484,29 @@ class Page {
       const chosen = values.find((value) => value.chosen);
       return values.map((value, n) => el("tr", { className: `${value.chosen ? "chosen" : ""} ${value.word !== chosen.word ? "differs" : ""}` },
         el("td", {}, value.value), el("td", {}, n === 0 ? [this.chain.badge(rule), " ", question] : ""), el("td", {}, value.meaning), el("td", {}, swatch(value.shown), el("code", {}, value.shown.join(", "))),
+        el("td", {}, el("canvas", { className: "small", width: 0, height: 0, "data-policy": `${rule}=${value.value}`, role: "img", "aria-label": `the picture under ${rule}=${value.value}` })),
         el("td", {}, value.chosen ? "" : el("button", { onclick: () => this.policy(rule, value.value) }, "Choose"))));
     });
+    this.smallPictures();
     const differing = new Set(rules.filter(({ values }) => values.some((value) => value.word !== values.find((each) => each.chosen).word)).map(({ rule }) => rule));
     $("rules").replaceChildren(el("p", {}, differing.size ? this.data.undecided.some.replace("{}", [...differing].join(", ")) : this.data.undecided.none),
-      el("table", {}, el("thead", {}, el("tr", {}, ["value", "rule", "meaning", "pixel", ""].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, rows)));
+      el("table", {}, el("thead", {}, el("tr", {}, ["value", "rule", "meaning", "pixel", "picture", ""].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, rows)));
+  }
+
+  // The pictures under each value of each rule, one after the other, as long as they are looked at.
+  smallPictures() {
+    const turn = (this.small = (this.small ?? 0) + 1);
+    const next = () => {
+      const canvas = turn === this.small && this.shown === "rules" ? document.querySelector("#rules canvas.small[width='0']") : null;
+      if (!canvas) return;
+      const { width, height, pixels } = this.elsewhere({ policies: this.under(canvas.dataset.policy) });
+      const sheet = sheetOf({ width, height, pixels });
+      const scale = 64 / Math.max(width, height);
+      [canvas.width, canvas.height] = [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
+      canvas.getContext("2d").drawImage(sheet, 0, 0, canvas.width, canvas.height);
+      setTimeout(next, 10);
+    };
+    setTimeout(next, 50);
   }
 
   programPanel() {

@@ -59,8 +59,8 @@ export class Model {
   }
 
   // An answer with its picture, R, G, B, A.
-  picture(request) {
-    const answer = this.ask(request);
+  picture(request, file) {
+    const answer = this.ask(request, file);
     const view = new Uint8ClampedArray(this.exports.memory.buffer, this.exports.ninebit_picture(), answer.width * answer.height * 4);
     return { ...answer, pixels: new Uint8ClampedArray(view) };
   }

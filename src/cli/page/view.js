@@ -1,10 +1,23 @@
 // The picture: zoom, pan, cross hair.
 import { $ } from "./elements.js";
 
+// Pixels between two pictures.
+const GAP = 8;
+
+export function sheetOf({ width, height, pixels }) {
+  const sheet = document.createElement("canvas");
+  [sheet.width, sheet.height] = [width, height];
+  const image = new ImageData(new Uint8ClampedArray(pixels), width, height);
+  for (let at = 3; at < image.data.length; at += 4) image.data[at] = 255;
+  sheet.getContext("2d").putImageData(image, 0, 0);
+  return sheet;
+}
+
 export class View {
   constructor(choose, hover) {
-    Object.assign(this, { canvas: $("view"), choose, hover, zoom: 1, left: 0, top: 0, at: null, picture: null, channels: "colour" });
+    Object.assign(this, { canvas: $("view"), choose, hover, zoom: 1, left: 0, top: 0, at: null, picture: null, channels: "colour", way: "", part: 0.5 });
     this.sheet = document.createElement("canvas");
+    this.other = null;
     const canvas = this.canvas;
     new ResizeObserver(() => this.size()).observe(canvas);
     canvas.addEventListener("wheel", (event) => {
@@ -24,6 +37,10 @@ export class View {
           [this.left, this.top] = [held.left + dx, held.top + dy];
           this.paint();
         }
+      }
+      if (this.way === "swipe" && !held) {
+        this.part = event.offsetX / this.canvas.clientWidth;
+        this.paint();
       }
       this.hover(this.pixelAt(event.offsetX, event.offsetY));
     });
@@ -77,6 +94,20 @@ export class View {
     return performance.now();
   }
 
+  // A second picture, and the way in which both are shown: beside each other, in turn, or parted where the pointer is.
+  beside(picture, way) {
+    clearInterval(this.turns);
+    this.way = picture ? way : "";
+    this.other = picture ? sheetOf(picture) : null;
+    this.second = false;
+    if (this.way === "blink") {
+      this.turns = setInterval(() => {
+        this.second = !this.second;
+        this.paint();
+      }, 500);
+    }
+  }
+
   show(picture) {
     const other = !this.picture || this.picture.width !== picture.width || this.picture.height !== picture.height;
     this.picture = picture;
@@ -100,9 +131,10 @@ export class View {
   fit() {
     if (!this.picture) return;
     const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    const zoom = Math.min(wide / this.picture.width, high / this.picture.height);
+    const both = this.way === "side by side" ? 2 : 1;
+    const zoom = Math.min((wide - GAP * (both - 1)) / (this.picture.width * both), high / this.picture.height);
     this.zoom = zoom >= 1 ? Math.floor(zoom) : zoom;
-    this.left = (wide - this.picture.width * this.zoom) / 2;
+    this.left = (wide - this.picture.width * this.zoom * both - GAP * (both - 1)) / 2;
     this.top = (high - this.picture.height * this.zoom) / 2;
     this.fitted = true;
     this.paint();
@@ -145,7 +177,35 @@ export class View {
     context.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
     if (!this.picture) return;
     context.imageSmoothingEnabled = this.zoom < 1;
-    context.drawImage(this.sheet, this.left, this.top, this.picture.width * this.zoom, this.picture.height * this.zoom);
+    const [wide, high] = [this.picture.width * this.zoom, this.picture.height * this.zoom];
+    context.drawImage(this.way === "blink" && this.second ? this.other : this.sheet, this.left, this.top, wide, high);
+    if (this.way === "side by side") context.drawImage(this.other, this.left + wide + GAP, this.top, wide, high);
+    if (this.way === "swipe") {
+      const edge = Math.max(this.left, Math.min(this.left + wide, this.part * this.canvas.clientWidth));
+      context.save();
+      context.beginPath();
+      context.rect(edge, this.top, this.left + wide - edge, high);
+      context.clip();
+      context.drawImage(this.other, this.left, this.top, wide, high);
+      context.restore();
+      context.fillStyle = "#fff";
+      context.fillRect(edge - 1, this.top, 2, high);
+    }
+    if (this.way && this.way !== "side by side") {
+      const name = (text, x, align) => {
+        context.font = "12px system-ui, sans-serif";
+        context.textAlign = align;
+        const width = context.measureText(text).width + 10;
+        context.fillStyle = "#000b";
+        context.fillRect(align === "left" ? x : x - width, this.top + 4, width, 19);
+        context.fillStyle = "#fff";
+        context.fillText(text, align === "left" ? x + 5 : x - 5, this.top + 18);
+      };
+      if (this.way === "swipe") {
+        name("this", this.left + 4, "left");
+        name("the other", this.left + wide - 4, "right");
+      } else name(this.second ? "the other" : "this", this.left + 4, "left");
+    }
     $("scale").textContent = this.zoom < 1 ? `${Math.round(this.zoom * 100)} %` : `${+this.zoom.toFixed(1)} ×`;
     if (!this.at) return;
     const side = Math.max(this.zoom, 5);
