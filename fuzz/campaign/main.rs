@@ -5,7 +5,7 @@
 //! the number is small enough for the test suite.
 //!
 //! A run is a finding if it panics (NB0801), if a signal or a failed allocation ends it, if it needs more than 1 GB, or if it takes more
-//! than ten seconds in addition to 500 ns for each pixel that it shades. Workers run commands in their own process, one after the other,
+//! than ten seconds of processors in addition to 500 ns for each pixel that it shades. Workers run commands in their own process, one after the other,
 //! which allows thousands of runs a minute. One run in a hundred has a process of its own. A worker that dies is replaced, and its run is a
 //! finding.
 #![allow(
@@ -116,6 +116,33 @@ fn status(field: &str) -> u64 {
     line.and_then(|line| line.trim().strip_suffix("kB")?.trim().parse().ok()).unwrap_or(0)
 }
 
+/// A clock of the work of this process and of those that it waited for; of real time where the system does not tell. A busy machine does not make it
+/// run faster.
+struct Clock {
+    begin: Instant,
+    worked: Option<Duration>,
+}
+
+impl Clock {
+    fn start() -> Clock {
+        Clock { begin: Instant::now(), worked: worked() }
+    }
+
+    fn elapsed(&self) -> Duration {
+        let worked = worked().zip(self.worked).map(|(now, then)| now.saturating_sub(then));
+        worked.unwrap_or_else(|| self.begin.elapsed())
+    }
+}
+
+/// Returns the time of processors that Linux counts for this process and its children, in steps of 10 ms.
+fn worked() -> Option<Duration> {
+    let text = fs::read_to_string("/proc/self/stat").ok()?;
+    // The name stands in parentheses, and may hold spaces.
+    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks: u64 = fields.get(11..15)?.iter().map(|field| field.parse::<u64>().unwrap_or(0)).sum();
+    Some(Duration::from_millis(10 * ticks))
+}
+
 /// Runs a command in this process.
 fn inside(arguments: &[String]) -> Outcome {
     let arguments: Vec<OsString> =
@@ -123,14 +150,14 @@ fn inside(arguments: &[String]) -> Outcome {
     *PANIC.lock().unwrap() = None;
     // Resets the peak of resident memory, on systems that can.
     let _ = fs::write("/proc/self/clear_refs", "5");
-    let begin = Instant::now();
+    let clock = Clock::start();
     let exit = catch_unwind(AssertUnwindSafe(|| ninebit::run(&arguments))).ok();
-    Outcome { exit, panic: PANIC.lock().unwrap().take(), time: begin.elapsed(), peak: status("VmHWM:") }
+    Outcome { exit, panic: PANIC.lock().unwrap().take(), time: clock.elapsed(), peak: status("VmHWM:") }
 }
 
 /// Runs a command in a process of its own, whose address space is limited to 2 GB.
 fn outside(folder: &Path, arguments: &[String]) -> Outcome {
-    let begin = Instant::now();
+    let clock = Clock::start();
     let output = Command::new("sh")
         .args(["-c", "ulimit -v 2000000; exec timeout -s KILL 120 \"$@\"", "sh", env!("CARGO_BIN_EXE_ninebit")])
         .args(arguments)
@@ -142,7 +169,7 @@ fn outside(folder: &Path, arguments: &[String]) -> Outcome {
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     let exit = output.status.code().and_then(|code| u8::try_from(code).ok());
     let ended = exit.is_none_or(|code| code > 7 || code == 6);
-    Outcome { exit: exit.filter(|code| *code <= 7), panic: ended.then_some(stderr), time: begin.elapsed(), peak: 0 }
+    Outcome { exit: exit.filter(|code| *code <= 7), panic: ended.then_some(stderr), time: clock.elapsed(), peak: 0 }
 }
 
 /// Returns the time that the shaded pixels of a scene account for.

@@ -200,8 +200,8 @@ fn thumbnail((width, height, pixels): &Picture) -> Picture {
 /// Returns the number of bytes of the folder around all folders, with the slash after it.
 fn common_folder(folders: &[&str]) -> usize {
     let Some(first) = folders.first() else { return 0 };
-    let ends = first.match_indices('/').map(|(at, _)| at + 1);
-    ends.filter(|end| folders.iter().all(|folder| folder.starts_with(&first[..*end]))).last().unwrap_or(0)
+    let mut ends = first.match_indices('/').map(|(at, _)| at + 1).rev();
+    ends.find(|end| folders.iter().all(|folder| folder.starts_with(&first[..*end]))).unwrap_or(0)
 }
 
 /// Returns the page of all scenes.
