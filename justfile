@@ -40,6 +40,10 @@ dist OUT:
     dist/build {{ OUT }}
     dist/check {{ OUT }}
 
+# The site: documents, gallery, libraries; needs mdBook
+site SITE *OPTIONS:
+    dist/site {{ SITE }} {{ OPTIONS }}
+
 # Run each fuzz target for some seconds, with a corpus if one is named
 fuzz SECONDS *CORPUS:
     fuzz/run {{ SECONDS }} {{ CORPUS }}
