@@ -73,12 +73,12 @@ fn pages() -> Vec<String> {
 /// What a page's reader has before the first command.
 const GIVEN: &[(&str, &str)] = &[
     (
-        "docs/hardware.md",
+        "docs/evidence/hardware.md",
         // The picture of a card that takes the other alternative.
         "ninebit render vectors/scenes/deciding/CMB-3-expand.ron --policy CMB-3=literal -o captured.png",
     ),
     (
-        "docs/replay.md",
+        "docs/ci.md",
         "mkdir scenes && cp vectors/scenes/dot3/constant-light.ron scenes/wall.ron && cp vectors/scenes/dot3/rocks-normal.png scenes && \
          ninebit render scenes/wall.ron --policy CMB-8=each -o scenes/wall.png && \
          printf '(version: 1, target: \"frame\", width: 640, height: 480, sha256: \"\", allowance: (picture: \"wall.png\", pixels: 0, \
@@ -171,6 +171,14 @@ fn read(bench: &Bench, block: &Block) {
             serde_json::from_str::<serde_json::Value>(&block.text).unwrap_or_else(|error| panic!("{place}: {error}")),
         ),
         "text" => {}
+        // The tests of vertex programs run theirs (tests/vertex_programs.rs).
+        "vs" => {}
+        "combiners" | "pixel-shader" | "texture-stages" | "texture-environment" | "combiner-calls" => {
+            bench.write("block", &block.text);
+            let command = format!("ninebit lower block --from {} --to combiners", block.language);
+            let (status, printed) = shell(bench, &command);
+            assert_eq!(status, Some(0), "{place}: {printed}");
+        }
         // The tests of the package run the code of its page (src/python/check).
         "python" if block.page == "docs/python.md" => {}
         language => panic!(

@@ -183,7 +183,7 @@ fn data_frame(text: &str) -> BTreeMap<String, Vec<Option<String>>> {
 
 #[test]
 fn the_table_is_what_pandas_reads_and_what_the_page_describes() {
-    let docs = at("docs");
+    let docs = at("docs/lab");
     let frame = data_frame(&fs::read_to_string(docs.join("speed-accuracy/techniques.csv")).unwrap());
     let page = fs::read_to_string(docs.join("speed-accuracy.md")).unwrap();
     let described: BTreeSet<&str> =
@@ -253,7 +253,7 @@ fn labels(svg: &str) -> Vec<Label> {
 /// Compares the boxes of all labels of every chart in the documents.
 #[test]
 fn no_label_of_a_chart_covers_another() {
-    let docs = at("docs");
+    let docs = at("docs/lab");
     let (mut charts, mut covered) = (0, Vec::new());
     for folder in ["speed-accuracy", "stability"] {
         for name in files(&docs.join(folder)).iter().filter(|name| name.ends_with(".svg")) {

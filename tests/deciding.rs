@@ -426,7 +426,7 @@ fn tables_tell_readings_apart() {
     }
 }
 
-/// As `docs/hardware.md` states, a replay of a captured picture names the policy that reproduces it.
+/// As `docs/evidence/hardware.md` states, a replay of a captured picture names the policy that reproduces it.
 #[test]
 fn a_capture_is_recognised() {
     let place = tempfile::tempdir().unwrap();

@@ -401,7 +401,7 @@ fn a_wrong_command_line_is_status_2() {
     wrong("address --mode sideways --size 8 --index 1", "there is no address mode `sideways`");
 }
 
-/// The worked examples of `docs/numerics.md` that consist of one operation.
+/// The worked examples of `docs/rules` that consist of one operation.
 #[test]
 fn examples_of_the_handbook() {
     let number = |command: &str, name: &str| result(command, name).as_i64().unwrap_or_else(|| panic!("{command}"));

@@ -2,14 +2,21 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench::Bench;
+use crate::docs::pages_below;
 use crate::repository::at;
-use ninebit_handbook::{RULES, TEXT};
+use ninebit_handbook::{PAGES, RULES};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
 #[test]
 fn the_program_has_the_handbook_of_the_repository() {
-    assert_eq!(TEXT, std::fs::read_to_string(at("docs/numerics.md")).unwrap());
+    for (name, text) in PAGES {
+        let same = text == std::fs::read_to_string(at("docs/rules").join(name)).unwrap();
+        assert!(same, "{name} is another");
+    }
+    let pages: BTreeSet<String> = pages_below("docs/rules").into_iter().collect();
+    let names = PAGES.iter().map(|(name, _)| *name).chain(["README.md"]);
+    assert_eq!(pages, names.map(|name| format!("docs/rules/{name}")).collect());
 }
 
 #[test]

@@ -71,6 +71,7 @@ mod scene_format;
 mod scene_hostile;
 mod scene_in_code;
 mod stability;
+mod tables;
 mod techniques;
 mod texture_lattice;
 mod texture_properties;

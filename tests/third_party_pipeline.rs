@@ -47,7 +47,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 /// Of all cases that apply to the chips, at most one in twenty may be listed as different.
 #[test]
 fn few_cases_are_listed_as_different() {
-    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
+    let document = std::fs::read_to_string(at("docs/evidence/known-differences.md")).unwrap();
     let (mut cases, mut listed) = (0, 0);
     for entry in std::fs::read_dir(at("vectors/third-party")).unwrap() {
         let path = entry.unwrap().path();

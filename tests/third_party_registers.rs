@@ -50,7 +50,7 @@ fn one_stage() -> RegisterWords {
 
 #[test]
 fn words_are_taken_and_kept_as_the_chip_does() {
-    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
+    let document = std::fs::read_to_string(at("docs/evidence/known-differences.md")).unwrap();
     let section = document.split("## Register words").nth(1).unwrap().split("\n## ").next().unwrap();
     let listed: BTreeSet<(String, String)> = section
         .lines()
@@ -86,7 +86,7 @@ fn words_are_taken_and_kept_as_the_chip_does() {
             checked.findings.into_iter().map(|finding| (format!("{name} {value:08x}"), finding.code.to_owned())),
         );
     }
-    assert_eq!(refused, listed, "docs/known-differences.md lists what is refused as a program");
+    assert_eq!(refused, listed, "docs/evidence/known-differences.md lists what is refused as a program");
 }
 
 /// Returns the statements, in the combiner language, of a Direct3D 5 texture blend as its documentation defines it: RGB, then alpha.
@@ -283,7 +283,7 @@ const SHADER_OPERATIONS: [(u32, &str, &str); 19] = [
 
 #[test]
 fn texture_shaders_are_taken_as_the_chip_does() {
-    let document = std::fs::read_to_string(at("docs/known-differences.md")).unwrap();
+    let document = std::fs::read_to_string(at("docs/evidence/known-differences.md")).unwrap();
     let rows = rows("texture-shader-words.tsv");
     assert_eq!(rows.len(), 14);
     for row in rows {

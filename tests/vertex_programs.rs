@@ -357,13 +357,13 @@ fn the_document_lists_the_instructions() {
         let result = comment.trim_end_matches('.').replace('|', "\\|");
         table += &format!("| `{} d, {sources}` | {result} | {} |\n", opcode.word(), opcode.slots());
     }
-    pages::hold("docs/vertex-shader.md", "tests/vertex_programs.rs", &table);
+    pages::hold("docs/languages/vertex-shader.md", "tests/vertex_programs.rs", &table);
 }
 
-/// The program in `docs/vertex-shader.md` is valid.
+/// The program in `docs/languages/vertex-shader.md` is valid.
 #[test]
 fn the_document_is_about_this_language() {
-    let document = std::fs::read_to_string(at("docs/vertex-shader.md")).unwrap();
-    let program = document.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
+    let document = std::fs::read_to_string(at("docs/languages/vertex-shader.md")).unwrap();
+    let program = document.split("```vs\n").nth(1).unwrap().split("```").next().unwrap();
     accepted(program);
 }

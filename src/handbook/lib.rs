@@ -1,19 +1,42 @@
-//! The handbook of rules, `docs/numerics.md`, as data.
+//! The handbook of rules, the folder `docs/rules`, as data.
 //!
-//! [`RULES`] has every entry; [`find`] returns one by its id. [`parse`] reads a handbook, so that what the program prints and what tests check
+//! [`RULES`] has every entry; [`find`] returns one by its id. [`parse`] reads a page, so that what the program prints and what tests check
 //! against the sources is one reading of one text.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// The text of the handbook.
-pub const TEXT: &str = include_str!(env!("HANDBOOK"));
+macro_rules! pages {
+    ($($name:literal),+ $(,)?) => { [$(($name, include_str!(concat!(env!("HANDBOOK"), "/", $name)))),+] };
+}
+
+/// The pages of rules in their order: name of the file and text. Their index, `README.md`, is for readers of the folder only.
+pub const PAGES: [(&str, &str); 9] = pages![
+    "arithmetic.md",
+    "raster.md",
+    "fog.md",
+    "depth-and-stencil.md",
+    "texture.md",
+    "texture-shader.md",
+    "combiner.md",
+    "blend-and-store.md",
+    "vertex.md",
+];
+
+/// The grades of rules, from the strongest to the weakest, each with its meaning.
+const MEANINGS: [(&str, &str); 4] = [
+    ("SILICON", "read off captures of a real NV2A and confirmed on them pixel by pixel"),
+    ("DOCUMENT", "stated by a vendor text, or by a register model that was compared with real hardware"),
+    ("INFERRED", "follows from the two above; no measurement isolates it"),
+    ("CHOSEN", "nothing decides it; one answer was picked"),
+];
 
 /// The grades of rules, from the strongest to the weakest.
-pub const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
+pub const GRADES: [&str; 4] = [MEANINGS[0].0, MEANINGS[1].0, MEANINGS[2].0, MEANINGS[3].0];
 
 /// Every rule of the handbook, in its order.
-pub static RULES: LazyLock<Vec<Rule<'static>>> = LazyLock::new(|| parse(TEXT));
+pub static RULES: LazyLock<Vec<Rule<'static>>> =
+    LazyLock::new(|| PAGES.iter().flat_map(|(name, text)| parse(name, text)).collect());
 
 /// The entry of a rule: a heading `### ID title`, a block with the formula, and a list of fields, one a line: `- Grade: ...`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,6 +45,8 @@ pub struct Rule<'t> {
     pub id: &'t str,
     /// Its title.
     pub title: &'t str,
+    /// Name of its page.
+    pub page: &'t str,
     /// The heading above it.
     pub section: &'t str,
     /// Whether it is built, that is, does not stand under "Known, not built yet".
@@ -72,6 +97,13 @@ impl<'t> Rule<'t> {
         GRADES.iter().rposition(|grade| grades.contains(grade)).unwrap_or(GRADES.len() - 1)
     }
 
+    /// Returns where the handbook has it, as a link from its index: the page and the anchor of its heading.
+    pub fn link(&self) -> String {
+        let heading = format!("{}-{}", self.id, self.title).to_lowercase().replace(' ', "-");
+        let anchor: String = heading.chars().filter(|c| c.is_alphanumeric() || *c == '-').collect();
+        format!("{}#{anchor}", self.page)
+    }
+
     /// Returns the files that a field names, each with the name in code that follows it.
     pub fn references(&self, label: &str) -> Vec<(&'t str, Option<&'t str>)> {
         let parts = self.field(label).split(", ").filter_map(|part| {
@@ -82,8 +114,8 @@ impl<'t> Rule<'t> {
     }
 }
 
-/// Returns the rules of a handbook in order.
-pub fn parse(text: &str) -> Vec<Rule<'_>> {
+/// Returns the rules of a page in order.
+pub fn parse<'t>(page: &'t str, text: &'t str) -> Vec<Rule<'t>> {
     let mut rules: Vec<Rule<'_>> = Vec::new();
     let (mut section, mut built, mut open) = ("", true, false);
     let (mut at, mut formula) = (0, None);
@@ -103,7 +135,7 @@ pub fn parse(text: &str) -> Vec<Rule<'_>> {
             built &= title != "Known, not built yet";
         } else if let Some((id, title)) = line.strip_prefix("### ").and_then(|heading| heading.split_once(' ')) {
             open = true;
-            rules.push(Rule { id, title, section, built, fields: Vec::new() });
+            rules.push(Rule { id, title, page, section, built, fields: Vec::new() });
         } else if line == "```text" && open {
             formula = Some(at);
         } else if let (Some(rule), Some(field)) = (entry, line.strip_prefix("- ").and_then(|l| l.split_once(": "))) {
@@ -127,9 +159,7 @@ pub fn mark(id: &str) -> &'static str {
 
 /// Returns what a grade means; an empty text for what is none.
 pub fn meaning(grade: &str) -> &'static str {
-    let row =
-        |line: &'static str| line.strip_prefix("| ")?.strip_prefix(grade)?.strip_prefix(" | ")?.strip_suffix(" |");
-    TEXT.lines().find_map(row).unwrap_or_default()
+    MEANINGS.iter().find(|(name, _)| *name == grade).map_or("", |(_, meaning)| meaning)
 }
 
 #[cfg(test)]
@@ -139,9 +169,10 @@ mod tests {
     #[test]
     fn an_entry_is_read() {
         let text = "## Numbers\n\n### NUM-6 A number\n\n```text\na = b\n- c: d\n```\n\n- Grade: SILICON (a, b), CHOSEN (c)\n- Code: `x.rs` `y`, `z.rs`\n- Command: `1`\n- Command: `2`\n\n## Known, not built yet\n\n- No: field\n\n### ROP-7 Another\n\n- Grade: INFERRED\n";
-        let rules = parse(text);
+        let rules = parse("page.md", text);
         let [first, second] = &rules[..] else { panic!("{rules:?}") };
         assert_eq!((first.id, first.title, first.section, first.built), ("NUM-6", "A number", "Numbers", true));
+        assert_eq!(first.link(), "page.md#num-6-a-number");
         assert_eq!(first.field("Formula"), "a = b\n- c: d");
         assert_eq!((first.grades(), first.mark(), first.weakest()), (vec!["SILICON", "CHOSEN"], "SC".to_owned(), 3));
         assert_eq!(first.references("Code"), [("x.rs", Some("y")), ("z.rs", None)]);
@@ -151,7 +182,8 @@ mod tests {
 
     #[test]
     fn every_heading_of_the_handbook_is_a_rule_with_a_grade() {
-        let headings = TEXT.lines().filter(|line| line.starts_with("### ")).count();
+        let lines = PAGES.iter().flat_map(|(_, text)| text.lines());
+        let headings = lines.filter(|line| line.starts_with("### ")).count();
         assert!(headings > 90 && RULES.len() == headings, "{headings} headings, {} rules", RULES.len());
         for rule in RULES.iter() {
             assert!(!rule.grades().is_empty(), "{}", rule.id);

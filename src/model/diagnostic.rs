@@ -63,7 +63,7 @@ pub struct Diagnostic {
     pub label: String,
     /// Other places that matter, and why.
     pub related: Vec<(Span, String)>,
-    /// The rule of `docs/numerics.md` that is violated.
+    /// The rule of `docs/rules` that is violated.
     pub rule: Option<&'static str>,
     /// Explanations, one line each.
     pub notes: Vec<String>,
@@ -116,7 +116,7 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the rule of `docs/numerics.md` that is violated.
+    /// Sets the rule of `docs/rules` that is violated.
     pub fn rule(mut self, rule: &'static str) -> Self {
         self.rule = Some(rule);
         self

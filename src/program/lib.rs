@@ -1,13 +1,13 @@
 //! Reads and prints programs in several languages. Pixel programs of all of them become [`Combiners`](ninebit::state::Combiners).
 //!
-//! * [`text`]: general stages and final combiner as statements (`docs/combiner-language.md`).
-//! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/programs.md`).
-//! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
+//! * [`text`]: general stages and final combiner as statements (`docs/languages/combiner-language.md`).
+//! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/languages/programs.md`).
+//! * [`registers`]: the words of the chips' registers, read and written (`docs/languages/registers.md`).
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
-//!   (`docs/programs.md`). Both write each of their stages as equations over arguments, which `cascade` turns into
+//!   (`docs/languages/programs.md`). Both write each of their stages as equations over arguments, which `cascade` turns into
 //!   general stages.
-//! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
-//! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/vertex-shader.md`).
+//! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/languages/pixel-shader.md`).
+//! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/languages/vertex-shader.md`).
 //! * [`legality`](ninebit::legality): what the chip allows (CMB-12), which is the same for every language. A language adds the places of a
 //!   program's parts ([`Places`]) and its own words for them ([`Notation`](ninebit::legality::Notation)).
 //!

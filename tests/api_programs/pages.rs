@@ -1,4 +1,4 @@
-//! Writes the tables of `docs/programs.md`, `docs/pixel-shader.md` and `docs/registers.md`: the combiners that each operation becomes, as
+//! Writes the tables of `docs/languages/programs.md`, `docs/languages/pixel-shader.md` and `docs/languages/registers.md`: the combiners that each operation becomes, as
 //! the lowering yields them, and the register words of the chips.
 
 use crate::repository::at;
@@ -64,7 +64,7 @@ fn direct3d_operations() {
         let (value, result) = meaning.split_once(": ").unwrap();
         table += &format!("| `{}` | {value} | {result} | {} |\n", operation.name(), direct3d(*operation));
     }
-    hold("docs/programs.md", "tests/api_programs (Direct3D)", &table);
+    hold("docs/languages/programs.md", "tests/api_programs (Direct3D)", &table);
 }
 
 /// Returns the statements that the unit of an OpenGL function becomes. The arguments are the texture (a0), the primary colour (a1), the
@@ -102,7 +102,7 @@ fn opengl_functions() {
                 &format!("| `{}` of `Combine4` | {sums} | {} |\n", function.name(), opengl(Mode::Combine4, *function));
         }
     }
-    hold("docs/programs.md", "tests/api_programs (OpenGL)", &table);
+    hold("docs/languages/programs.md", "tests/api_programs (OpenGL)", &table);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn pixel_shader_instructions() {
         let stage = portion(&lowered.combiners, usize::from(name == "cnd"));
         table += &format!("| `{name} r0, {sources}` | {meaning} | {stage} |\n");
     }
-    hold("docs/pixel-shader.md", "tests/api_programs (arithmetic)", &table);
+    hold("docs/languages/pixel-shader.md", "tests/api_programs (arithmetic)", &table);
 }
 
 /// Returns a shader that ends with the given texture instruction, and the number of the register that the instruction loads.
@@ -159,7 +159,7 @@ fn texture_instructions() {
         let written = text.lines().find(|line| line.split(' ').next() == Some(operation.name())).unwrap();
         table += &format!("| `{written}` | `{does}` | {meaning} |\n");
     }
-    hold("docs/pixel-shader.md", "tests/api_programs (textures)", &table);
+    hold("docs/languages/pixel-shader.md", "tests/api_programs (textures)", &table);
 }
 
 /// Returns the statements for colour and alpha that a unit in a mode without combining becomes. The environment colour is const0.
@@ -185,7 +185,7 @@ fn opengl_modes() {
             table += &format!("| `{}` | `{}` | {color} | {alpha} |\n", mode.name(), format.name());
         }
     }
-    hold("docs/programs.md", "tests/api_programs (OpenGL's modes)", &table);
+    hold("docs/languages/programs.md", "tests/api_programs (OpenGL's modes)", &table);
 }
 
 #[test]
@@ -199,5 +199,5 @@ fn register_words() {
         });
         table += &format!("| `{}` | {nv10} | {nv20} | {meaning} |\n", word.name());
     }
-    hold("docs/registers.md", "tests/api_programs", &table);
+    hold("docs/languages/registers.md", "tests/api_programs", &table);
 }

@@ -1,4 +1,4 @@
-//! Decodes texels of compressed blocks by TEX-2, TEX-3 and TEX-4 of `docs/numerics.md`, to recompute traces.
+//! Decodes texels of compressed blocks by TEX-2, TEX-3 and TEX-4 of `docs/rules`, to recompute traces.
 
 /// Returns a texel as A8R8G8B8. `words` are those of the block, then the texel's x and y.
 pub fn decode(operation: &str, words: &[i128]) -> i128 {

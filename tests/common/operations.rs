@@ -1,4 +1,4 @@
-//! The operations of each unit, which `docs/operations.md` lists.
+//! The operations of each unit, which `vectors/operations.tsv` lists.
 
 /// Each operation has its unit, a description, the number of input bits if it has no tree, and its trees. `FOLDER*` stands for all trees
 /// whose names begin with `FOLDER`.

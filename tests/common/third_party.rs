@@ -51,7 +51,7 @@ pub struct Outcome {
 
 /// Runs every case of a kind. `problem` gets the case and the profile that it names, and returns what is wrong.
 pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
-    let kept = fs::read_to_string(at("docs/known-differences.md")).unwrap();
+    let kept = fs::read_to_string(at("docs/evidence/known-differences.md")).unwrap();
     let (cases, own) = cases(kind);
     let Outcome { wrong, excepted, applicable } = judge(&cases, &kept, problem);
     println!("{}: {} cases, {applicable} applicable, {excepted} listed as different", kind.file, cases.len());

@@ -1,7 +1,7 @@
 //! Checks that handbook and sources agree on ids, grades, counts, policies, files, tests and vectors.
 
 use crate::catalogue;
-use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read, superseded};
+use crate::handbook::{ENTRIES, Entry, INDEX, built, declares, files, id_literals, ids, read, superseded};
 use crate::pages;
 use crate::repository;
 use ninebit::plan::{Plan, PlanOptions};
@@ -9,6 +9,7 @@ use ninebit::state::{Named, POLICIES, Profile, Scene};
 use ninebit::trace::Rule;
 use ninebit_handbook::{GRADES, meaning};
 use ninebit_report::compare::bound;
+use ninebit_vectors::units;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The fields that a built rule must have. *Range* and *Error* are optional.
@@ -62,7 +63,7 @@ fn every_id_that_is_mentioned_has_an_entry() {
         let document = file.extension().is_some_and(|extension| extension == "md");
         for id in ids(&read(&file)) {
             let known = find(&id).is_some() || document && old.contains(&id);
-            assert!(known, "{} mentions {id}, which docs/numerics.md does not have", file.display());
+            assert!(known, "{} mentions {id}, which docs/rules does not have", file.display());
         }
     }
 }
@@ -77,7 +78,7 @@ fn rules_that_are_applied_are_built() {
         for (before, id) in id_literals(&source) {
             let diagnostic = before.trim_end().ends_with(".rule(");
             let known = find(id).is_some_and(|e| e.built || diagnostic);
-            assert!(known, "{}: \"{id}\" is not a built rule of docs/numerics.md", file.display());
+            assert!(known, "{}: \"{id}\" is not a built rule of docs/rules", file.display());
             applied.insert(id.to_string());
         }
     }
@@ -149,31 +150,75 @@ fn named(folder: &str, extension: &str) -> Vec<(String, String)> {
     files(folder, extension).into_iter().map(|file| (name(&file), read(&file))).collect()
 }
 
-/// The index lists for each rule which tests of the whole cover it.
+fn quoted<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
+    names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns for each rule the documents outside of the handbook that name it, as links from the index.
+fn naming_documents() -> BTreeMap<String, Vec<String>> {
+    let mut naming: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let documents = files("docs", "md").into_iter().map(|path| repository::name(&path));
+    for document in documents.filter(|document| !document.starts_with("docs/rules/")) {
+        let (text, short) = (read(&document), document.strip_prefix("docs/").unwrap());
+        let name = short.trim_end_matches("/README.md").trim_end_matches(".md");
+        for id in ids(&text) {
+            naming.entry(id).or_default().push(format!("[{name}](../{short})"));
+        }
+    }
+    naming
+}
+
+/// The index leads from each rule to all that belongs to it.
 #[test]
 fn the_index_is_right() {
-    let (examples, vectors, scenes) = (named("tests/rules", "rs"), vectors(), captured());
-    let oracle: BTreeSet<String> = named("tests/oracle", "rs").iter().flat_map(|(_, source)| ids(source)).collect();
-    let mut table =
-        "| rule | grade | example | oracle | measured rows | captured scenes |\n|---|---|---|---|---|---|\n".to_owned();
-    for entry in built() {
-        let quoted = |names: Option<&BTreeSet<String>>| {
-            let names = names.into_iter().flatten().map(|name| format!("`{name}`"));
-            names.collect::<Vec<_>>().join(", ")
+    let naming = naming_documents();
+    let mut table = "| rule | grade | functions | units | deciding scene | policy | documents |\n".to_owned();
+    table += "|---|---|---|---|---|---|---|\n";
+    for entry in ENTRIES.iter() {
+        let link = |(path, name): (&str, Option<&str>)| {
+            let name = name.unwrap_or_else(|| path.rsplit('/').next().unwrap());
+            format!("[`{name}`](../../{path})")
         };
-        let link = format!("{} {}", entry.id, entry.title).to_lowercase().replace(' ', "-");
-        let link: String = link.chars().filter(|c| c.is_alphanumeric() || *c == '-').collect();
+        let links = |label: &str| entry.references(label).into_iter().map(link).collect::<Vec<_>>().join(", ");
+        let units: Vec<String> = units::all()
+            .into_iter()
+            .filter(|unit| unit.rules().contains(&entry.id))
+            .map(|unit| unit.name().to_owned())
+            .collect();
+        let policy = POLICIES.iter().find(|policy| policy.rule == entry.id);
+        let values: Vec<String> =
+            policy.into_iter().flat_map(|policy| policy.values).map(|(value, _)| (*value).to_owned()).collect();
         let cells = [
-            format!("[{}](#{link}) {}", entry.id, entry.title),
-            entry.grades()[0].to_owned(),
-            computed(entry, &examples),
-            if oracle.contains(entry.id) { "yes".to_owned() } else { String::new() },
-            quoted(vectors.get(entry.id)),
-            quoted(scenes.get(entry.id)),
+            format!("[{}]({}) {}", entry.id, entry.link(), entry.title),
+            format!("{}{}", entry.grades()[0], if entry.built { "" } else { ", not built" }),
+            links("Code"),
+            quoted(&units),
+            links("Decided by"),
+            quoted(&values),
+            naming.get(entry.id).cloned().unwrap_or_default().join(", "),
         ];
         table += &format!("| {} |\n", cells.join(" | "));
     }
-    pages::hold(PAGE, "tests/rules (index)", &table);
+    pages::hold(INDEX, "tests/rules (index)", &table);
+}
+
+/// The second table lists for each rule which tests of the whole cover it.
+#[test]
+fn the_table_of_tests_is_right() {
+    let (examples, vectors, scenes) = (named("tests/rules", "rs"), vectors(), captured());
+    let oracle: BTreeSet<String> = named("tests/oracle", "rs").iter().flat_map(|(_, source)| ids(source)).collect();
+    let mut table = "| rule | example | oracle | measured rows | captured scenes |\n|---|---|---|---|---|\n".to_owned();
+    for entry in built() {
+        let cells = [
+            format!("[{}]({})", entry.id, entry.link()),
+            computed(entry, &examples),
+            if oracle.contains(entry.id) { "yes".to_owned() } else { String::new() },
+            quoted(vectors.get(entry.id).into_iter().flatten()),
+            quoted(scenes.get(entry.id).into_iter().flatten()),
+        ];
+        table += &format!("| {} |\n", cells.join(" | "));
+    }
+    pages::hold(INDEX, "tests/rules (tests)", &table);
 }
 
 #[test]
@@ -199,7 +244,7 @@ fn policies_are_spelled_out() {
         assert_eq!(is_policy, !entry.field("Policy").is_empty(), "{}", entry.id);
     }
     let order: Vec<usize> = POLICIES.iter().map(|p| ENTRIES.iter().position(|e| e.id == p.rule).unwrap()).collect();
-    assert!(order.is_sorted(), "POLICIES is not in the order of docs/numerics.md");
+    assert!(order.is_sorted(), "POLICIES is not in the order of docs/rules");
 }
 
 /// Counts rules by grade: built and not built by their first grade, and built ones that name the grade for a part.
@@ -224,11 +269,11 @@ fn the_table_counts_right() {
     let counts = counts();
     let all = counts.values().fold([0; 3], |a, b| std::array::from_fn(|n| a[n] + b[n]));
     let rows = GRADES.iter().map(|grade| (*grade, counts[*grade])).chain([("all", all)]);
-    let mut table = "| grade | built | not built | built, in part |\n|---|---|---|---|\n".to_owned();
+    let mut table = "| grade | meaning | built | not built | built, in part |\n|---|---|---:|---:|---:|\n".to_owned();
     for (grade, [built, not_built, in_part]) in rows {
-        table += &format!("| {grade} | {built} | {not_built} | {in_part} |\n");
+        table += &format!("| {grade} | {} | {built} | {not_built} | {in_part} |\n", meaning(grade));
     }
-    pages::hold(PAGE, "tests/rules (counts)", &table);
+    pages::hold(INDEX, "tests/rules (counts)", &table);
 }
 
 /// The README has the handbook's grades, their meanings and counts.
@@ -326,5 +371,5 @@ fn bounds_are_those_of_the_comparison() {
             table += &format!("| {} | {} | {} |\n", rule.name(), number(low), number(high));
         }
     }
-    pages::hold(PAGE, "tests/rules (bounds)", &table);
+    pages::hold(INDEX, "tests/rules (bounds)", &table);
 }

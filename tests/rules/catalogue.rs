@@ -1,7 +1,7 @@
 //! Examples that rows of units compute, as `ninebit op unit` does. `catalogue.txt` lists them.
 
 use crate::bench::{Bench, Run};
-use crate::handbook::{PAGE, built, example, read};
+use crate::handbook::{ENTRIES, built, example, page, read};
 use crate::{pages, repository};
 use ninebit_vectors::units;
 use serde_json::Value;
@@ -133,13 +133,14 @@ fn the_page_repeats_sentences() {
         example(rule, text);
         let writer = format!("tests/rules ({rule})");
         let lines: String = rows.iter().map(|row| format!("- Command: `{}`\n", row.command)).collect();
-        pages::hold(PAGE, &writer, &lines);
+        pages::hold(&page(rule), &writer, &lines);
         let [begin, _] = pages::markers(&writer);
-        let below = read(PAGE).contains(&format!("\n- Example: {text}\n{begin}"));
+        let below = read(page(rule)).contains(&format!("\n- Example: {text}\n{begin}"));
         assert!(below, "{rule}: its commands do not stand below its example");
     }
     let commands: usize = SENTENCES.iter().map(|sentence| sentence.rows.len()).sum();
-    assert_eq!(read(PAGE).matches("\n- Command: ").count(), commands, "commands of a rule that has no rows");
+    let written: usize = ENTRIES.iter().map(|entry| entry.fields("Command").count()).sum();
+    assert_eq!(written, commands, "commands of a rule that has no rows");
 }
 
 /// Rules without rows are listed by name, so a new rule needs rows. The decision has the same list.
@@ -150,5 +151,5 @@ fn rules_without_rows_are_named() {
     let rows: String =
         WITHOUT.iter().map(|(rules, why)| format!("| {} | {why} |\n", rules.replace(' ', ", "))).collect();
     let table = format!("| rules | why |\n|---|---|\n{rows}");
-    pages::hold("docs/decisions/0057-operations-are-units.md", "tests/rules (without)", &table);
+    pages::hold("docs/decisions/units.md", "tests/rules (without)", &table);
 }

@@ -1,10 +1,10 @@
-//! Reads `docs/numerics.md`: its entries, its examples, and ids that occur in files.
+//! Reads the handbook, `docs/rules`: its entries, its examples, and ids that occur in files.
 
 use crate::catalogue;
 use crate::pages;
 use crate::repository;
 use crate::settings::bless;
-use ninebit_handbook::{Rule, parse};
+use ninebit_handbook::{PAGES, Rule, parse};
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
@@ -18,15 +18,24 @@ const PREFIXES: [&str; 18] = [
 /// The entry of one rule.
 pub type Entry = Rule<'static>;
 
-/// Path of the handbook.
-pub const PAGE: &str = "docs/numerics.md";
+/// Path of the handbook's index.
+pub const INDEX: &str = "docs/rules/README.md";
 
-/// All entries of the handbook in order, as the document has them now.
-pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| parse(read(PAGE).leak()));
+/// All entries of the handbook in order, as the documents have them now.
+pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
+    let pages = PAGES.iter().map(|(name, _)| (*name, read(format!("docs/rules/{name}")).leak()));
+    pages.flat_map(|(name, text)| parse(name, text)).collect()
+});
+
+/// Returns the path of the page that has a rule.
+pub fn page(rule: &str) -> String {
+    let entry = ENTRIES.iter().find(|e| e.id == rule).unwrap_or_else(|| panic!("the handbook has no rule {rule}"));
+    format!("docs/rules/{}", entry.page)
+}
 
 /// Returns the ids of rules that were replaced, from the table of the section "Superseded".
 pub fn superseded() -> BTreeSet<String> {
-    let page = read(PAGE);
+    let page = read(INDEX);
     let (_, section) = page.split_once("\n## Superseded\n").unwrap();
     let section = section.split("\n## ").next().unwrap();
     section.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | ")).flat_map(|(id, _)| ids(id)).collect()
@@ -49,17 +58,17 @@ pub fn example(rule: &'static str, text: &str) -> Example {
     let line = entry.field("Example");
     if line != text && bless() {
         let _writing = pages::WRITING.lock();
-        let page = read(PAGE);
+        let (path, page) = (page(rule), read(page(rule)));
         let start = page.find(&format!("\n### {rule} ")).unwrap();
         let at =
             start + page[start..].find("\n- Example: ").unwrap_or_else(|| panic!("{rule} has no line of its example"));
         let end = at + 1 + page[at + 1..].find('\n').unwrap();
         let written = format!("{}\n- Example: {text}{}", &page[..at], &page[end..]);
-        pages::write(&repository::at(PAGE), &written);
+        pages::write(&repository::at(path), &written);
     } else {
         assert!(
             line == text,
-            "{rule}: the example of {PAGE} is\n{line}\nand the test computes\n{text}\nBLESS=1 writes it"
+            "{rule}: the example of the handbook is\n{line}\nand the test computes\n{text}\nBLESS=1 writes it"
         );
     }
     Example { rule }

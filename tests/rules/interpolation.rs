@@ -31,7 +31,7 @@ pub fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
 #[test]
 fn examples_of_interpolation() {
     let text = "The examples of this section use one triangle: (0, 0), (96, 0), (0, 96) in pixels, w = 1.";
-    assert!(read("docs/numerics.md").contains(text), "the handbook uses another triangle");
+    assert!(read("docs/rules/arithmetic.md").contains(text), "the handbook uses another triangle");
     let triangle = of_the_section();
     assert_eq!(triangle.doubled_area(), 1536 * 1536);
 

@@ -1,4 +1,4 @@
-//! Checks that `docs/numerics.md`, the handbook of rules, agrees with the sources, and computes every example of the handbook.
+//! Checks that `docs/rules`, the handbook of rules, agrees with the sources, and computes every example of the handbook.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 mod agreement;

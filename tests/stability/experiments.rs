@@ -80,11 +80,11 @@ pub fn page() {
     }
     let (section, files) = experiments::page::files(&measured);
     assert!(!section.contains("{{"), "a place of the template was not filled");
-    let page = fs::read_to_string(at("docs/stability.md")).unwrap();
+    let page = fs::read_to_string(at("docs/lab/stability.md")).unwrap();
     let made = replace_section(&page, "sweeps", &section).unwrap();
-    assert!(made == page, "docs/stability.md is another; `ninebit chart --only stability` makes it");
+    assert!(made == page, "docs/lab/stability.md is another; `ninebit chart --only stability` makes it");
     for file in files {
-        let stored = fs::read(at("docs").join(&file.path)).unwrap_or_default();
-        assert!(stored == file.bytes, "docs/{} is another; `ninebit chart --only stability` makes it", file.path);
+        let stored = fs::read(at("docs/lab").join(&file.path)).unwrap_or_default();
+        assert!(stored == file.bytes, "docs/lab/{} is another; `ninebit chart --only stability` makes it", file.path);
     }
 }

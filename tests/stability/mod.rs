@@ -1,7 +1,7 @@
-//! Tests `docs/stability.md`, the page on the limits of sampling: computes every number, picture and chart of the page again and compares.
+//! Tests `docs/lab/stability.md`, the page on the limits of sampling: computes every number, picture and chart of the page again and compares.
 //!
 //! `ninebit chart --only stability` writes the section on methods. `BLESS=1 cargo test --test suite stability::` writes everything else:
-//! the tables of the page, the pictures under `docs/pictures/stability` and the textures of `vectors/scenes/stability`. Look at them before
+//! the tables of the page, the pictures under `docs/lab/pictures/stability` and the textures of `vectors/scenes/stability`. Look at them before
 //! you commit. Each section has a file of its name.
 
 mod blocks;

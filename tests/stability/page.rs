@@ -10,8 +10,8 @@ use std::sync::Mutex;
 
 use crate::settings::bless;
 
-const PAGE: &str = "docs/stability.md";
-const PICTURES: &str = "docs/pictures/stability";
+const PAGE: &str = "docs/lab/stability.md";
+const PICTURES: &str = "docs/lab/pictures/stability";
 /// Largest size of a picture in bytes, so that the page loads quickly.
 const MAX_IMAGE_BYTES: u64 = 40_000;
 

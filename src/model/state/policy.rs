@@ -112,7 +112,7 @@ macro_rules! policies {
             }
         }
 
-        /// All policies, in the order of `docs/numerics.md`. Their values are in the order of the enumerations above.
+        /// All policies, in the order of `docs/rules`. Their values are in the order of the enumerations above.
         pub const POLICIES: &[Policy] =
             &[$(Policy { rule: $rule, question: $question, values: &[$($value),+] }),+];
     };
@@ -169,7 +169,7 @@ impl Default for Policies {
 /// A rule that has alternatives.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Policy {
-    /// Id of the rule in `docs/numerics.md`.
+    /// Id of the rule in `docs/rules`.
     pub rule: &'static str,
     /// The question that the alternatives answer.
     pub question: &'static str,

@@ -125,7 +125,7 @@ pub struct Operand {
 pub struct Step {
     /// The hardware block.
     pub block: String,
-    /// Rule id of `docs/numerics.md`. Empty for a value that is merely given.
+    /// Rule id of `docs/rules`. Empty for a value that is merely given.
     pub rule: &'static str,
     /// Name of the result. A later step of the same name supersedes it, as a register write does.
     pub name: String,

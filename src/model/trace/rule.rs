@@ -5,7 +5,7 @@ use crate::number::Part;
 use crate::state::named;
 
 named! {
-    /// The rules by which a value can deviate from the ideal, with the ids of `docs/numerics.md`.
+    /// The rules by which a value can deviate from the ideal, with the ids of `docs/rules`.
     pub enum Rule =>
     /// Returns the part of the pipeline that the rule's error is attributed to.
     part: Part {

@@ -1,6 +1,6 @@
 //! Direct3D pixel shaders, version 1.1: reads, checks and prints them, and lowers them to combiners and a texture shader.
 //!
-//! `docs/pixel-shader.md` describes the language.
+//! `docs/languages/pixel-shader.md` describes the language.
 
 mod check;
 mod constants;
@@ -229,7 +229,7 @@ impl Arithmetic {
 }
 
 named! {
-    /// An instruction that loads a texture register, in the order of the table in `docs/pixel-shader.md`.
+    /// An instruction that loads a texture register, in the order of the table in `docs/languages/pixel-shader.md`.
     pub enum TextureOperation =>
     /// Returns the number of registers behind its name, and whether its own register holds a colour afterwards.
     form: (usize, bool) {

@@ -1,6 +1,6 @@
 //! Combiners as words of the chips' registers: NV10 (Celsius) and NV20 (Kelvin, to which the NV2A belongs).
 //!
-//! `docs/registers.md` has layouts and codes. A word is checked as the chip checks it when it is written: [`refusal`]. Whether a
+//! `docs/languages/registers.md` has layouts and codes. A word is checked as the chip checks it when it is written: [`refusal`]. Whether a
 //! program is legal is decided afterwards ([`legality`](ninebit::legality)).
 
 mod code;

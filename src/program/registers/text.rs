@@ -192,7 +192,7 @@ fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Dia
             Some(method) => format!("{method:#06x} is no method of the combiners"),
             None => format!("`{}` is no register of the combiners", name.text),
         };
-        let help = format!("{DOCUMENTS}/registers.md lists the words and methods of {}", chip.name());
+        let help = format!("{DOCUMENTS}/languages/registers.md lists the words and methods of {}", chip.name());
         findings.push(finding("NB0204", name.span.clone(), message, "not known", help));
         return;
     };

@@ -1,6 +1,6 @@
 //! The combiner language: general stages and final combiner as statements.
 //!
-//! `docs/combiner-language.md` has the grammar.
+//! `docs/languages/combiner-language.md` has the grammar.
 
 mod final_part;
 mod parser;

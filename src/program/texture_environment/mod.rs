@@ -1,6 +1,6 @@
 //! The OpenGL texture environment (OpenGL 1.3 and extensions of its time), and how it is lowered to general stages.
 //!
-//! Each unit becomes one general stage. `docs/programs.md` has the form of each function.
+//! Each unit becomes one general stage. `docs/languages/programs.md` has the form of each function.
 
 mod combine;
 mod lower;

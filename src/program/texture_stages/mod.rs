@@ -1,7 +1,7 @@
 //! Direct3D texture stage states (Direct3D 6 to 9), and how they are lowered to general stages.
 //!
 //! Each stage becomes one general stage, except that BUMPENVMAP becomes the texture shader of the next unit. Stages end before the first one whose
-//! colour operation is Disable. `docs/programs.md` has the form of each operation.
+//! colour operation is Disable. `docs/languages/programs.md` has the form of each operation.
 
 mod lower;
 mod operation;

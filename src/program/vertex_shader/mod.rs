@@ -1,4 +1,4 @@
-//! Vertex programs in the assembler language vs.1.1 of Direct3D 8 (`docs/vertex-shader.md`).
+//! Vertex programs in the assembler language vs.1.1 of Direct3D 8 (`docs/languages/vertex-shader.md`).
 //!
 //! A program is read as a [`VertexShader`]; [`ninebit::vertex::shader`] runs it.
 

@@ -1,4 +1,4 @@
-//! Bounds for the error of a single rule, as `docs/numerics.md` states them.
+//! Bounds for the error of a single rule, as `docs/rules` states them.
 #![allow(clippy::float_arithmetic, reason = "bounds of errors")]
 
 use ninebit::plan::{Plan, PlannedDraw};

@@ -72,7 +72,7 @@ pub struct RuleError {
     pub rule: Rule,
     /// Errors of the rule itself, given exact inputs.
     pub errors: Statistics,
-    /// Lowest and highest permitted error (`docs/numerics.md`); `None` for projective coordinates.
+    /// Lowest and highest permitted error (`docs/rules`); `None` for projective coordinates.
     pub bound: Option<(f64, f64)>,
 }
 

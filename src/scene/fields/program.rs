@@ -15,7 +15,7 @@ source! {
         nv10: Nv10Words<'a> [or "one of the four"],
         /// words of NV20
         nv20: Nv20Words<'a> [or "one of the four"],
-        /// words [as text](registers.md#words-as-text), in the layout of the profile's chip
+        /// words [as text](languages/registers.md#words-as-text), in the layout of the profile's chip
         text: String [or "one of the four"],
         /// such a text in a file of the scene's folder
         file: String [or "one of the four"],
@@ -59,7 +59,7 @@ source! {
         texture_factor: Color [or "of the text, or `(255, 255, 255, 255)`"],
         /// the specular colour is added at the end
         specular_enable: bool [or "of the text, or `false`"],
-        /// instead of `stages`: calls or lines of an effect file, [pasted](programs.md#as-pasted-text)
+        /// instead of `stages`: calls or lines of an effect file, [pasted](languages/programs.md#as-pasted-text)
         text: String,
         /// instead: such a text in a file of the scene's folder
         file: String,
@@ -81,7 +81,7 @@ source! {
         /// set of texture coordinates of the unit, 0 to 3; or `CameraSpaceNormal`, `CameraSpacePosition`, `CameraSpaceReflectionVector`, `SphereMap` (TSH-11)
         texture_coordinate_index: Word [or "the stage's number"],
         /// `Disable`, `Count1` to `Count4`; with a division `(Count3, Projected)`. How the stage's coordinates meet the entry of its number in
-        /// `texture_matrices`: see [there](programs.md#direct3d-texture-stages). Where no stage has them the matrices apply as in any draw
+        /// `texture_matrices`: see [there](languages/programs.md#direct3d-texture-stages). Where no stage has them the matrices apply as in any draw
         texture_transform_flags: TransformFlags [or "`Disable`"],
         /// `(m00, m01, m10, m11)` of `BumpEnvMap` and `BumpEnvMapLuminance` (Nv2a)
         bump_matrix: Numbers [or "`(0, 0, 0, 0)`" numbers 4..=4, "a bump matrix"],
@@ -105,7 +105,7 @@ source! {
         units: List<'a, EnvironmentUnit<'a>>,
         /// adds the secondary colour at the end
         color_sum: bool [or "of the text, or `false`"],
-        /// in place of `units`: calls of glTexEnv, [pasted](programs.md#as-pasted-calls)
+        /// in place of `units`: calls of glTexEnv, [pasted](languages/programs.md#as-pasted-calls)
         text: String,
         /// instead: such a text in a file of the scene's folder
         file: String,

@@ -1,4 +1,4 @@
-// The RGB portion of a general combiner stage, written from docs/numerics.md (CMB-2 to CMB-10, NUM-2, NUM-3).
+// The RGB portion of a general combiner stage, written from docs/rules (CMB-2 to CMB-10, NUM-2, NUM-3).
 //
 // Vectors hold red, green and blue, red in the top bits; a channel is a register of 9 bits in two's complement, 255 for one. The order of
 // the mappings and of the scales is that of the exported layout, general-stage.svh. Combinational; plain Verilog-2001.

@@ -6,7 +6,7 @@ use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed
 use ninebit::shown;
 use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
-/// Returns the report as a JSON document; `docs/replay.md` describes it.
+/// Returns the report as a JSON document; `docs/ci.md` describes it.
 pub fn json(all: &[Replayed]) -> String {
     let summary = Summary::from_replays(all);
     let document = json!({
