@@ -376,13 +376,13 @@ fn charts_keep_what_is_under_version_control() {
     assert_ne!(fs::read(bench.path("docs/speed-accuracy.md")).unwrap(), b"committed");
 }
 
-/// Checks a claim of the readme: "The first command draws the picture above, pixel for pixel."
+/// Checks a claim of the readme: "The first draws this picture, pixel for pixel."
 #[test]
 fn the_picture_of_the_readme_is_what_its_command_writes() {
     let bench = Bench::new();
     let readme = fs::read_to_string(at("README.md")).unwrap();
     let command = readme.split("$ cargo run -- ").nth(1).unwrap().lines().next().unwrap();
-    let shown = readme.split("](docs/images/").nth(1).unwrap().split(')').next().unwrap();
+    let shown = readme.split("[this picture](docs/images/").nth(1).unwrap().split(')').next().unwrap();
     let scene = at("vectors/scenes");
     let command = command.replace("vectors/scenes", scene.to_str().unwrap());
     bench.run(&command).data();
