@@ -65,6 +65,7 @@ const PLACES: &[(&str, &str)] = &[
     ("RampImage", "top: textures: { \"t\": (source: Ramp(@ width: 4, height: 4, from: (1, 2, 3), to: (9, 9, 9))) },"),
     ("Draw", "draw: @"),
     ("Draw", "true: @"),
+    ("PointParameters", "draw: point_parameters: (@)"),
     ("Rectangle", "draw: scissor: (@ width: 3, height: 3)"),
     ("WindowClip", "draw: window_clip: (@ rectangles: [(width: 3, height: 3)])"),
     ("ClearDraw", "draws: [(clear: (@ color: (1, 2, 3)))]"),

@@ -150,7 +150,8 @@ impl Seen {
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
             // Only pieces of clipped triangles have this field.
-            fields(draw, &page.fragment, &[("clipped", draw.get("clipped").is_some())]);
+            let figure = draw.get("figure").is_some_and(|figure| figure == "line" || figure == "point");
+            fields(draw, &page.fragment, &[("clipped", draw.get("clipped").is_some()), ("figure", figure)]);
             let mut made = BTreeMap::new();
             for (number, step) in draw["steps"].as_array().unwrap().iter().enumerate() {
                 let fetched = step["operation"] == "fetch";

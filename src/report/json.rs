@@ -4,6 +4,7 @@ use super::text::integer;
 use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use ninebit::plan::Plan;
 use ninebit::raster::project::ClipPlane;
+use ninebit::raster::stroke::Figure;
 use ninebit::shown;
 use ninebit::state::{Named, POLICIES, Policies, Policy, StageOrigin, Texture};
 use ninebit::trace::{Operand, SINGLE, Step, TexelAddress};
@@ -124,6 +125,9 @@ fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
         "program_origin": origins(&draw.program_origin),
     });
     value["steps"] = numbered(&draw.steps, plan.textures());
+    if draw.figure != Figure::Triangle {
+        value["figure"] = draw.figure.name().into();
+    }
     if let Some(piece) = &draw.piece {
         let planes: Vec<&str> = ClipPlane::in_set(piece.planes).map(|plane| plane.name()).collect();
         value["clipped"] = json!({ "triangle": piece.of, "planes": planes });

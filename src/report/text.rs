@@ -106,9 +106,10 @@ pub fn steps_text(steps: &[Step]) -> String {
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
-    write!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
+    let (draw_name, figure) = (shown::name(&draw.name), draw.figure.name());
+    write!(out, "\ndraw {} `{draw_name}`, {figure} {}", draw.draw, draw.triangle)?;
     match &draw.piece {
-        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, ClipPlane::names(piece.planes))?,
+        Some(piece) => writeln!(out, ", cut off {figure} {} (RAS-6: {})", piece.of, ClipPlane::names(piece.planes))?,
         None => writeln!(out)?,
     }
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
@@ -200,6 +201,10 @@ pub(super) fn expression(step: &Step) -> String {
         "given" => String::new(),
         "product" | "dot_product" => pairs(&step.inputs),
         "edge_function" => format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2)),
+        "stipple_bit" => {
+            let x = step.inputs.get(1).map_or(0, |x| x.value);
+            format!("bit {} of {}", x / 8 % 4 * 8 + 7 - x % 8, step.inputs.first().map_or("", |row| &row.name))
+        }
         "cut_24" => format!("cut({})", name(0)),
         "cut_24_product" => format!("cut({} {})", name(0), name(1)),
         "edge_sum" => format!("{} + {} + {}, to 29 bits of the largest", name(0), name(1), name(2)),

@@ -212,7 +212,15 @@ fn parts_are_whole(scene: &Scene, picture: &Frames, random: &mut Random) -> Resu
         // An even number of triangles, so that the second part begins with the same winding.
         Topology::TriangleStrip | Topology::QuadStrip => (2, 2),
         Topology::TriangleFan | Topology::Polygon => (1, 1),
+        Topology::Points => (1, 0),
+        Topology::Lines => (2, 0),
+        Topology::LineStrip => (1, 1),
+        Topology::LineLoop => return Ok(false),
     };
+    // A part of a polygon has edges of its own.
+    if draw.topology == Topology::Polygon && draw.polygon_modes != PolygonModes::FILL {
+        return Ok(false);
+    }
     let around = matches!(draw.topology, Topology::TriangleFan | Topology::Polygon);
     let at = repeated + usize::from(around) + step * random.below(count as u128 / step as u128 + 1) as usize;
     if at >= count {

@@ -3,6 +3,8 @@
 //! A scene is built from a tape of choices, in which 0 always means the plainest choice. Shrinking sets ranges of the tape to 0, so a
 //! failing scene loses what its failure does not need.
 
+#[path = "random_stroke.rs"]
+mod stroke;
 #[path = "random_texture.rs"]
 mod texture;
 #[path = "random_wide.rs"]
@@ -20,6 +22,16 @@ use proptest::test_runner::TestRunner;
 pub const FOG_FUNCTIONS: bool = true;
 pub const TEXTURE_SHADERS: bool = true;
 
+/// How vertices make triangles.
+pub const TRIANGLES: [Topology; 6] = [
+    Topology::Triangles,
+    Topology::TriangleStrip,
+    Topology::TriangleFan,
+    Topology::Quads,
+    Topology::QuadStrip,
+    Topology::Polygon,
+];
+
 /// Numbers of tape words: shared by all draws, for each draw, for all vertices of a draw, for each vertex, for each stage, and for the
 /// units of a draw.
 const SHARED: usize = 1024;
@@ -28,6 +40,10 @@ const VERTICES: usize = 768;
 const VERTEX: usize = 48;
 const STAGE: usize = 64;
 const UNITS: usize = 160;
+/// Number of tape words for the lines, points and patterns of a draw.
+const STROKE: usize = 112;
+/// Number of tape words of a scene.
+const PLAIN: usize = SHARED + 4 * DRAW + 4 * STROKE;
 
 /// Returns valid scenes whose vertices lie in the domain of RAS-0, so that the guard band cuts nothing.
 pub fn scene() -> BoxedStrategy<Scene> {
@@ -36,7 +52,7 @@ pub fn scene() -> BoxedStrategy<Scene> {
         let plan = Plan::compile(scene, &PlanOptions::default());
         plan.is_ok_and(|plan| plan.draws().iter().all(|draw| draw.assembly.clipping.planes & SIDES == 0))
     };
-    Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
+    Tape(PLAIN).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }
 
 /// A strategy for tapes of the given number of words.
@@ -166,7 +182,11 @@ pub fn build(tape: &[u32]) -> Scene {
     textures.extend(targets.iter().enumerate().filter_map(|(n, t)| texture::view(&mut c, profile, n, t)));
     let count = [2, 3, 4, 1][c.below(4) as usize];
     let given = Given { profile, targets: &targets, textures: &textures, palettes: palettes.len() };
-    let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), &given, n)).collect();
+    let mut draws_tape = tape.part(4 * DRAW);
+    let mut draws: Vec<Draw> = (0..count).map(|n| draw(&mut draws_tape.part(DRAW), &given, n)).collect();
+    for draw in &mut draws {
+        stroke::stroke(&mut tape.part(STROKE), (profile, &textures), draw);
+    }
     Scene { profile, targets, textures, palettes, draws }
 }
 
@@ -223,7 +243,7 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         .collect();
     let styles: CoordinateStyles = std::array::from_fn(|_| c.below(16));
     let (textures, texture_shader) = texture::units(&mut c.part(UNITS), given, &usable, &styles);
-    let topology: Topology = c.any();
+    let topology = c.pick(&TRIANGLES);
     let (mut vertices, positions) = vertices(&mut vertex_tape, topology, surface, &styles);
     let (fog, beyond) = fog(c, profile);
     if let Some((index, coordinate)) = beyond {
@@ -266,6 +286,12 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         perspective: c.below(3) != 0,
         cull: if c.once_in(6) { c.any() } else { Cull::None },
         front_face: c.any(),
+        polygon_modes: PolygonModes::FILL,
+        polygon_stipple: None,
+        lines: Lines::default(),
+        point_size: 8,
+        point_sizes: None,
+        point_sprite: false,
         scissor: c.once_in(5).then(|| Rectangle {
             x: c.below(surface.width.div_ceil(2)),
             y: c.below(surface.height.div_ceil(2)),
@@ -338,6 +364,7 @@ fn vertices(
         Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => c.size(3, 8),
         Topology::Quads => 4 * c.size(1, 3),
         Topology::QuadStrip => 2 * c.size(2, 5),
+        Topology::Points | Topology::Lines | Topology::LineStrip | Topology::LineLoop => c.size(2, 8),
     } as usize;
     // Styles 6 and 7, which leave the shape or go far away, are half as frequent.
     let style = c.pick(&[0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 3, 4, 1, 5]);
@@ -426,7 +453,7 @@ fn places(
                 let columns = (count / 2).max(1).next_power_of_two() as f32;
                 ((k / 2) as f32 / columns * 1.25, (k % 2) as f32)
             }
-            Topology::TriangleFan | Topology::Polygon => {
+            _ => {
                 let ring =
                     [(0.5, 0.5), (0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0), (0.0, 1.0)];
                 ring[k % 8]

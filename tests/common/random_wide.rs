@@ -8,7 +8,7 @@ pub mod extreme;
 #[path = "random_front_end.rs"]
 mod front_end;
 
-use super::{Choices, DRAW, Given, SHARED, Tape, build, texture};
+use super::{Choices, Given, PLAIN, Tape, build, texture};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ use proptest::prelude::*;
 const WIDER_DRAW: usize = 800;
 const WIDER: usize = 256 + 4 * WIDER_DRAW;
 /// Number of tape words of a plain scene.
-const FIRST: usize = SHARED + 4 * DRAW;
+const FIRST: usize = PLAIN;
 
 /// Returns valid scenes, most of them of kinds that [`scene`](super::scene) does not return.
 pub fn scene() -> BoxedStrategy<Scene> {

@@ -99,8 +99,12 @@ fn is_parameter(name: &str) -> bool {
         "X1A7R8G8B8O",
         "B8",
     ];
-    let slope = name.starts_with("dE");
-    parameters.contains(&name) || formats.contains(&name) || slope || name.ends_with(".origin")
+    let slope = name.starts_with("dE") || name.starts_with("dside");
+    parameters.contains(&name)
+        || name.starts_with("point.")
+        || formats.contains(&name)
+        || slope
+        || name.ends_with(".origin")
 }
 
 /// Recomputes one fragment under the document's `policies`. Returns the final value of each name.
@@ -138,6 +142,17 @@ pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Numbe
         known.insert(name.to_string(), computed);
     }
     Ok(known)
+}
+
+/// Returns floor(scale n (1/2 + (16 x + 8 - point) / 2 size)), or one less where that is whole, x right of the point and size no power of two.
+fn sprite(&[x, point, size, n]: &[i128; 4], scale: i128) -> i128 {
+    let d = 16 * x + 8 - point;
+    if size == 0 {
+        return (scale * n).div_euclid(2);
+    }
+    let (above, below) = (scale * n * (size + d), 2 * size);
+    let tie = above.rem_euclid(below) == 0 && d > 0 && size & (size - 1) != 0;
+    above.div_euclid(below) - i128::from(tie)
 }
 
 fn plain(value: i128) -> Number {
@@ -197,6 +212,12 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     let stencil = |new: i128| plain(v(0) & !v(2) | new & v(2));
     Some(match operation {
         // Rasteriser and interpolation.
+        "floor_sprite" => Number::new(sprite(&[v(0), v(1), v(2), v(3)], 256), 256),
+        "quad_sprite" => Number::new(sprite(&[v(0), v(1), v(2), v(3)], 65536), 65536),
+        "stipple_bit" => {
+            let (byte, bit) = (v(1).div_euclid(8).rem_euclid(4), 7 - v(1).rem_euclid(8));
+            plain(v(0) >> (8 * byte + bit) & 1)
+        }
         "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
         "cut_24" | "cut_24_product" | "edge_sum" | "reciprocal" => weights::number(operation, inputs),
         "rest_24" | "number" | "number_product" | "align_24" | "number_sum" => weights::number(operation, inputs),

@@ -21,6 +21,17 @@ pub enum Place {
     Floats([f32; 2]),
     /// A direction that the dot unit computes.
     Vector([f32; 3]),
+    /// PNT-2: the pixel's distances from a point in 1/16 pixel, and the point's size in 1/8 pixel.
+    Sprite([i128; 2], i128),
+}
+
+/// PNT-2: returns floor(scale (1/2 + d / 2n)), where d / 2n is a little less if d is above 0 and n has more than one bit.
+fn sprite(d: i128, n: i128, scale: i128) -> i128 {
+    if n == 0 {
+        return scale.div_euclid(2);
+    }
+    let less = i128::from(d > 0 && n.count_ones() > 1);
+    (4 * scale * (n + d) - less).div_euclid(8 * n)
 }
 
 /// TEX-12: returns (sc, tc) and ma of a direction on a face.
@@ -75,6 +86,7 @@ impl Place {
             Place::Bytes(v, whole) => (0, [0, 1].map(|a| floor_div(256 * i128::from(size[a]) * v[a], *whole).0)),
             Place::Floats(f) => (0, [0, 1].map(|a| limited(Number::of(f[a]).floor(256 * i128::from(size[a]))))),
             Place::Vector(v) => finite(*v).map_or((0, [0, 0]), |v| on_face(v, size[0])),
+            Place::Sprite(d, n) => (0, [0, 1].map(|a| sprite(d[a], *n, 256 * i128::from(size[a])))),
         }
     }
 
@@ -111,6 +123,7 @@ impl Place {
             Place::Bytes(v, whole) => Some([0, 1].map(|a| floor_div(scale[a] * v[a], *whole).0)),
             Place::Floats(f) => Some([0, 1].map(|a| Number::of(f[a]).floor(scale[a]))),
             Place::Vector(v) => on(finite(*v)?),
+            Place::Sprite(d, n) => Some([0, 1].map(|a| sprite(d[a], *n, scale[a]))),
         }
     }
 }

@@ -19,6 +19,7 @@ pub mod real;
 pub mod rop;
 pub mod sampling;
 pub mod shader;
+pub mod stroke;
 pub mod tally;
 pub mod texel;
 pub mod texture;
@@ -67,13 +68,13 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
         right = right.min(left + u64::from(s.width));
         bottom = bottom.min(top + u64::from(s.height));
     }
-    for vertices in raster::triangles(draw) {
-        let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
+    for figure in raster::figures(draw) {
+        let Some(setup) = Setup::new(draw, scene.profile, figure) else { continue };
         let units = Units::new(draw, &images, &setup, policies);
         for j in top..bottom {
             for i in left..right {
                 let (_, covered) = setup.edges(i.into(), j.into());
-                if !covered || clipped(draw, target, (i, j)) {
+                if !covered || clipped(draw, target, (i, j)) || (setup.is_filled() && !stroke::patterned(draw, i, j)) {
                     continue;
                 }
                 let sample = setup.sample(i.into(), j.into()).expect("a sum above 0 inside");

@@ -1,10 +1,11 @@
 //! Computes covered pixels from vertices, and everything that is interpolated.
 
 use super::real::{Number, bits, color_byte, shift, split};
+use super::stroke::{self, Kind, Strokes};
 use super::weights;
 use ninebit::state::{
-    ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel,
-    Topology, Vertex, VertexColor, VertexDepths, Viewport,
+    ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, PolygonOffset, Positions, Profile, ProvokingVertex,
+    ShadeModel, Topology, Vertex, VertexColor, VertexDepths, Viewport,
 };
 
 /// RAS-6: vertices with a smaller w are clipped away.
@@ -50,6 +51,7 @@ pub fn split_topology(draw: &Draw) -> Vec<([usize; 3], usize)> {
                 out.push(([0, i, i + 1], 0));
             }
         }
+        Topology::Points | Topology::Lines | Topology::LineStrip | Topology::LineLoop => {}
     }
     out
 }
@@ -144,17 +146,18 @@ fn clipped(triangle: [Vertex; 3], port: &Viewport) -> Vec<Vertex> {
     for plane in if port.depth_clamp { 2..3 } else { 0..3 } {
         polygon = half(plane, &polygon, port);
     }
-    let reaches_out = |v: &Vertex| {
-        let [x, y, ..] = to_window(*v, port).position;
-        // RAS-1 truncates toward zero, so 65535 sixteenths is the last position inside.
-        x.abs() >= 4096.0 || y.abs() >= 4096.0
-    };
-    if polygon.iter().any(reaches_out) {
+    if polygon.iter().any(|v| reaches_out(v, port)) {
         for plane in 3..7 {
             polygon = half(plane, &polygon, port);
         }
     }
     polygon
+}
+
+fn reaches_out(v: &Vertex, port: &Viewport) -> bool {
+    let [x, y, ..] = to_window(*v, port).position;
+    // RAS-1 truncates toward zero, so 65535 sixteenths is the last position inside.
+    x.abs() >= 4096.0 || y.abs() >= 4096.0
 }
 
 fn to_window(mut v: Vertex, port: &Viewport) -> Vertex {
@@ -168,29 +171,106 @@ fn to_window(mut v: Vertex, port: &Viewport) -> Vertex {
     v
 }
 
-/// Returns every triangle of a draw in window space, in order. With flat shading all vertices have the colours of the provoking one.
-pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
+/// RAS-6: returns the part of a line in clip space that is not clipped.
+fn clipped_line([mut a, mut b]: [Vertex; 2], port: &Viewport) -> Option<[Vertex; 2]> {
+    let cut = |planes: std::ops::Range<usize>, a: &mut Vertex, b: &mut Vertex| {
+        for plane in planes {
+            match (distance(plane, a.position, port) < 0.0, distance(plane, b.position, port) < 0.0) {
+                (true, true) => return None,
+                (true, false) => *a = crossing(plane, b, a, port),
+                (false, true) => *b = crossing(plane, a, b, port),
+                (false, false) => {}
+            }
+        }
+        Some(())
+    };
+    cut(if port.depth_clamp { 2..3 } else { 0..3 }, &mut a, &mut b)?;
+    if reaches_out(&a, port) || reaches_out(&b, port) {
+        cut(3..7, &mut a, &mut b)?;
+    }
+    Some([a, b])
+}
+
+/// RAS-6: returns whether a point in clip space is left.
+fn keeps_point(v: &Vertex, port: &Viewport) -> bool {
+    let inside = |plane: usize| distance(plane, v.position, port) >= 0.0;
+    let mut planes = if port.depth_clamp { 2..3 } else { 0..3 };
+    planes.all(inside) && (!reaches_out(v, port) || (3..7).all(inside))
+}
+
+/// Returns twice the signed area of what is left of a triangle on the screen, positive if it turns clockwise (POL-1).
+fn turn(draw: &Draw, triangle: [Vertex; 3]) -> i128 {
+    let polygon: Vec<[i128; 2]> = match &draw.positions {
+        Positions::Window => triangle.to_vec(),
+        Positions::Clip(port) => clipped(triangle, port).into_iter().map(|v| to_window(v, port)).collect(),
+    }
+    .iter()
+    .map(|v| [snap(v.position[0]), snap(v.position[1])])
+    .collect();
+    (0..polygon.len())
+        .map(|k| {
+            let (p, q) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+            p[0] * q[1] - p[1] * q[0]
+        })
+        .sum()
+}
+
+/// Returns everything that a draw consists of, in window space and in order. With flat shading all vertices have the colours of the provoking one.
+///
+/// A size in 1/8 pixel stands beside each; only points read it.
+pub fn figures(draw: &Draw) -> Vec<(Kind, [Vertex; 3], u16)> {
     let vertex = |position: usize| draw.vertices.at(draw.indices[position] as usize);
-    let mut out = Vec::new();
-    for (corners, provoking) in split_topology(draw) {
-        let mut triangle = corners.map(vertex);
+    // PNT-3
+    let size = |position: usize| match &draw.point_sizes {
+        Some(sizes) => sizes[draw.indices[position] as usize],
+        None => draw.point_size,
+    };
+    let colored = |mut corners: [Vertex; 3], provoking: usize| {
         if draw.shade_model == ShadeModel::Flat {
             let source = vertex(provoking);
-            for v in &mut triangle {
+            for v in &mut corners {
                 (v.diffuse, v.specular) = (source.diffuse, source.specular);
             }
         }
+        corners
+    };
+    if let Some(all) = stroke::split(draw) {
+        let placed = |(kind, corners, provoking): (Kind, [usize; 3], usize)| {
+            let [_, a, b] = colored(corners.map(vertex), provoking);
+            placed(draw, kind, [a, b], size(corners[0]))
+        };
+        return all.into_iter().filter_map(placed).collect();
+    }
+    let mut out = Vec::new();
+    let all = split_topology(draw);
+    for (place, (corners, provoking)) in all.iter().enumerate() {
+        let triangle = colored(corners.map(vertex), *provoking);
+        if let Some((kind, parts)) = stroke::of_triangle(draw, turn(draw, triangle), place, all.len()) {
+            let part = |ends: [usize; 2]| placed(draw, kind, ends.map(|end| triangle[end]), size(corners[ends[0]]));
+            out.extend(parts.into_iter().filter_map(part));
+            continue;
+        }
         match &draw.positions {
-            Positions::Window => out.push(triangle),
+            Positions::Window => out.push((Kind::Triangle, triangle, 0)),
             Positions::Clip(port) => {
                 let polygon: Vec<Vertex> = clipped(triangle, port).into_iter().map(|v| to_window(v, port)).collect();
                 for i in 1..polygon.len().saturating_sub(1) {
-                    out.push([polygon[0], polygon[i], polygon[i + 1]]);
+                    out.push((Kind::Triangle, [polygon[0], polygon[i], polygon[i + 1]], 0));
                 }
             }
         }
     }
     out
+}
+
+/// Returns a line or a point in window space, if any of it is left.
+fn placed(draw: &Draw, kind: Kind, [a, b]: [Vertex; 2], size: u16) -> Option<(Kind, [Vertex; 3], u16)> {
+    let [a, b] = match (&draw.positions, kind) {
+        (Positions::Window, _) => [a, b],
+        (Positions::Clip(port), Kind::Line) => clipped_line([a, b], port)?.map(|end| to_window(end, port)),
+        (Positions::Clip(port), _) => keeps_point(&a, port).then(|| [to_window(a, port); 2])?,
+    };
+    Some((kind, [a, a, b], size))
 }
 
 /// RAS-1: returns a position in 1/16 pixel, truncated toward zero.
@@ -199,10 +279,12 @@ fn snap(x: f32) -> i128 {
     m.signum() * shift(m.abs(), e + 4)
 }
 
-/// A triangle after set-up.
+/// A triangle after set-up, or a line or a point.
 #[derive(Clone)]
 pub struct Setup {
     pub vertices: [Vertex; 3],
+    kind: Kind,
+    strokes: Strokes,
     snapped: [[i128; 2]; 3],
     /// Twice the area of the triangle in units of 1/256 pixel, positive.
     area: i128,
@@ -223,28 +305,46 @@ pub struct Sample {
 
 impl Setup {
     /// Sets up a triangle: RAS-1, INT-6. Returns `None` if the area is zero or the triangle is culled.
-    pub fn new(draw: &Draw, profile: Profile, vertices: [Vertex; 3]) -> Option<Setup> {
+    pub fn new(draw: &Draw, profile: Profile, (kind, vertices, point_size): (Kind, [Vertex; 3], u16)) -> Option<Setup> {
         let snapped = vertices.map(|v| [snap(v.position[0]), snap(v.position[1])]);
         let [a, b, c] = snapped;
         let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if cross == 0 {
-            return None;
-        }
-        let clockwise = cross > 0;
-        let front = clockwise == (draw.front_face == FrontFace::Clockwise);
-        match draw.cull {
-            Cull::Front if front => return None,
-            Cull::Back if !front => return None,
-            _ => {}
+        if kind == Kind::Triangle {
+            if cross == 0 {
+                return None;
+            }
+            let clockwise = cross > 0;
+            let front = clockwise == (draw.front_face == FrontFace::Clockwise);
+            match draw.cull {
+                Cull::Front if front => return None,
+                Cull::Back if !front => return None,
+                _ => {}
+            }
         }
         // INT-6: nv10 keeps sixteen bits.
         let w = vertices.map(|v| Number::of(v.position[3]).cut(if profile == Profile::Nv10 { 16 } else { 24 }));
         let w = draw.perspective.then_some(w);
-        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), w })
+        let strokes = Strokes { lines: draw.lines, point_size };
+        Some(Setup { vertices, kind, strokes, snapped, area: cross.abs(), turn: cross.signum(), w })
+    }
+
+    /// PNT-2: returns the distances of a pixel from a point, and the point's size.
+    pub fn sprite(&self, i: i128, j: i128) -> Option<([i128; 2], i128)> {
+        let [x, y] = self.snapped[0];
+        (self.kind == Kind::Point).then(|| ([16 * i + 8 - x, 16 * j + 8 - y], self.strokes.point_size.into()))
+    }
+
+    /// Returns whether it is filled, and so takes patterns and offsets.
+    pub fn is_filled(&self) -> bool {
+        self.kind == Kind::Triangle
     }
 
     /// RAS-2, RAS-3: returns the edge functions at a pixel, and whether the triangle covers it.
     pub fn edges(&self, i: i128, j: i128) -> ([i128; 3], bool) {
+        if !self.is_filled() {
+            let ends = [self.snapped[1], self.snapped[2]];
+            return stroke::edges(&self.strokes, self.kind, ends, [i, j]);
+        }
         let (x, y) = (16 * i + 8, 16 * j + 8);
         let (mut e, mut covered) = ([0; 3], true);
         for k in 0..3 {
@@ -324,6 +424,8 @@ impl Setup {
         let value = self.depth_or_w(sample, z, test.w_buffer);
         let mut depth = shift(value.m, value.e + POINT);
         // DEP-5: the larger slope, in steps of the 29th bit of the largest z.
+        // LIN-3: lines and points have no offset.
+        let offset = if self.is_filled() { test.offset } else { PolygonOffset::default() };
         let largest = z.map(|z| bits(fixed(z))).into_iter().max().unwrap();
         let step = largest - 29;
         let along = |axis: usize| {
@@ -335,11 +437,11 @@ impl Setup {
                     (s[other] - t[other]) * 16 * (fixed(z[k]) >> 24)
                 })
                 .sum();
-            shift(sum.abs(), 24 - step) / self.area
+            shift(sum.abs(), 24 - step) / self.area.max(1)
         };
         let slope = if largest == 0 { 0 } else { along(0).max(along(1)) };
-        let (m, e) = if test.w_buffer { (0, 0) } else { split(test.offset.factor) };
-        depth += fixed(test.offset.bias) + shift(slope * m, e + step);
+        let (m, e) = if test.w_buffer { (0, 0) } else { split(offset.factor) };
+        depth += fixed(offset.bias) + shift(slope * m, e + step);
         if let Some(range) = test.range {
             let (lowest, highest) = (fixed(range.lowest), fixed(range.highest));
             let dropped = |beyond: &dyn Fn(f32) -> bool| range.drops_triangles && z.iter().all(|z| beyond(*z));

@@ -141,6 +141,9 @@ impl<'a> Units<'a> {
         let stage = &self.draw.texture_shader[k];
         let set = stage.coordinate_set;
         let dot = |unit: usize| self.dot(unit, i, j, sample);
+        if let Some((d, n)) = self.setup.sprite(i, j).filter(|_| k == 3 && self.draw.point_sprite) {
+            return Place::Sprite(d, n);
+        }
         match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
                 // TSH-7: both bytes are two's complement regardless of the flags. The sums are in single precision.

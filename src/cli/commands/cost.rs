@@ -63,7 +63,7 @@ fn pixels(target: &Target) -> u64 {
     u64::from(target.width) * u64::from(target.height)
 }
 
-/// Returns the number of triangles that a draw's indices form (RAS-4).
+/// Returns the number of triangles, lines or points that a draw's indices form (RAS-4).
 fn triangles(draw: &Draw) -> u64 {
     let count = draw.indices.len() as u64;
     match draw.topology {
@@ -71,5 +71,9 @@ fn triangles(draw: &Draw) -> u64 {
         Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => count.saturating_sub(2),
         Topology::Quads => count / 4 * 2,
         Topology::QuadStrip => (count / 2).saturating_sub(1) * 2,
+        // Lines and points.
+        Topology::Lines => count / 2,
+        Topology::LineStrip => count.saturating_sub(1),
+        Topology::LineLoop | Topology::Points => count,
     }
 }

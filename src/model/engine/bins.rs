@@ -1,7 +1,6 @@
 //! Cuts the rows of a target into bands, and sorts the triangles of a draw by the bands that they meet.
 
 use crate::raster::assemble::Assembly;
-use crate::raster::setup::centres;
 use std::ops::Range;
 
 /// Returns the borders of bands of so many rows: the first row of each band, and the end of the last.
@@ -53,7 +52,7 @@ pub(super) fn balanced<'a>(
 
 /// Returns the rows of a triangle within a target, and its cost on each of them, in 256ths of a pixel.
 fn cost(assembly: &Assembly, number: usize, (width, height): (usize, usize)) -> (Range<usize>, i64) {
-    let [(left, right), (top, bottom)] = [0, 1].map(|axis| bounds(assembly, number, axis));
+    let [(left, right), (top, bottom)] = [0, 1].map(|axis| assembly.bounds(number, axis));
     let (rows, columns) = (within((top, bottom), height), within((left, right), width));
     if rows.is_empty() || columns.is_empty() {
         return (0..0, 0);
@@ -105,11 +104,6 @@ impl Bins {
     }
 }
 
-/// Returns the columns or the rows of a triangle's bounding box, for axis 0 or 1.
-pub(super) fn bounds(assembly: &Assembly, number: usize, axis: usize) -> (i64, i64) {
-    centres(assembly.triangles.vertices(number).map(|v| i64::from(assembly.corners[v as usize].position[axis])))
-}
-
 /// Returns those that lie between 0 and `end`.
 pub(super) fn within((first, last): (i64, i64), end: usize) -> Range<usize> {
     first.clamp(0, end as i64) as usize..last.clamp(0, end as i64) as usize
@@ -117,7 +111,7 @@ pub(super) fn within((first, last): (i64, i64), end: usize) -> Range<usize> {
 
 /// Returns the bands that a triangle's rows lie in.
 fn met(assembly: &Assembly, number: usize, borders: &[usize]) -> Range<usize> {
-    let rows = within(bounds(assembly, number, 1), borders.last().copied().unwrap_or(0));
+    let rows = within(assembly.bounds(number, 1), borders.last().copied().unwrap_or(0));
     if rows.is_empty() {
         return 0..0;
     }
@@ -129,8 +123,9 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::raster::assemble::{Clipping, Corner};
+    use crate::raster::setup::centres;
     use crate::raster::triangles::Triangles;
-    use crate::state::{ProvokingVertex, Topology, Vertices};
+    use crate::state::{Lines, ProvokingVertex, Topology, Vertices};
     use std::sync::Arc;
 
     fn triangles(count: u32) -> Assembly {
@@ -141,7 +136,8 @@ mod tests {
             .collect();
         let indices: Arc<[u32]> = (0..3 * count).collect();
         let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
-        Assembly { vertices: Vertices::default(), corners, triangles, clipping: Clipping::default() }
+        let (vertices, clipping, lines) = (Vertices::default(), Clipping::default(), Lines::default());
+        Assembly { vertices, corners, triangles, clipping, lines, point_size: 8, point_sizes: None }
     }
 
     /// No band costs more than its part, one row and what makes a border even.

@@ -4,7 +4,8 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Corner;
 use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
-use crate::raster::setup::{Triangle, centres, clockwise_area};
+use crate::raster::setup::{Triangle, centres, clockwise_area, is_front};
+use crate::raster::stroke::{self, Figure};
 use crate::state::*;
 use crate::texture::coordinates::Coordinates;
 use crate::texture::stage::ShaderSetup;
@@ -86,9 +87,19 @@ impl<'a> TriangleContext<'a> {
     /// of pixels.
     #[inline(always)]
     pub(super) fn may_cover(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
+        if draw.assembly.triangles.figure(number) != Figure::Triangle {
+            return Self::may_stroke(draw, number, rows);
+        }
         let (x, y) = positions(&corners(draw, number));
         let ((left, right), (top, bottom), area) = (centres(x), centres(y), clockwise_area(x, y));
         (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !Self::is_culled(draw, area)
+    }
+
+    /// Returns whether the box of a line or a point holds pixels in `rows`.
+    #[cold]
+    fn may_stroke(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
+        let [(left, right), (top, bottom)] = [0, 1].map(|axis| draw.assembly.bounds(number, axis));
+        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right)
     }
 
     /// Returns the doubled area of triangle `number` of a draw, which is positive if it turns clockwise on the screen.
@@ -100,7 +111,7 @@ impl<'a> TriangleContext<'a> {
     /// Returns whether a triangle of that [area](Self::clockwise_area) is culled.
     #[inline(always)]
     pub(super) fn is_culled(draw: &PlannedDraw, clockwise_area: i64) -> bool {
-        let front = (clockwise_area < 0) == (draw.front_face == FrontFace::CounterClockwise);
+        let front = is_front(clockwise_area, draw.front_face);
         match draw.cull {
             Cull::None => false,
             Cull::Front => front,
@@ -131,7 +142,13 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     fn place(&mut self) -> bool {
         let (draw, (x, y)) = (self.draw, positions(&self.corners()));
-        self.triangle.place(x, y);
+        match draw.assembly.triangles.figure(self.number) {
+            Figure::Triangle => {
+                self.triangle.place(x, y);
+            }
+            Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),
+            Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(self.number)),
+        }
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
             match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
@@ -154,9 +171,31 @@ impl<'a> TriangleContext<'a> {
                 self.coordinates[unit.index] = Some(Coordinates::new(sets, unit));
             }
         }
+        if draw.point_sprite && self.triangle.figure == Figure::Point {
+            self.place_sprite();
+        }
         if draw.fog.enabled && draw.fog_channels & 8 != 0 {
             self.fog = Some(FogPlane::new(draw.fog.function, self.vertices().fog()));
         }
+    }
+
+    /// PNT-2: gives the sprite's unit the coordinates of the point.
+    #[cold]
+    fn place_sprite(&mut self) {
+        let corner = self.corners()[1];
+        let sprite =
+            Coordinates::Sprite { at: corner.position.map(i64::from), size: self.draw.assembly.size_of(self.number) };
+        match &mut self.shader {
+            Some(shader) => shader.place(SPRITE_UNIT, sprite),
+            None => self.coordinates[SPRITE_UNIT] = Some(sprite),
+        }
+    }
+
+    /// STP-1: returns whether the pattern of filled triangles leaves a pixel out.
+    #[inline]
+    pub fn is_stippled(&self, i: i64, j: i64) -> bool {
+        let stipple = self.draw.polygon_stipple.as_ref().filter(|_| self.triangle.figure == Figure::Triangle);
+        stipple.is_some_and(|stipple| !stroke::stipples(stipple, i, j))
     }
 
     /// Returns the triangle's vertices.

@@ -1,6 +1,6 @@
 //! Counts the work of a render while it is done, and the fragments of draws without shading them.
 
-use super::bins::{bounds, within};
+use super::bins::within;
 use super::context::TriangleContext;
 use super::{TextureWords, cleared, walk};
 use crate::plan::{Plan, PlanError, PlannedDraw};
@@ -121,7 +121,11 @@ pub(super) fn spans(plan: &Plan, planned: &PlannedDraw, mut visit: impl FnMut(u6
         let triangle = &context.triangle;
         for row in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
             let (first, end) = triangle.span(row, columns);
-            if !visit((end - first) as u64) {
+            let pixels = match planned.polygon_stipple {
+                None => (end - first) as u64,
+                Some(_) => (first..end).filter(|i| !context.is_stippled(*i, row)).count() as u64,
+            };
+            if !visit(pixels) {
                 return;
             }
         }
@@ -162,7 +166,7 @@ impl Most {
 
 /// Returns the length of the part of a triangle's columns or rows that lies within limits.
 fn part(planned: &PlannedDraw, number: usize, axis: usize, limits: (i64, i64)) -> u64 {
-    let (first, end) = bounds(&planned.assembly, number, axis);
+    let (first, end) = planned.assembly.bounds(number, axis);
     let Range { start, end } = within((first - limits.0, end - limits.0), (limits.1 - limits.0) as usize);
     (end - start) as u64
 }

@@ -81,9 +81,9 @@ impl TriangleContext<'_> {
         let draw = self.draw;
         let mut sample = Sample::new(&self.triangle, fragment.e);
         sample.ideal = fragment.weights;
-        if O::ON && observer.wants_any(&["E", "e", "w", "r0", "r2", "S", "R", "b"]) {
+        if O::ON && observer.wants_any(&["E", "e", "w", "r0", "r2", "S", "R", "b", "side", "stipple"]) {
             let w = significant(self.vertices().position(3), self.plan.profile);
-            reports::setup(&sample, fragment.pixel, w, self.barycentrics(&sample), observer);
+            reports::setup(draw, &sample, fragment.pixel, w, self.barycentrics(&sample), observer);
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);

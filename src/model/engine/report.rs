@@ -8,6 +8,7 @@ use crate::number::{Lane, light};
 use crate::plan::PlannedDraw;
 use crate::raster::fog::{FogFactor, FogPlane, FogStep, limited};
 use crate::raster::interpolate::Sample;
+use crate::raster::stroke::{self, Figure};
 use crate::raster::{depth, report as raster};
 use crate::rop::{blend, surface};
 use crate::state::*;
@@ -21,6 +22,7 @@ const DEPTH: &str = "depth test";
 
 /// Reports edge functions and weights. `w` holds those of the vertices as the chip takes them, `ideal` the weights of the ideal.
 pub(super) fn setup<O: Observer>(
+    draw: &PlannedDraw,
     sample: &Sample<'_>,
     pixel: (i64, i64),
     w: [f32; 3],
@@ -28,9 +30,28 @@ pub(super) fn setup<O: Observer>(
     observer: &mut O,
 ) {
     let triangle = sample.triangle;
-    raster::edges(RASTER, ("RAS-3", ""), triangle, pixel, observer);
+    let rule = match (triangle.figure, draw.assembly.lines.rasterization) {
+        (Figure::Triangle, _) => "RAS-3",
+        (Figure::Line, LineRasterization::Rectangular) => "LIN-1",
+        (Figure::Line, LineRasterization::Bresenham) => "LIN-2",
+        (Figure::Point, _) => "PNT-1",
+    };
+    raster::edges(RASTER, (rule, ""), triangle, pixel, observer);
+    match (triangle.figure, &draw.polygon_stipple) {
+        (Figure::Triangle, None) => {}
+        (Figure::Triangle, Some(stipple)) => pattern(stipple, pixel, observer),
+        _ => raster::stroke(RASTER, rule, triangle, pixel, observer),
+    }
     raster::ratios(INTERPOLATION, triangle, w, observer);
     raster::weights(INTERPOLATION, "", (sample.e, triangle.ratios), sample.weights(), Some(ideal), observer);
+}
+
+/// STP-1: reports the bit of a pattern, which is 1 where a triangle is drawn.
+fn pattern<O: Observer>(stipple: &PolygonStipple, (x, y): (i64, i64), observer: &mut O) {
+    let word = stipple.0[31 - (y & 31) as usize];
+    let row = observer.tell(Step::given(RASTER, "STP-1", "stipple.row", word).note(format!("{word:#010x}")));
+    let step = Step::given(RASTER, "STP-1", "stipple.bit", stroke::stipples(stipple, x, y));
+    observer.step(step.by("stipple_bit", vec![row, plain("x", x)]));
 }
 
 /// CMB-13: reports registers that are read before they are written.
@@ -227,8 +248,8 @@ impl TriangleContext<'_> {
             let weights = depth::weights(sample.e);
             raster::shares(DEPTH, ("DEP-1", "", "depth."), (sample.e, None), &weights, observer);
         }
-        if test.offset != PolygonOffset::default() {
-            let triangle = sample.triangle;
+        let triangle = sample.triangle;
+        if test.offset != PolygonOffset::default() && triangle.figure == Figure::Triangle {
             inputs.extend([float("bias", test.offset.bias), float("factor", test.offset.factor)]);
             inputs.extend((0..3).map(|k| plain(format!("dE{k}/dx"), triangle.a[k])));
             inputs.extend((0..3).map(|k| plain(format!("dE{k}/dy"), triangle.b[k])));

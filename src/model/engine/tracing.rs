@@ -9,6 +9,7 @@ use super::{TextureWords, cleared, cleared_colors, draw_defined};
 use crate::number::{Lane, Paired};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
+use crate::raster::stroke::Figure;
 use crate::rop::surface;
 use crate::state::{Rectangle, StageOrigin, Target};
 use crate::texture::planned::Image;
@@ -44,6 +45,8 @@ pub struct DrawTrace {
     pub name: String,
     /// Number of the triangle in the draw.
     pub triangle: usize,
+    /// What the triangle is.
+    pub figure: Figure,
     /// The triangle that it was cut from, if it was clipped (RAS-6).
     pub piece: Option<Piece>,
     /// Whether it was stored, and not dropped by a test.
@@ -290,6 +293,7 @@ impl<'a> Tracer<'a> {
                     draw: index,
                     name: planned.name.clone(),
                     triangle: context.number,
+                    figure: context.triangle.figure,
                     piece: planned.assembly.clipping.piece(context.number).copied(),
                     stored,
                     shown: surface::show(planned.surface, pixel.word),
@@ -305,7 +309,7 @@ impl<'a> Tracer<'a> {
 /// Returns whether triangle `number` covers a pixel. Texture coordinates and fog are not set up.
 fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> bool {
     let (i, j) = (i64::from(x), i64::from(y));
-    context.set_up(number, (j, j + 1)) && context.triangle.covers(context.triangle.edges(i, j))
+    context.set_up(number, (j, j + 1)) && context.triangle.contains(i, j) && !context.is_stippled(i, j)
 }
 
 /// The contents of a traced pixel.

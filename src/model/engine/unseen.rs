@@ -1,11 +1,11 @@
 //! Says why a draw stores nothing, as far as that is known before it is drawn.
 
-use super::bins::bounds;
 use super::context::TriangleContext;
 use super::counting::{Most, ROWS, spans};
 use super::walk;
 use crate::plan::{Invisible, Plan, PlannedDraw};
 use crate::raster::project::ClipPlane;
+use crate::raster::stroke::Figure;
 use crate::rop::stencil;
 use crate::state::{AlphaTest, CompareFunction, Named};
 
@@ -106,11 +106,12 @@ crate::state::named! {
 
 impl Missed {
     fn of(planned: &PlannedDraw, number: usize, windows: &[walk::Window]) -> Missed {
-        let [across, down] = [0, 1].map(|axis| bounds(&planned.assembly, number, axis));
+        let [across, down] = [0, 1].map(|axis| planned.assembly.bounds(number, axis));
         let meets = |a: (i64, i64), b: (i64, i64)| a.0.max(b.0) < a.1.min(b.1);
+        let is_triangle = planned.assembly.triangles.figure(number) == Figure::Triangle;
         match TriangleContext::clockwise_area(planned, number) {
-            0 => Missed::Flat,
-            area if TriangleContext::is_culled(planned, area) => Missed::Culled,
+            0 if is_triangle => Missed::Flat,
+            area if is_triangle && TriangleContext::is_culled(planned, area) => Missed::Culled,
             // A triangle between two centres has no columns or no rows of its own.
             _ if across.0 >= across.1 || down.0 >= down.1 => Missed::Between,
             _ if !windows.iter().any(|(rows, columns)| meets(down, *rows) && meets(across, *columns)) => {

@@ -90,7 +90,7 @@ pub fn covered(
             while i < right {
                 for (j, span) in [(top, spans[0]), (top + 1, spans[1])] {
                     for i in [i, i + 1] {
-                        if span.0 <= i && i < span.1 {
+                        if span.0 <= i && i < span.1 && !context.is_stippled(i, j) {
                             visit(&context, i, j);
                         }
                     }

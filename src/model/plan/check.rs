@@ -35,6 +35,7 @@ pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
     check.errors
 }
 
+mod raster;
 mod unit;
 
 struct Check<'s> {
@@ -287,6 +288,7 @@ impl Check<'_> {
                 "factors run from 0, all fog, to 1; with a fog function coordinates may be anything",
             );
         }
+        self.strokes(draw);
         self.combiners(draw);
         self.units(draw);
         match self.scene.targets.get(draw.target) {
@@ -295,37 +297,6 @@ impl Check<'_> {
                 let (message, help) = missing("target", draw.target, self.scene.targets.len());
                 self.refuse("NB0212", None, format!("the draw goes into {message}"), help);
             }
-        }
-    }
-
-    fn depth_test(&mut self, draw: &Draw, test: &DepthTest) {
-        if test.vertex_depths == VertexDepths::Steps && !matches!(draw.positions, Positions::Window) {
-            let help = "give window positions, or depths as fractions";
-            self.refuse(
-                "NB0206",
-                "DEP-1",
-                "vertex depths are steps of the buffer, and its positions are projected",
-                help,
-            );
-        }
-        let PolygonOffset { bias, factor } = test.offset;
-        if !bias.is_finite() || !factor.is_finite() {
-            self.refuse(
-                "NB0207",
-                "DEP-5",
-                format!("the polygon offset has bias {bias} and factor {factor}"),
-                "take finite numbers",
-            );
-        }
-        if test.w_buffer && factor != 0.0 {
-            let message = "it is not known how a polygon offset's factor counts in a w buffer";
-            self.refuse("NB0402", "DEP-6", message, "take a bias alone, or a z buffer");
-        }
-        if let Some(DepthRange { lowest, highest, .. }) = test.range
-            && !(lowest.is_finite() && highest.is_finite() && lowest <= highest)
-        {
-            let message = format!("the depth range is {lowest} to {highest}");
-            self.refuse("NB0206", "DEP-4", message, "take two finite numbers, the lower one first");
         }
     }
 

@@ -132,6 +132,10 @@ pub struct PlannedDraw {
     pub cull: Cull,
     /// Which winding makes a front face.
     pub front_face: FrontFace,
+    /// The pattern that filled triangles have.
+    pub polygon_stipple: Option<PolygonStipple>,
+    /// Whether points have coordinates of their own in unit [`SPRITE_UNIT`] (PNT-2).
+    pub point_sprite: bool,
     /// Channels of the primary colour that are read, as bits R, G, B, A.
     pub primary: u8,
     /// Channels of the secondary colour that are read, as bits R, G, B, A.
@@ -459,6 +463,8 @@ fn plan_draw(
         perspective: draw.perspective,
         cull: draw.cull,
         front_face: draw.front_face,
+        polygon_stipple: draw.polygon_stipple.filter(|_| draw.topology.has_faces()),
+        point_sprite: draw.point_sprite,
         primary: liveness.primary,
         secondary: liveness.secondary,
         fog_channels: liveness.fog,

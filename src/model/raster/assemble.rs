@@ -1,10 +1,14 @@
 //! Assembly: converts the vertices of a draw to window coordinates, clips its triangles (RAS-6) and checks the limits
 //! of RAS-0.
 
+use std::sync::Arc;
+
+use super::setup::centres;
+use super::stroke::{self, Figure};
 pub(crate) use super::triangles::{Assembled, Triangles};
-use super::{LARGEST_W, SMALLEST_W, project};
+use super::{LARGEST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
-use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
+use crate::state::{Draw, Lines, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
 
 /// The values of a vertex that triangle set-up reads, converted as on the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,14 +35,52 @@ pub struct Assembly {
     pub triangles: Triangles,
     /// The result of clipping.
     pub clipping: Clipping,
+    /// State of the lines.
+    pub lines: Lines,
+    /// Size of the points in 1/8 pixel.
+    pub point_size: u16,
+    /// Size of the point at each vertex of the draw, in place of that.
+    pub point_sizes: Option<Arc<[u16]>>,
 }
 
 impl Assembly {
-    /// Returns the area of a triangle in pixels, rounded down.
+    /// Returns the area of a triangle in pixels, rounded down. A line has that of its rectangle, a point that of its box.
     pub(crate) fn area(&self, number: usize) -> u64 {
-        let [a, b, c] = self.triangles.vertices(number).map(|v| self.corners[v as usize].position.map(i64::from));
-        // Twice the area in 1/256 square pixel.
-        ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
+        let [a, b, c] = self.positions(number);
+        match self.triangles.figure(number) {
+            // Twice the area in 1/256 square pixel.
+            Figure::Triangle => ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512,
+            Figure::Line => {
+                let [x, y] = [0, 1].map(|axis| (c[axis] - a[axis]).unsigned_abs());
+                u64::from(self.lines.width) * (2 * x.max(y) + x.min(y)) / 256
+            }
+            Figure::Point => {
+                let count = |axis: usize| self.bounds(number, axis);
+                [count(0), count(1)].map(|(first, end)| (end - first).max(0) as u64).iter().product()
+            }
+        }
+    }
+
+    /// Returns the columns or the rows within which a triangle covers pixels, for axis 0 or 1.
+    pub(crate) fn bounds(&self, number: usize, axis: usize) -> (i64, i64) {
+        let all = self.positions(number);
+        match self.triangles.figure(number) {
+            Figure::Triangle => centres(all.map(|position| position[axis])),
+            Figure::Line => stroke::line_box([all[1], all[2]], self.lines)[axis],
+            Figure::Point => stroke::point_box(all[1], self.size_of(number))[axis],
+        }
+    }
+
+    /// Returns the size of a point in 1/8 pixel.
+    pub(crate) fn size_of(&self, number: usize) -> u16 {
+        let vertex = self.triangles.vertices(number)[1] as usize;
+        self.point_sizes.as_ref().map_or(self.point_size, |sizes| sizes[vertex])
+    }
+
+    /// Returns x and y of a triangle's vertices, in 1/16 pixel.
+    #[inline(always)]
+    fn positions(&self, number: usize) -> [[i64; 2]; 3] {
+        self.triangles.vertices(number).map(|v| self.corners[v as usize].position.map(i64::from))
     }
 }
 
@@ -104,27 +146,28 @@ const MAX_ERRORS: usize = 8;
 /// clipping.
 pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     let mut vertices = draw.vertices.clone();
-    let triangles = Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex);
+    let triangles = modes::figures(draw, Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex));
     let Positions::Clip(viewport) = &draw.positions else {
-        return finish(vertices, triangles, Clipping::default(), &[]);
+        return finish(draw, vertices, triangles, Clipping::default(), &[]);
     };
     if (0..vertices.len()).all(|v| project::beyond(vertices.position(v), viewport) == 0) {
         let mut window = vertices.clone();
         window.map_positions(|position| project::window(position, viewport));
         // Otherwise something leaves the guard band, and has to be cut below.
-        if let Ok(assembly) = finish(window, triangles.clone(), Clipping::default(), &[]) {
+        if let Ok(assembly) = finish(draw, window, triangles.clone(), Clipping::default(), &[]) {
             return Ok(assembly);
         }
     }
     let (triangles, clipping, blamed) = clip(&mut vertices, &triangles, viewport);
     let inside = |position: [f32; 4]| position[3] >= SMALLEST_W;
     vertices.map_positions(|position| if inside(position) { project::window(position, viewport) } else { position });
-    finish(vertices, triangles, clipping, &blamed)
+    finish(draw, vertices, triangles, clipping, &blamed)
 }
 
 /// Checks vertices in window coordinates against RAS-0 and completes the assembly. The last vertices were made by
 /// clipping; `blamed` holds, for each of these, the vertex of the draw that is reported in its place.
 fn finish(
+    draw: &Draw,
     vertices: Vertices,
     triangles: Triangles,
     clipping: Clipping,
@@ -152,7 +195,8 @@ fn finish(
         return Err(errors);
     }
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
-    Ok(Assembly { vertices, corners, triangles, clipping })
+    let (lines, point_size, point_sizes) = (draw.lines, draw.point_size, draw.point_sizes.clone());
+    Ok(Assembly { vertices, corners, triangles, clipping, lines, point_size, point_sizes })
 }
 
 fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {
@@ -197,7 +241,12 @@ fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> 
             kept.push(triangle);
             continue;
         };
-        let (polygon, planes) = project::clip(&vertices.triangle(triangle.vertices).all(), viewport);
+        let all = vertices.triangle(triangle.vertices).all();
+        let (polygon, planes) = match triangle.figure {
+            Figure::Triangle => project::clip(&all, viewport),
+            Figure::Line => project::clip_line([all[1], all[2]], viewport),
+            Figure::Point => project::clip_point(all[1], viewport),
+        };
         clipping.planes |= planes;
         if planes == 0 {
             // A position is not a number, which is refused later.
@@ -207,9 +256,13 @@ fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> 
         } else {
             clipping.cut += 1;
             let start = (vertices.len() + new.len()) as u32;
-            for i in 1..polygon.len() as u32 - 1 {
+            let pieces = if triangle.figure == Figure::Line { 1..2 } else { 1..polygon.len() as u32 - 1 };
+            for i in pieces {
                 clipping.pieces.push(Piece { number: kept.len(), of, planes });
-                kept.push(Assembled { vertices: [start, start + i, start + i + 1], provoking: triangle.provoking });
+                kept.push(match triangle.figure {
+                    Figure::Line => Assembled::line([start, start + 1], triangle.provoking),
+                    _ => Assembled { vertices: [start, start + i, start + i + 1], ..triangle },
+                });
             }
             blamed.resize(blamed.len() + polygon.len(), outside as usize);
             new.extend(polygon);

@@ -5,6 +5,7 @@
 
 use super::binary::Binary;
 use super::setup::Triangle;
+use super::stroke::Figure;
 use super::weights::{Number, Weights, difference, ratios};
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -49,6 +50,8 @@ impl DepthPlane {
         }
         let offset = match test.offset {
             PolygonOffset { bias: 0.0, factor: 0.0 } => Binary::default(),
+            // LIN-3: it is for filled triangles.
+            _ if triangle.figure != Figure::Triangle => Binary::default(),
             PolygonOffset { bias, .. } if test.w_buffer => Binary::new(bias),
             _ => offset(test.offset, slope(triangle, z)),
         };

@@ -3,7 +3,8 @@
 
 use super::fog::not_finite;
 use super::setup::Triangle;
-use crate::state::{DepthFormat, DepthTest, FogFunction, FogMode, VertexDepths};
+use super::stroke::Figure;
+use crate::state::{DepthFormat, DepthTest, FogFunction, FogMode, PolygonOffset, VertexDepths};
 
 /// Returns the barycentric weights of the three vertices at a sample, perspective-corrected by the vertices' w if
 /// `perspective` is set.
@@ -108,15 +109,16 @@ pub(crate) fn depth(
 ) -> f64 {
     let full = f64::from(format.largest());
     let fractions = test.vertex_depths == VertexDepths::Fractions && !format.is_float();
+    let offset = if triangle.figure == Figure::Triangle { test.offset } else { PolygonOffset::default() };
     let z = z.map(|z| if fractions { f64::from(z).clamp(0.0, 1.0) * full } else { f64::from(z) });
     if test.w_buffer {
-        let depth = 1.0 / mix(weights, w.map(|w| 1.0 / f64::from(w))) + f64::from(test.offset.bias);
+        let depth = 1.0 / mix(weights, w.map(|w| 1.0 / f64::from(w))) + f64::from(offset.bias);
         let range = test.range.map_or((f64::NEG_INFINITY, f64::INFINITY), |r| (r.lowest.into(), r.highest.into()));
         return in_words(format, depth.max(range.0).min(range.1));
     }
     let along = |edges: [i64; 3]| mix(edges.map(|edge| edge as f64), z).abs() / triangle.doubled_area as f64;
     let slope = along(triangle.a).max(along(triangle.b));
-    let mut depth = mix(weights, z) + f64::from(test.offset.bias) + f64::from(test.offset.factor) * slope;
+    let mut depth = mix(weights, z) + f64::from(offset.bias) + f64::from(offset.factor) * slope;
     if let Some(range) = test.range {
         depth = depth.max(f64::from(range.lowest)).min(f64::from(range.highest));
     }

@@ -2,7 +2,7 @@
 //!
 //! [`triangles`], [`assemble`] and [`project`] convert the vertices of a draw to clipped triangles in window
 //! coordinates, once, when the plan is made. [`setup`] splits the floats of a triangle; everything after it is integer
-//! arithmetic. [`weights`] defines the weights of the vertices and the numbers that are interpolated by them,
+//! arithmetic. [`stroke`] covers lines and points, which [`modes`] makes of triangles. [`weights`] defines the weights of the vertices and the numbers that are interpolated by them,
 //! [`interpolate`] the colours and texel coordinates, [`fog`] the fog, and [`mod@depth`] the depths.
 
 pub mod assemble;
@@ -11,9 +11,11 @@ pub mod depth;
 pub mod fog;
 pub mod ideal;
 pub mod interpolate;
+pub mod modes;
 pub mod project;
 pub(crate) mod report;
 pub mod setup;
+pub mod stroke;
 pub mod triangles;
 pub mod weights;
 

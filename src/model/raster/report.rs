@@ -57,6 +57,31 @@ pub(crate) fn edges<O: Observer>(
     }
 }
 
+/// LIN-1, LIN-2, PNT-1: reports the box of a line or a point, and its sides at a pixel: inside none is negative.
+pub(crate) fn stroke<O: Observer>(
+    block: &str,
+    rule: &'static str,
+    figure: &Triangle,
+    (x, y): (i64, i64),
+    observer: &mut O,
+) {
+    let (columns, rows) = (figure.columns, figure.rows);
+    for (name, value) in [("left", columns.0), ("right", columns.1 - 1), ("top", rows.0), ("bottom", rows.1 - 1)] {
+        observer.step(Step::given(block, rule, format!("box.{name}"), value));
+    }
+    for (k, [a, b, c]) in figure.sides.into_iter().enumerate().filter(|(_, side)| *side != [0; 3]) {
+        let inputs = vec![
+            plain(format!("dside{k}/dx"), a),
+            plain(format!("dside{k}/dy"), b),
+            plain(format!("side{k}.origin"), c),
+            plain("x", x),
+            plain("y", y),
+        ];
+        let step = Step::given(block, rule, format!("side{k}"), a * x + b * y + c);
+        observer.step(step.by("edge_function", inputs));
+    }
+}
+
 /// Reports e, S, R and e R, from edge functions that are reported without `prefix` or with that of `edges`.
 pub(crate) fn shares<O: Observer>(
     block: &str,

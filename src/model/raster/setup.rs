@@ -1,10 +1,11 @@
-//! Triangle set-up: RAS-1 to RAS-3, and the ratios of w of WGT-1.
+//! Triangle set-up: RAS-1 to RAS-3, and the ratios of w of WGT-1. Lines and points are [strokes](super::stroke).
 
 use super::GUARD;
 use super::binary::Binary;
+use super::stroke::{Figure, Side};
 use super::weights::ratios;
 use crate::number::convert::{snap, w_16_bits};
-use crate::state::Profile;
+use crate::state::{FrontFace, Profile};
 use std::ops::{Add, Mul, Shr, Sub};
 
 /// A triangle that is set up for drawing.
@@ -31,6 +32,10 @@ pub struct Triangle {
     pub(crate) columns: (i64, i64),
     /// Whether it turns counter-clockwise as seen on the screen.
     pub(crate) counter_clockwise: bool,
+    /// What it is.
+    pub(crate) figure: Figure,
+    /// The limits of a line, besides its rows and columns.
+    pub(crate) sides: [Side; 4],
 }
 
 impl Triangle {
@@ -68,6 +73,7 @@ impl Triangle {
         self.doubled_area = edges.area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
         self.counter_clockwise = edges.area < 0;
+        self.figure = Figure::Triangle;
         edges.area != 0
     }
 
@@ -93,8 +99,17 @@ impl Triangle {
         (0..3).all(|k| e[k] > 0 || (e[k] == 0 && self.owns[k]))
     }
 
-    /// Returns the columns of row j that [`covers`](Self::covers) accepts, as a half-open range within `columns`.
+    /// Returns whether it covers a pixel.
+    pub fn contains(&self, i: i64, j: i64) -> bool {
+        let (first, end) = self.span(j, (i, i + 1));
+        first < end
+    }
+
+    /// Returns the columns of row j that [`covers`](Self::covers) accepts, or that a line or a point covers, as a half-open range within `columns`.
     pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
+        if self.figure != Figure::Triangle {
+            return self.stroke_span(j, columns);
+        }
         let (mut low, mut high) = columns;
         for k in 0..3 {
             // The condition is a i + r >= 0.
@@ -162,6 +177,12 @@ pub(crate) fn is_flat(w: [f32; 3], perspective: bool, profile: Profile) -> bool 
 #[inline(always)]
 pub(crate) fn clockwise_area<T: Whole>(x: [T; 3], y: [T; 3]) -> T {
     (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+}
+
+/// Returns whether a triangle of that [area](clockwise_area) shows its front.
+#[inline(always)]
+pub(crate) fn is_front(clockwise_area: i64, front_face: FrontFace) -> bool {
+    (clockwise_area < 0) == (front_face == FrontFace::CounterClockwise)
 }
 
 /// INT-6: returns the three w as a chip takes them.

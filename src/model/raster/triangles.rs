@@ -1,12 +1,15 @@
-//! The triangles of a draw: how primitives are split (RAS-4), and their provoking vertices (RAS-5).
+//! The triangles of a draw: how primitives are split (RAS-4), and their provoking vertices (RAS-5). Lines and points are [triangles](super::stroke), too.
 
 use std::sync::Arc;
 
+use super::stroke::Figure;
 use crate::state::{ProvokingVertex, Topology};
 
 /// A triangle of a draw. The order of its vertices matters, because INT-2 gives the second one the remainder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Assembled {
+    /// What it is. The vertices of a line from A to B are A, A and B; those of a point are all the same.
+    pub figure: Figure,
     /// Indices into [`Assembly::vertices`](super::assemble::Assembly::vertices).
     pub vertices: [u32; 3],
     /// Index of the vertex whose colours the triangle has if it is flat.
@@ -19,6 +22,14 @@ pub struct Triangles {
     /// Three indices for each triangle. A remainder of less than three is ignored.
     indices: Arc<[u32]>,
     provoking: Provoking,
+    figures: Figures,
+}
+
+/// What a list consists of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Figures {
+    All(Figure),
+    Each(Arc<[Figure]>),
 }
 
 /// The provoking vertices of a list of triangles.
@@ -30,19 +41,35 @@ enum Provoking {
     Each(Arc<[u32]>),
 }
 
+impl Assembled {
+    /// Returns the line between two vertices.
+    pub(super) fn line([from, to]: [u32; 2], provoking: u32) -> Assembled {
+        Assembled { figure: Figure::Line, vertices: [from, from, to], provoking }
+    }
+
+    /// Returns the point at a vertex.
+    pub(super) fn point(vertex: u32, provoking: u32) -> Assembled {
+        Assembled { figure: Figure::Point, vertices: [vertex; 3], provoking }
+    }
+}
+
 impl Triangles {
     /// Splits primitives into triangles. Indices that do not complete a primitive are ignored.
     pub fn split(indices: &Arc<[u32]>, topology: Topology, provoking: ProvokingVertex) -> Triangles {
         let first = provoking == ProvokingVertex::First;
         let triangle = |a: usize, b: usize, c: usize, provoking: usize| Assembled {
+            figure: Figure::Triangle,
             vertices: [indices[a], indices[b], indices[c]],
             provoking: indices[provoking],
         };
+        let line = |a: usize, b: usize| Assembled::line([indices[a], indices[b]], indices[if first { a } else { b }]);
         let count = indices.len();
         match topology {
-            Topology::Triangles => {
-                Triangles { indices: Arc::clone(indices), provoking: Provoking::Corner(if first { 0 } else { 2 }) }
-            }
+            Topology::Triangles => Triangles {
+                indices: Arc::clone(indices),
+                provoking: Provoking::Corner(if first { 0 } else { 2 }),
+                figures: Figures::All(Figure::Triangle),
+            },
             Topology::TriangleStrip => (0..count.saturating_sub(2))
                 .map(|i| {
                     let (a, b) = if i % 2 == 0 { (i, i + 1) } else { (i + 1, i) };
@@ -65,6 +92,10 @@ impl Triangles {
                 })
                 .collect(),
             Topology::Polygon => (1..count.saturating_sub(1)).map(|i| triangle(0, i, i + 1, 0)).collect(),
+            Topology::Points => indices.iter().map(|vertex| Assembled::point(*vertex, *vertex)).collect(),
+            Topology::Lines => (0..count / 2).map(|i| line(2 * i, 2 * i + 1)).collect(),
+            Topology::LineStrip => (1..count).map(|i| line(i - 1, i)).collect(),
+            Topology::LineLoop => (1..count + usize::from(count > 1)).map(|i| line(i - 1, i % count)).collect(),
         }
     }
 
@@ -99,12 +130,24 @@ impl Triangles {
         }
     }
 
+    /// Returns what `number` is.
+    ///
+    /// # Panics
+    /// Panics if there is no such triangle.
+    #[inline(always)]
+    pub fn figure(&self, number: usize) -> Figure {
+        match &self.figures {
+            Figures::All(figure) => *figure,
+            Figures::Each(figures) => figures[number],
+        }
+    }
+
     /// Returns triangle `number`.
     ///
     /// # Panics
     /// Panics if there is no such triangle.
     pub fn at(&self, number: usize) -> Assembled {
-        Assembled { vertices: self.vertices(number), provoking: self.provoking(number) }
+        Assembled { figure: self.figure(number), vertices: self.vertices(number), provoking: self.provoking(number) }
     }
 
     /// Returns an iterator over the triangles in order.
@@ -118,11 +161,16 @@ impl FromIterator<Assembled> for Triangles {
         let triangles = triangles.into_iter();
         let count = triangles.size_hint().0;
         let (mut indices, mut provoking) = (Vec::with_capacity(3 * count), Vec::with_capacity(count));
+        let mut figures = Vec::with_capacity(count);
         for triangle in triangles {
             indices.extend(triangle.vertices);
             provoking.push(triangle.provoking);
+            figures.push(triangle.figure);
         }
-        Triangles { indices: indices.into(), provoking: Provoking::Each(provoking.into()) }
+        let first = figures.first().copied().unwrap_or_default();
+        let same = figures.iter().all(|figure| *figure == first);
+        let figures = if same { Figures::All(first) } else { Figures::Each(figures.into()) };
+        Triangles { indices: indices.into(), provoking: Provoking::Each(provoking.into()), figures }
     }
 }
 
@@ -151,6 +199,19 @@ mod tests {
         );
         assert_eq!(shapes(Topology::Polygon, 5, Last), [([0, 1, 2], 0), ([0, 2, 3], 0), ([0, 3, 4], 0)]);
         assert!(shapes(Topology::TriangleStrip, 2, First).is_empty());
+    }
+
+    #[test]
+    fn lines_and_points_are_triangles() {
+        use ProvokingVertex::{First, Last};
+        assert_eq!(shapes(Topology::Points, 2, First), [([0, 0, 0], 0), ([1, 1, 1], 1)]);
+        assert_eq!(shapes(Topology::Lines, 5, First), [([0, 0, 1], 0), ([2, 2, 3], 2)]);
+        assert_eq!(shapes(Topology::LineStrip, 3, Last), [([0, 0, 1], 1), ([1, 1, 2], 2)]);
+        assert_eq!(shapes(Topology::LineLoop, 3, Last), [([0, 0, 1], 1), ([1, 1, 2], 2), ([2, 2, 0], 0)]);
+        assert!(
+            [Topology::Lines, Topology::LineStrip, Topology::LineLoop].iter().all(|t| shapes(*t, 1, First).is_empty())
+        );
+        assert!(shapes(Topology::Points, 0, First).is_empty() && shapes(Topology::LineLoop, 0, First).is_empty());
     }
 
     #[test]

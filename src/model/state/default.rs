@@ -45,6 +45,12 @@ impl Default for Draw {
             perspective: true,
             cull: Cull::None,
             front_face: FrontFace::CounterClockwise,
+            polygon_modes: PolygonModes::FILL,
+            polygon_stipple: None,
+            lines: Lines::default(),
+            point_size: 8,
+            point_sizes: None,
+            point_sprite: false,
             scissor: None,
             window_clip: None,
             fog: Fog::default(),
@@ -101,6 +107,13 @@ impl Draw {
             self.texture_shader[index] = ShaderStage::conventional(index, true);
         }
         self
+    }
+}
+
+impl Default for Lines {
+    /// Returns rectangles of one pixel's width.
+    fn default() -> Self {
+        Lines { width: 8, rasterization: LineRasterization::Rectangular }
     }
 }
 

@@ -29,8 +29,9 @@ pub use policy::{
     Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
-    ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology,
-    Vertex, VertexColor, VertexProgram, Viewport,
+    ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, LARGEST_SIZE, LineRasterization, Lines, PolygonMode,
+    PolygonModes, PolygonStipple, Positions, ProvokingVertex, Rectangle, SPRITE_UNIT, ShadeModel, Topology, Vertex,
+    VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest,
@@ -107,7 +108,7 @@ pub struct Draw {
     pub vertices: Vertices,
     /// Indices into `vertices`, in the order that `topology` requires. The plan shares them.
     pub indices: Arc<[u32]>,
-    /// How the indices form triangles (RAS-4).
+    /// How the indices form triangles (RAS-4), lines or points.
     pub topology: Topology,
     /// Whether colours are interpolated or flat (RAS-5).
     pub shade_model: ShadeModel,
@@ -119,6 +120,18 @@ pub struct Draw {
     pub cull: Cull,
     /// Which winding on the screen makes a front face.
     pub front_face: FrontFace,
+    /// What is drawn of triangles: their pixels, edges or corners.
+    pub polygon_modes: PolygonModes,
+    /// The pattern that filled triangles have. `None` means that all of their pixels are drawn.
+    pub polygon_stipple: Option<PolygonStipple>,
+    /// State of lines.
+    pub lines: Lines,
+    /// Size of points in 1/8 pixel, at most [`LARGEST_SIZE`] (PNT-1).
+    pub point_size: u16,
+    /// Size of the point at each vertex, in place of `point_size` (PNT-3).
+    pub point_sizes: Option<Arc<[u16]>>,
+    /// Whether unit 3 takes s and t of a point from the pixel's place in it (PNT-2, nv2a).
+    pub point_sprite: bool,
     /// Scissor rectangle: pixels outside are not drawn. `None` means the whole target.
     pub scissor: Option<Rectangle>,
     /// Window clip rectangles, inside or outside of which pixels are drawn (CLP-1). `None` turns the test off.

@@ -3,7 +3,7 @@
 use super::named;
 
 named! {
-    /// How a list of indices forms triangles (RAS-4).
+    /// How a list of indices forms triangles (RAS-4), lines or points.
     pub enum Topology {
         /// Three indices for each triangle.
         Triangles,
@@ -17,8 +17,79 @@ named! {
         QuadStrip,
         /// One polygon, whose triangle i is (0, i, i+1).
         Polygon,
+        /// One index for each point.
+        Points,
+        /// Two indices for each line.
+        Lines,
+        /// Line i is (i, i+1).
+        LineStrip,
+        /// A strip, and the line from the last index to the first.
+        LineLoop,
     }
 }
+
+impl Topology {
+    /// Returns whether it forms triangles, which have faces and are filled.
+    pub fn has_faces(self) -> bool {
+        !matches!(self, Topology::Points | Topology::Lines | Topology::LineStrip | Topology::LineLoop)
+    }
+}
+
+named! {
+    /// How lines become pixels.
+    pub enum LineRasterization {
+        /// A rectangle as wide as the line (LIN-1).
+        Rectangular,
+        /// One pixel for each step of the longer axis, whatever the width (LIN-2).
+        Bresenham,
+    }
+}
+
+/// State of lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lines {
+    /// Width in 1/8 pixel, at most [`LARGEST_SIZE`].
+    pub width: u16,
+    /// How they become pixels.
+    pub rasterization: LineRasterization,
+}
+
+/// Largest width of a line and largest size of a point, in 1/8 pixel: the registers have nine bits.
+pub const LARGEST_SIZE: u16 = 0x1ff;
+
+named! {
+    /// What is drawn of a triangle.
+    pub enum PolygonMode {
+        /// Its pixels.
+        Fill,
+        /// Its edges, as lines.
+        Line,
+        /// Its corners, as points.
+        Point,
+    }
+}
+
+/// What is drawn of triangles on each of their sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PolygonModes {
+    /// Of triangles that face the viewer.
+    pub front: PolygonMode,
+    /// Of the others.
+    pub back: PolygonMode,
+}
+
+impl PolygonModes {
+    /// Both sides are filled.
+    pub const FILL: PolygonModes = PolygonModes { front: PolygonMode::Fill, back: PolygonMode::Fill };
+}
+
+/// The unit whose coordinates sprites have (PNT-2).
+pub const SPRITE_UNIT: usize = 3;
+
+/// A pattern of 32 x 32 pixels, which repeats: where its bit is 0, filled triangles are not drawn (STP-1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PolygonStipple(pub [u32; 32]);
+
 named! {
     /// Whether colours are interpolated.
     pub enum ShadeModel {

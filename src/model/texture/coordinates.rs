@@ -6,6 +6,7 @@ use super::planned::PlannedUnit;
 use super::report::Report;
 use crate::raster::binary::Binary;
 use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, face_coordinate, ratio};
+use crate::raster::stroke::sprite_coordinate;
 use crate::raster::weights::Linear;
 use crate::raster::{ideal, setup::Triangle};
 use crate::state::{AddressMode, DepthFormat, Level, Named, TextureKind, TriangleVertices};
@@ -20,6 +21,13 @@ pub enum Coordinates {
     Ratio([Linear<Binary>; 3]),
     /// The direction s, t, r into a cube map (TEX-12). q is ignored.
     Direction([Linear<Binary>; 3]),
+    /// The place in a point (PNT-2): its position in 1/16 pixel, and its size in 1/8 pixel.
+    Sprite {
+        /// x and y of the point.
+        at: [i64; 2],
+        /// Its size.
+        size: u16,
+    },
 }
 
 impl Coordinates {
@@ -174,9 +182,14 @@ impl Interpolated<'_> {
         face_of([at.value(&direction[0]), at.value(&direction[1]), at.value(&direction[2])])
     }
 
+    /// Returns the distances of a pixel's centre from the sprite's point, in 1/16 pixel.
+    fn from_point(at: [i64; 2], (i, j): (i64, i64)) -> [i64; 2] {
+        [16 * i + 8 - at[0], 16 * j + 8 - at[1]]
+    }
+
     /// Returns the coordinates of one pixel of the quad on a face, in 1/65536 texel of level 0, or `None` if it lies
     /// behind the viewer.
-    fn at_quad(&self, at: &Sample<'_>, face: Face) -> Option<[i64; 2]> {
+    fn at_quad(&self, at: &Sample<'_>, pixel: (i64, i64), face: Face) -> Option<[i64; 2]> {
         let [width, height] = self.unit.scale(&self.unit.levels[0]);
         if at.is_behind() {
             return None;
@@ -194,6 +207,10 @@ impl Interpolated<'_> {
                 let [s, t, m] = on_face(direction.map(|f| at.value(&f)), face);
                 let along = |s: Binary, size: u32| face_coordinate(s, m, size, 16);
                 (m.mantissa > 0).then(|| [along(s, width), along(t, height)])
+            }
+            Coordinates::Sprite { at, size } => {
+                let [x, y] = Self::from_point(*at, pixel);
+                Some([sprite_coordinate(x, *size, width, 16), sprite_coordinate(y, *size, height, 16)])
             }
         }
     }
@@ -214,7 +231,10 @@ impl Interpolated<'_> {
         ideal::barycentrics(self.at.triangle, e, self.vertices.position(3), self.perspective)
     }
 
-    fn real_at(&self, weights: [f64; 3], face: Option<Face>) -> Real {
+    fn real_at(&self, weights: [f64; 3], pixel: (i64, i64), face: Option<Face>) -> Real {
+        if let Coordinates::Sprite { at, size } = self.coordinates {
+            return Real { face: Face::PositiveX, st: Self::from_point(*at, pixel).map(|d| real_sprite(d, *size)) };
+        }
         let set = wrapped(self.unit, self.vertices.coordinates(self.unit.stage.coordinate_set));
         let component = |n: usize| ideal::mix(weights, set.map(|v| f64::from(v[n])));
         if let Coordinates::Direction(_) = self.coordinates {
@@ -243,7 +263,7 @@ impl SampleCoordinates for Interpolated<'_> {
     fn face(&self) -> Face {
         match self.coordinates {
             Coordinates::Direction(direction) => Self::face_at(direction, self.at),
-            Coordinates::Plane(_) | Coordinates::Ratio(_) => Face::PositiveX,
+            _ => Face::PositiveX,
         }
     }
 
@@ -260,6 +280,10 @@ impl SampleCoordinates for Interpolated<'_> {
                 let [s, t, m] = on_face(direction, face_of(direction));
                 [face_coordinate(s, m, width, 8), face_coordinate(t, m, height, 8)]
             }
+            Coordinates::Sprite { at, size } => {
+                let [x, y] = Self::from_point(*at, self.pixel);
+                [sprite_coordinate(x, *size, width, 8), sprite_coordinate(y, *size, height, 8)]
+            }
         }
     }
 
@@ -267,14 +291,15 @@ impl SampleCoordinates for Interpolated<'_> {
         let samples = quad_samples(self.at.triangle, self.pixel);
         let face = match self.coordinates {
             Coordinates::Direction(direction) => Self::face_at(direction, &samples[0]),
-            Coordinates::Plane(_) | Coordinates::Ratio(_) => Face::PositiveX,
+            _ => Face::PositiveX,
         };
-        let [origin, right, lower] = samples.map(|at| self.at_quad(&at, face));
+        let pixels = quad_pixels(self.pixel);
+        let [origin, right, lower] = [0, 1, 2].map(|n| self.at_quad(&samples[n], pixels[n], face));
         Some([origin?, right?, lower?])
     }
 
     fn real(&self, face: Option<Face>) -> Real {
-        self.real_at(self.at.ideal.unwrap_or_else(|| self.weights(self.at.e)), face)
+        self.real_at(self.at.ideal.unwrap_or_else(|| self.weights(self.at.e)), self.pixel, face)
     }
 
     fn real_quad(&self) -> Option<[[f64; 2]; 3]> {
@@ -282,14 +307,16 @@ impl SampleCoordinates for Interpolated<'_> {
         if samples.iter().any(Sample::is_behind) {
             return None;
         }
+        let [first, second, third] = quad_pixels(self.pixel);
         let [origin, right, lower] = samples.map(|at| self.weights(at.e));
-        let origin = self.real_at(origin, None);
-        Some([origin.st, self.real_at(right, Some(origin.face)).st, self.real_at(lower, Some(origin.face)).st])
+        let origin = self.real_at(origin, first, None);
+        let face = Some(origin.face);
+        Some([origin.st, self.real_at(right, second, face).st, self.real_at(lower, third, face).st])
     }
 
     fn rule(&self) -> Rule {
         match self.coordinates {
-            Coordinates::Plane(_) => Rule::Int4,
+            Coordinates::Plane(_) | Coordinates::Sprite { .. } => Rule::Int4,
             Coordinates::Ratio(_) => Rule::Tex15,
             Coordinates::Direction(_) => Rule::Tex12,
         }
@@ -316,6 +343,9 @@ impl SampleCoordinates for Interpolated<'_> {
                 Coordinates::Direction(_) => {
                     let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
                     ("TEX-12", ["floor_face_u", "floor_face_v"][axis], inputs)
+                }
+                Coordinates::Sprite { at, size: of } => {
+                    ("PNT-2", "floor_sprite", self.sprite_inputs((*at, *of), self.pixel, axis, size))
                 }
             };
             report.coordinate(rule, letter, floored[axis], ideal[axis], (operation, inputs), observer);
@@ -381,6 +411,9 @@ impl SampleCoordinates for Interpolated<'_> {
                         let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
                         (["quad_face_u", "quad_face_v"][axis], inputs)
                     }
+                    Coordinates::Sprite { at, size: of } => {
+                        ("quad_sprite", self.sprite_inputs((*at, *of), pixel, axis, size))
+                    }
                 };
                 report.quad_coordinate((n, letter), quad[n][axis], (operation, inputs), observer);
             }
@@ -389,6 +422,13 @@ impl SampleCoordinates for Interpolated<'_> {
 }
 
 impl Interpolated<'_> {
+    /// Returns what a sprite's coordinate is computed from.
+    fn sprite_inputs(&self, of: ([i64; 2], u16), pixel: (i64, i64), axis: usize, size: Operand) -> Vec<Operand> {
+        let at = plain(["point.x", "point.y"][axis], of.0[axis]);
+        let pixel = if axis == 0 { plain("x", pixel.0) } else { plain("y", pixel.1) };
+        vec![pixel, at, plain("point.size", of.1), size]
+    }
+
     /// Reports the components that the coordinates are computed from, at a sample whose weights have names that begin with `prefix`, and returns
     /// them as operands.
     fn tell_numbers<O: Observer>(
@@ -402,6 +442,7 @@ impl Interpolated<'_> {
             Coordinates::Plane(_) => &[0, 1],
             Coordinates::Ratio(_) => &[0, 1, 3],
             Coordinates::Direction(_) => &[0, 1, 2],
+            Coordinates::Sprite { .. } => &[],
         };
         let set = wrapped(self.unit, self.vertices.coordinates(self.unit.stage.coordinate_set));
         let each = components.iter().map(|&n| {
@@ -430,6 +471,12 @@ impl Interpolated<'_> {
         let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
         Some(observer.tell(step.by("cube_face", numbers.to_vec()).note(Named::name(face).to_string())))
     }
+}
+
+/// PNT-2 in real numbers: returns a coordinate at a distance from the point.
+#[allow(clippy::float_arithmetic, reason = "the ideal's coordinate")]
+fn real_sprite(d: i64, size: u16) -> f64 {
+    if size == 0 { 0.5 } else { 0.5 + d as f64 / (2.0 * f64::from(size)) }
 }
 
 /// Returns a coordinate of an image of `size` texels in 1/65536 texel.

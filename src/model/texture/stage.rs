@@ -66,6 +66,13 @@ impl ShaderSetup {
         }
     }
 
+    /// Replaces the coordinates at which a stage samples, if it has any.
+    pub(crate) fn place(&mut self, index: usize, coordinates: Coordinates) {
+        if matches!(self.0[index], StageSetup::Places(_)) {
+            self.0[index] = StageSetup::Places(coordinates);
+        }
+    }
+
     /// Sets up every stage that runs.
     pub fn new(shader: &PlannedShader, units: &[PlannedUnit], vertices: TriangleVertices<'_>) -> Self {
         ShaderSetup(std::array::from_fn(|index| {

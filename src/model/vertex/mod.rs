@@ -7,6 +7,7 @@
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 pub mod fog;
+pub mod point;
 pub mod shader;
 pub mod texgen;
 mod vector;
@@ -105,7 +106,7 @@ impl<'a> EyeVertex<'a> {
     }
 
     /// Returns the position as a point, divided by its w unless that is 0.
-    pub(crate) fn point(&self) -> [f32; 3] {
+    pub fn point(&self) -> [f32; 3] {
         let [x, y, z, w] = self.position;
         if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] }
     }

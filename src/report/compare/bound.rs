@@ -46,7 +46,8 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Tex3 => Some((-13.71, 5.484)),
         Rule::Tex4 => Some((-3.42, 4.791)),
         Rule::Tex6 => symmetric(0.5),
-        Rule::Tex18 => symmetric(3.0),
+        // Three roundings of half a step, doubled, and s/128 for s/127.5.
+        Rule::Tex18 => symmetric(4.0),
         Rule::Cmb2 => symmetric(0.0),
         Rule::Cmb3 => match policies.expand_centre {
             ExpandCentre::Centred => symmetric(1.0),

@@ -11,6 +11,8 @@ use ninebit::engine::walk;
 use ninebit::number::{Ideal, Lane};
 use ninebit::plan::PlannedDraw;
 use ninebit::raster::ideal::Outline;
+use ninebit::raster::setup::Triangle;
+use ninebit::raster::stroke::Figure;
 use ninebit::state::{Cull, FrontFace, Named};
 use ninebit::trace::{Decision, Observer, Part, Silent};
 
@@ -23,20 +25,21 @@ impl Method for Free {
     fn draw(draw: &Draw<'_, f64>, band: &mut Band<'_, f64>, counts: &mut Counts) {
         for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
             let fixed = TriangleContext::new(draw.plan, draw.planned, number, rows);
-            let outline = outline(draw.planned, number);
+            let shape = Shape::new(draw.planned, number, fixed.as_ref());
             let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows());
-            let spans = outer(&fixed).into_iter().chain(outline.as_ref().map(|o| o.rows));
+            let spans = outer(&fixed).into_iter().chain(shape.as_ref().map(Shape::rows));
             let Some(reach) = spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
             for j in rows.0.max(reach.0)..rows.1.min(reach.1) {
                 let definition = fixed.as_ref().map_or((0, 0), |c| c.triangle.span(j, columns));
-                let ideal = outline.as_ref().map_or((0, 0), |o| o.span(j, columns));
+                let ideal = shape.as_ref().map_or((0, 0), |shape| shape.span(j, columns));
                 let inside = |span: (i64, i64), i: i64| (span.0..span.1).contains(&i);
                 let both = [definition, ideal].into_iter().filter(|s| s.0 < s.1);
                 let Some((low, high)) = both.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
                 for i in low..high {
                     let covered = (inside(definition, i), inside(ideal, i));
-                    if covered != (false, false) {
-                        let triangle = (fixed.as_ref(), outline.as_ref());
+                    let is_stippled = fixed.as_ref().is_some_and(|context| context.is_stippled(i, j));
+                    if covered != (false, false) && !is_stippled {
+                        let triangle = (fixed.as_ref(), shape.as_ref());
                         pixel(draw, triangle, covered, (i, j), band, counts);
                     }
                 }
@@ -46,6 +49,38 @@ impl Method for Free {
 
     fn channel(_shown: u8, held: f64, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
         (held, None)
+    }
+}
+
+/// What the ideal covers.
+enum Shape<'t> {
+    /// A triangle before its vertices are snapped.
+    Outline(Outline),
+    /// A line or a point, as the definition has it.
+    Stroke(&'t Triangle),
+}
+
+impl<'t> Shape<'t> {
+    /// Returns the shape of a triangle, or `None` if it is culled.
+    fn new(planned: &PlannedDraw, number: usize, fixed: Option<&'t TriangleContext<'_>>) -> Option<Shape<'t>> {
+        match planned.assembly.triangles.figure(number) {
+            Figure::Triangle => outline(planned, number).map(Shape::Outline),
+            Figure::Line | Figure::Point => fixed.map(|context| Shape::Stroke(&context.triangle)),
+        }
+    }
+
+    fn rows(&self) -> (i64, i64) {
+        match self {
+            Shape::Outline(outline) => outline.rows,
+            Shape::Stroke(triangle) => triangle.rows(),
+        }
+    }
+
+    fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
+        match self {
+            Shape::Outline(outline) => outline.span(j, columns),
+            Shape::Stroke(triangle) => triangle.span(j, columns),
+        }
     }
 }
 
@@ -63,7 +98,7 @@ fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
 /// Evaluates one pixel that either side covers.
 fn pixel(
     draw: &Draw<'_, f64>,
-    (fixed, outline): (Option<&TriangleContext<'_>>, Option<&Outline>),
+    (fixed, shape): (Option<&TriangleContext<'_>>, Option<&Shape<'_>>),
     covered: (bool, bool),
     (i, j): (i64, i64),
     band: &mut Band<'_, f64>,
@@ -78,8 +113,8 @@ fn pixel(
         band.shade::<i32>(context, (i, j), None, &draw.images.words, definition);
     }
     // If the definition has no such triangle, the pixel is left out whatever the ideal holds.
-    if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
-        real_side(draw, context, outline, (i, j), band, ideal);
+    if let (true, Some(shape), Some(context)) = (covered.1, shape, fixed) {
+        real_side(draw, context, shape, (i, j), band, ideal);
     }
     if covered == (true, true) {
         for (definition, ideal) in definition.decisions.iter().zip(&ideal.decisions) {
@@ -97,19 +132,18 @@ fn pixel(
 fn real_side<L: Lane>(
     draw: &Draw<'_, L>,
     context: &TriangleContext<'_>,
-    outline: &Outline,
+    shape: &Shape<'_>,
     (i, j): (i64, i64),
     band: &mut Band<'_, L>,
     observer: &mut impl Observer,
 ) {
     let at = band.at(i, j);
-    let fragment = Fragment {
-        pixel: (i, j),
+    let (e, weights) = match shape {
         // Any sample will do, because the ideal uses its own weights.
-        e: [context.triangle.doubled_area(), 0, 0],
-        stored: band.words[at],
-        weights: Some(outline.weights(i, j)),
+        Shape::Outline(outline) => ([context.triangle.doubled_area(), 0, 0], Some(outline.weights(i, j))),
+        Shape::Stroke(triangle) => (triangle.edges(i, j), None),
     };
+    let fragment = Fragment { pixel: (i, j), e, stored: band.words[at], weights };
     let (memory, held) = (&mut band.states[at].depth, band.held[at]);
     if let Some(stored) = context.shade::<L, _>(&fragment, memory, Some(held), &draw.images.lane, observer) {
         band.states[at].drawn = true;
@@ -125,12 +159,12 @@ impl<L: Ideal + Send + Sync> Method for Real<L> {
 
     fn draw(draw: &Draw<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
         for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
-            let Some(outline) = outline(draw.planned, number) else { continue };
             let Some(context) = TriangleContext::new(draw.plan, draw.planned, number, rows) else { continue };
-            for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {
-                let (low, high) = outline.span(j, columns);
-                for i in low..high {
-                    real_side(draw, &context, &outline, (i, j), band, &mut Silent);
+            let Some(shape) = Shape::new(draw.planned, number, Some(&context)) else { continue };
+            for j in rows.0.max(shape.rows().0)..rows.1.min(shape.rows().1) {
+                let (low, high) = shape.span(j, columns);
+                for i in (low..high).filter(|i| !context.is_stippled(*i, j)) {
+                    real_side(draw, &context, &shape, (i, j), band, &mut Silent);
                 }
             }
         }

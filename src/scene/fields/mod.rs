@@ -20,6 +20,7 @@
 mod program;
 mod scene;
 mod texture;
+mod vertex_side;
 
 use std::fmt::Write;
 
@@ -34,12 +35,14 @@ use ninebit::state::{self, VertexColor};
 pub(crate) use program::*;
 pub(crate) use scene::*;
 pub(crate) use texture::*;
+pub(crate) use vertex_side::*;
 
 /// The name of a structure, and a function that returns its fields.
 pub(super) type Structure = (&'static str, fn() -> Vec<Field>);
 
 fn declared() -> impl Iterator<Item = &'static Structure> {
-    scene::STRUCTURES.iter().chain(texture::STRUCTURES).chain(program::STRUCTURES)
+    let own = scene::STRUCTURES.iter().chain(vertex_side::STRUCTURES);
+    own.chain(texture::STRUCTURES).chain(program::STRUCTURES)
 }
 
 /// Returns the names of a scene's structures, as they are declared.

@@ -4,13 +4,19 @@ use super::*;
 use crate::generate::{SIDES, hemisphere, normal_map};
 use crate::truth::{self, LARGEST_EXPONENT};
 use ninebit::state::{
-    BlendEquation, BlendFactor, CompareFunction, Cull, FrontFace, ProvokingVertex, ShadeModel, StencilOperation,
-    SurfaceFormat, Topology, VertexDepths,
+    BlendEquation, BlendFactor, CompareFunction, Cull, FrontFace, LARGEST_SIZE, LineRasterization, PolygonMode,
+    ProvokingVertex, ShadeModel, StencilOperation, SurfaceFormat, Topology, VertexDepths,
 };
-use ninebit::vertex::fog::{FogEvaluation, FogSource};
+use std::ops::RangeInclusive;
 
 /// The help of four flags, which says what they stand for.
 pub(super) const CHANNELS: &str = "they stand for red, green, blue and alpha: `(true, true, true, false)`";
+
+/// Widths of lines and sizes of points.
+const SIZES: RangeInclusive<u32> = 0..=LARGEST_SIZE as u32;
+
+/// The help of a size that is out of range.
+const NINE_BITS: &str = "the register has nine bits and counts eighths: 8 is one pixel, 511 are 63 7/8";
 
 source! {
     /// The whole file.
@@ -211,7 +217,7 @@ source! {
         vertices: VertexSource [required],
         /// whole numbers, each below the number of vertices
         indices: Vec<u32> [or "every vertex once, in order"],
-        /// how vertices make triangles (RAS-4)
+        /// how vertices make triangles (RAS-4): `Triangles`, `TriangleStrip`, `TriangleFan`, `Quads`, `QuadStrip`, `Polygon`; lines or points (LIN-1, PNT-1): `Lines`, `LineStrip`, `LineLoop`, `Points`
         topology: Name<state::Topology> = Topology::Triangles,
         /// colours interpolated, or those of one vertex
         shade_model: Name<state::ShadeModel> = ShadeModel::Smooth,
@@ -223,6 +229,20 @@ source! {
         cull: Name<state::Cull> = Cull::None,
         /// winding of front faces as seen on screen
         front_face: Name<state::FrontFace> = FrontFace::CounterClockwise,
+        /// what is drawn of front faces, and of the others: pixels, edges or corners (POL-1)
+        front_polygon_mode: Name<state::PolygonMode> = PolygonMode::Fill, back_polygon_mode: Name<state::PolygonMode> = PolygonMode::Fill,
+        /// 32 words, `0xff00ff00`, the last of the top row: where a bit is 0, filled triangles have no pixel (STP-1)
+        polygon_stipple: Vec<u32> [or "none"],
+        /// width of lines in 1/8 pixel; 0 draws none (LIN-1)
+        line_width: u32 [in SIZES, "a line width", rule("LIN-1"), help(NINE_BITS)] = 8,
+        /// how lines become pixels: rectangles, or one pixel for each step of the longer axis, whatever the width (LIN-2). Smooth lines are not known
+        line_rasterization: Name<state::LineRasterization> = LineRasterization::Rectangular,
+        /// size of points in 1/8 pixel (PNT-1)
+        point_size: u32 [in SIZES, "a point size", rule("PNT-1"), help(NINE_BITS)] = 8,
+        /// [the size of each point](#point-parameters) by its distance from the viewer, or the vertex program's oPts.x in pixels (PNT-3)
+        point_parameters: PointParameters<'a> [or "`point_size`"],
+        /// Nv2a only: over each point s and t of unit 3 run from 0 to 1 (PNT-2)
+        point_sprite: bool = false,
         /// a [rectangle](#rectangles) within the target; 0 columns or rows draw nothing (CLP-2)
         scissor: Rectangle<'a> [or "whole target"],
         /// [rectangles](#rectangles) inside which pixels are drawn (CLP-1)
@@ -418,38 +438,6 @@ source! {
         x: u32 = 0, y: u32 = 0,
         /// columns and rows, at most 65535
         width: u32 [required], height: u32 [required],
-    }
-    struct Fog {
-        /// `false`: the factor is 1
-        enabled: bool = true,
-        /// red, green and blue of the fog register
-        color: Color [color] = [0; 4],
-        /// the function: those with Abs of the coordinate's or the exponent's magnitude; `LinearAbs` on Nv2a
-        mode: Name<state::FogMode> [or "none: factors of the vertices"],
-        /// of the exponential modes: e^(-density d), or e^(-(density d)^2)
-        density: f32 = 1.0,
-        /// of the linear modes: coordinates without fog and of nothing but fog. The same for both: none before, all from there on; evaluated at vertices,
-        /// nothing but fog
-        start: f32 = 0.0, end: f32 = 1.0,
-        /// instead of these: `(p0, p1)` or `(p0, p1, p2)`, c0, c1 and c2 of FOG-3, as the chip has them; linear fog with `PerPixel` has no p2
-        parameters: Numbers [numbers 2..=3, "the parameters of fog"],
-        /// `fog_coordinate` of listed vertices; z in eye space, negative before an OpenGL viewer, or its magnitude; distance from the viewer; z and w as
-        /// `matrix` leaves them, of `Window` vertices as written
-        coordinate_source: Name<FogSource> = FogSource::Vertex,
-        /// where linear fog applies its parameters; the exponential modes always apply them to the vertices and look up the curve at the pixel
-        evaluation: Name<FogEvaluation> [or "`PerPixel` on Nv2a, `PerVertex`, the only one, on Nv10"],
-    }
-    struct CoordinateSet {
-        /// the given set from which components without a generator come
-        input: u32 [or "the same set" in 0..=3, "a given coordinate set"],
-        /// a generator for the component
-        s: Generator [or "as given"], t: Generator [or "as given"], r: Generator [or "as given"], q: Generator [or "as given"],
-    }
-    struct Emboss "emboss" {
-        /// its direction, in eye space
-        light: Numbers [required numbers 3..=3, "the direction of a light"],
-        /// `(ks, kt)`
-        scale: Numbers [required numbers 2..=2, "a scale"],
     }
     struct AlphaTest "alpha test" {
         /// how alpha compares with the reference

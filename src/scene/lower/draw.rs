@@ -124,6 +124,15 @@ fn draw<'a>(
         perspective: fields.perspective(reader),
         cull: fields.cull(reader),
         front_face: fields.front_face(reader),
+        polygon_modes: PolygonModes {
+            front: fields.front_polygon_mode(reader),
+            back: fields.back_polygon_mode(reader),
+        },
+        polygon_stipple: stipple(reader, &fields.polygon_stipple),
+        lines: lines(reader, fields),
+        // Nine bits.
+        point_size: fields.point_size(reader) as u16,
+        point_sprite: sprite(reader, fields),
         scissor: scissor(reader, target, fields),
         fog: fog.state,
         textures: units.bound,
@@ -146,6 +155,7 @@ fn draw<'a>(
         feedback(reader, reader.textures.list[unit.texture].image.target(), draw.target, place, written);
     }
     let geometry = geometry?;
+    draw.point_sizes = point::sizes(reader, &fields.point_parameters, &geometry);
     draw.vertices = geometry.vertices;
     draw.vertex_program = geometry.program;
     draw.indices = indices(reader, fields, geometry.mesh.as_deref(), draw.vertices.len(), topology)?;
@@ -173,6 +183,41 @@ fn clear<'a>(
     raster::clear(reader, raw, &mut draw)?;
     let spans = DrawSpans { draw: place.clone(), vertices: VertexSpans::All(place), ..DrawSpans::default() };
     Some(Drawn { draw, spans, mesh: None, truth: None })
+}
+
+/// Reads the state of lines.
+fn lines<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> Lines {
+    if let Some(raw) = fields.line_rasterization.as_ref().filter(|raw| SMOOTH_LINES.contains(&raw.text.trim())) {
+        let (message, help) = ("what smooth lines cover is not known", "take `Rectangular`, or `Bresenham`");
+        reader.push(finding("NB0402", reader.span(raw), message, "cannot be modelled", help).rule("LIN-1"));
+        return Lines::default();
+    }
+    // Nine bits.
+    Lines { width: fields.line_width(reader) as u16, rasterization: fields.line_rasterization(reader) }
+}
+
+/// Reads whether points are sprites.
+fn sprite<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> bool {
+    let wanted = fields.point_sprite(reader);
+    reader.needs_nv2a(&fields.point_sprite, wanted, "NB0325", ("a point sprite", "PNT-2"));
+    wanted && reader.profile == Profile::Nv2a
+}
+
+/// Names of smooth lines, which are refused.
+const SMOOTH_LINES: [&str; 2] = ["RectangularSmooth", "Smooth"];
+
+/// Reads the pattern of filled triangles.
+fn stipple<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>) -> Option<PolygonStipple> {
+    let raw = raw.as_ref()?;
+    let words = reader.read(raw)?;
+    let count = words.len();
+    let Ok(words) = words.try_into() else {
+        let message = format!("a stipple has 32 words, not {count}");
+        let help = "write a word for each row, the last first: `0xff00ff00`";
+        let found = finding("NB0211", reader.span(raw), message, format!("{count} here"), help);
+        return reader.refuse(found.rule("STP-1"));
+    };
+    Some(PolygonStipple(words))
 }
 
 /// Reads the scissor of a draw.
@@ -276,6 +321,9 @@ fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, to
         Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => {
             (count == 0 || count >= 3, "at least three")
         }
+        Topology::Points => (true, "one for each"),
+        Topology::Lines => (count.is_multiple_of(2), "two for each"),
+        Topology::LineStrip | Topology::LineLoop => (count != 1, "at least two"),
     };
     if fits {
         return;

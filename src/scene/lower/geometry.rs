@@ -77,13 +77,17 @@ pub(super) enum Objects {
     Mesh(Arc<Mesh>, [usize; 4]),
     /// Vertices that are listed in the scene.
     Listed(Rc<VertexData>),
-    /// Vertices that a vertex program made: their positions are the program's, their fog coordinates are these.
-    Program(Vec<f32>),
+    /// Vertices that a vertex program made. Their positions are the program's.
+    Program {
+        fog_coordinates: Vec<f32>,
+        /// Sizes of points in 1/8 pixel, if the program writes them.
+        point_sizes: Option<Vec<u16>>,
+    },
 }
 
 impl Objects {
     /// Returns what the vertex side needs to know of vertex `index`.
-    fn at(&self, index: usize, vertex: &Vertex) -> ObjectVertex {
+    pub(super) fn at(&self, index: usize, vertex: &Vertex) -> ObjectVertex {
         match self {
             Objects::Mesh(mesh, dimensions) => {
                 let [x, y, z] = mesh.positions[index];
@@ -94,7 +98,7 @@ impl Objects {
                 let vertex::Extra { normal, fog_coordinate, dimensions } = data.extras[index];
                 ObjectVertex { position: data.vertices.position(index), normal, fog_coordinate, dimensions }
             }
-            Objects::Program(fog_coordinates) => ObjectVertex {
+            Objects::Program { fog_coordinates, .. } => ObjectVertex {
                 position: vertex.position,
                 normal: [0.0; 3],
                 fog_coordinate: fog_coordinates[index],

@@ -13,6 +13,7 @@ mod mesh;
 mod names;
 mod palette;
 mod pixel_shader;
+mod point;
 mod program;
 mod program_file;
 mod program_text;

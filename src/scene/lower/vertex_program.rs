@@ -9,6 +9,7 @@ use super::program_text::ProgramText;
 use super::vertex::VertexData;
 use super::*;
 use inputs::Input;
+use ninebit::vertex::point::eighths;
 use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use ninebit_program::c_source::Style;
 use ninebit_program::vertex_shader::{self, Written, print};
@@ -32,13 +33,13 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
         // The scene is refused in any case, so the program need not run over a mesh that may be large, for every draw.
         return None;
     }
-    let (vertices, fog_coordinates) = run(reader, &written.shader, &constants, &sources, &given)?;
+    let (vertices, fog_coordinates, point_sizes) = run(reader, &written.shader, &constants, &sources, &given)?;
     Some(Geometry {
         positions: Positions::Clip(viewport),
         vertices,
         spans: given.spans(),
         mesh: given.mesh().cloned(),
-        objects: Objects::Program(fog_coordinates),
+        objects: Objects::Program { fog_coordinates, point_sizes },
         model_view: matrix::IDENTITY,
         program: Some(origin(&written.shader)),
     })
@@ -80,16 +81,17 @@ fn program<'a>(
     Some((written, text))
 }
 
-/// Runs the program over all vertices by VTX-3. Also returns the fog coordinate of each vertex.
+/// Runs the program over all vertices by VTX-3. Also returns the fog coordinate of each vertex, and the size of its point if the program writes it.
 fn run(
     reader: &mut Reader<'_>,
     shader: &VertexShader,
     constants: &Constants,
     sources: &[Input],
     given: &Given,
-) -> Option<(Vertices, Vec<f32>)> {
+) -> Option<(Vertices, Vec<f32>, Option<Vec<u16>>)> {
     let written = Registers::from_shader(shader);
     let mut fog_coordinates = Vec::with_capacity(given.count());
+    let mut point_sizes = Vec::new();
     let vertices = (0..given.count()).map(|index| {
         let mut registers: Inputs = [[0.0; 4]; ninebit::vertex::shader::INPUTS];
         for (register, source) in registers.iter_mut().zip(sources) {
@@ -104,9 +106,13 @@ fn run(
             return reader.refuse(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         }
         fog_coordinates.push(outputs.fog[0]);
+        if written.point_size {
+            point_sizes.push(eighths(outputs.point_size[0].into()));
+        }
         Some(written.vertex(&outputs))
     });
-    Some((vertices.collect::<Option<Vertices>>()?, fog_coordinates))
+    let vertices = vertices.collect::<Option<Vertices>>()?;
+    Some((vertices, fog_coordinates, written.point_size.then_some(point_sizes)))
 }
 
 /// The output registers that a program writes.
@@ -114,6 +120,7 @@ struct Registers {
     colors: [bool; 2],
     coordinates: [bool; 4],
     fog: bool,
+    point_size: bool,
 }
 
 impl Registers {
@@ -123,6 +130,7 @@ impl Registers {
             colors: [0, 1].map(|n| written(DestinationRegister::Color(n))),
             coordinates: [0, 1, 2, 3].map(|n| written(DestinationRegister::Coordinates(n))),
             fog: written(DestinationRegister::Fog),
+            point_size: written(DestinationRegister::PointSize),
         }
     }
 

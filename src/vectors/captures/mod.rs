@@ -16,6 +16,7 @@ mod depth_range;
 mod draws;
 mod fog;
 mod images;
+mod lines;
 mod polygon_offset;
 mod primitives;
 mod rounding;
@@ -178,7 +179,9 @@ const SUITES: &[Suite] = &[
     ("Fog_param", fog::parameters_varied),
     ("Fog_vsh", fog::of_program),
     ("High_vertex_count", primitives::many_vertices),
+    ("Line_width", lines::widths),
     ("Pixel_shader", shader::programs),
+    ("Point_size", lines::sizes),
     ("Shade_model", primitives::shade_model),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::raster::TRIANGLES;
 use super::{Column, Conditions, Kind, Reach, Unit, channels, float, named, put, sized};
 use ninebit::raster::project;
 use ninebit::raster::triangles::Triangles;
-use ninebit::state::{ClipDepth, Profile, ProvokingVertex, Topology, Vertex, Viewport};
+use ninebit::state::{ClipDepth, Profile, ProvokingVertex, Vertex, Viewport};
 use ninebit::vertex::shader::{
     self, Destination, DestinationRegister, Instruction, Source, SourceRegister, VertexShader,
 };
@@ -24,7 +25,7 @@ impl Unit for PrimitiveSplit {
         "primitive-split", &["RAS-4", "RAS-5"],
         "the vertices of one triangle of a primitive, in order, and the provoking vertex", Geometry;
         takes [
-            Column::choice::<Topology>("cfg.topology"),
+            Column::names("cfg.topology", TRIANGLES),
             Column::choice::<ProvokingVertex>("cfg.provoking_vertex"),
             ["in.vertices", "in.triangle"].map(|name| Column::unsigned(name, 6, 63)),
         ];

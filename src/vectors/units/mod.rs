@@ -104,6 +104,7 @@ mod rop;
 mod sampling;
 mod shader;
 mod stencil;
+mod stroke;
 mod texel;
 mod texture;
 mod texture_environment;
@@ -130,12 +131,19 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &geometry::PrimitiveSplit,
         &geometry::ClippedTriangle,
         &raster::Coverage,
+        &stroke::LineCoverage,
+        &stroke::PointCoverage,
+        &stroke::PointSize,
+        &stroke::SpriteCoordinate,
+        &stroke::PolygonEdge,
+        &stroke::Stipple,
         &clip::Clip,
         &raster::VertexWeights,
         &raster::LinearNumber,
         &raster::ColorInterpolation,
         &raster::TextureCoordinate,
         &raster::DepthInterpolation,
+        &stroke::LineDepth,
         &depth::PixelDepth,
         &depth::WBuffer,
         &reading::WBufferSlope,

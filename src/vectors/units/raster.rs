@@ -6,10 +6,13 @@ use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
 use ninebit::raster::setup::Triangle;
 use ninebit::raster::weights::{Linear, differences};
-use ninebit::state::{DepthFormat, Profile, TriangleVertices, Vertex, Vertices};
+use ninebit::state::{DepthFormat, Named, Profile, Topology, TriangleVertices, Vertex, Vertices};
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
+
+/// How vertices make triangles.
+pub(super) const TRIANGLES: &[&str] = Topology::NAMES.split_at(6).0;
 
 /// Corners of some triangle.
 pub(super) const LARGE: [[f32; 4]; 3] = [[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]];

@@ -218,6 +218,12 @@ pub(super) fn scene(
         perspective: true,
         cull: Cull::None,
         front_face: FrontFace::CounterClockwise,
+        polygon_modes: PolygonModes::FILL,
+        polygon_stipple: None,
+        lines: Lines::default(),
+        point_size: 8,
+        point_sizes: None,
+        point_sprite: false,
         scissor: None,
         fog: Fog { enabled: true, color: [0; 3], function: fog },
         textures: [

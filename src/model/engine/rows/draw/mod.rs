@@ -28,6 +28,8 @@ use crate::engine::rows::sampling::fetch::Reader;
 use crate::engine::rows::sampling::quads::PixelQuads;
 use crate::engine::rows::store;
 use crate::engine::walk::{self, Band, Window};
+use crate::raster::stroke::{self, Figure};
+use crate::state::PolygonStipple;
 use job::Job;
 
 /// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
@@ -39,7 +41,7 @@ pub(crate) fn run(kernels: &Kernels, job: &Job<'_>, band: &mut Band<'_>, block: 
     }
     (kernels.begin)(compiled, block, band);
     let mut context = TriangleContext::vacant(plan, draw);
-    let mut drawing = Drawing { kernels, job, band, block, shaded: 0 };
+    let mut drawing = Drawing { kernels, job, band, block, shaded: 0, stipple: None };
     for window in walk::windows(draw, rows) {
         for number in job.triangles {
             if context.set_up(*number as usize, window.0) {
@@ -59,6 +61,8 @@ struct Drawing<'d, 'b> {
     block: &'d mut Block,
     /// Number of pixels that were covered.
     shaded: u64,
+    /// The pattern of the triangle, if it has one.
+    stipple: Option<&'d PolygonStipple>,
 }
 
 /// A triangle and its lanes in the block.
@@ -78,6 +82,7 @@ impl Drawing<'_, '_> {
     fn triangle(&mut self, window: Window, context: &TriangleContext<'_>) {
         let (triangle, draw) = (&context.triangle, self.job.draw);
         let takes_quads = self.job.compiled.takes_quads;
+        self.stipple = draw.polygon_stipple.as_ref().filter(|_| triangle.figure == Figure::Triangle);
         let within = |of: (i64, i64), limits: (i64, i64)| (of.0.max(limits.0), of.1.min(limits.1));
         let (rows, columns) = (within(triangle.rows, window.0), within(triangle.columns, window.1));
         if rows.0 >= rows.1 || columns.0 >= columns.1 {
@@ -90,7 +95,10 @@ impl Drawing<'_, '_> {
         let mut spans = Spans::default();
         // Even, so that no quad is divided.
         for top in (rows.0 & !1..rows.1).step_by(ROWS) {
-            (self.kernels.find_spans)(&drawn.shape, top, columns, &mut spans);
+            match triangle.figure {
+                Figure::Triangle => (self.kernels.find_spans)(&drawn.shape, top, columns, &mut spans),
+                Figure::Line | Figure::Point => spans = Spans::of_stroke(triangle, top, columns),
+            }
             let count = (rows.1 - top).min(ROWS as i64) as usize;
             let span = |n: usize| {
                 let is_drawn = n < count && top + n as i64 >= rows.0;
@@ -161,6 +169,26 @@ impl Drawing<'_, '_> {
     /// Notes that lanes have pixels that the triangle covers.
     #[inline(always)]
     fn cover(&mut self, pixel: (i64, i64), lane: usize, count: usize) {
+        if self.stipple.is_some() {
+            return self.cover_stippled(pixel, lane, count);
+        }
+        self.run(pixel, lane, count);
+    }
+
+    /// STP-1: leaves pixels out, whose lanes stay without a pixel.
+    fn cover_stippled(&mut self, (i, j): (i64, i64), lane: usize, count: usize) {
+        let Some(stipple) = self.stipple else { return };
+        let is_drawn = |n: &usize| stroke::stipples(stipple, i + *n as i64, j);
+        let mut first = 0;
+        while let Some(start) = (first..count).find(is_drawn) {
+            let end = (start..count).find(|n| !is_drawn(n)).unwrap_or(count);
+            self.run((i + start as i64, j), lane + start, end - start);
+            first = end;
+        }
+    }
+
+    #[inline(always)]
+    fn run(&mut self, pixel: (i64, i64), lane: usize, count: usize) {
         let run = Run::new(lane, self.band.index(pixel), count);
         self.block.runs.push(run);
         if self.job.compiled.reads_surface {
@@ -174,6 +202,11 @@ impl Drawing<'_, '_> {
         let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
         let Drawn { context, shape, lane, run, quads, is_set_up } = drawn;
         if block.used == *lane {
+            return;
+        }
+        if block.runs.len() == *run {
+            // The pattern leaves all of them out.
+            (block.used, _) = (*lane, block.quads.truncate(*quads));
             return;
         }
         if job.draw.depth_test.is_some() {

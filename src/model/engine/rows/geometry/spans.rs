@@ -11,6 +11,7 @@
 
 use super::shape::Shape;
 use crate::engine::rows::lanes::{larger, nearest, smaller};
+use crate::raster::setup::Triangle;
 
 /// Number of rows whose spans are found at a time.
 pub(crate) const ROWS: usize = 16;
@@ -20,6 +21,19 @@ pub(crate) const ROWS: usize = 16;
 pub(crate) struct Spans {
     pub(crate) first: [i32; ROWS],
     pub(crate) end: [i32; ROWS],
+}
+
+impl Spans {
+    /// Returns the columns that a line or a point covers in the rows from `top` on.
+    pub(crate) fn of_stroke(triangle: &Triangle, top: i64, columns: (i64, i64)) -> Spans {
+        let mut spans = Spans::default();
+        for (n, (first, end)) in spans.first.iter_mut().zip(&mut spans.end).enumerate() {
+            let (from, to) = triangle.span(top + n as i64, columns);
+            // Columns of a target have 13 bits.
+            (*first, *end) = (from as i32, to as i32);
+        }
+        spans
+    }
 }
 
 /// A limit beyond all quotients.
@@ -60,7 +74,6 @@ pub(crate) fn spans(shape: &Shape, top: i64, columns: (i64, i64)) -> Spans {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::raster::setup::Triangle;
     use crate::state::Profile;
 
     /// Triangles of all sizes up to the guard band, slivers, and some with horizontal edges.

@@ -1,0 +1,168 @@
+//! LIN-1, PNT-1, POL-1: lines and points of every size.
+
+use super::*;
+
+/// Colours of the vertices in turn, A8B8G8R8.
+const COLORS: [u32; 8] =
+    [0xffff_3333, 0xff33_ff33, 0xff33_33ff, 0xffff_ff33, 0xff33_ffff, 0xffff_33ff, 0xff80_8080, 0xffff_ffff];
+
+/// The shapes of Line_width, relative to [`ORIGIN`].
+const SHAPES: [(Topology, &[[f32; 2]]); 7] = [
+    (
+        Topology::Points,
+        &[
+            [19.0, 15.0],
+            [56.0, 29.0],
+            [74.0, 77.0],
+            [45.694406, 101.330152],
+            [36.0, 38.369815],
+            [14.0, 23.0],
+            [85.0, 98.0],
+            [31.0, 40.0],
+            [98.0, 38.0],
+            [17.0, 104.0],
+            [78.0, 65.0],
+            [31.644774, 49.0],
+            [105.0, 11.968842],
+            [9.0, 40.0],
+            [105.962647, 76.068491],
+            [80.0, 87.0],
+        ],
+    ),
+    (
+        Topology::LineLoop,
+        &[
+            [196.0, 47.0],
+            [194.0, 19.0],
+            [182.0, 97.0],
+            [106.18625, 80.0],
+            [127.0, 94.58163],
+            [133.597443, 13.763389],
+            [205.0, 62.0],
+            [115.54392, 16.0],
+            [122.0, 3.0],
+            [117.062706, 87.735558],
+            [201.0, 28.664894],
+            [146.114091, 10.0],
+            [205.356591, 88.0],
+            [125.0, 107.0],
+            [190.828953, 35.510304],
+            [163.0, 105.956814],
+        ],
+    ),
+    (
+        Topology::Triangles,
+        &[
+            [265.185925, 35.0],
+            [249.778838, 22.523717],
+            [310.0, 19.0],
+            [243.978231, 47.650185],
+            [304.0, 37.0],
+            [232.0, 102.522615],
+        ],
+    ),
+    (Topology::QuadStrip, &[[0.0, 239.0], [0.0, 120.0], [52.5, 225.4], [54.75, 175.5], [105.0, 239.0], [105.0, 120.0]]),
+    (
+        Topology::TriangleFan,
+        &[
+            [158.5, 205.0],
+            [115.545455, 239.0],
+            [120.318182, 120.0],
+            [147.045455, 157.4],
+            [158.5, 128.5],
+            [166.136364, 145.5],
+            [204.318182, 159.1],
+            [209.75, 239.0],
+        ],
+    ),
+    (
+        Topology::Polygon,
+        &[[218.0, 232.0], [237.772727, 142.1], [258.772727, 120.0], [302.681818, 169.3], [317.0, 230.5]],
+    ),
+    (Topology::Quads, &[[0.0, 350.0], [60.0, 340.0], [58.5, 425.4], [12.75, 407.5]]),
+];
+
+const ORIGIN: [f32; 2] = [160.0, 48.0];
+
+/// Adds the frames of Line_width. Widths that the register does not hold leave it as it was, at one pixel.
+pub(super) fn widths(frames: &mut Frames) {
+    let whole = |first: u32, end: u32, step: usize| (first * 8..end * 8).step_by(step * 8);
+    let fine = (0..16).chain(63 * 8..65 * 8);
+    let widths = fine.chain(whole(3, 16, 1)).chain(whole(16, 57, 8)).chain(whole(57, 63, 1)).chain([u32::MAX]);
+    for width in widths {
+        let name = if width == u32::MAX { "Line_FFFFFFFF".to_owned() } else { named_width("Line", width) };
+        let width = if width > u32::from(LARGEST_SIZE) { 8 } else { width as u16 };
+        let modes = PolygonModes { front: PolygonMode::Line, back: PolygonMode::Line };
+        frames.paint(name, 0xff20_2224, move |canvas| shapes(canvas, width, modes));
+    }
+    for width in [0, 8, 256] {
+        let name = named_width("Fill", width);
+        frames.paint(name, 0xff20_2224, move |canvas| shapes(canvas, width as u16, PolygonModes::FILL));
+    }
+}
+
+fn named_width(kind: &str, width: u32) -> String {
+    format!("{kind}_{:04}.{}", width / 8, width % 8)
+}
+
+fn shapes(canvas: &mut Canvas, width: u16, polygon_modes: PolygonModes) {
+    for (topology, places) in SHAPES {
+        let colored = |(place, color): (&[f32; 2], u32)| {
+            vertex([ORIGIN[0] + place[0], ORIGIN[1] + place[1]], VertexColor::Bytes(abgr(color)))
+        };
+        let vertices = places.iter().zip(COLORS.into_iter().cycle()).map(colored).collect();
+        let lines = Lines { width, ..Lines::default() };
+        canvas.draw(Draw { lines, polygon_modes, ..draw(topology, vertices) });
+    }
+}
+
+/// Adds the frames of Point_size whose program is known: not the smallest, and not those of a program's size.
+pub(super) fn sizes(frames: &mut Frames) {
+    for (kind, moved) in [("FF", UNPROJECTED), ("VS", 0.0)] {
+        for step in [1, 4, 8, 16] {
+            for smooth in ["On", "Off"] {
+                let name = format!("PointSmooth{smooth}_{step:02}_{kind}");
+                frames.paint(name, 0xff22_2322, move |canvas| grid(canvas, step, moved));
+            }
+        }
+        frames.paint(format!("LargestPointSize_{kind}"), 0xff44_4444, move |canvas| largest(canvas, moved));
+    }
+}
+
+fn point(at: [f32; 2], point_size: u16, color: VertexColor) -> Draw {
+    Draw { point_size, ..draw(Topology::Points, vec![vertex(at, color)]) }
+}
+
+/// Draws points whose sizes grow by `step`, as long as the register holds them.
+fn grid(canvas: &mut Canvas, step: u16, moved: f32) {
+    let [across, down] = if step == 1 { [40, 30] } else { [64, 64] };
+    let (mut size, mut red) = (0, 0.1_f32);
+    for y in (100_u16..480).step_by(down) {
+        let mut blue = 0.1_f32;
+        for x in (20_u16..640).step_by(across) {
+            let at = [f32::from(x) + moved, f32::from(y) + moved];
+            let held = size.min(LARGEST_SIZE - LARGEST_SIZE % step);
+            canvas.draw(point(at, held, VertexColor::Floats([red, 0.65, blue, 1.0])));
+            (size, blue) = (size + step, blue + 0.1);
+        }
+        red += 0.1;
+    }
+}
+
+/// Draws points beside rulers, the second of a size that the register does not hold.
+fn largest(canvas: &mut Canvas, moved: f32) {
+    for (y, size) in [(138.0_f32, 8), (276.0, 511)] {
+        let at = |x: f32| [x + moved, y + moved];
+        canvas.draw(point(at(192.0), size, VertexColor::Bytes([0xbb, 0xbb, 0xbb, 255])));
+        let (left, top) = (384.0 - 32.0, y - 32.0);
+        for edges in [
+            [left, top, left + 64.0, top + 64.0],
+            [left - 4.0, top, left - 2.0, top + 64.0],
+            [left, top - 4.0, left + 64.0, top - 2.0],
+        ] {
+            let edges = edges.map(|edge| edge + moved);
+            canvas.draw(rectangle(edges, VertexColor::Bytes([0, 0xbb, 0, 255])));
+        }
+        canvas.draw(point(at(384.0), size, VertexColor::Bytes([255; 4])));
+    }
+}

@@ -1,0 +1,45 @@
+//! Lines, points, sprites, polygon modes and patterns of random scenes.
+
+use super::Choices;
+use ninebit::state::*;
+
+/// Returns whether the unit of sprites samples a picture, or nothing.
+fn can_be_sprite(textures: &[Texture], draw: &Draw) -> bool {
+    let kind = draw.textures[SPRITE_UNIT].map(|unit| textures[unit.texture].kind);
+    let is_flat = kind.is_none_or(|kind| matches!(kind, TextureKind::TwoDimensional | TextureKind::Rectangle));
+    is_flat && matches!(draw.texture_shader[SPRITE_UNIT].operation, ShaderOperation::None | ShaderOperation::Sample)
+}
+
+/// Makes lines or points of some draws, gives sides of faces other modes, and fills triangles by a pattern.
+pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), draw: &mut Draw) {
+    let size = |c: &mut Choices<'_>| match c.below(4) {
+        0 => c.pick(&[8, 0, 1, 4, 16, 24, 32, 64, 128, 511]),
+        1 => c.below(512) as u16,
+        _ => c.below(80) as u16,
+    };
+    match c.below(6) {
+        1 => draw.topology = c.pick(&[Topology::Lines, Topology::LineStrip, Topology::LineLoop, Topology::Points]),
+        2 => draw.polygon_modes = PolygonModes { front: c.any(), back: c.any() },
+        _ => {}
+    }
+    draw.point_sprite = c.once_in(2) && profile == Profile::Nv2a && can_be_sprite(textures, draw);
+    (draw.lines, draw.point_size) = (Lines { width: size(c), rasterization: c.any() }, size(c));
+    if c.once_in(3) {
+        draw.point_sizes = Some((0..draw.vertices.len()).map(|_| size(&mut c.part(4))).collect());
+    }
+    if c.once_in(6) {
+        let (style, row) = (c.below(4), c.word());
+        draw.polygon_stipple = Some(PolygonStipple(std::array::from_fn(|n| match style {
+            0 => c.word() | c.word(),
+            1 => row.rotate_left(n as u32),
+            2 => row,
+            _ => {
+                if n % 3 == 0 {
+                    u32::MAX
+                } else {
+                    0
+                }
+            }
+        })));
+    }
+}
