@@ -6,7 +6,7 @@ use super::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{DOCTYPE, PreEscaped, html};
-use ninebit::state::{MipFilter, ShaderStage, TextureFormat, TextureKind};
+use ninebit::state::{MipFilter, PolygonModes, ShaderStage, TextureFormat, TextureKind};
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_scene::assets::Gathered;
@@ -150,6 +150,8 @@ fn tags(scene: &Scene) -> Vec<&'static str> {
     let all = [
         ("nv10", scene.profile == Profile::Nv10),
         ("nv2a", scene.profile == Profile::Nv2a),
+        ("lines and points", any(|draw| !draw.topology.has_faces() || draw.polygon_modes != PolygonModes::FILL)),
+        ("stipple", any(|draw| draw.polygon_stipple.is_some())),
         ("dot product", any(products)),
         ("several stages", any(|draw| draw.combiners.stages.len() > 2)),
         ("several draws", scene.draws.len() > 1),
