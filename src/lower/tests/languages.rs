@@ -351,7 +351,7 @@ fn planted(line: &str, kind: usize) -> Option<String> {
     let swaps = [
         (" + ", " - "),
         (" - ", " + "),
-        (" / 510", " / 512"),
+        (" / 510", " / 255"),
         ("_least(", "_greatest("),
         ("_greatest(", "_least("),
         ("[0]", "[1]"),
