@@ -5,6 +5,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, PreEscaped, html};
 use ninebit_handbook::{RULES, Rule};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -97,6 +98,20 @@ fn filled(policy: &str, title: &str, [style, data, common, module, script]: [Str
         rest = after;
     }
     page + rest
+}
+
+/// Returns the head of a page with its policy, its title and its inline style.
+pub(crate) fn head(policy: &str, title: &str, style: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta http-equiv="Content-Security-Policy" content=(policy);
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            title { (title) }
+            style { (PreEscaped(style)) }
+        }
+    }
 }
 
 /// Returns the hash of an inline script or style as a content security policy names it.

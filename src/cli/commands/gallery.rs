@@ -3,7 +3,7 @@
 use super::inspect::{Heading, Picture, common, first_picture, scene_data};
 use super::scene::isolated;
 use super::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use maud::{DOCTYPE, PreEscaped, html};
 use ninebit::state::{MipFilter, PolygonModes, ShaderStage, TextureFormat, TextureKind};
@@ -13,7 +13,7 @@ use ninebit_scene::assets::Gathered;
 use ninebit_scene::load_with;
 
 use crate::page;
-use crate::replay::{Entry, EntryKind, FindError, find};
+use crate::replay::{EntryKind, find};
 
 const STYLE: &str = include_str!("gallery/style.css");
 const SCRIPT: &str = include_str!("gallery/gallery.js");
@@ -53,17 +53,11 @@ struct Exhibit {
 
 /// Writes the site.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    // One call finds two files of one name; one for each place keeps their order.
-    let ambiguous = |error: FindError| {
+    let mut found = find(&arguments.places).map_err(|error| {
         Failure::usage(error.to_string(), "run the command in a folder around both, with paths that differ")
-    };
-    find(&arguments.places).map_err(ambiguous)?;
-    let mut found = Vec::new();
-    for place in &arguments.places {
-        let new = find(std::slice::from_ref(place)).map_err(ambiguous)?;
-        let known: BTreeSet<String> = found.iter().map(|entry: &Entry| entry.name.clone()).collect();
-        found.extend(new.into_iter().filter(|entry| !known.contains(&entry.name)));
-    }
+    })?;
+    // In the order of the places, which are shown as they were named.
+    found.sort_by_key(|entry| arguments.places.iter().position(|place| entry.path.starts_with(place)));
     let site = site(&arguments.output)?;
     let progress = Progress::new("drawing", context.color);
     let count = found.len() as u64;
@@ -226,14 +220,7 @@ fn index(title: &str, exhibits: &[Exhibit]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(policy);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
+            (page::head(&policy, title, STYLE))
             body {
                 header {
                     h1 { (title) }

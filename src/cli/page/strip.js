@@ -17,47 +17,40 @@ function groups(steps, key) {
 
 const named = (pattern) => ({ name }) => pattern.exec(name)?.slice(1);
 
+// The last step of a value, in any channel, among some steps.
+const lastOf = (steps, value) => steps.findLast((each) => each.name.startsWith(`${value}.`) && /^[rgba]$/.test(each.name.slice(value.length + 1)));
+
+// What an input reads: a register, 1 minus it, 0 or 1.
+function operand(step) {
+  const register = (step?.inputs[0]?.name ?? "zero").split(".")[0].replace(/(\d)$/, " $1").replaceAll("_", " ");
+  const invert = step?.operation.endsWith("invert");
+  return register === "zero" ? (invert ? "1" : "0") : invert ? `(1 − ${register})` : register;
+}
+
+const times = (a, b) => (a === "0" || b === "0" ? "0" : a === "1" ? b : b === "1" ? a : `${a} × ${b}`);
+
 // What a register of a combiner was made of, as in `texture 0 · primary`.
 function made(step, steps) {
-  const at = (input) => steps[input?.step];
-  const output = at(step.inputs[0]);
-  const [, prefix, output_name] = /^(.+)\.(AB|CD|sum)\.[rgba]\.output$/.exec(output?.name ?? "") ?? [];
+  const [, prefix, output] = /^(.+)\.(AB|CD|sum)\.[rgba]\.output$/.exec(steps[step.inputs[0]?.step]?.name ?? "") ?? [];
   if (!prefix) return "";
-  const source = (letter) => steps.findLast((each) => each.id <= step.id && new RegExp(`^${prefix}\\.${letter}\\.[rgba]$`).test(each.name));
-  const operand = (letter) => {
-    const mapped = source(letter);
-    if (!mapped) return letter;
-    const register = (mapped.inputs[0]?.name ?? "").split(".")[0].replace(/(\d)$/, " $1");
-    const invert = mapped.operation === "unsigned_invert";
-    return register === "zero" ? (invert ? "1" : "0") : invert ? `(1 − ${register})` : register;
-  };
+  const before = steps.slice(0, step.id + 1);
   const product = (pair) => {
-    const whole = steps.findLast((each) => each.id <= step.id && new RegExp(`^${prefix}\\.${pair}\\.[rgba]$`).test(each.name));
-    const [a, b] = [...pair].map(operand);
-    if (!whole?.operation.startsWith("dot_product")) {
-      if (a === "0" || b === "0") return "0";
-      if (a === "1") return b;
-      if (b === "1") return a;
-    }
-    if (whole?.operation.startsWith("dot_product")) return `${a} · ${b}`;
-    return a === b ? `${a}²` : `${a} × ${b}`;
+    const [a, b] = [...pair].map((letter) => {
+      const read = lastOf(before, `${prefix}.${letter}`);
+      return read ? operand(read) : letter;
+    });
+    if (lastOf(before, `${prefix}.${pair}`)?.operation.startsWith("dot_product")) return `${a} · ${b}`;
+    return a === b && !["0", "1"].includes(a) ? `${a}²` : times(a, b);
   };
-  if (output_name !== "sum") return product(output_name);
-  const third = steps.findLast((each) => each.id <= step.id && new RegExp(`^${prefix}\\.sum\\.[rgba]$`).test(each.name));
+  if (output !== "sum") return product(output);
+  const third = lastOf(before, `${prefix}.sum`);
   const both = ["AB", "CD"].map(product);
   return third?.operation === "select" ? `${both[0]} or ${both[1]}` : both.filter((each) => each !== "0").join(" + ") || "0";
 }
 
 // What the final combiner computes: A B + (1 - A) C + D, without what is 0.
 function lastFormula(steps) {
-  const operand = (letter) => {
-    const step = steps.findLast((each) => new RegExp(`^final\\.${letter}\\.[rgb]$`).test(each.name));
-    const register = (step?.inputs[0]?.name ?? "zero").split(".")[0].replace(/(\d)$/, " $1").replaceAll("_", " ");
-    const invert = step?.operation === "final_invert";
-    return register === "zero" ? (invert ? "1" : "0") : invert ? `(1 − ${register})` : register;
-  };
-  const times = (a, b) => (a === "0" || b === "0" ? "0" : a === "1" ? b : b === "1" ? a : `${a} × ${b}`);
-  const [a, b, c, d] = ["A", "B", "C", "D"].map(operand);
+  const [a, b, c, d] = ["A", "B", "C", "D"].map((letter) => operand(lastOf(steps, `final.${letter}`)));
   const rest = a === "0" ? "1" : a === "1" ? "0" : `(1 − ${a})`;
   return `${[times(a, b), times(rest, c), d].filter((term) => term !== "0").join(" + ") || "0"} → fragment`;
 }

@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::page::source_hash;
+use crate::page::{head, source_hash};
 use crate::replay::panels::{GAP, opaque};
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
@@ -26,14 +26,7 @@ pub fn html(all: &[Replayed]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(policy);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "ninebit replay: " (summary) }
-                style { (PreEscaped(&style)) }
-            }
+            (head(&policy, &format!("ninebit replay: {summary}"), &style))
             body {
                 header {
                     h1 { "ninebit replay" }
