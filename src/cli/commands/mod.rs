@@ -13,6 +13,7 @@ mod exit;
 mod explain;
 mod gallery;
 mod generate;
+mod import;
 mod inspect;
 mod limits;
 mod lower;
@@ -101,6 +102,11 @@ enum Command {
     ///
     /// Each scene says in its `truth` which light, eye, material and surface are meant; the truth is the lighting equation in float64, per pixel.
     Measure(measure::Arguments),
+    /// Make scenes of a log of a real program: methods of the Xbox's 3D class, as emulators, tracers and recompilers print them
+    ///
+    /// State is followed from the first line on; each frame becomes a scene. A draw that needs something that neither the log nor the memory has is
+    /// marked incomplete, with the reason. Nothing is invented: a white texel stands for a texture that was not recorded.
+    Import(import::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),
     /// Print pixel programs in another form: as text, as register words, or as functions of C, GLSL, WGSL or Verilog
@@ -180,6 +186,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Gallery(arguments) => gallery::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Measure(arguments) => measure::run(&arguments, context),
+        Command::Import(arguments) => import::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),
         Command::Lower(arguments) => lower::run(&arguments, context),
         Command::Registers(arguments) => registers::run(&arguments, context),

@@ -1,0 +1,159 @@
+//! The texture shader and the combiners of a draw.
+
+use ninebit::state::{Combiners, DotMapping, Named, Profile, ShaderOperation, ShaderStage};
+use ninebit_program::registers::{RegisterWords, Word, decode};
+
+use super::texture::of_unit;
+use super::view::View;
+use crate::class;
+use crate::gap::Gap;
+
+/// The codes of the dot mappings.
+pub(crate) const DOT_MAPPINGS: [(DotMapping, u32); 6] = [
+    (DotMapping::ZeroToOne, 0),
+    (DotMapping::MinusOneToOneD3d, 1),
+    (DotMapping::MinusOneToOneGl, 2),
+    (DotMapping::MinusOneToOne, 3),
+    (DotMapping::Hilo1, 4),
+    (DotMapping::HiloHemisphere, 7),
+];
+
+/// Code of a projected texture of two dimensions in SET_SHADER_STAGE_PROGRAM.
+pub(crate) const TWO: u32 = 1;
+/// Code of a projected texture of three dimensions.
+pub(crate) const THREE: u32 = 2;
+/// Code of a cube map.
+pub(crate) const CUBE: u32 = 3;
+
+/// Returns the code of a stage.
+pub(crate) fn code(view: &mut View<'_>, unit: usize) -> u32 {
+    view.get(class::SET_SHADER_STAGE_PROGRAM) >> (5 * unit) & 0x1f
+}
+
+/// Reads a stage of the texture shader.
+pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
+    use ShaderOperation as Op;
+    let code = code(view, unit);
+    let mut stage = ShaderStage::conventional(unit, false);
+    let float = |view: &mut View<'_>, method, n: u32| view.float(of_unit(method, unit) + 4 * n);
+    let matrix = |view: &mut View<'_>| {
+        let m = [0, 1, 2, 3].map(|n| float(view, class::SET_TEXTURE_SET_BUMP_ENV_MAT, n));
+        if m.iter().all(|m| m.is_finite()) { m } else { [0.0; 4] }
+    };
+    stage.operation = match code {
+        0 => Op::None,
+        TWO | THREE | CUBE => Op::Sample,
+        4 => Op::PassThrough,
+        5 => {
+            let bits = view.get(class::SET_SHADER_CLIP_PLANE_MODE) >> (4 * unit);
+            // A set bit keeps what is negative.
+            Op::CullFragment { drops_not_negative: [0, 1, 2, 3].map(|n| bits >> n & 1 != 0) }
+        }
+        6 => Op::BumpEnvironment { matrix: matrix(view), luminance: None },
+        7 => {
+            let scale = float(view, class::SET_TEXTURE_SET_BUMP_ENV_SCALE, 0);
+            let offset = float(view, class::SET_TEXTURE_SET_BUMP_ENV_OFFSET, 0);
+            Op::BumpEnvironment { matrix: matrix(view), luminance: Some([scale, offset]) }
+        }
+        9 => Op::DotProduct2D,
+        0xb => Op::DotReflectDiffuse,
+        0xc => Op::DotReflectSpecular,
+        0xe => Op::DotProductCube,
+        0xf => Op::DependentAlphaRed,
+        0x10 => Op::DependentGreenBlue,
+        0x11 => Op::DotProduct,
+        0x12 => Op::DotReflectConstantEye { eye: [0, 1, 2].map(|n| view.float(class::SET_EYE_VECTOR + 4 * n)) },
+        _ => {
+            let name = match code {
+                8 => "BRDF".to_owned(),
+                0xa => "a dot product for depths".to_owned(),
+                0xd => "a dot product for volumes".to_owned(),
+                _ => format!("stage program 0x{code:x}"),
+            };
+            view.note(Gap::NotModelled(format!("{name} at unit {unit}")));
+            Op::None
+        }
+    };
+    if stage.operation.reads_previous() {
+        stage.previous = match unit {
+            2 => (view.get(class::SET_SHADER_OTHER_STAGE_INPUT) >> 16 & 0xf) as usize,
+            3 => (view.get(class::SET_SHADER_OTHER_STAGE_INPUT) >> 20 & 0xf) as usize,
+            _ => 0,
+        };
+        if stage.previous >= unit.max(1) {
+            view.bad(class::SET_SHADER_OTHER_STAGE_INPUT);
+            stage.previous = unit.saturating_sub(1);
+        }
+    }
+    if stage.operation.is_dot() && unit > 0 {
+        let code = view.get(class::SET_DOT_RGBMAPPING) >> (4 * (unit - 1)) & 0xf;
+        match DOT_MAPPINGS.iter().find(|(_, value)| *value == code) {
+            Some((mapping, _)) => stage.mapping = *mapping,
+            None => view.note(Gap::NotModelled(format!("dot mapping {code} of unit {unit}"))),
+        }
+    }
+    stage
+}
+
+/// Reads the combiners; `None` if the chip does not accept their words, which is noted.
+pub(crate) fn combiners(view: &mut View<'_>) -> Option<Combiners> {
+    let mut words = RegisterWords::new(Profile::Nv2a);
+    let config = view.get(Word::RcConfig.method(Profile::Nv2a));
+    words.set(Word::RcConfig, 0, config & 0x0001_110f);
+    let stages = (config & 0xf).clamp(1, 8) as usize;
+    words.set(Word::RcConfig, 0, words.get(Word::RcConfig, 0) & !0xf | stages as u32);
+    for word in Word::ALL.iter().filter(|word| **word != Word::RcConfig) {
+        let used = match word {
+            Word::RcColor | Word::RcFinal0 | Word::RcFinal1 => word.count(Profile::Nv2a),
+            Word::RcConstantColor0 if config >> 12 & 1 == 0 => 1,
+            Word::RcConstantColor1 if config >> 16 & 1 == 0 => 1,
+            _ => stages,
+        };
+        for index in 0..used {
+            let method = word.method(Profile::Nv2a) + 4 * index as u32;
+            let constant = matches!(word, Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1);
+            // Constants that no input reads are never set by programs.
+            let value = if constant { view.get_or(method, 0) } else { view.get(method) };
+            words.set(*word, index, value);
+        }
+    }
+    match decode(&words) {
+        Ok(combiners) => {
+            constants(view, &combiners, config);
+            Some(combiners)
+        }
+        Err(refusals) => {
+            for refusal in refusals {
+                view.note(Gap::NotModelled(refusal.message));
+            }
+            None
+        }
+    }
+}
+
+/// Notes constants that a program reads and the log never set.
+fn constants(view: &mut View<'_>, combiners: &Combiners, config: u32) {
+    use ninebit::state::{FinalRegister, Register};
+    for (n, stage) in combiners.stages.iter().enumerate() {
+        for (k, register) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().enumerate() {
+            let portions = [&stage.rgb, &stage.alpha];
+            if portions.iter().any(|portion| portion.inputs.iter().any(|input| input.register == register)) {
+                let own = config >> [12, 16][k] & 1 != 0;
+                let word = [Word::RcConstantColor0, Word::RcConstantColor1][k];
+                let method = word.method(Profile::Nv2a) + if own { 4 * n as u32 } else { 0 };
+                if view.known(method).is_none() {
+                    view.missing(method);
+                }
+            }
+        }
+    }
+    let inputs = combiners.final_combiner.inputs.iter().chain([&combiners.final_combiner.g]);
+    for input in inputs {
+        for (k, register) in [FinalRegister::ConstantColor0, FinalRegister::ConstantColor1].into_iter().enumerate() {
+            let method = Word::RcColor.method(Profile::Nv2a) + 4 * k as u32;
+            if input.register == register && view.known(method).is_none() {
+                view.missing(method);
+            }
+        }
+    }
+}

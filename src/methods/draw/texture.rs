@@ -1,0 +1,337 @@
+//! Texture units, and the images and palettes that they read from memory.
+
+use std::sync::Arc;
+
+use ninebit::state::{
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, ColorKeyMode, CompareFunction, Filter, MipFilter, Named, Palette,
+    ShadowComparison, ShadowReference, Texels, TextureFormat, TextureKind, TextureUnit,
+};
+
+use super::raster::argb;
+use super::view::View;
+use crate::class;
+use crate::gap::Gap;
+use crate::memory::{self, Layout, Memory};
+
+/// The codes of texture formats: swizzled, or compressed, or with a pitch.
+pub(crate) const FORMATS: [(u32, TextureFormat, bool); 48] = [
+    (0x00, TextureFormat::L8, false),
+    (0x01, TextureFormat::I8, false),
+    (0x02, TextureFormat::A1R5G5B5, false),
+    (0x03, TextureFormat::X1R5G5B5, false),
+    (0x04, TextureFormat::A4R4G4B4, false),
+    (0x05, TextureFormat::R5G6B5, false),
+    (0x06, TextureFormat::A8R8G8B8, false),
+    (0x07, TextureFormat::X8R8G8B8, false),
+    (0x0b, TextureFormat::P8, false),
+    (0x0c, TextureFormat::Dxt1, false),
+    (0x0e, TextureFormat::Dxt3, false),
+    (0x0f, TextureFormat::Dxt5, false),
+    (0x10, TextureFormat::A1R5G5B5, true),
+    (0x11, TextureFormat::R5G6B5, true),
+    (0x12, TextureFormat::A8R8G8B8, true),
+    (0x13, TextureFormat::L8, true),
+    (0x16, TextureFormat::R8B8, true),
+    (0x17, TextureFormat::G8B8, true),
+    (0x19, TextureFormat::A8, false),
+    (0x1a, TextureFormat::A8L8, false),
+    (0x1b, TextureFormat::I8, true),
+    (0x1c, TextureFormat::X1R5G5B5, true),
+    (0x1d, TextureFormat::A4R4G4B4, true),
+    (0x1e, TextureFormat::X8R8G8B8, true),
+    (0x1f, TextureFormat::A8, true),
+    (0x20, TextureFormat::A8L8, true),
+    (0x27, TextureFormat::R6G5B5, false),
+    (0x28, TextureFormat::G8B8, false),
+    (0x29, TextureFormat::R8B8, false),
+    (0x2a, TextureFormat::Z24S8, false),
+    (0x2b, TextureFormat::Z24S8F, false),
+    (0x2c, TextureFormat::Z16, false),
+    (0x2d, TextureFormat::Z16F, false),
+    (0x2e, TextureFormat::Z24S8, true),
+    (0x2f, TextureFormat::Z24S8F, true),
+    (0x30, TextureFormat::Z16, true),
+    (0x31, TextureFormat::Z16F, true),
+    (0x32, TextureFormat::Y16, false),
+    (0x33, TextureFormat::R16B16, false),
+    (0x35, TextureFormat::Y16, true),
+    (0x36, TextureFormat::R16B16, true),
+    (0x37, TextureFormat::R6G5B5, true),
+    (0x3a, TextureFormat::A8B8G8R8, false),
+    (0x3b, TextureFormat::B8G8R8A8, false),
+    (0x3c, TextureFormat::R8G8B8A8, false),
+    (0x3f, TextureFormat::A8B8G8R8, true),
+    (0x40, TextureFormat::B8G8R8A8, true),
+    (0x41, TextureFormat::R8G8B8A8, true),
+];
+
+/// The address modes' codes.
+pub(crate) const ADDRESS_MODES: [(AddressMode, u32); 5] = [
+    (AddressMode::Wrap, 1),
+    (AddressMode::Mirror, 2),
+    (AddressMode::ClampToEdge, 3),
+    (AddressMode::ClampToBorder, 4),
+    (AddressMode::Clamp, 5),
+];
+
+/// The minification filters' codes.
+pub(crate) const MIN_FILTERS: [((Filter, MipFilter), u32); 6] = [
+    ((Filter::Nearest, MipFilter::None), 1),
+    ((Filter::Linear, MipFilter::None), 2),
+    ((Filter::Nearest, MipFilter::Nearest), 3),
+    ((Filter::Linear, MipFilter::Nearest), 4),
+    ((Filter::Nearest, MipFilter::Linear), 5),
+    ((Filter::Linear, MipFilter::Linear), 6),
+];
+
+/// The shadow comparisons' codes.
+pub(crate) const SHADOW_FUNCTIONS: [(CompareFunction, u32); 8] = [
+    (CompareFunction::Never, 0),
+    (CompareFunction::Greater, 1),
+    (CompareFunction::Equal, 2),
+    (CompareFunction::GreaterOrEqual, 3),
+    (CompareFunction::Less, 4),
+    (CompareFunction::NotEqual, 5),
+    (CompareFunction::LessOrEqual, 6),
+    (CompareFunction::Always, 7),
+];
+
+/// Bytes between the faces of a cube map are a multiple of this.
+pub(crate) const FACE_BYTES: u64 = 128;
+
+/// Least sides of an image that has border texels.
+pub(crate) const BORDERED_SIDE: u32 = 16;
+
+/// An image in memory as a unit reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Image {
+    /// Address of the first byte.
+    pub(crate) address: u32,
+    /// How it is addressed.
+    pub(crate) kind: TextureKind,
+    /// How its words encode colours.
+    pub(crate) format: TextureFormat,
+    /// Columns, rows and layers of the first level.
+    pub(crate) size: [u32; 3],
+    /// Number of levels.
+    pub(crate) levels: u32,
+    /// Whether it has border texels.
+    pub(crate) border: bool,
+    /// Bytes from row to row; `None` if it is swizzled or compressed.
+    pub(crate) pitch: Option<u32>,
+}
+
+/// Returns the method of unit `unit` for the method of unit 0.
+pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
+    method + 64 * unit as u32
+}
+
+/// Reads the image of a unit; `None` if the model has no such texture, which is noted.
+pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
+    let mut word = |method| view.get(of_unit(method, unit));
+    let (address, format) = (word(class::SET_TEXTURE_OFFSET), word(class::SET_TEXTURE_FORMAT));
+    let code = format >> 8 & 0xff;
+    let Some((_, texels, linear)) = FORMATS.iter().find(|(number, ..)| *number == code).copied() else {
+        view.note(Gap::NotModelled(format!("texture format 0x{code:02x} of unit {unit}")));
+        return None;
+    };
+    let cube = format >> 2 & 1 != 0;
+    let dimensions = format >> 4 & 0xf;
+    if linear {
+        let rectangle = view.get(of_unit(class::SET_TEXTURE_IMAGE_RECT, unit));
+        let pitch = view.get(of_unit(class::SET_TEXTURE_CONTROL1, unit)) >> 16;
+        let size = [rectangle >> 16, rectangle & 0xffff, 1];
+        if size.contains(&0) || size.iter().any(|side| *side > 4096) {
+            view.bad(of_unit(class::SET_TEXTURE_IMAGE_RECT, unit));
+            return None;
+        }
+        let (kind, pitch) = (TextureKind::Rectangle, Some(pitch));
+        return Some(Image { address, kind, format: texels, size, levels: 1, border: false, pitch });
+    }
+    let [u, v, p] = [20, 24, 28].map(|shift| 1_u32 << (format >> shift & 0xf).min(12));
+    let kind = match (cube, dimensions) {
+        (true, 2) => TextureKind::Cube,
+        (false, 3) => TextureKind::ThreeDimensional,
+        (false, 1 | 2) => TextureKind::TwoDimensional,
+        _ => {
+            view.note(Gap::NotModelled(format!("a texture of {dimensions} dimensions at unit {unit}")));
+            return None;
+        }
+    };
+    let size = match kind {
+        TextureKind::ThreeDimensional => [u, v, p],
+        _ if dimensions == 1 => [u, 1, 1],
+        _ => [u, v, 1],
+    };
+    let border = format >> 3 & 1 == 0;
+    let longest = size.into_iter().max().unwrap_or(1);
+    let written = (format >> 16 & 0xf).max(1);
+    let mut levels = written.min(longest.ilog2() + 1);
+    if kind == TextureKind::ThreeDimensional && levels > 1 {
+        let filter = view.get(of_unit(class::SET_TEXTURE_FILTER, unit)) >> 16 & 0xff;
+        if filter > 2 {
+            view.note(Gap::NotModelled(format!("levels of a volume at unit {unit}")));
+        }
+        levels = 1;
+    }
+    Some(Image { address, kind, format: texels, size, levels, border, pitch: None })
+}
+
+impl Image {
+    /// Returns the bytes that a face takes with all levels.
+    pub(crate) fn face_bytes(&self) -> u64 {
+        (0..self.levels).map(|level| self.level_bytes(level)).sum()
+    }
+
+    /// Returns columns, rows and layers of a level.
+    pub(crate) fn level(&self, level: u32) -> [u32; 3] {
+        self.size.map(|side| (side >> level).max(1))
+    }
+
+    fn level_bytes(&self, level: u32) -> u64 {
+        let [width, height, depth] = self.level(level);
+        let words = self.format.words(width, height) as u64 * u64::from(depth);
+        words * if self.format.is_compressed() { 4 } else { u64::from(self.format.bytes()) }
+    }
+
+    /// Reads the texels from memory.
+    ///
+    /// # Errors
+    /// Memory does not hold them, or they have a form that is not modelled.
+    pub(crate) fn texels(&self, memory: &Memory) -> Result<Texels, Gap> {
+        let what = || format!("a texture of {} x {} {}", self.size[0], self.size[1], self.format.name());
+        let outside = || Gap::OutsideMemory(what(), self.address.into());
+        if memory.is_empty() {
+            return Err(Gap::NoMemory(what(), self.address.into()));
+        }
+        let layout = self.pitch.map_or(Layout::Swizzled, Layout::Pitch);
+        let [width, height, layers] = self.size;
+        let mut all = Vec::new();
+        if self.border {
+            if self.kind != TextureKind::TwoDimensional || self.format.is_compressed() || self.levels > 1 {
+                return Err(Gap::NotModelled(format!("border texels of {}", what())));
+            }
+            // The image is twice as large; the texture begins at the fourth texel.
+            let stored = [width, height].map(|side| (2 * side).max(BORDERED_SIDE));
+            let words = memory::words(memory, self.address.into(), self.format, [stored[0], stored[1], 1], layout);
+            let words = words.ok_or_else(outside)?;
+            let [columns, rows] = [width, height].map(|side| side + 2 * BORDER_TEXELS);
+            for row in 0..rows {
+                let first = (row * stored[0]) as usize;
+                all.extend_from_slice(&words[first..first + columns as usize]);
+            }
+        } else {
+            let faces = if self.kind == TextureKind::Cube { CUBE_FACES } else { 1 };
+            for face in 0..faces {
+                let step = self.face_bytes().next_multiple_of(FACE_BYTES);
+                let mut address = u64::from(self.address) + u64::from(face) * step;
+                for level in 0..self.levels {
+                    all.extend(memory::words(memory, address, self.format, self.level(level), layout).ok_or_else(outside)?);
+                    address += self.level_bytes(level);
+                }
+            }
+        }
+        Ok(Texels { width, height, levels: self.levels, layers, border: self.border, words: Arc::from(all) })
+    }
+}
+
+impl Image {
+    /// Returns the texels that stand for an image that is not known: one, white, of each face.
+    pub(crate) fn absent(&self) -> Texels {
+        let faces = if self.kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
+        let bits = 8 * self.format.bytes();
+        let word = if self.format.is_compressed() || bits == 32 { u32::MAX } else { (1 << bits) - 1 };
+        let words: Vec<u32> = vec![word; self.format.words(1, 1) * faces];
+        Texels { width: 1, height: 1, levels: 1, layers: 1, border: false, words: words.into() }
+    }
+}
+
+/// Reads the palette of a unit: its address and number of entries.
+pub(crate) fn palette(view: &mut View<'_>, unit: usize) -> (u32, usize) {
+    let word = view.get(of_unit(class::SET_TEXTURE_PALETTE, unit));
+    (word & !0x3f, 256 >> (word >> 2 & 3))
+}
+
+/// Reads the entries of a palette from memory.
+///
+/// # Errors
+/// Memory does not hold them.
+pub(crate) fn entries(memory: &Memory, (address, count): (u32, usize)) -> Result<Palette, Gap> {
+    let what = || format!("a palette of {count} colours");
+    if memory.is_empty() {
+        return Err(Gap::NoMemory(what(), address.into()));
+    }
+    let words = (0..count as u64).map(|n| memory.word(u64::from(address) + 4 * n)).collect::<Option<Vec<u32>>>();
+    let words = words.ok_or_else(|| Gap::OutsideMemory(what(), address.into()))?;
+    Ok(Palette { name: format!("palette {address:08x}"), entries: words.into() })
+}
+
+/// Reads the state of a unit that samples; its texture and palette are filled in by the caller. `projects` says that the stage projects in three
+/// dimensions.
+pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bool) -> TextureUnit {
+    let method = |method| of_unit(method, unit);
+    let address = view.get(method(class::SET_TEXTURE_ADDRESS));
+    let control = view.get(method(class::SET_TEXTURE_CONTROL0));
+    let filter = view.get(method(class::SET_TEXTURE_FILTER));
+    let mut state = TextureUnit::new(0);
+    let modes = [0, 8, 16].map(|shift| {
+        let code = address >> shift & 0xf;
+        ADDRESS_MODES.iter().find(|(_, value)| *value == code).map(|(mode, _)| *mode)
+    });
+    let used = match image.kind {
+        TextureKind::Cube => 0,
+        TextureKind::ThreeDimensional => 3,
+        _ => 2,
+    };
+    if modes[..used].contains(&None) {
+        view.bad(method(class::SET_TEXTURE_ADDRESS));
+    }
+    let [s, t, r] = modes.map(|mode| mode.unwrap_or(AddressMode::Wrap));
+    (state.address_s, state.address_t) = if used > 0 { (s, t) } else { (AddressMode::Wrap, AddressMode::Wrap) };
+    state.address_r = if used > 2 { r } else { AddressMode::Wrap };
+    state.cylindrical_wrap = [4, 12].map(|bit| address >> bit & 1 != 0 && image.kind == TextureKind::TwoDimensional);
+    filters(view, unit, filter, &mut state);
+    (state.min_lod, state.max_lod) = ((control >> 18 & 0xfff) as i32, (control >> 6 & 0xfff) as i32);
+    if image.levels == 1 {
+        // There is no other level.
+        state.mip_filter = MipFilter::None;
+    }
+    // Signed, of thirteen bits.
+    state.lod_bias = (filter << 19) as i32 >> 19;
+    state.signed = [29, 30, 31, 28].map(|bit| filter >> bit & 1 != 0);
+    if [state.address_s, state.address_t, state.address_r].contains(&AddressMode::ClampToBorder) && !image.border {
+        state.border_color = argb(view.get(method(class::SET_TEXTURE_BORDER_COLOR)));
+    }
+    let anisotropy = 1 << (control >> 4 & 3);
+    state.anisotropy = anisotropy;
+    let mode = [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
+    if let Some(mode) = mode {
+        let color = argb(view.get(class::SET_COLOR_KEY_COLOR + 4 * unit as u32));
+        state.color_key = Some(ColorKey { color, mode });
+    }
+    if image.format.depth().is_some() {
+        let word = view.get(class::SET_SHADOW_COMPARE_FUNC);
+        let function = SHADOW_FUNCTIONS.iter().find(|(_, value)| *value == word).map(|(function, _)| *function);
+        if function.is_none() {
+            view.bad(class::SET_SHADOW_COMPARE_FUNC);
+        }
+        let reference = if projects { ShadowReference::R } else { ShadowReference::Zero };
+        state.shadow = Some(ShadowComparison { function: function.unwrap_or(CompareFunction::Never), reference });
+    }
+    state
+}
+
+fn filters(view: &mut View<'_>, unit: usize, filter: u32, state: &mut TextureUnit) {
+    let (min, mag) = (filter >> 16 & 0xff, filter >> 24 & 0xf);
+    match MIN_FILTERS.iter().find(|(_, value)| *value == min) {
+        Some(((filter, levels), _)) => (state.min_filter, state.mip_filter) = (*filter, *levels),
+        None if min == 7 => view.note(Gap::NotModelled(format!("a convolution filter at unit {unit}"))),
+        None => view.bad(of_unit(class::SET_TEXTURE_FILTER, unit)),
+    }
+    match mag {
+        1 => state.mag_filter = Filter::Nearest,
+        2 => state.mag_filter = Filter::Linear,
+        4 => view.note(Gap::NotModelled(format!("a convolution filter at unit {unit}"))),
+        _ => view.bad(of_unit(class::SET_TEXTURE_FILTER, unit)),
+    }
+}

@@ -1,0 +1,112 @@
+//! The state as a draw reads it: a word that is not known has a neutral value, and is noted.
+
+use std::collections::BTreeSet;
+
+use crate::class;
+use crate::gap::Gap;
+use crate::state::State;
+
+/// Reads state, and collects what is missing.
+#[derive(Debug)]
+pub(crate) struct View<'a> {
+    state: &'a State,
+    unset: BTreeSet<u32>,
+    /// The gaps other than words that were never set.
+    pub(crate) gaps: Vec<Gap>,
+}
+
+/// The values that stand for words of state that are not known, where 0 would draw nothing or divide by 0: those that drivers set first.
+const NEUTRAL: [(u32, u32); 17] = [
+    (class::SET_ALPHA_FUNC, 0x207),
+    (class::SET_BLEND_FUNC_SFACTOR, 1),
+    (class::SET_BLEND_EQUATION, 0x8006),
+    (class::SET_DEPTH_FUNC, 0x201),
+    (class::SET_COLOR_MASK, 0x0101_0101),
+    (class::SET_DEPTH_MASK, 1),
+    (class::SET_STENCIL_MASK, 0xff),
+    (class::SET_STENCIL_FUNC, 0x207),
+    (class::SET_STENCIL_FUNC_MASK, 0xff),
+    (class::SET_SHADE_MODEL, 0x1d01),
+    (class::SET_LINE_WIDTH, 8),
+    (class::SET_FRONT_POLYGON_MODE, 0x1b02),
+    (class::SET_BACK_POLYGON_MODE, 0x1b02),
+    (class::SET_CULL_FACE, 0x405),
+    (class::SET_FRONT_FACE, 0x901),
+    (class::SET_POINT_SIZE, 8),
+    (class::SET_FOG_MODE, 0x2601),
+];
+
+impl<'a> View<'a> {
+    /// Makes a view of a state.
+    pub(crate) fn new(state: &'a State) -> View<'a> {
+        View { state, unset: BTreeSet::new(), gaps: Vec::new() }
+    }
+
+    /// Returns the state.
+    pub(crate) fn state(&self) -> &'a State {
+        self.state
+    }
+
+    /// Returns a word. One that is not known is noted.
+    pub(crate) fn get(&mut self, method: u32) -> u32 {
+        self.known(method).unwrap_or_else(|| {
+            self.unset.insert(method);
+            neutral(method)
+        })
+    }
+
+    /// Returns a word, or a value that the chip certainly has where nothing was set.
+    pub(crate) fn get_or(&self, method: u32, otherwise: u32) -> u32 {
+        self.known(method).unwrap_or(otherwise)
+    }
+
+    /// Returns a word if it is known.
+    pub(crate) fn known(&self, method: u32) -> Option<u32> {
+        self.state.get(method)
+    }
+
+    /// Returns a word as a number.
+    pub(crate) fn float(&mut self, method: u32) -> f32 {
+        f32::from_bits(self.get(method))
+    }
+
+    /// Returns whether a word is not 0.
+    pub(crate) fn enabled(&mut self, method: u32) -> bool {
+        self.get(method) != 0
+    }
+
+    /// Notes a gap once.
+    pub(crate) fn note(&mut self, gap: Gap) {
+        if !self.gaps.contains(&gap) {
+            self.gaps.push(gap);
+        }
+    }
+
+    /// Notes a word that is missing.
+    pub(crate) fn missing(&mut self, method: u32) {
+        self.unset.insert(method);
+    }
+
+    /// Notes that a method does not take its value.
+    pub(crate) fn bad(&mut self, method: u32) {
+        let word = self.state.get(method).unwrap_or_else(|| neutral(method));
+        self.note(Gap::BadValue(method, word));
+    }
+
+    /// Returns all gaps, words that were never set as ranges first.
+    pub(crate) fn finish(self) -> Vec<Gap> {
+        let mut gaps: Vec<Gap> = Vec::new();
+        for method in self.unset {
+            match gaps.last_mut() {
+                Some(Gap::Unset(_, last)) if *last + 4 == method => *last = method,
+                _ => gaps.push(Gap::Unset(method, method)),
+            }
+        }
+        gaps.extend(self.gaps);
+        gaps
+    }
+}
+
+fn neutral(method: u32) -> u32 {
+    NEUTRAL.iter().find(|(number, _)| *number == method).map_or(0, |(_, word)| *word)
+}

@@ -1,0 +1,126 @@
+//! Scenes as methods: the words that set the same state and draw the same vertices, and the memory that they read.
+
+mod memory;
+mod print;
+mod state;
+mod units;
+mod vertices;
+
+use std::fmt;
+
+use ninebit::plan::Plan;
+use ninebit::state::{Profile, Scene};
+
+pub use print::{push_buffer, trace};
+
+use crate::class;
+use crate::export::memory::Placed;
+use crate::vertex::microcode;
+
+/// A scene as methods of the 3D class.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Methods {
+    /// Methods in bytes, with their words, in order.
+    pub writes: Vec<(u32, u32)>,
+    /// The image of memory from address 0 on that they read.
+    pub memory: Vec<u8>,
+    /// The places of the scene's targets in memory, in their order.
+    pub surfaces: Vec<u32>,
+}
+
+/// The reason for which a scene has no methods.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportError {
+    /// Index of the draw, if it is one draw's.
+    pub draw: Option<usize>,
+    /// The reason.
+    pub message: String,
+}
+
+impl fmt::Display for ExportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.draw {
+            Some(draw) => write!(f, "draw {draw}: {}", self.message),
+            None => f.write_str(&self.message),
+        }
+    }
+}
+
+impl std::error::Error for ExportError {}
+
+fn refuse<T>(message: impl Into<String>) -> Result<T, ExportError> {
+    Err(ExportError { draw: None, message: message.into() })
+}
+
+/// Collects words. A word of state that is as it was is not sent again.
+#[derive(Debug, Default)]
+struct Words {
+    writes: Vec<(u32, u32)>,
+    state: std::collections::HashMap<u32, u32>,
+}
+
+impl Words {
+    /// Sets a word of state.
+    fn set(&mut self, method: u32, word: u32) {
+        if self.state.insert(method, word) != Some(word) {
+            self.writes.push((method, word));
+        }
+    }
+
+    /// Sets a word of state that is a number.
+    fn number(&mut self, method: u32, number: f32) {
+        self.set(method, number.to_bits());
+    }
+
+    /// Sends a word that does something.
+    fn send(&mut self, method: u32, word: u32) {
+        self.writes.push((method, word));
+    }
+}
+
+/// Returns the methods of a scene of nv2a. `plan` is the plan of the same scene, without pruning or with.
+///
+/// # Errors
+/// The scene is of another chip, or says what no word says.
+pub fn export(scene: &Scene, plan: &Plan) -> Result<Methods, ExportError> {
+    if scene.profile != Profile::Nv2a {
+        return refuse("the scene is of GeForce 256, whose class has other methods: set `profile: Nv2a`");
+    }
+    let mut words = Words::default();
+    let placed = Placed::new(scene)?;
+    program(&mut words);
+    for (index, target) in scene.targets.iter().enumerate() {
+        state::clear(&mut words, &placed, index, target)?;
+    }
+    for (index, draw) in scene.draws.iter().enumerate() {
+        let of_draw = |error: ExportError| ExportError { draw: Some(index), ..error };
+        let Some(clip) = state::surface(&mut words, scene, &placed, draw) else { continue };
+        words.set(class::SET_SURFACE_CLIP_HORIZONTAL, clip.x | clip.width << 16);
+        words.set(class::SET_SURFACE_CLIP_VERTICAL, clip.y | clip.height << 16);
+        state::draw(&mut words, scene, draw).map_err(of_draw)?;
+        units::units(&mut words, scene, &placed, draw).map_err(of_draw)?;
+        let planned = &plan.draws()[index];
+        vertices::vertices(&mut words, scene, draw, &planned.assembly).map_err(of_draw)?;
+    }
+    words.send(class::FLIP_STALL, 0);
+    let surfaces = placed.surfaces.clone();
+    Ok(Methods { writes: words.writes, memory: placed.bytes, surfaces })
+}
+
+/// Sends the vertex program that hands vertices through, and makes it the transform.
+fn program(words: &mut Words) {
+    words.set(class::SET_TRANSFORM_EXECUTION_MODE, 2);
+    words.set(class::SET_TRANSFORM_PROGRAM_LOAD, 0);
+    for slot in microcode::passthrough() {
+        for (part, word) in (0..).zip(slot) {
+            words.send(class::SET_TRANSFORM_PROGRAM + 4 * part, word);
+        }
+    }
+    words.set(class::SET_TRANSFORM_PROGRAM_START, 0);
+    words.set(class::SET_SPECULAR_ENABLE, 1);
+    words.set(class::SET_LIGHT_TWO_SIDE_ENABLE, 0);
+    for attribute in 0..16 {
+        // A float of no component: nothing comes from arrays.
+        words.set(class::SET_VERTEX_DATA_ARRAY_FORMAT + 4 * attribute, 2);
+    }
+}

@@ -1,0 +1,225 @@
+//! Words of the rasteriser, of fog and of the raster operations.
+
+use ninebit::state::{
+    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonStipple, ProvokingVertex, Rectangle,
+    Scene, ShadeModel, StencilTest, SurfaceFormat, Target,
+};
+use ninebit_program::registers::raster;
+
+use super::memory::{Placed, pitch};
+use super::{ExportError, Words, refuse};
+use crate::class;
+use crate::draw::raster::{FOG_MODES, POLYGON_MODES, STENCIL_OPERATIONS};
+
+/// Returns the code of a choice.
+pub(super) fn code<T: PartialEq>(all: &[(T, u32)], choice: T) -> u32 {
+    all.iter().find(|(other, _)| *other == choice).map_or(0, |(_, code)| *code)
+}
+
+fn argb([r, g, b, a]: [u8; 4]) -> u32 {
+    u32::from_le_bytes([b, g, r, a])
+}
+
+/// Returns the bits of SET_CONTROL0 that say how depths are stored.
+fn float_bit(target: &Target) -> u32 {
+    u32::from(target.depth.is_some_and(|depth| depth.format.is_float())) << 12
+}
+
+/// Binds a target.
+fn bind(words: &mut Words, placed: &Placed, index: usize, target: &Target) {
+    let depth = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
+    let layout = if placed.swizzled[index] { 2 } else { 1 };
+    let sides = if placed.swizzled[index] { target.width.ilog2() << 16 | target.height.ilog2() << 24 } else { 0 };
+    let zeta = if depth.has_stencil() { 2 } else { 1 };
+    words.set(class::SET_SURFACE_FORMAT, raster::surface_format(target.format) | zeta << 4 | layout << 8 | sides);
+    let zeta_pitch = pitch(target.width, if depth.has_stencil() { 4 } else { 2 });
+    words.set(class::SET_SURFACE_PITCH, pitch(target.width, target.format.bytes()) & 0xffff | zeta_pitch << 16);
+    words.set(class::SET_SURFACE_COLOR_OFFSET, placed.surfaces[index]);
+    words.set(class::SET_SURFACE_ZETA_OFFSET, placed.depths[index]);
+}
+
+/// Clears a target to what it holds first.
+pub(super) fn clear(words: &mut Words, placed: &Placed, index: usize, target: &Target) -> Result<(), ExportError> {
+    bind(words, placed, index, target);
+    words.set(class::SET_SURFACE_CLIP_HORIZONTAL, target.width << 16);
+    words.set(class::SET_SURFACE_CLIP_VERTICAL, target.height << 16);
+    words.set(class::SET_CLEAR_RECT_HORIZONTAL, (target.width - 1) << 16);
+    words.set(class::SET_CLEAR_RECT_VERTICAL, (target.height - 1) << 16);
+    words.set(class::SET_CONTROL0, 1 << 20 | 1 | float_bit(target));
+    let mut parts = 0;
+    if target.contents.is_none() {
+        words.set(class::SET_COLOR_CLEAR_VALUE, clear_word(target.format, target.clear_color));
+        parts |= 0xf0;
+    }
+    if let Some(depth) = target.depth {
+        let word = if depth.format.has_stencil() { depth.clear << 8 | u32::from(depth.clear_stencil) } else { depth.clear };
+        words.set(class::SET_ZSTENCIL_CLEAR_VALUE, word);
+        parts |= if depth.format.has_stencil() { 3 } else { 1 };
+    }
+    if parts != 0 {
+        words.send(class::CLEAR_SURFACE, parts);
+    }
+    Ok(())
+}
+
+/// Returns the word that a clear of a format stores for R, G, B, A.
+fn clear_word(format: SurfaceFormat, [r, g, b, a]: [u8; 4]) -> u32 {
+    let [r, g, b, a] = [r, g, b, a].map(u32::from);
+    match format {
+        SurfaceFormat::A8R8G8B8 => a << 24 | r << 16 | g << 8 | b,
+        SurfaceFormat::X8R8G8B8Z => r << 16 | g << 8 | b,
+        SurfaceFormat::X8R8G8B8O => 0xff00_0000 | r << 16 | g << 8 | b,
+        SurfaceFormat::X1A7R8G8B8Z => a >> 1 << 24 | r << 16 | g << 8 | b,
+        SurfaceFormat::X1A7R8G8B8O => 0x8000_0000 | a >> 1 << 24 | r << 16 | g << 8 | b,
+        SurfaceFormat::R5G6B5 => r >> 3 << 11 | g >> 2 << 5 | b >> 3,
+        SurfaceFormat::X1R5G5B5Z => r >> 3 << 10 | g >> 3 << 5 | b >> 3,
+        SurfaceFormat::X1R5G5B5O => 0x8000 | r >> 3 << 10 | g >> 3 << 5 | b >> 3,
+        SurfaceFormat::B8 => b,
+        SurfaceFormat::G8B8 => g << 8 | b,
+    }
+}
+
+/// Binds the target of a draw, and returns the pixels that the surface clip leaves; `None` if there are none.
+pub(super) fn surface(words: &mut Words, scene: &Scene, placed: &Placed, draw: &Draw) -> Option<Rectangle> {
+    let target = scene.targets.get(draw.target)?;
+    let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
+    let common = |one: Rectangle, other: Rectangle| {
+        let axis = |a: u32, b: u32, c: u32, d: u32| (a.max(c), (a + b).min(c.saturating_add(d)));
+        let ((x, right), (y, bottom)) = (axis(one.x, one.width, other.x, other.width), axis(one.y, one.height, other.y, other.height));
+        Rectangle { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) }
+    };
+    let clip = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
+    if clip.width == 0 || clip.height == 0 {
+        return None;
+    }
+    bind(words, placed, draw.target, target);
+    Some(clip)
+}
+
+/// Sets the state of a draw but that of its texture units.
+pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), ExportError> {
+    let target = &scene.targets[draw.target];
+    let w_buffer = draw.depth_test.is_some_and(|test| test.w_buffer);
+    let writes_stencil = draw.stencil_test.is_some_and(|test| test.write_mask != 0);
+    let control = u32::from(writes_stencil) | float_bit(target) | u32::from(w_buffer) << 16 | u32::from(draw.perspective) << 20;
+    words.set(class::SET_CONTROL0, control);
+    figures(words, draw);
+    fog(words, &draw.fog)?;
+    window_clip(words, draw)?;
+    words.set(class::SET_ALPHA_TEST_ENABLE, draw.alpha_test.is_some().into());
+    if let Some(test) = draw.alpha_test {
+        words.set(class::SET_ALPHA_FUNC, raster::compare_function(test.function));
+        words.set(class::SET_ALPHA_REF, test.reference.into());
+    }
+    words.set(class::SET_BLEND_ENABLE, draw.blend.is_some().into());
+    if let Some(blend) = draw.blend {
+        words.set(class::SET_BLEND_FUNC_SFACTOR, raster::blend_factor(blend.source));
+        words.set(class::SET_BLEND_FUNC_DFACTOR, raster::blend_factor(blend.destination));
+        words.set(class::SET_BLEND_EQUATION, raster::blend_equation(blend.equation));
+        words.set(class::SET_BLEND_COLOR, argb(draw.blend_constant));
+    }
+    let mask = (0..4).map(|n| raster::COLOR_MASK[n].put(draw.color_mask[n].into())).sum();
+    words.set(class::SET_COLOR_MASK, mask);
+    words.set(class::SET_DITHER_ENABLE, 0);
+    words.set(class::SET_LOGIC_OP_ENABLE, 0);
+    words.set(class::SET_DEPTH_TEST_ENABLE, draw.depth_test.is_some().into());
+    if let Some(test) = &draw.depth_test {
+        depth(words, test, target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format));
+    }
+    words.set(class::SET_STENCIL_TEST_ENABLE, draw.stencil_test.is_some().into());
+    if let Some(test) = &draw.stencil_test {
+        stencil(words, test);
+    }
+    Ok(())
+}
+
+fn figures(words: &mut Words, draw: &Draw) {
+    let flat = draw.shade_model == ShadeModel::Flat;
+    words.set(class::SET_SHADE_MODEL, if flat { 0x1d00 } else { 0x1d01 });
+    words.set(class::SET_FLAT_SHADE_OP, (draw.provoking_vertex == ProvokingVertex::First).into());
+    words.set(class::SET_FRONT_POLYGON_MODE, code(&POLYGON_MODES, draw.polygon_modes.front));
+    words.set(class::SET_BACK_POLYGON_MODE, code(&POLYGON_MODES, draw.polygon_modes.back));
+    words.set(class::SET_STIPPLE_ENABLE, draw.polygon_stipple.is_some().into());
+    if let Some(PolygonStipple(rows)) = &draw.polygon_stipple {
+        for (n, row) in (0..).zip(rows) {
+            words.set(class::SET_STIPPLE_PATTERN + 4 * n, *row);
+        }
+    }
+    words.set(class::SET_LINE_SMOOTH_ENABLE, 0);
+    words.set(class::SET_POLY_SMOOTH_ENABLE, 0);
+    words.set(class::SET_LINE_WIDTH, draw.lines.width.into());
+    // LIN-2: the first bit makes lines rectangles.
+    words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | u32::from(draw.lines.rasterization == LineRasterization::Rectangular));
+    words.set(class::SET_POINT_SIZE, draw.point_size.into());
+    words.set(class::SET_POINT_SMOOTH_ENABLE, draw.point_sprite.into());
+    words.set(class::SET_POINT_PARAMS_ENABLE, draw.point_sizes.is_some().into());
+    words.set(class::SET_FRONT_FACE, if draw.front_face == FrontFace::Clockwise { 0x900 } else { 0x901 });
+    words.set(class::SET_CULL_FACE_ENABLE, (draw.cull != Cull::None).into());
+    words.set(class::SET_CULL_FACE, if draw.cull == Cull::Front { 0x404 } else { 0x405 });
+}
+
+fn fog(words: &mut Words, fog: &Fog) -> Result<(), ExportError> {
+    let [r, g, b] = fog.color;
+    words.set(class::SET_FOG_COLOR, u32::from_le_bytes([r, g, b, 0]));
+    words.set(class::SET_FOG_ENABLE, fog.enabled.into());
+    if !fog.enabled {
+        return Ok(());
+    }
+    let Some(function) = fog.function else {
+        return refuse("factors of fog that the vertices give have no word: give the fog a `mode`");
+    };
+    if function.per_vertex {
+        return refuse("linear fog that is evaluated at vertices has no word: take `evaluation: PerPixel`");
+    }
+    words.set(class::SET_FOG_MODE, code(&FOG_MODES, function.mode));
+    for (n, parameter) in (0..).zip([function.p0, function.p1, function.p2]) {
+        words.number(class::SET_FOG_PARAMS + 4 * n, parameter);
+    }
+    Ok(())
+}
+
+fn window_clip(words: &mut Words, draw: &Draw) -> Result<(), ExportError> {
+    // Everything, where there is no clip.
+    let everything = [Rectangle { x: 0, y: 0, width: 4096, height: 4096 }];
+    let (rectangles, exclusive) = draw.window_clip.as_ref().map_or((&everything[..], false), |clip| (&clip.rectangles[..], clip.exclusive));
+    if rectangles.iter().any(|rectangle| rectangle.width == 0 || rectangle.height == 0) {
+        return refuse("a window clip rectangle without pixels has no word: leave it out");
+    }
+    words.set(class::SET_WINDOW_CLIP_TYPE, exclusive.into());
+    for n in 0..8 {
+        let Rectangle { x, y, width, height } = rectangles[n.min(rectangles.len() - 1)];
+        let range = |first: u32, count: u32| first.min(4095) | first.saturating_add(count - 1).min(4095) << 16;
+        words.set(class::SET_WINDOW_CLIP_HORIZONTAL + 4 * n as u32, range(x, width));
+        words.set(class::SET_WINDOW_CLIP_VERTICAL + 4 * n as u32, range(y, height));
+    }
+    Ok(())
+}
+
+fn depth(words: &mut Words, test: &DepthTest, format: DepthFormat) {
+    words.set(class::SET_DEPTH_FUNC, raster::compare_function(test.function));
+    words.set(class::SET_DEPTH_MASK, test.write.into());
+    let whole = DepthRange {
+        lowest: 0.0,
+        highest: if format.is_float() { f32::MAX } else { (f64::from(format.largest())) as f32 },
+        clamps: true,
+        drops_triangles: false,
+    };
+    let range = test.range.unwrap_or(whole);
+    words.number(class::SET_CLIP_MIN, range.lowest);
+    words.number(class::SET_CLIP_MAX, range.highest);
+    words.set(class::SET_ZMIN_MAX_CONTROL, u32::from(range.clamps) << 4 | u32::from(range.drops_triangles));
+    let offset = test.offset;
+    words.set(class::SET_POLY_OFFSET_FILL_ENABLE, (offset.bias != 0.0 || offset.factor != 0.0).into());
+    words.number(class::SET_POLYGON_OFFSET_SCALE_FACTOR, offset.factor);
+    words.number(class::SET_POLYGON_OFFSET_BIAS, offset.bias);
+}
+
+fn stencil(words: &mut Words, test: &StencilTest) {
+    words.set(class::SET_STENCIL_FUNC, raster::compare_function(test.function));
+    words.set(class::SET_STENCIL_FUNC_REF, test.reference.into());
+    words.set(class::SET_STENCIL_FUNC_MASK, test.mask.into());
+    words.set(class::SET_STENCIL_MASK, test.write_mask.into());
+    words.set(class::SET_STENCIL_OP_FAIL, STENCIL_OPERATIONS[test.fail as usize]);
+    words.set(class::SET_STENCIL_OP_ZFAIL, STENCIL_OPERATIONS[test.depth_fail as usize]);
+    words.set(class::SET_STENCIL_OP_ZPASS, STENCIL_OPERATIONS[test.pass as usize]);
+}

@@ -1,0 +1,470 @@
+//! Frames: the draws and clears between two flips, as a scene.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::state::{
+    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, StencilOperation,
+    StencilTest, Target, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
+};
+
+use crate::class;
+use crate::draw::surface::{Surface, clear_color, surface};
+use crate::draw::texture::{Image, entries, image, palette, unit};
+use crate::draw::view::View;
+use crate::draw::{raster, shader, vertices};
+use crate::gap::Gap;
+use crate::memory::{Layout, Memory, words};
+use crate::state::{Batch, State};
+
+/// A draw or a clear of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// Line of the log.
+    pub line: u64,
+    /// Number among the draws of the log, from 0; clears have none.
+    pub number: Option<u64>,
+    /// Index in the scene; `None` if it could not be stated at all.
+    pub draw: Option<usize>,
+    /// Name of what it is: `draw 3: TriangleStrip of 4 vertices`.
+    pub name: String,
+    /// The reasons for which it is incomplete.
+    pub gaps: Vec<Gap>,
+}
+
+/// A frame of the log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Number of the frame, from 0.
+    pub number: u64,
+    /// The scene; it has no target if nothing was drawn.
+    pub scene: Scene,
+    /// The draws and clears in order.
+    pub drawn: Vec<Drawn>,
+}
+
+impl Frame {
+    /// Returns whether every draw is stated as it was.
+    pub fn is_complete(&self) -> bool {
+        self.drawn.iter().all(|drawn| drawn.gaps.is_empty())
+    }
+}
+
+/// What is known of a target.
+#[derive(Clone, Debug)]
+struct Known {
+    surface: Surface,
+    uses_depth: bool,
+    /// Number of draws and clears into it.
+    uses: usize,
+    /// Whether the log has all that it holds.
+    has_contents: bool,
+    /// Whether a clear of everything comes first.
+    is_cleared: bool,
+}
+
+/// Builds the scene of a frame.
+#[derive(Debug)]
+pub(crate) struct Builder {
+    number: u64,
+    surfaces_in_memory: bool,
+    targets: Vec<Target>,
+    known: Vec<Known>,
+    textures: Vec<Texture>,
+    images: HashMap<Image, (usize, Option<Gap>)>,
+    shown: HashMap<(usize, bool, TextureKind, TextureFormat), usize>,
+    palettes: Vec<Palette>,
+    palette_places: HashMap<(u32, usize), usize>,
+    draws: Vec<Draw>,
+    drawn: Vec<Drawn>,
+}
+
+impl Builder {
+    /// Makes a builder of a frame. `surfaces_in_memory` says that memory has what surfaces held before the frame.
+    pub(crate) fn new(number: u64, surfaces_in_memory: bool) -> Builder {
+        Builder {
+            number,
+            surfaces_in_memory,
+            targets: Vec::new(),
+            known: Vec::new(),
+            textures: Vec::new(),
+            images: HashMap::new(),
+            shown: HashMap::new(),
+            palettes: Vec::new(),
+            palette_places: HashMap::new(),
+            draws: Vec::new(),
+            drawn: Vec::new(),
+        }
+    }
+
+    /// Returns whether nothing was drawn.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.drawn.is_empty()
+    }
+
+    /// Takes a clear.
+    pub(crate) fn clear(&mut self, state: &State, line: u64, word: u32) {
+        let mut view = View::new(state);
+        let name = format!("clear at line {line}");
+        let stated = surface(&mut view).and_then(|surface| {
+            let (depth, stencil) = (word & 1 != 0, word & 2 != 0 && surface.depth.has_stencil());
+            let target = self.target(&mut view, &surface, depth || stencil)?;
+            self.clear_target(&mut view, (target, &surface), word, (depth, stencil));
+            self.known[target].uses += 1;
+            Some(())
+        });
+        // A clear that became the target's own is no draw.
+        let draw = stated.and_then(|()| self.draws.last_mut().filter(|draw| draw.name.is_empty()).map(|draw| draw.name.clone_from(&name)));
+        let draw = draw.map(|()| self.draws.len() - 1);
+        self.drawn.push(Drawn { line, number: None, draw, name, gaps: view.finish() });
+    }
+
+    fn clear_target(&mut self, view: &mut View<'_>, (target, surface): (usize, &Surface), word: u32, (depth, stencil): (bool, bool)) {
+        // R, G, B, A.
+        let mask = [4, 5, 6, 7].map(|bit| word >> bit & 1 != 0);
+        let mut axis = |method, start: u32, length: u32| {
+            let word = view.get(method);
+            let (first, last) = ((word & 0xffff).max(start), (word >> 16).min(start + length - 1));
+            (first, (last + 1).saturating_sub(first))
+        };
+        let clip = surface.clip;
+        let (x, width) = axis(class::SET_CLEAR_RECT_HORIZONTAL, clip.x, clip.width);
+        let (y, height) = axis(class::SET_CLEAR_RECT_VERTICAL, clip.y, clip.height);
+        let (colors, zeta) = (mask.contains(&true), depth || stencil);
+        let color = if colors { view.get(class::SET_COLOR_CLEAR_VALUE) } else { 0 };
+        let zstencil = if zeta { view.get(class::SET_ZSTENCIL_CLEAR_VALUE) } else { 0 };
+        let (color, exact) = clear_color(surface.format, color);
+        if colors && !exact {
+            view.note(Gap::NotModelled("bits of a clear's colour that the surface's format does not use".into()));
+        }
+        let (depth_word, stencil_byte) = match surface.depth.has_stencil() {
+            true => (zstencil >> 8, zstencil as u8),
+            false => (zstencil & 0xffff, 0),
+        };
+        let area = Rectangle { x, y, width, height };
+        let whole = Rectangle { x: 0, y: 0, width: self.targets[target].width, height: self.targets[target].height };
+        let all = mask == [true; 4] || colors && surface.format.bytes() < 4;
+        if area == whole && all {
+            self.known[target].has_contents = true;
+        }
+        let complete = !zeta || depth && (stencil || !surface.depth.has_stencil());
+        if self.known[target].uses == 0 && area == whole && (all || !colors) && complete {
+            if colors {
+                self.targets[target].clear_color = color;
+                self.known[target].is_cleared = true;
+            }
+            if zeta {
+                let buffer = DepthBuffer { format: surface.depth, clear: depth_word, clear_stencil: stencil_byte };
+                self.targets[target].depth = Some(buffer);
+            }
+            return;
+        }
+        if colors {
+            self.contents(view, target);
+        }
+        let mut draw = rectangle(area, color);
+        draw.target = target;
+        draw.color_mask = mask;
+        if depth {
+            let z = if surface.depth.is_float() { float_depth(surface.depth, depth_word) } else { depth_word as f32 };
+            draw.depth_test =
+                Some(DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) });
+            draw.vertices.map_positions(|[x, y, _, w]| [x, y, z, w]);
+        }
+        if stencil {
+            draw.stencil_test = Some(StencilTest {
+                function: CompareFunction::Always,
+                reference: stencil_byte,
+                mask: 255,
+                write_mask: 255,
+                fail: StencilOperation::Keep,
+                depth_fail: StencilOperation::Keep,
+                pass: StencilOperation::Replace,
+            });
+        }
+        if width > 0 && height > 0 {
+            self.draws.push(draw);
+        }
+    }
+
+    /// Notes once that a target held something before the log.
+    fn contents(&mut self, view: &mut View<'_>, target: usize) {
+        let known = &mut self.known[target];
+        if !known.has_contents {
+            view.note(Gap::UnknownContents(known.surface.color.into()));
+            known.has_contents = true;
+        }
+    }
+
+    /// Takes a draw.
+    pub(crate) fn draw(&mut self, state: &State, memory: &Memory, batch: &Batch, number: u64) {
+        let mut view = View::new(state);
+        let line = batch.line;
+        let (draw, count) = match self.lower(&mut view, memory, batch) {
+            Some(draw) => {
+                let count = draw.indices.len();
+                (Some(draw), count)
+            }
+            None => (None, 0),
+        };
+        let primitive = raster::topology(batch.primitive).map_or("unknown primitive", Named::name);
+        let name = format!("draw {number} at line {line}: {primitive} of {count} vertices");
+        let draw = draw.map(|draw| {
+            self.known[draw.target].uses += 1;
+            self.draws.push(Draw { name: name.clone(), ..draw });
+            self.draws.len() - 1
+        });
+        self.drawn.push(Drawn { line, number: Some(number), draw, name, gaps: view.finish() });
+    }
+
+    /// Takes a draw that the end of the log cuts off, and does not state it.
+    pub(crate) fn unfinished(&mut self, batch: &Batch, number: u64) {
+        let name = format!("draw {number} at line {}", batch.line);
+        self.drawn.push(Drawn { line: batch.line, number: Some(number), draw: None, name, gaps: vec![Gap::Unfinished] });
+    }
+
+    fn lower(&mut self, view: &mut View<'_>, memory: &Memory, batch: &Batch) -> Option<Draw> {
+        let Some(topology) = raster::topology(batch.primitive) else {
+            view.note(Gap::BadValue(class::SET_BEGIN_END, batch.primitive));
+            return None;
+        };
+        let surface = surface(view)?;
+        let mut draw = Draw { topology, ..Draw::default() };
+        let visible = raster::state(view, surface.depth, &mut draw);
+        if !(vertices::vertices_of(view, memory, batch, surface.depth, &mut draw) && visible) {
+            return None;
+        }
+        let tests = draw.depth_test.is_some() || draw.stencil_test.is_some();
+        draw.target = self.target(view, &surface, tests)?;
+        self.contents(view, draw.target);
+        let whole = self.targets[draw.target].width == surface.clip.width && self.targets[draw.target].height == surface.clip.height;
+        draw.scissor = (!whole).then_some(surface.clip);
+        draw.combiners = shader::combiners(view)?;
+        self.units(view, memory, &mut draw);
+        Some(draw)
+    }
+
+    /// Returns the target of a surface, which grows with its clip.
+    fn target(&mut self, view: &mut View<'_>, surface: &Surface, uses_depth: bool) -> Option<usize> {
+        let [width, height] = surface.size();
+        let same = |known: &Known| known.surface.color == surface.color && known.surface.format.bytes() == surface.format.bytes();
+        let shares = |known: &Known| known.uses_depth && known.surface.zeta == surface.zeta && known.surface.color != surface.color;
+        if uses_depth && self.known.iter().any(shares) {
+            view.note(Gap::NotModelled(format!("a depth buffer (0x{:08x}) that several surfaces have", surface.zeta)));
+        }
+        let at = match self.known.iter().position(same) {
+            Some(at) => at,
+            None => {
+                self.targets.push(Target {
+                    name: format!("surface {:08x}", surface.color),
+                    clear_color: [0, 0, 0, 0],
+                    ..Target::new(width, height, surface.format)
+                });
+                self.known.push(Known { surface: *surface, uses_depth: false, uses: 0, has_contents: self.surfaces_in_memory, is_cleared: false });
+                self.known.len() - 1
+            }
+        };
+        let (target, known) = (&mut self.targets[at], &mut self.known[at]);
+        if target.format != surface.format {
+            view.note(Gap::NotModelled(format!("the surface at 0x{:08x} in two formats", surface.color)));
+        }
+        (target.width, target.height) = (target.width.max(width), target.height.max(height));
+        if uses_depth {
+            if known.uses_depth && (known.surface.zeta, known.surface.depth) != (surface.zeta, surface.depth) {
+                view.note(Gap::NotModelled(format!("a second depth buffer of the surface at 0x{:08x}", surface.color)));
+            } else {
+                (known.surface.zeta, known.surface.depth, known.uses_depth) = (surface.zeta, surface.depth, true);
+                let format = surface.depth;
+                target.depth.get_or_insert(DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
+            }
+        }
+        Some(at)
+    }
+
+    /// Fills in the texture units and the texture shader.
+    fn units(&mut self, view: &mut View<'_>, memory: &Memory, draw: &mut Draw) {
+        for index in 0..TEXTURE_UNITS {
+            let mut stage = shader::stage(view, index);
+            if stage.operation.samples() {
+                let enabled = view.get(crate::draw::texture::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
+                draw.textures[index] = if enabled { self.unit(view, memory, index, draw.target) } else { None };
+                if draw.textures[index].is_none() {
+                    stage.operation = ShaderOperation::None;
+                }
+                let kinds = stage.operation.kinds();
+                if let Some(unit) = &draw.textures[index]
+                    && !kinds.contains(&self.textures[unit.texture].kind)
+                {
+                    view.note(Gap::NotModelled(format!("a texture of another kind than unit {index} samples")));
+                    (draw.textures[index], stage.operation) = (None, ShaderOperation::None);
+                }
+            }
+            draw.texture_shader[index] = stage;
+        }
+    }
+
+    fn unit(&mut self, view: &mut View<'_>, memory: &Memory, index: usize, target: usize) -> Option<TextureUnit> {
+        let image = image(view, index)?;
+        let projects = shader::code(view, index) == shader::THREE;
+        let mut state = unit(view, index, &image, projects);
+        state.texture = match self.shown(view, &image, target) {
+            Some(texture) => texture,
+            None => self.texture(view, memory, &image),
+        };
+        if image.format == TextureFormat::P8 {
+            let place = palette(view, index);
+            let known = self.palette_places.get(&place).copied();
+            state.palette = Some(match known {
+                Some(palette) => palette,
+                None => match entries(memory, place) {
+                    Ok(palette) => {
+                        self.palettes.push(palette);
+                        self.palette_places.insert(place, self.palettes.len() - 1);
+                        self.palettes.len() - 1
+                    }
+                    Err(gap) => {
+                        view.note(gap);
+                        let name = format!("palette {:08x}, not recorded", place.0);
+                        self.palettes.push(Palette { name, entries: vec![u32::MAX; place.1].into() });
+                        self.palette_places.insert(place, self.palettes.len() - 1);
+                        self.palettes.len() - 1
+                    }
+                },
+            });
+        }
+        Some(state)
+    }
+
+    /// Returns the texture that shows a target of the frame, if the image is one.
+    fn shown(&mut self, view: &mut View<'_>, image: &Image, drawing: usize) -> Option<usize> {
+        let color = self.known.iter().position(|known| known.surface.color == image.address && known.uses > 0);
+        let depth = self.known.iter().position(|known| known.uses_depth && known.surface.zeta == image.address && known.uses > 0);
+        let (target, is_depth) = match (color, depth) {
+            _ if image.format.depth().is_some() => (depth?, true),
+            (Some(color), _) => (color, false),
+            (None, _) => return None,
+        };
+        let state = &self.targets[target];
+        let fits = match image.kind {
+            TextureKind::TwoDimensional | TextureKind::Rectangle => {
+                let bytes = if is_depth { image.format.bytes() } else { state.format.bytes() };
+                image.levels == 1 && !image.border && [state.width, state.height] == image.size[..2] && bytes == image.format.bytes()
+            }
+            _ => false,
+        };
+        if !fits || target == drawing {
+            view.note(Gap::NotModelled(format!("part of the surface at 0x{:08x} as a texture", image.address)));
+            return None;
+        }
+        let key = (target, is_depth, image.kind, image.format);
+        if let Some(texture) = self.shown.get(&key) {
+            return Some(*texture);
+        }
+        let name = format!("{} of {} {}", if is_depth { "depths" } else { "colours" }, state.name, self.textures.len());
+        let image_of = if is_depth { TextureImage::Depth { target } } else { TextureImage::Target { target } };
+        self.textures.push(Texture { name, kind: image.kind, format: image.format, image: image_of });
+        self.shown.insert(key, self.textures.len() - 1);
+        Some(self.textures.len() - 1)
+    }
+
+    /// Returns the texture of an image. Where memory does not hold it, a white texel stands for it.
+    fn texture(&mut self, view: &mut View<'_>, memory: &Memory, image: &Image) -> usize {
+        if let Some((texture, gap)) = self.images.get(image) {
+            gap.iter().for_each(|gap| view.note(gap.clone()));
+            return *texture;
+        }
+        let (texels, gap) = match image.texels(memory) {
+            Ok(texels) => (texels, None),
+            Err(gap) => (image.absent(), Some(gap)),
+        };
+        let name = format!("texture {} at {:08x}", self.textures.len(), image.address);
+        let name = if gap.is_some() { format!("{name}, not recorded") } else { name };
+        self.textures.push(Texture { name, kind: image.kind, format: image.format, image: TextureImage::Texels(texels) });
+        gap.iter().for_each(|gap| view.note(gap.clone()));
+        self.images.insert(*image, (self.textures.len() - 1, gap));
+        self.textures.len() - 1
+    }
+
+    /// Returns the frame. Draws that the model refuses are left out, with the reason.
+    pub(crate) fn finish(mut self, memory: &Memory) -> Frame {
+        if self.surfaces_in_memory {
+            for (target, known) in self.targets.iter_mut().zip(&self.known).filter(|(_, known)| !known.is_cleared) {
+                let layout = known.surface.swizzled.map_or(Layout::Pitch(known.surface.pitch), |_| Layout::Swizzled);
+                let (format, size) = (target.format.texture_format(), [target.width, target.height, 1]);
+                target.contents = words(memory, known.surface.color.into(), format, size, layout).map(Into::into);
+            }
+        }
+        let Builder { number, targets, textures, palettes, draws, mut drawn, .. } = self;
+        let mut scene = Scene { profile: Profile::Nv2a, targets, textures, palettes, draws };
+        for draw in &mut scene.draws {
+            // The clip may have grown afterwards.
+            let target = &scene.targets[draw.target];
+            if draw.scissor == Some(Rectangle { x: 0, y: 0, width: target.width, height: target.height }) {
+                draw.scissor = None;
+            }
+        }
+        while !scene.targets.is_empty() && !scene.draws.is_empty() {
+            let Err(errors) = Plan::compile(&scene, &PlanOptions::default()) else { break };
+            if !leave_out(&mut scene, &mut drawn, &errors) {
+                break;
+            }
+        }
+        Frame { number, scene, drawn }
+    }
+}
+
+/// Removes the draws that errors name, and notes the errors. Returns whether there are any.
+fn leave_out(scene: &mut Scene, drawn: &mut [Drawn], errors: &[PlanError]) -> bool {
+    let mut refused: Vec<usize> = errors.iter().filter_map(|error| error.draw).collect();
+    refused.sort_unstable();
+    refused.dedup();
+    if refused.is_empty() {
+        // The scene as a whole is too large.
+        let message = errors.first().map_or_else(String::new, |error| error.message.clone());
+        for entry in drawn.iter_mut() {
+            entry.draw = None;
+            entry.gaps.push(Gap::TooMany(message.clone()));
+        }
+        scene.draws.clear();
+        return true;
+    }
+    for index in refused.into_iter().rev() {
+        scene.draws.remove(index);
+        for entry in drawn.iter_mut() {
+            match entry.draw {
+                Some(at) if at == index => {
+                    entry.draw = None;
+                    let of_draw = errors.iter().filter(|error| error.draw == Some(index));
+                    entry.gaps.extend(of_draw.map(|error| Gap::NotModelled(error.message.clone())));
+                }
+                Some(at) if at > index => entry.draw = Some(at - 1),
+                _ => {}
+            }
+        }
+    }
+    true
+}
+
+/// Returns a draw that fills a rectangle with one colour; its name is empty.
+fn rectangle(area: Rectangle, color: [u8; 4]) -> Draw {
+    let (left, right) = (area.x as f32, (area.x + area.width) as f32);
+    let (top, bottom) = (area.y as f32, (area.y + area.height) as f32);
+    let corner = |(x, y): (f32, f32)| Vertex {
+        position: [x, y, 0.0, 1.0],
+        diffuse: VertexColor::Bytes(color),
+        ..Vertex::default()
+    };
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom)].map(corner);
+    Draw { name: String::new(), topology: Topology::Quads, indices: Arc::new([0, 1, 2, 3]), vertices: corners.into_iter().collect(), ..Draw::default() }
+}
+
+/// Returns the number that a word of a float depth buffer holds.
+pub(crate) fn float_depth(format: DepthFormat, word: u32) -> f32 {
+    match format {
+        // Four bits of exponent with a bias of 7, twelve of fraction.
+        DepthFormat::Z16F if word >> 12 == 0 => 0.0,
+        DepthFormat::Z16F => f32::from_bits(((word >> 12) + 120) << 23 | (word & 0xfff) << 11),
+        _ => f32::from_bits(word << 7),
+    }
+}

@@ -1,0 +1,90 @@
+//! Scenes become methods, and the methods become scenes with the same pictures.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests fail by panicking")]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::{Profile, Scene};
+use ninebit_methods::export::{Methods, export, push_buffer, trace};
+use ninebit_methods::import::{Options, import};
+use ninebit_methods::memory::Memory;
+use ninebit_methods::state::State;
+use ninebit_test_support::frames::difference;
+
+/// Returns the scene that a log of methods states.
+fn back(methods: &Methods, text: &str) -> Result<Scene, String> {
+    let memory = Memory::new(methods.memory.clone());
+    let options = Options { surfaces_in_memory: true, ..Options::default() };
+    let (mut frames, summary) = import(text.as_bytes(), State::default(), &memory, options);
+    if frames.len() != 1 || summary.fault_count + summary.unknown_lines.0 > 0 {
+        return Err(format!("{} frames, {summary:?}", frames.len()));
+    }
+    let frame = frames.remove(0);
+    if let Some(drawn) = frame.drawn.iter().find(|drawn| !drawn.gaps.is_empty()) {
+        return Err(format!("{}: {}", drawn.name, drawn.gaps.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")));
+    }
+    Ok(frame.scene)
+}
+
+/// Returns what differs after a scene has gone there and back; `Err` if it cannot go.
+fn trip(scene: &Scene, as_words: bool) -> Result<Option<String>, String> {
+    let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
+    let methods = export(scene, &plan).map_err(|error| error.message)?;
+    let text = if as_words {
+        push_buffer(&methods).iter().map(|word| format!("0x{word:08x}\n")).collect()
+    } else {
+        trace(&methods)
+    };
+    let scene = match back(&methods, &text) {
+        Ok(scene) => scene,
+        Err(message) => return Ok(Some(message)),
+    };
+    let again = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    let options = RenderOptions::default();
+    Ok(difference(&render(&again, &options), &render(&plan, &options), "the scene"))
+}
+
+fn below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            below(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "ron") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn committed_scenes_come_back() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/scenes");
+    let mut paths = Vec::new();
+    below(&root, &mut paths);
+    paths.sort();
+    paths.retain(|path| {
+        let name = path.file_name().unwrap().to_string_lossy();
+        !name.ends_with(".expect.ron") && !name.ends_with(".family.ron")
+    });
+    let (mut same, mut wrong, mut refused) = (0, Vec::new(), BTreeMap::<String, usize>::new());
+    for (number, path) in paths.iter().enumerate() {
+        let Ok(mut loaded) = ninebit_scene::load(path, &Limits::default()) else { continue };
+        // What only the GeForce 256 does differs; the rest is a scene of nv2a, too.
+        loaded.scene.profile = Profile::Nv2a;
+        if Plan::compile(&loaded.scene, &PlanOptions::default()).is_err() {
+            *refused.entry("only of nv10".into()).or_default() += 1;
+            continue;
+        }
+        let name = path.strip_prefix(&root).unwrap().display().to_string();
+        match trip(&loaded.scene, number % 4 == 0) {
+            Ok(None) => same += 1,
+            Ok(Some(difference)) => wrong.push(format!("{name}: {difference}")),
+            Err(reason) => *refused.entry(reason).or_default() += 1,
+        }
+    }
+    println!("{same} came back; refused: {refused:#?}");
+    assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(same > 150);
+}
