@@ -10,7 +10,7 @@ pub mod fog;
 pub mod point;
 pub mod shader;
 pub mod texgen;
-mod vector;
+pub mod vector;
 
 use vector::{dot3, dot4, unit};
 

@@ -2,17 +2,17 @@
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 /// Returns a . b, adding from left to right.
-pub(super) fn dot3(a: [f32; 3], b: [f32; 3]) -> f32 {
+pub fn dot3(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Returns a . b, adding from left to right.
-pub(super) fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
+pub fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Returns a x b.
-pub(super) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+pub fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -26,14 +26,14 @@ fn scaled(v: [f32; 3]) -> Option<(f32, [f32; 3])> {
 
 /// Returns the direction of a vector, of unit length, or zero if it has none. No square overflows or underflows to
 /// zero.
-pub(super) fn unit(v: [f32; 3]) -> [f32; 3] {
+pub fn unit(v: [f32; 3]) -> [f32; 3] {
     let Some((_, v)) = scaled(v) else { return [0.0; 3] };
     let length = dot3(v, v).sqrt();
     v.map(|c| c / length)
 }
 
 /// Returns the length of a vector, or 0 if it is not finite.
-pub(super) fn length(v: [f32; 3]) -> f32 {
+pub fn length(v: [f32; 3]) -> f32 {
     scaled(v).map_or(0.0, |(largest, v)| largest * dot3(v, v).sqrt())
 }
 
