@@ -7,8 +7,8 @@ use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays, rules and planes.
-const OTHERS: [&str; 6] = ["07", "08", "10", "12", "13", "14"];
+/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays, rules, planes and logs.
+const OTHERS: [&str; 7] = ["07", "08", "10", "12", "13", "14", "16"];
 
 /// A row of the page's tables.
 pub struct Row {

@@ -346,13 +346,16 @@ impl Builder {
             (None, _) => return None,
         };
         let state = &self.targets[target];
-        let fits = match image.kind {
-            TextureKind::TwoDimensional | TextureKind::Rectangle => {
-                let bytes = if is_depth { image.format.bytes() } else { state.format.bytes() };
-                image.levels == 1 && !image.border && [state.width, state.height] == image.size[..2] && bytes == image.format.bytes()
-            }
-            _ => false,
-        };
+        let bytes = if is_depth { image.format.bytes() } else { state.format.bytes() };
+        let fits = image.levels == 1
+            && !image.border
+            && image.size[1] == state.height
+            && match image.kind {
+                TextureKind::TwoDimensional => (image.size[0], image.format.bytes()) == (state.width, bytes),
+                // A row's bytes, as many texels as they fill.
+                TextureKind::Rectangle => image.size[0] * image.format.bytes() == state.width * bytes,
+                _ => false,
+            };
         if !fits || target == drawing {
             view.note(Gap::NotModelled(format!("part of the surface at 0x{:08x} as a texture", image.address)));
             return None;

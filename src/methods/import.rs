@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use ninebit::state::Profile;
+use ninebit_program::registers::Word as RegisterWord;
+
 use crate::class::{self, KELVIN, Treatment};
 use crate::frame::{Builder, Frame};
 use crate::log::{Entry, Event, Fault, Reader, Write};
@@ -208,6 +211,23 @@ pub fn import(text: &[u8], state: State, memory: &Memory, options: Options) -> (
     (frames, summary)
 }
 
+/// Returns the words of the combiners that a log leaves set, a method and its word a line; `None` if the bytes are no log. Register words alone are
+/// none: they have a reader of their own.
+pub fn combiner_words(bytes: &[u8]) -> Option<String> {
+    let (mut reader, mut words) = (Reader::new(), BTreeMap::new());
+    let mut take = |entry: Entry| {
+        if let Event::Write(Write { class: KELVIN, method, word }) = entry.event
+            && RegisterWord::of_method(method, Profile::Nv2a).is_some()
+        {
+            words.insert(method, word);
+        }
+    };
+    reader.feed(bytes, &mut take);
+    reader.finish(&mut take);
+    let lines = words.iter().map(|(method, word)| format!("0x{method:04x} 0x{word:08x}\n"));
+    reader.is_log().then(|| lines.collect())
+}
+
 /// A line of assumed state that says nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssumptionError {
@@ -291,6 +311,16 @@ mod tests {
 
     fn frames(text: &str, part: Part) -> (Vec<Frame>, Summary) {
         import(text.as_bytes(), State::default(), &Memory::default(), Options { part, ..Options::default() })
+    }
+
+    #[test]
+    fn the_combiners_of_a_log_are_its_last_words() {
+        let log = "nv2a_pgraph_method 0: 0x97 -> 0x0ac0 NV097_SET_COMBINER_COLOR_ICW[0] 0x1\n\
+                   nv2a_pgraph_method 0: 0x97 -> NV097_SET_COMBINER_COLOR_ICW[0]<0xac0> (0x2 {[A: Zero]} <0x2>)\n\
+                   nv2a_pgraph_method 0: 0x97 -> 0x0304 NV097_SET_BLEND_ENABLE[0] 0x1\n";
+        assert_eq!(combiner_words(log.as_bytes()).as_deref(), Some("0x0ac0 0x00000002\n"));
+        assert_eq!(combiner_words(b"0x0ac0 0x00000002\n"), None);
+        assert_eq!(combiner_words(b"RC_IN_RGB 0x00000002\n"), None);
     }
 
     #[test]

@@ -47,9 +47,26 @@ pub const WAIVERS: FileLimit = limit("waivers_bytes", 1 << 20, "bytes of a list 
 /// The limit of a page that a chart reads.
 pub const PAGE: FileLimit = limit("page_bytes", 4 << 20, "bytes of a page that a chart reads");
 
+/// The limit of a log of methods.
+pub const LOG: FileLimit = limit("log_bytes", 8 << 30, "bytes of a log of methods");
+/// The limit of an image of a console's memory.
+pub const MEMORY_IMAGE: FileLimit = limit("memory_image_bytes", 128 << 20, "bytes of an image of memory");
+
 /// Limits of files that are neither scenes nor named by a scene.
-pub const FILES: [FileLimit; 10] =
-    [EXPECTATION, OPERATION_TABLE, MANIFEST, VECTOR_TABLE, LEAF, TREE, DEVICE, EVALUATORS, WAIVERS, PAGE];
+pub const FILES: [FileLimit; 12] = [
+    EXPECTATION,
+    OPERATION_TABLE,
+    MANIFEST,
+    VECTOR_TABLE,
+    LEAF,
+    TREE,
+    DEVICE,
+    EVALUATORS,
+    WAIVERS,
+    PAGE,
+    LOG,
+    MEMORY_IMAGE,
+];
 
 /// Upper bounds of everything that a scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let bytes = read::bytes(path, Kind::Stream, LOG).map_err(|error| unreadable(path, error))?;
         assume(&mut state, &String::from_utf8_lossy(&bytes)).map_err(|error| {
             let message = format!("`{}`, line {}: `{}` sets no state", shown::path(path), error.line, shown::name(&error.text));
-            Failure::invalid("NB1501", message, "write a method and its word, `SET_COLOR_MASK 0x01010101`, or a line of a log")
+            Failure::invalid("NB1601", message, "write a method and its word, `SET_COLOR_MASK 0x01010101`, or a line of a log")
         })?;
     }
     let part = match (arguments.frame, arguments.draw) {
@@ -123,12 +123,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 fn unreadable(path: &Path, error: ReadError) -> Failure {
     let name = shown::path(path);
     match error {
-        ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB1502", format!("there is no file `{name}`"), "check the path") },
+        ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB1602", format!("there is no file `{name}`"), "check the path") },
         ReadError::TooLarge(limit) => Failure {
             exit: Exit::Limit,
-            ..Failure::invalid("NB1503", format!("`{name}` is larger than {limit}"), "cut the log, or record fewer frames")
+            ..Failure::invalid("NB1603", format!("`{name}` is larger than {limit}"), "cut the log, or record fewer frames")
         },
-        error => Failure { exit: Exit::Missing, ..Failure::invalid("NB1502", format!("`{name}` cannot be read: {error}"), "name a file that may be read") },
+        error => Failure { exit: Exit::Missing, ..Failure::invalid("NB1602", format!("`{name}` cannot be read: {error}"), "name a file that may be read") },
     }
 }
 
@@ -155,7 +155,7 @@ fn follow(
                 ),
                 Stop::Calls(at) => (format!("calls without a return at 0x{at:08x}"), "give an address where a command begins"),
             };
-            Failure::invalid("NB1504", message, help)
+            Failure::invalid("NB1604", message, help)
         })?;
         return Ok(importer.finish(None));
     }
@@ -173,7 +173,7 @@ fn follow(
     if summary.methods.is_empty() && summary.unknown_lines.0 > 0 {
         let (line, text) = summary.unknown_lines.1.clone().unwrap_or_default();
         let message = format!("`{}` has no method that is known; line {line} is `{}`", shown::path(path), shown::name(&text));
-        return Err(Failure::invalid("NB1505", message, "docs/import.md has an example of each form that is read"));
+        return Err(Failure::invalid("NB1605", message, "docs/import.md has an example of each form that is read"));
     }
     Ok(summary)
 }
@@ -218,7 +218,7 @@ impl Out<'_> {
         let options = WriteOptions { head, comments, register_words: true, ..WriteOptions::default() };
         let files = write::scene(&frame.scene, &options).map_err(|error| {
             let help = "import one of its draws with `--draw`";
-            Failure { exit: Exit::Limit, ..Failure::invalid("NB1506", format!("frame {}: {error}", frame.number), help) }
+            Failure { exit: Exit::Limit, ..Failure::invalid("NB1606", format!("frame {}: {error}", frame.number), help) }
         })?;
         let mut text = files.text;
         for (name, bytes) in &files.files {
@@ -301,7 +301,7 @@ fn summary_text(summary: &Summary, written: &[(String, bool)]) -> String {
 /// Warns of what could not be read.
 fn warn(summary: &Summary, context: Context) {
     let say = |text: String, help: &str| {
-        terminal::print(Level::Warning, &Report::message(Some("NB0922"), &text, help), context.color);
+        terminal::print(Level::Warning, &Report::message(Some("NB1607"), &text, help), context.color);
     };
     if let (count, Some((line, text))) = &summary.unknown_lines
         && *count > 0

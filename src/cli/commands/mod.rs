@@ -11,6 +11,7 @@ mod diff;
 mod engine;
 mod exit;
 mod explain;
+mod export;
 mod gallery;
 mod generate;
 mod import;
@@ -107,6 +108,10 @@ enum Command {
     /// State is followed from the first line on; each frame becomes a scene. A draw that needs something that neither the log nor the memory has is
     /// marked incomplete, with the reason. Nothing is invented: a white texel stands for a texture that was not recorded.
     Import(import::Arguments),
+    /// Write a scene as methods of the Xbox's 3D class, with the memory that they read
+    ///
+    /// `ninebit import` makes the same picture of them. Vertices are those that reach the rasteriser.
+    Export(export::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),
     /// Print pixel programs in another form: as text, as register words, or as functions of C, GLSL, WGSL or Verilog
@@ -187,6 +192,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Measure(arguments) => measure::run(&arguments, context),
         Command::Import(arguments) => import::run(&arguments, context),
+        Command::Export(arguments) => export::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),
         Command::Lower(arguments) => lower::run(&arguments, context),
         Command::Registers(arguments) => registers::run(&arguments, context),

@@ -1,13 +1,17 @@
 //! Reads a pixel program from a file of its own, in any of the languages that scenes support.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use ninebit::limits::Limits;
+use ninebit::limits::{FileLimit, LOG, Limits};
 use ninebit::plan::Plan;
 use ninebit::state::{Named, Profile, Scene};
-use ninebit_scene::{ProgramLanguage, load_program};
+use ninebit_files::read::{Kind, ReadError, bytes};
+use ninebit_methods::import::combiner_words;
+use ninebit_scene::assets::{Assets, Folder};
+use ninebit_scene::path::PathError;
+use ninebit_scene::{ProgramLanguage, load_program_with};
 
 use super::scene::{StateArguments, load, refused_beside};
 use super::{Context, Failure};
@@ -16,11 +20,33 @@ use super::{Context, Failure};
 fn language_of(path: &Path) -> Option<ProgramLanguage> {
     match path.extension()?.to_str()? {
         "rc" => Some(ProgramLanguage::Combiners),
-        "words" | "psdef" => Some(ProgramLanguage::Registers),
+        "words" | "psdef" | "log" => Some(ProgramLanguage::Registers),
         "psh" | "ps" => Some(ProgramLanguage::PixelShader),
         _ => None,
     }
 }
+
+/// Files of programs; in place of a log of methods, the register words of the combiners that it leaves set.
+#[derive(Debug)]
+struct Logs;
+
+impl Assets for Logs {
+    fn resolve(&self, folder: &Path, name: &str) -> Result<PathBuf, PathError> {
+        Folder.resolve(folder, name)
+    }
+
+    fn bytes(&self, file: &Path, limit: FileLimit) -> Result<Vec<u8>, ReadError> {
+        let whole = bytes(file, Kind::Stream, FileLimit { bytes: LARGEST_LOG, ..LOG })?;
+        match combiner_words(&whole) {
+            Some(words) => Ok(words.into_bytes()),
+            None if whole.len() as u64 > limit.bytes => Err(ReadError::TooLarge(limit)),
+            None => Ok(whole),
+        }
+    }
+}
+
+/// Most bytes of a log that is a program. It is in memory whole.
+const LARGEST_LOG: u64 = 256 << 20;
 
 fn languages() -> impl TypedValueParser<Value = ProgramLanguage> {
     let all = ProgramLanguage::ALL.iter().map(|language| PossibleValue::new(language.name()).help(language.about()));
@@ -30,7 +56,7 @@ fn languages() -> impl TypedValueParser<Value = ProgramLanguage> {
 /// Arguments for a file that may be a scene or a program.
 #[derive(Debug, Args)]
 pub(crate) struct ProgramArguments {
-    /// The file is a program in this language. Without it `.rc`, `.words`, `.psdef` and `.psh` say so by themselves, and everything else is a scene
+    /// The file is a program in this language. Without it `.rc`, `.words`, `.log`, `.psdef` and `.psh` say so by themselves, and everything else is a scene
     #[arg(long = "from", value_parser = languages(), value_name = "LANGUAGE")]
     language: Option<ProgramLanguage>,
     /// The chip of a program that stands alone: nv10 or nv2a
@@ -52,7 +78,7 @@ impl ProgramArguments {
         context: Context,
     ) -> Result<(Scene, Plan), Failure> {
         let note = "`--profile nv10` or `nv2a` chooses the chip, `--from` the language";
-        let loaded = load_program(path, language, self.profile, &Limits::default());
+        let loaded = load_program_with(path, language, self.profile, &Limits::default(), &Logs);
         loaded.map_err(|error| refused_beside(error, note, context))
     }
 

@@ -33,7 +33,8 @@ pub(crate) fn vertices_of(view: &mut View<'_>, memory: &Memory, batch: &Batch, d
     if points && view.enabled(class::SET_POINT_PARAMS_ENABLE) {
         draw.point_sizes = Some(outputs.iter().map(|output| eighths(output.point_size.into())).collect());
     }
-    let specular = view.enabled(class::SET_SPECULAR_ENABLE);
+    // The fixed-function pipe has seen to it.
+    let specular = matches!(transform, Stage::Fixed(_)) || view.enabled(class::SET_SPECULAR_ENABLE);
     if view.get_or(class::SET_LIGHT_TWO_SIDE_ENABLE, 0) != 0 && draw.topology.has_faces() {
         view.note(Gap::NotModelled("colours of back faces".into()));
     }
@@ -65,7 +66,7 @@ pub(crate) fn vertices_of(view: &mut View<'_>, memory: &Memory, batch: &Batch, d
 /// The transform that a draw uses.
 enum Stage {
     Program(Box<(Program, Constants)>),
-    Fixed(Box<FixedFunction>, [f32; 2]),
+    Fixed(Box<FixedFunction>),
 }
 
 impl Stage {
@@ -77,15 +78,17 @@ impl Stage {
         for method in &fixed.missing {
             view.missing(*method);
         }
-        let offset = [0, 4].map(|n| view.float(class::SET_VIEWPORT_OFFSET + n));
-        Stage::Fixed(Box::new(fixed), offset)
+        for (method, word) in &fixed.unknown {
+            view.note(Gap::BadValue(*method, *word));
+        }
+        Stage::Fixed(Box::new(fixed))
     }
 
     /// Returns which attributes it reads.
     fn reads(&self) -> [bool; ATTRIBUTES] {
         match self {
             Stage::Program(program) => program.0.inputs(),
-            Stage::Fixed(fixed, _) => fixed.inputs(),
+            Stage::Fixed(fixed) => fixed.inputs(),
         }
     }
 
@@ -95,15 +98,11 @@ impl Stage {
                 let (program, constants) = &mut **program;
                 program.run(constants, attributes)
             }
-            Stage::Fixed(fixed, offset) => {
+            Stage::Fixed(fixed) => {
                 let mut output = fixed.run(attributes);
-                let w = output.position[3];
-                output.position = [
-                    output.position[0] / w + offset[0],
-                    output.position[1] / w + offset[1],
-                    output.position[2] / w,
-                    w,
-                ];
+                let [x, y, z, w] = output.position;
+                let [right, down, far, _] = fixed.viewport_offset;
+                output.position = [x / w + right, y / w + down, z / w + far, w];
                 output
             }
         }

@@ -11,11 +11,11 @@ use std::fmt;
 use ninebit::plan::Plan;
 use ninebit::state::{Profile, Scene};
 
-pub use print::{push_buffer, trace};
+pub use print::{console_program, push_buffer, trace};
 
 use crate::class;
 use crate::export::memory::Placed;
-use crate::vertex::microcode;
+use crate::vertex::{attribute, microcode};
 
 /// A scene as methods of the 3D class.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,4 +123,8 @@ fn program(words: &mut Words) {
         // A float of no component: nothing comes from arrays.
         words.set(class::SET_VERTEX_DATA_ARRAY_FORMAT + 4 * attribute, 2);
     }
+    // The program reads these whether or not a draw has them.
+    words.number(vertices::SET_FOG_COORD, 0.0);
+    let point_size = class::SET_VERTEX_DATA4F_M + 16 * attribute::POINT_SIZE as u32;
+    (0..).zip([1.0, 0.0, 0.0, 1.0]).for_each(|(n, number)| words.number(point_size + 4 * n, number));
 }

@@ -16,7 +16,7 @@ use crate::vertex::attribute;
 
 const SET_VERTEX4F: u32 = 0x1518;
 const SET_VERTEX_DATA4UB: u32 = 0x1940;
-const SET_FOG_COORD: u32 = 0x1698;
+pub(super) const SET_FOG_COORD: u32 = 0x1698;
 
 /// Sends the vertices of a draw. `assembly` has them as the rasteriser gets them.
 pub(super) fn vertices(words: &mut Words, scene: &Scene, draw: &Draw, assembly: &Assembly) -> Result<(), ExportError> {

@@ -112,6 +112,11 @@ impl Reader {
         }
     }
 
+    /// Returns whether a line had a method as a tool prints it, rather than words alone.
+    pub fn is_log(&self) -> bool {
+        self.last.is_some()
+    }
+
     fn complete(&mut self, each: &mut dyn FnMut(Entry)) {
         self.line += 1;
         let partial = std::mem::take(&mut self.partial);
@@ -133,9 +138,10 @@ impl Reader {
             }
             Line::Unhandled(write) => {
                 // xemu prints a method that it does not handle twice: as a method, and as one that is not handled.
-                if self.last.take() != Some(write) {
+                if self.last != Some(write) {
                     put(Event::Write(write));
                 }
+                self.last = Some(Write { class: 0, ..write });
             }
             Line::Writes(writes) => writes.into_iter().for_each(|write| put(Event::Write(write))),
             Line::Dropped { class, method, count } => put(Event::Dropped { class, method, count }),

@@ -9,7 +9,7 @@
 mod light;
 mod read;
 
-use super::{Attributes, Outputs, attribute};
+use super::{ATTRIBUTES, Attributes, Outputs, attribute};
 use light::{Lighting, Surface};
 use ninebit::state::Profile;
 use ninebit::vertex::point::PointParameters;
@@ -105,6 +105,19 @@ impl FixedFunction {
         outputs.fog = self.fog(&eye, inputs);
         outputs.point_size = self.points.map_or(0.0, |points| f32::from(points.size(length(eye.to_eye))) / 8.0);
         outputs
+    }
+
+    /// Returns which attributes are read for certain. Texture coordinates are not among them: which sets count depends on the units.
+    pub fn inputs(&self) -> [bool; ATTRIBUTES] {
+        let mut read = [false; ATTRIBUTES];
+        let is_lit = self.lighting.is_some();
+        read[attribute::POSITION] = true;
+        read[attribute::WEIGHT] = self.skin.is_some();
+        read[attribute::NORMAL] = is_lit;
+        read[attribute::DIFFUSE] = !is_lit;
+        read[attribute::SPECULAR] = !is_lit && self.specular.enabled;
+        read[attribute::FOG] = matches!(self.fog, Some(Fog::Vertex));
+        read
     }
 
     fn eye(&self, inputs: &Attributes) -> Eye {
