@@ -14,6 +14,7 @@ use ninebit_methods::import::{Options, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::state::State;
 use ninebit_test_support::frames::difference;
+use ninebit_vectors::captures;
 
 /// Returns the scene that a log of methods states.
 fn back(methods: &Methods, text: &str) -> Result<Scene, String> {
@@ -119,4 +120,29 @@ fn the_console_s_program_is_c() {
         Ok(output) => assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr)),
         Err(error) => println!("no compiler for C, so the program was not read: {error}"),
     }
+}
+
+/// The frames that are stated for captures: a sample, or with `NINEBIT_ROUND_TRIP=1` all.
+#[test]
+fn captured_frames_come_back() {
+    let frames = captures::frames(&[]).unwrap();
+    let all = std::env::var("NINEBIT_ROUND_TRIP").is_ok();
+    let frames = if all { frames } else { captures::sample(frames, 60) };
+    let (mut same, mut wrong, mut refused) = (0, Vec::new(), BTreeMap::<String, usize>::new());
+    let count = frames.len();
+    for (number, frame) in frames.into_iter().enumerate() {
+        let name = format!("{}/{}", frame.suite, frame.name);
+        let Some(scene) = frame.scene(&RenderOptions::default()).unwrap() else {
+            *refused.entry("two formats of one surface".into()).or_default() += 1;
+            continue;
+        };
+        match trip(&scene, number % 5 == 0) {
+            Ok(None) => same += 1,
+            Ok(Some(difference)) => wrong.push(format!("{name}: {difference}")),
+            Err(reason) => *refused.entry(reason).or_default() += 1,
+        }
+    }
+    println!("{same} of {count} came back; refused: {refused:#?}");
+    assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(10 * same > 8 * count, "{same} of {count}; refused: {refused:#?}");
 }
