@@ -70,6 +70,7 @@ mod rule;
 mod scene_format;
 mod scene_hostile;
 mod scene_in_code;
+mod scene_writer;
 mod stability;
 mod tables;
 mod techniques;

@@ -23,6 +23,21 @@ pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
     }
 }
 
+/// Converts words of the state into texels or blocks in memory, as [`from_bytes`] reads them.
+pub fn to_bytes(words: &[u32], format: TextureFormat) -> Vec<u8> {
+    let bytes = format.bytes().min(4) as usize;
+    words.iter().flat_map(|word| in_memory(*word, format).to_le_bytes().into_iter().take(bytes)).collect()
+}
+
+/// Converts a word of the state into one of memory, as [`stored`] reads it, without the bits that the format ignores.
+pub fn in_memory(word: u32, format: TextureFormat) -> u32 {
+    let word = match format {
+        TextureFormat::Z24S8 | TextureFormat::Z24S8F => word.rotate_left(8),
+        _ => word,
+    };
+    word & used_bits(format)
+}
+
 /// Converts a word of memory into one of the state. Depths of 24 bits have the stencil below them in memory, and above them in the state.
 pub fn stored(word: u32, format: TextureFormat) -> u32 {
     match format {
@@ -157,6 +172,17 @@ mod tests {
         assert_eq!(from_bytes(&bytes, TextureFormat::A8R8G8B8), [0x8403_0201]);
         assert_eq!(from_bytes(&bytes, TextureFormat::X8R8G8B8), [0x0003_0201]);
         assert_eq!(from_bytes(&[1, 2, 3, 4, 5, 6, 7, 8], TextureFormat::Dxt1), [0x0403_0201, 0x0807_0605]);
+    }
+
+    #[test]
+    fn memory_is_read_as_it_was_written() {
+        for format in TextureFormat::ALL.iter().copied() {
+            let words: Vec<u32> =
+                (0..999_u32).map(|n| stored(n.wrapping_mul(0x9e37_79b1) & used_bits(format), format)).collect();
+            let bytes = to_bytes(&words, format);
+            assert_eq!(bytes.len(), words.len() * format.bytes().min(4) as usize, "{format:?}");
+            assert_eq!(from_bytes(&bytes, format), words, "{format:?}");
+        }
     }
 
     /// Levels of all formats by the definition: channels as they are read, of all shapes.

@@ -159,7 +159,7 @@ fn is_word(text: &str) -> bool {
         && (rest.is_empty() || rest.starts_with('(') && rest.ends_with(')'))
 }
 
-fn quote(text: &str, out: &mut String) {
+pub(crate) fn quote(text: &str, out: &mut String) {
     out.push('"');
     for character in text.chars() {
         match character {
@@ -168,6 +168,7 @@ fn quote(text: &str, out: &mut String) {
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
             '\0' => out.push_str("\\0"),
+            control if control.is_control() => out.extend(control.escape_unicode()),
             _ => out.push(character),
         }
     }

@@ -1,10 +1,11 @@
-//! The front end of scenes: reads text, returns checked state.
+//! The front end of scenes: reads text, returns checked state; and writes state as text.
 //!
-//! [`load`] reads a file, [`parse`] a text. Scenes that they return can be drawn without further checks. Scenes that they refuse are returned as
+//! [`load`] reads a file, [`parse`] a text, [`write::scene`] writes one. Scenes that they return can be drawn without further checks. Scenes that they refuse are returned as
 //! [`Diagnostic`]s that point into the text, all of them at once. `docs/scene-format.md` describes the format.
 
 pub mod assets;
 pub mod change;
+mod clear;
 pub mod data;
 pub mod dds;
 pub mod diff;
@@ -28,8 +29,9 @@ mod render;
 mod source;
 pub mod truth;
 pub mod vector;
+mod vertex_column;
 mod wording;
-mod written;
+pub mod write;
 
 use std::path::Path;
 
@@ -46,7 +48,7 @@ use ninebit::shown;
 use ninebit::state::{Profile, Scene};
 use ninebit_files::read::{self, Kind, ReadError};
 pub use render::render;
-pub use written::register_words;
+pub use write::register_words;
 
 /// A scene that was read and checked.
 #[derive(Clone, Debug)]

@@ -1,9 +1,12 @@
 //! The command `ninebit captures`: frames of the chip compared with what the model draws.
 
+mod export;
+
 use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use ninebit::plan::PlanError;
 use ninebit::threads::on_threads;
 use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
@@ -23,6 +26,10 @@ pub(crate) enum Command {
     /// Exit status 0: all frames are exact, but for those of which the table says that a rule is open; 1: others differ, or one of those
     /// differs otherwise; 4: a picture is missing.
     Check(CheckArguments),
+    /// Write a captured frame as a scene, with the files of its textures
+    ///
+    /// The scene draws what the program drew, in its own folder: `ninebit render` and `ninebit inspect` show it. Its path is printed.
+    Export(export::ExportArguments),
 }
 
 #[derive(Debug, Args)]
@@ -53,6 +60,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::List => list(),
         Command::Check(arguments) => check(arguments),
+        Command::Export(arguments) => export::export(arguments),
     }
 }
 
@@ -112,11 +120,14 @@ impl Outcome {
     }
 }
 
+/// Returns the failure of a frame that cannot be planned.
+fn planned(frame: &Frame, errors: &[PlanError]) -> Failure {
+    let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    Failure::fault(&format!("{}/{}: {}", frame.suite, frame.name, errors.join("; ")))
+}
+
 fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Option<&Path>) -> Result<Outcome, Failure> {
-    let pixels = frame.render(options, policies).map_err(|errors| {
-        let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-        Failure::fault(&format!("{}/{}: {}", frame.suite, frame.name, errors.join("; ")))
-    })?;
+    let pixels = frame.render(options, policies).map_err(|errors| planned(&frame, &errors))?;
     let mut outcome = Outcome { exact: frame.is(&pixels), difference: None, frame };
     let Some(folder) = folder else { return Ok(outcome) };
     let path = folder.join(outcome.frame.suite).join(format!("{}.png", outcome.frame.name));

@@ -3,6 +3,7 @@
 use super::*;
 use crate::generate::{SIDES, hemisphere, normal_map};
 use crate::truth::{self, LARGEST_EXPONENT};
+use crate::vertex_column::VertexColumn;
 use ninebit::state::{
     BlendEquation, BlendFactor, CompareFunction, Cull, FrontFace, LARGEST_SIZE, LineRasterization, PolygonMode,
     ProvokingVertex, ShadeModel, StencilOperation, SurfaceFormat, Topology, VertexDepths,
@@ -140,7 +141,7 @@ source! {
         colors: Entries<'a, Color>,
         /// a [matrix](#matrices); names of others may stand in it; used in `matrix`, `Product`
         matrices: Entries<'a, Matrix>,
-        /// a list of [vertices](#vertices); used in `Window("...")` and as `vertices` in `Matrix`, `Program`, `Triangles`
+        /// a list of [vertices](#vertices), or a file of them; used in `Window("...")` and as `vertices` in `Matrix`, `Program`, `Triangles`
         vertices: Entries<'a, VertexList>,
         /// a [mesh](#meshes); used as `mesh` in `Matrix`, `Program`
         meshes: Entries<'a, MeshSource>,
@@ -173,6 +174,8 @@ source! {
         color: Color [color] = [0, 0, 0, 255],
         /// the depths, 0 to 1, of a float buffer 0 or more
         depth: f32 [or "all ones"],
+        /// instead: the word of a depth, as the buffer holds it
+        depth_word: u32 [or "of `depth`"],
         /// the stencils
         stencil: u8 [or "`0`"],
     }
@@ -294,10 +297,21 @@ source! {
         fog: f32 [in 0.0..=1.0, "a fog factor", rule("NUM-6"), help("write 0.0 (all fog) to 1.0 (no fog)")] = 1.0,
         /// where a [fog function](#fog) is evaluated, `inf` and `NaN` too
         fog_coordinate: f32 [any] = 0.0,
+        /// instead of both, of `Window` and `Matrix`: what the vertex passes on as its fog, a factor that may leave 0 to 1, d' or e (FOG-2, FOG-3)
+        passed_fog: f32 [or "computed"],
+        /// of its point, in 1/8 pixel (PNT-3), of `Window` and `Matrix`; not beside `point_parameters`
+        point_size: u32 [or "that of the draw" in SIZES, "a point size", rule("PNT-3"), help(NINE_BITS)],
         /// `(x, y, z)` in object space, of any length, for generated coordinates
         normal: Numbers [numbers 3..=3, "a normal"] = [0.0; 4],
         /// texture coordinates `(s)`, `(s, t)`, `(s, t, r)` or `(s, t, r, q)`; 1 is the whole texture
         t0: Numbers [or "`(0, 0, 0, 1)`"], t1: Numbers [or "`(0, 0, 0, 1)`"], t2: Numbers [or "`(0, 0, 0, 1)`"], t3: Numbers [or "`(0, 0, 0, 1)`"],
+    }
+    struct RawVertices "vertex list" {
+        /// a file in the scene's folder: 32-bit words, little-endian, vertex after vertex
+        file: String [required],
+        /// what the words of a vertex are, in order: `Position`, `Diffuse`, `Specular`, `T0` to `T3`, four floats each; `DiffuseBytes`, `SpecularBytes`, four
+        /// bytes; `Fog`, `FogCoordinate`, `PassedFog`, a float; `PointSize`, a whole number
+        columns: List<'a, Name<VertexColumn>> [required],
     }
     struct MatrixVertices "vertex source" {
         /// a [matrix](#matrices) from object to clip space
@@ -306,6 +320,8 @@ source! {
         model_view: Matrix [or "`Identity`"],
         /// the part of the target that clip space maps to
         viewport: Viewport<'a> [or "the whole target"],
+        /// depths that clip space has before division by w, as of OpenGL's projections or as of Direct3D's
+        clip_depth: Word [one of "range of depths in clip space": "MinusOneToOne", "ZeroToOne"],
         /// a list of vertices, or the name of one
         vertices: VertexList [or "one of the two"],
         /// a [mesh](#meshes), or the name of one
@@ -328,7 +344,7 @@ source! {
             [or "v0 `Position`, v3 `Normal`, v7 `TextureCoordinates`; of listed vertices v5 `Diffuse`, v6 `Specular`"],
         /// as in `Matrix`
         viewport: Viewport<'a> [or "the whole target"],
-        /// depths that clip space has before division by w, as of OpenGL's projections or as of Direct3D's
+        /// as in `Matrix`
         clip_depth: Word [one of "range of depths in clip space": "MinusOneToOne", "ZeroToOne"],
         /// what it runs over, as in `Matrix`
         vertices: VertexList [or "one of the two"], mesh: MeshSource [or "one of the two"],

@@ -155,7 +155,7 @@ fn draw<'a>(
         feedback(reader, reader.textures.list[unit.texture].image.target(), draw.target, place, written);
     }
     let geometry = geometry?;
-    draw.point_sizes = point::sizes(reader, &fields.point_parameters, &geometry);
+    draw.point_sizes = point::sizes(reader, &fields.point_parameters, &geometry, draw.point_size);
     draw.vertices = geometry.vertices;
     draw.vertex_program = geometry.program;
     draw.indices = indices(reader, fields, geometry.mesh.as_deref(), draw.vertices.len(), topology)?;
@@ -179,8 +179,7 @@ fn clear<'a>(
         let found = finding("NB0225", reader.range(text), message, "belongs to a draw", help);
         reader.push(found.related(reader.span(raw), "the clear"));
     }
-    let mut draw = Draw { name, target, ..Draw::default() };
-    raster::clear(reader, raw, &mut draw)?;
+    let draw = raster::clear(reader, raw, target)?.draw(name, target);
     let spans = DrawSpans { draw: place.clone(), vertices: VertexSpans::All(place), ..DrawSpans::default() };
     Some(Drawn { draw, spans, mesh: None, truth: None })
 }

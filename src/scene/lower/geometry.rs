@@ -1,4 +1,5 @@
 //! Lowers the sources of vertices, and runs the vertex side on them.
+#![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 use std::rc::Rc;
 
@@ -86,6 +87,11 @@ pub(super) enum Objects {
 }
 
 impl Objects {
+    /// Returns whether vertex `index` says itself what fog it passes on.
+    fn pass_fog(&self, index: usize) -> bool {
+        matches!(self, Objects::Listed(data) if data.extras[index].passes_fog)
+    }
+
     /// Returns what the vertex side needs to know of vertex `index`.
     pub(super) fn at(&self, index: usize, vertex: &Vertex) -> ObjectVertex {
         match self {
@@ -95,7 +101,7 @@ impl Objects {
                 ObjectVertex { position: [x, y, z, 1.0], normal, fog_coordinate: 0.0, dimensions: *dimensions }
             }
             Objects::Listed(data) => {
-                let vertex::Extra { normal, fog_coordinate, dimensions } = data.extras[index];
+                let vertex::Extra { normal, fog_coordinate, dimensions, .. } = data.extras[index];
                 ObjectVertex { position: data.vertices.position(index), normal, fog_coordinate, dimensions }
             }
             Objects::Program { fog_coordinates, .. } => ObjectVertex {
@@ -174,7 +180,7 @@ pub(super) fn vertex_side(
             let given = vertex.texture_coordinates;
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
-        if let Some(function) = &fog.state.function {
+        if let Some(function) = fog.state.function.as_ref().filter(|_| !geometry.objects.pass_fog(index)) {
             // The coordinate may be any float: FOG-4 and FOG-5 say what becomes of those that are not finite.
             let coordinate = vertex_fog::coordinate(fog.source, &eye, vertex.position);
             vertex.fog = vertex_fog::passed(function, reader.profile, coordinate);
@@ -266,6 +272,7 @@ fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) ->
     }
     let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| reader.value(raw));
     let viewport = viewport(reader, &fields.viewport, target);
+    let viewport = with_clip_depth(viewport, fields.clip_depth(reader));
     let listed = fields.vertices.as_ref().filter(|_| fields.mesh.is_none());
     let attributes = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
     if let (Some(_), Some(attribute)) = (listed, attributes.iter().find_map(|field| field.as_ref())) {
@@ -343,4 +350,18 @@ pub(super) fn viewport<'a>(
     let (width, height) = (side(&fields.width, width), side(&fields.height, height));
     let (near, far, depth_clamp) = (fields.near(reader), fields.far(reader), fields.depth_clamp(reader));
     Viewport { x, y, width, height, near, far, clip_depth: ClipDepth::MinusOneToOne, depth_clamp }
+}
+
+/// Returns the viewport of a clip space whose depths run from 0, if the word says so: it maps depth 0 to the middle between `near` and `far`, and
+/// moving `near` back makes that middle the written `near`.
+pub(super) fn with_clip_depth(viewport: Viewport, word: Option<usize>) -> Viewport {
+    if word != Some(1) {
+        return viewport;
+    }
+    Viewport { near: moved_back(viewport.near, viewport.far), clip_depth: ClipDepth::ZeroToOne, ..viewport }
+}
+
+/// Returns the end of the depths that has `near` in the middle between it and `far`.
+pub(crate) fn moved_back(near: f32, far: f32) -> f32 {
+    2.0 * near - far
 }

@@ -31,6 +31,7 @@ mod truth;
 mod unit;
 mod unit_texture;
 mod vertex;
+mod vertex_file;
 mod vertex_program;
 
 use ninebit::place::Span;
@@ -43,6 +44,7 @@ use super::raw::{Entries, Numbers, Raw, Tuple};
 use super::reader::{Reader, too_many};
 use super::wording::shorten;
 use crate::truth::Truth;
+pub(super) use geometry::moved_back;
 use ninebit::diagnostic::File;
 use ninebit::engine::{self, Unseen};
 use ninebit::plan::{Invisible, Plan, PlanOptions};
@@ -50,6 +52,7 @@ use ninebit::state::*;
 use ninebit_program::{finding, warning};
 pub use program::ProgramLanguage;
 pub(super) use program_file::program_file;
+pub(super) use target::depth_word;
 
 /// Places of a draw in the scene's text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -6,13 +6,28 @@ use super::*;
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::{EyeVertex, ModelView, Viewer};
 
-/// Returns the size of the point at each vertex, if a draw has parameters for it.
+/// Returns the size of the point at each vertex, if a draw has parameters for it, or vertices have their own; `size` is that of the others.
 pub(super) fn sizes<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::PointParameters<'a>>>,
     geometry: &Geometry,
+    size: u16,
 ) -> Option<Arc<[u16]>> {
-    let raw = raw.as_ref()?;
+    let own = match &geometry.objects {
+        Objects::Listed(data) => &data.extras[..],
+        Objects::Mesh(..) | Objects::Program { .. } => &[],
+    };
+    let first = own.iter().position(|extra| extra.point_size.is_some());
+    let Some(raw) = raw else {
+        return first.map(|_| own.iter().map(|extra| extra.point_size.unwrap_or(size)).collect());
+    };
+    if let Some(vertex) = first {
+        let message = "points have sizes at their vertices, and by their distance";
+        let help = "keep one of `point_size` of the vertices and `point_parameters`";
+        let place = DrawSpans { vertices: geometry.spans.clone(), ..DrawSpans::default() }.vertex(vertex);
+        let found = finding("NB0238", reader.span(raw), message, "by their distance", help).rule("PNT-3");
+        return reader.refuse(found.related(place, "has a size"));
+    }
     let fields = reader.read(raw)?;
     if let Objects::Program { point_sizes, .. } = &geometry.objects {
         let Some(sizes) = point_sizes else {

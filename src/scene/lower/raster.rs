@@ -1,6 +1,7 @@
 //! Lowers the raster operations of a draw.
 
 use super::*;
+use crate::clear::Clear;
 use ninebit::legality;
 
 /// Largest number of columns or rows of a rectangle.
@@ -156,33 +157,16 @@ fn rectangle<'a>(
     Some(Rectangle { x, y, width: width?, height: height? })
 }
 
-/// Lowers a clear among the draws to a draw: a rectangle of one colour and depth that passes every test.
-pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, draw: &mut Draw) -> Option<()> {
+/// Reads a clear among the draws, into a target.
+pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, target: usize) -> Option<Clear> {
     let fields = reader.read(raw)?;
-    let target = &reader.targets.list.get(draw.target)?.clone();
+    let target = &reader.targets.list.get(target)?.clone();
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
-    let color = fields.color.as_ref().map(|raw| color::constant(reader, raw));
-    draw.color_mask = if color.is_some() { fields.color_mask(reader) } else { [false; 4] };
-    let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
-    draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));
-    let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));
-    let every = stencil_test(reader, &source::StencilTest::default());
-    draw.stencil_test = stencil.map(|reference| StencilTest {
-        reference: reference.unwrap_or_default(),
-        pass: StencilOperation::Replace,
-        ..every
-    });
-    let (color, z) = (color.flatten().unwrap_or_default(), depth.flatten().unwrap_or(0.0));
-    let columns = [area.x, area.x.saturating_add(area.width)];
-    let rows = [area.y, area.y.saturating_add(area.height)];
-    for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-        // Coordinates are at most 2^17, so they are exact.
-        let position = [columns[x] as f32, rows[y] as f32, z, 1.0];
-        draw.vertices.push(Vertex { position, diffuse: VertexColor::Bytes(color), ..Vertex::default() });
-    }
-    (draw.topology, draw.indices) = (Topology::Quads, Arc::new([0, 1, 2, 3]));
-    draw.combiners = Combiners::default();
-    Some(())
+    let color = fields.color.as_ref().map(|raw| color::constant(reader, raw).unwrap_or_default());
+    let color_mask = fields.color_mask(reader);
+    let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw).unwrap_or(0.0));
+    let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw).unwrap_or_default());
+    Some(Clear { area, color, color_mask, depth, stencil })
 }

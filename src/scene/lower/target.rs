@@ -94,11 +94,12 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
     if let Some(raw) = &clear.depth
         && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
     {
-        buffer.clear = if buffer.format.is_float() {
-            depth::word(buffer.format, Binary::new(depth))
-        } else {
-            convert::depth(depth, buffer.format.bits()) as u32
-        };
+        buffer.clear = depth_word(buffer.format, depth);
+    }
+    if let Some(raw) = &clear.depth_word
+        && let (Some(word), Some(buffer)) = (clear_word(reader, &target, &clear, raw), &mut target.depth)
+    {
+        buffer.clear = word;
     }
     if let Some(raw) = &clear.stencil
         && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
@@ -107,6 +108,15 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
     }
     target.clip = fields.clip.as_ref().and_then(|raw| raster::clip(reader, &target, "clip of a target", raw));
     target
+}
+
+/// Returns the word that a clear stores for a depth, which is not negative.
+pub(crate) fn depth_word(format: DepthFormat, depth: f32) -> u32 {
+    if format.is_float() {
+        depth::word(format, Binary::new(depth))
+    } else {
+        convert::depth(depth, format.bits()) as u32
+    }
 }
 
 /// Fills targets with the textures that they begin as.
@@ -150,17 +160,40 @@ pub(super) fn contents(reader: &mut Reader<'_>) {
 /// Reads the depth that a clear stores into a target with a depth buffer: 0 to 1, or for a float buffer any depth that is not negative.
 pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
-    let Some(buffer) = target.depth else {
-        let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
-        let message = "this target has no depth buffer to clear";
-        return reader.refuse(finding("NB0216", place, message, "no depth buffer", help));
-    };
+    let buffer = cleared_buffer(reader, target, place.clone())?;
     let highest = if buffer.format.is_float() { f32::MAX } else { 1.0 };
     if !(0.0..=highest).contains(&value) {
         let range = if buffer.format.is_float() { "write 0.0 or more" } else { "write 0.0 (near) to 1.0 (far)" };
         return reader.refuse(finding("NB0206", place, format!("a depth cannot be {value}"), "out of range", range));
     }
     Some(value)
+}
+
+/// Returns the depth buffer that a clear at `place` stores into.
+fn cleared_buffer(reader: &mut Reader<'_>, target: &Target, place: Span) -> Option<DepthBuffer> {
+    if target.depth.is_none() {
+        let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
+        let message = "this target has no depth buffer to clear";
+        return reader.refuse(finding("NB0216", place, message, "no depth buffer", help));
+    }
+    target.depth
+}
+
+/// Reads the word of a depth that a clear stores into a target with a depth buffer.
+fn clear_word<'a>(
+    reader: &mut Reader<'a>,
+    target: &Target,
+    clear: &source::Clear<'a>,
+    raw: &Raw<'a, u32>,
+) -> Option<u32> {
+    let place = reader.span(raw);
+    if let Some(depth) = &clear.depth {
+        let message = "the depth is given as a number and as a word";
+        let found = finding("NB0203", place, message, "again here", "keep one of `depth` and `depth_word`");
+        return reader.refuse(found.related(reader.span(depth), "first here"));
+    }
+    let buffer = cleared_buffer(reader, target, place)?;
+    reader.within(raw, "the word of a depth", 0..=buffer.format.largest(), |finding| finding.rule("DEP-2"))
 }
 
 /// Reads the stencil that a clear stores into a target with a stencil.

@@ -17,16 +17,23 @@ pub(super) struct Extra {
     pub(super) fog_coordinate: f32,
     /// Number of written components of each coordinate set; 4 for a set that is not written.
     pub(super) dimensions: [usize; 4],
+    /// Whether the vertex says itself what fog it passes on.
+    pub(super) passes_fog: bool,
+    /// Size of the vertex's point in 1/8 pixel, if it has its own.
+    pub(super) point_size: Option<u16>,
 }
 
 impl Default for Extra {
     fn default() -> Self {
-        Extra { normal: [0.0; 3], fog_coordinate: 0.0, dimensions: [4; 4] }
+        Extra { normal: [0.0; 3], fog_coordinate: 0.0, dimensions: [4; 4], passes_fog: false, point_size: None }
     }
 }
 
 /// Reads a list of vertices. A vertex with errors stays in the list, so that indices can be checked.
 pub(super) fn list<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::VertexList>) -> Option<VertexData> {
+    if let ("Raw", file) = raw.split() {
+        return vertex_file::vertices(reader, raw, file);
+    }
     let list = reader.read(&raw.as_other::<source::List<'a, source::Vertex<'a>>>())?;
     if list.len() > reader.limits.vertices {
         return reader.refuse(too_many(reader.span(raw), list.len(), reader.limits.vertices));
@@ -62,7 +69,12 @@ fn vertex<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Opt
     vertex.fog = fields.fog(reader);
     let fog_coordinate = fields.fog_coordinate(reader);
     let [x, y, z, _] = fields.normal(reader);
-    let mut extra = Extra { normal: [x, y, z], fog_coordinate, ..Extra::default() };
+    // Nine bits.
+    let point_size = fields.point_size(reader).map(|size| size as u16);
+    let mut extra = Extra { normal: [x, y, z], fog_coordinate, point_size, ..Extra::default() };
+    if let Some(fog) = fields.passed_fog.as_ref().and_then(|raw| reader.read(raw)) {
+        (vertex.fog, extra.passes_fog) = (fog, true);
+    }
     for (set, field) in [&fields.t0, &fields.t1, &fields.t2, &fields.t3].into_iter().enumerate() {
         if let Some(raw) = field
             && let Some((values, written)) = coordinates(reader, raw)

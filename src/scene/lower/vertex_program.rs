@@ -4,7 +4,7 @@
 mod constants;
 mod inputs;
 
-use super::geometry::{Geometry, Given, Objects, viewport};
+use super::geometry::{Geometry, Given, Objects, viewport, with_clip_depth};
 use super::program_text::ProgramText;
 use super::vertex::VertexData;
 use super::*;
@@ -18,12 +18,8 @@ use ninebit_program::vertex_shader::{self, Written, print};
 pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
     let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
-    let mut viewport = viewport(reader, &fields.viewport, target);
-    if fields.clip_depth(reader) == Some(1) {
-        // The viewport maps normalised depth 0 to the middle between `near` and `far`; moving `near` back makes that middle the written `near`.
-        viewport.near = 2.0 * viewport.near - viewport.far;
-        viewport.clip_depth = ClipDepth::ZeroToOne;
-    }
+    let viewport = viewport(reader, &fields.viewport, target);
+    let viewport = with_clip_depth(viewport, fields.clip_depth(reader));
     let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let program = program(reader, &fields, opening);
     let constants = constants::constants(reader, &fields.constants, program.as_ref());

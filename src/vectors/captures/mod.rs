@@ -285,13 +285,8 @@ impl Frame {
     /// # Errors
     /// Returns the plan's errors if a scene cannot be planned.
     pub fn render(&self, options: &RenderOptions, policies: Policies) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let planned = PlanOptions { policies, ..PlanOptions::default() };
-        let plan = |scene: &Scene| Plan::compile_within(scene, &planned, &Limits::default());
-        let Drawn { mut scene, before, view, shown } = (self.make)();
-        if let Some(before) = before {
-            let frames = render(&plan(&before)?, options);
-            scene.textures[0] = memory(&frames.surfaces[0]);
-        }
+        let plan = |scene: &Scene| compile(scene, policies);
+        let Drawn { scene, view, shown, .. } = self.drawn(options, policies)?;
         let mut frames = render(&plan(&scene)?, options);
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
         if let Some(view) = view {
@@ -312,6 +307,26 @@ impl Frame {
         Ok(surface::show_all(SurfaceFormat::A8R8G8B8, &words))
     }
 
+    /// Returns the frame's scenes, of which none is left to be drawn before.
+    fn drawn(&self, options: &RenderOptions, policies: Policies) -> Result<Drawn, Vec<PlanError>> {
+        let mut drawn = (self.make)();
+        if let Some(before) = drawn.before.take() {
+            let frames = render(&compile(&before, policies)?, options);
+            drawn.scene.textures[0] = memory(&frames.surfaces[0]);
+        }
+        Ok(drawn)
+    }
+
+    /// Returns the frame as one scene, whose first target is the frame buffer; `None` if the program drew on that memory in two formats. What was
+    /// drawn before is the scene's first texture.
+    ///
+    /// # Errors
+    /// Returns the plan's errors if a scene that is drawn before cannot be planned.
+    pub fn scene(&self, options: &RenderOptions) -> Result<Option<Scene>, Vec<PlanError>> {
+        let Drawn { scene, view, .. } = self.drawn(options, Policies::DEFAULT)?;
+        Ok(view.is_none().then_some(scene))
+    }
+
     /// Returns whether a picture equals the capture outside the programs' text.
     pub fn is(&self, pixels: &[[u8; 4]]) -> bool {
         digest(pixels, &self.text) == self.digest
@@ -322,6 +337,10 @@ impl Frame {
         let area = |r: &Rectangle| u64::from(r.width) * u64::from(r.height);
         u64::from(SIZE.0) * u64::from(SIZE.1) - self.text.iter().map(area).sum::<u64>()
     }
+}
+
+fn compile(scene: &Scene, policies: Policies) -> Result<Plan, Vec<PlanError>> {
+    Plan::compile_within(scene, &PlanOptions { policies, ..PlanOptions::default() }, &Limits::default())
 }
 
 /// Converts an R5G6B5 word as the captured pictures do, by their own factors: 255/31, and 97/24 for G.
