@@ -5,21 +5,27 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::GzEncoder;
 use maud::{Markup, PreEscaped, html};
 use ninebit_handbook::{RULES, Rule};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use std::io::Read;
 
 /// The markup, with placeholders for the other parts.
 const MARKUP: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// The scripts, each after those that it imports.
-const MODULES: [&str; 8] = [
+const MODULES: [&str; 11] = [
     include_str!("page/elements.js"),
     include_str!("page/model.js"),
     include_str!("page/view.js"),
     include_str!("page/strip.js"),
     include_str!("page/listing.js"),
+    include_str!("page/program.js"),
+    include_str!("page/readings.js"),
+    include_str!("page/address.js"),
     include_str!("page/chain.js"),
     include_str!("page/change.js"),
     include_str!("page/main.js"),
@@ -34,7 +40,7 @@ pub(crate) fn page(title: &str, data: &Value, common: &Value) -> String {
     let parts = [
         format!("<style>{STYLE}</style>"),
         json_of(data),
-        json_of(common),
+        compressed(common),
         STANDARD.encode(MODULE),
         format!("<script>{script}</script>"),
     ];
@@ -60,7 +66,7 @@ pub(crate) fn shared(common: &Value) -> String {
     let text = |text: &str| json_of(&Value::from(text));
     format!(
         "\"use strict\";\ndocument.getElementById(\"common\").textContent = {};\ndocument.getElementById(\"module\").textContent = {};\ndocument.body.append(Object.assign(document.createElement(\"script\"), {{ textContent: {} }}));\n",
-        text(&json_of(common)),
+        text(&compressed(common)),
         text(&STANDARD.encode(MODULE)),
         text(&joined())
     )
@@ -71,6 +77,15 @@ fn policy(scripts: &str) -> String {
         "default-src 'none'; script-src {scripts} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
         source_hash(STYLE)
     )
+}
+
+/// Returns JSON as gzip in base64, as the module is.
+fn compressed(value: &Value) -> String {
+    let text = value.to_string();
+    let mut bytes = Vec::new();
+    // Reading a text from memory into memory cannot fail.
+    let _ = GzEncoder::new(text.as_bytes(), Compression::best()).read_to_end(&mut bytes);
+    STANDARD.encode(bytes)
 }
 
 /// Returns JSON that cannot end its element.
@@ -119,11 +134,12 @@ pub(crate) fn source_hash(text: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
-/// Joins the modules to one script.
+/// Joins the modules to one script, without what is for readers of the source alone: comments and indents. No text in them spans lines.
 fn joined() -> String {
     let mut script = String::from("\"use strict\";\n");
     for module in MODULES {
-        for line in module.lines().filter(|line| !line.starts_with("import ")) {
+        let lines = module.lines().filter(|line| !line.starts_with("import ")).map(str::trim_start);
+        for line in lines.filter(|line| !line.is_empty() && !line.starts_with("//")) {
             script.push_str(line.strip_prefix("export ").unwrap_or(line));
             script.push('\n');
         }
@@ -161,6 +177,13 @@ mod tests {
             rules["FIN-4"]["lines"][0],
             json!(["Formula", "E*F = rnd255(E F) in R, G and B\nalpha = G, identity or invert"])
         );
+    }
+
+    #[test]
+    fn no_text_of_a_script_spans_lines() {
+        for line in MODULES.iter().flat_map(|module| module.lines()) {
+            assert_eq!(line.matches('`').count() % 2, 0, "{line}");
+        }
     }
 
     #[test]

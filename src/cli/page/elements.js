@@ -58,4 +58,7 @@ export function base64Of(bytes) {
   return btoa(text);
 }
 
+// Bytes as a stream compresses or inflates them.
+export const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+
 export const hexadecimal = (value, width = 2) => (value < 0 ? "-0x" : "0x") + Math.abs(value).toString(16).padStart(width, "0");
