@@ -200,7 +200,10 @@ impl Native {
     /// Returns the page's text for a comparison.
     fn differing(&mut self, against: Value, until: Option<usize>) -> String {
         let heat = self.ask(json!({ "do": "heat", "target": 0, "against": against, "until": until }));
-        let left = heat["diverged"].as_u64().filter(|n| *n > 0).map(|n| format!("; {n} more went another way"));
+        let left = heat["diverged"]
+            .as_u64()
+            .filter(|n| *n > 0)
+            .map(|n| format!("; {n} more are left out: a test or a choice differs"));
         let named = heat["regions"].as_array().unwrap().len() as u64;
         let regions = heat["region_count"].as_u64().filter(|all| *all > named);
         let regions = regions.map(|all| format!("; the {named} largest of {all} regions"));

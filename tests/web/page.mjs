@@ -234,6 +234,11 @@ async function tests() {
 
   // Scenes with errors: caret and help; the picture before stays.
   await browser.value('(inspector.against = "", inspector.refresh(), document.getElementById("tab-text").click())');
+  // The picture follows while somebody types.
+  for (const [typed, drawn] of [[expected.text, expected.edited], [null, expected.digest]]) {
+    await browser.value(`(async () => { const area = document.querySelector("#text textarea"); area.value = ${JSON.stringify(typed)} ?? inspector.text; area.dispatchEvent(new Event("input")); await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); })()`);
+    assert.equal(await digest(), drawn);
+  }
   // A few as somebody would type them in, all as the page reads them.
   const findings = '[...document.querySelectorAll("#findings .finding")].map((each) => each.textContent).join("\\n\\n").trim()';
   for (const { name, text: broken, rendered } of expected.bad.filter((_, n) => n % 20 === 0)) {

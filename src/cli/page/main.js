@@ -2,7 +2,7 @@
 import { Address } from "./address.js";
 import { Chain } from "./chain.js";
 import { Change } from "./change.js";
-import { $, bytesOf, el, swatch, through } from "./elements.js";
+import { $, bytesOf, denseBytes, el, swatch, through } from "./elements.js";
 import { Background, Model, serve } from "./model.js";
 import { Program } from "./program.js";
 import { Readings } from "./readings.js";
@@ -326,9 +326,9 @@ class Page {
 
   differences(heat) {
     $("regions-part").hidden = !heat;
-    $("legend").replaceChildren(...(heat ? heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label)) : []));
+    $("legend").replaceChildren(...(heat ? [el("span", {}, "Differences up to, in steps of 1/255:"), ...heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label))] : []));
     if (!heat) return $("regions-sum").replaceChildren();
-    const left = heat.diverged ? `; ${heat.diverged} more went another way` : "";
+    const left = heat.diverged ? `; ${heat.diverged} more are left out: a test or a choice differs` : "";
     $("regions-sum").textContent = `${heat.differing} pixels differ${heat.region_count > heat.regions.length ? `; the ${heat.regions.length} largest of ${heat.region_count} regions` : ""}${left}`;
     const item = (region) => el("li", {}, el("button", { onclick: () => { this.choose(region.first); this.view.reveal(); } }, region.worst
       ? `${region.first.join(", ")}: ${["R", "G", "B", "A"][region.worst.channel]} ${region.worst.shown}, ideal ${region.worst.ideal.toFixed(3)}`
@@ -415,9 +415,9 @@ class Page {
   }
 
   textPanel() {
-    const area = el("textarea", { value: this.text, spellcheck: false, "aria-label": "The scene", onchange: () => this.commit(area.value) });
+    const area = el("textarea", { value: this.text, spellcheck: false, "aria-label": "The scene", oninput: () => this.follow(() => area.value), onchange: () => { cancelAnimationFrame(this.pending); this.commit(area.value); } });
     this.area = area;
-    $("text").replaceChildren(el("p", { className: "quiet" }, "The scene in RON. What is wrong with it is said above, with its place."), area, el("div", { className: "bar" }, el("button", { onclick: () => this.commit(area.value) }, "Draw it")));
+    $("text").replaceChildren(el("p", { className: "quiet" }, "The scene in RON. The picture follows while you type; what is wrong is said above, with its place."), area);
   }
 
   mark({ span }) {
@@ -453,7 +453,7 @@ async function openPage(script) {
     const own = JSON.parse($("data").textContent);
     const view = new View(() => {}, () => {});
     const preview = view.preview(own.picture);
-    const [model, common] = await Promise.all([Model.load(bytesOf($("module").textContent.trim())), through(bytesOf($("common").textContent.trim()), new DecompressionStream("gzip"))]);
+    const [model, common] = await Promise.all([Model.load(denseBytes($("module").textContent)), through(denseBytes($("common").textContent), new DecompressionStream("gzip"))]);
     const data = { ...JSON.parse(new TextDecoder().decode(common)), ...own };
     const page = new Page(data, model, new Background(script), view);
     await page.begin();
