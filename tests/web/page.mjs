@@ -364,7 +364,7 @@ async function tests() {
 
   // Nothing is wider than the window or lies on another thing; all text stands out of its ground; all has a name for those who cannot see it.
   const counts = { texts: 0, boxes: 0, controls: 0 };
-  for (const width of [1280, 1920]) {
+  for (const width of [390, 1280, 1920]) {
     for (const dark of [false, true]) {
       await opened("stone.html", { width, height: 1000, dark });
       await browser.value("inspector.choose([200, 300])");

@@ -320,7 +320,9 @@ export class Chain {
       const cells = [...texels].map(([at, channels]) => {
         const rgb = ["r", "g", "b"].map((c) => Math.max(0, Math.min(255, channels[c]?.value ?? 0)));
         const fetch = steps.find((step) => step.texel && step.name.startsWith(`${prefix}texel${at}.`))?.texel;
-        const light = rgb[0] * 0.3 + rgb[1] * 0.59 + rgb[2] * 0.11 > 128;
+        // Where black stands out more than white does.
+        const linear8 = (byte) => (byte <= 10 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
+        const light = 0.2126 * linear8(rgb[0]) + 0.7152 * linear8(rgb[1]) + 0.0722 * linear8(rgb[2]) > 0.179;
         const cell = el("div", { className: `texel ${light ? "light" : "dark"}` },
           el("span", {}, fetch ? `(${fetch.x}, ${fetch.y})` : "border"), el("span", {}, value(`${prefix}texel${at}.word`)?.note ?? ""), el("span", {}, `${(weight(at) * 100).toFixed(1)} %`));
         cell.style.backgroundColor = `rgb(${rgb.join(",")})`;
