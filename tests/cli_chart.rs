@@ -47,7 +47,7 @@ fn deleting_the_folder_and_charting_restores_every_file() {
     }
     let lines = &["svg"][..];
     for (name, formats) in [
-        ("speed-accuracy", &["svg", "png"]),
+        ("speed-accuracy", &["svg", "png"][..]),
         ("flat-1-chip", lines),
         ("flat-1-pictures", &["png"]),
         ("evaluators", lines),
