@@ -28,7 +28,7 @@ export function assignmentsOf(text, fragment) {
 export function variablesOf(text, fragment) {
   const steps = new Map((fragment?.steps ?? []).map((step) => [step.name.replaceAll(".", "_"), step]));
   return text.split("\n").flatMap((code, line) => {
-    const step = steps.get(/^\s+\w+ (\w+) = /.exec(code)?.[1]);
+    const step = steps.get(/^\s+(?:const )?\w+ (\w+) = /.exec(code)?.[1]);
     return step ? [{ line, block: step.block, name: step.name, found: [["a", step]] }] : [];
   });
 }
