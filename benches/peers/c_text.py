@@ -86,7 +86,7 @@ def at(share):
 
 
 print(json.dumps({
-    "name": "C text",
+    "name": "printed C",
     "surface": "one unit, one stage",
     "yields": "the stored word from interpolated bytes and fetched texels: W1 of the benches by `ninebit lower --to c99`, gcc -O2",
     "error": mean**0.5,

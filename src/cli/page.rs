@@ -5,21 +5,27 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::GzEncoder;
 use maud::{Markup, PreEscaped, html};
 use ninebit_handbook::{RULES, Rule};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use std::io::Read;
 
 /// The markup, with placeholders for the other parts.
 const MARKUP: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// The scripts, each after those that it imports.
-const MODULES: [&str; 8] = [
+const MODULES: [&str; 11] = [
     include_str!("page/elements.js"),
     include_str!("page/model.js"),
     include_str!("page/view.js"),
     include_str!("page/strip.js"),
     include_str!("page/listing.js"),
+    include_str!("page/program.js"),
+    include_str!("page/readings.js"),
+    include_str!("page/address.js"),
     include_str!("page/chain.js"),
     include_str!("page/change.js"),
     include_str!("page/main.js"),
@@ -34,8 +40,8 @@ pub(crate) fn page(title: &str, data: &Value, common: &Value) -> String {
     let parts = [
         format!("<style>{STYLE}</style>"),
         json_of(data),
-        json_of(common),
-        STANDARD.encode(MODULE),
+        compressed(common),
+        dense(MODULE),
         format!("<script>{script}</script>"),
     ];
     filled(&policy, title, parts)
@@ -60,8 +66,8 @@ pub(crate) fn shared(common: &Value) -> String {
     let text = |text: &str| json_of(&Value::from(text));
     format!(
         "\"use strict\";\ndocument.getElementById(\"common\").textContent = {};\ndocument.getElementById(\"module\").textContent = {};\ndocument.body.append(Object.assign(document.createElement(\"script\"), {{ textContent: {} }}));\n",
-        text(&json_of(common)),
-        text(&STANDARD.encode(MODULE)),
+        text(&compressed(common)),
+        text(&dense(MODULE)),
         text(&joined())
     )
 }
@@ -71,6 +77,35 @@ fn policy(scripts: &str) -> String {
         "default-src 'none'; script-src {scripts} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'",
         source_hash(STYLE)
     )
+}
+
+/// Returns JSON compressed and as a text, as the module is.
+fn compressed(value: &Value) -> String {
+    let text = value.to_string();
+    let mut bytes = Vec::new();
+    // Reading a text from memory into memory cannot fail.
+    let _ = GzEncoder::new(text.as_bytes(), Compression::best()).read_to_end(&mut bytes);
+    dense(&bytes)
+}
+
+/// Returns bytes as a text that ends no element and needs no escape in JSON: five characters for four bytes, where base64 takes five and a third.
+/// The digits of base 85 are `(` to `|`, with `!` for `<`, `#` for `\` and `$` for `{`; of k bytes at the end stand k + 1 digits. `denseBytes` of the page reads it.
+fn dense(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len() / 4 * 5 + 5);
+    for part in bytes.chunks(4) {
+        let mut word = [0; 4];
+        word[..part.len()].copy_from_slice(part);
+        let word = u32::from_be_bytes(word);
+        for place in [52_200_625, 614_125, 7_225, 85, 1].into_iter().take(part.len() + 1) {
+            text.push(match 40 + (word / place % 85) as u8 {
+                b'<' => '!',
+                b'\\' => '#',
+                b'{' => '$',
+                digit => char::from(digit),
+            });
+        }
+    }
+    text
 }
 
 /// Returns JSON that cannot end its element.
@@ -119,11 +154,12 @@ pub(crate) fn source_hash(text: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
-/// Joins the modules to one script.
+/// Joins the modules to one script, without what is for readers of the source alone: comments and indents. No text in them spans lines.
 fn joined() -> String {
     let mut script = String::from("\"use strict\";\n");
     for module in MODULES {
-        for line in module.lines().filter(|line| !line.starts_with("import ")) {
+        let lines = module.lines().filter(|line| !line.starts_with("import ")).map(str::trim_start);
+        for line in lines.filter(|line| !line.is_empty() && !line.starts_with("//")) {
             script.push_str(line.strip_prefix("export ").unwrap_or(line));
             script.push('\n');
         }
@@ -164,6 +200,23 @@ mod tests {
     }
 
     #[test]
+    fn bytes_are_digits_of_base_85() {
+        for (bytes, text) in [(&[][..], ""), (&[0], "(("), (&[9, 8, 7], "*tei"), (&[255; 4], "z?^4(")] {
+            assert_eq!(dense(bytes), text);
+        }
+        for byte in 0..=255 {
+            assert!(!dense(&[byte; 4]).contains(['<', '&', '"', '\\', '{']), "{byte}");
+        }
+    }
+
+    #[test]
+    fn no_text_of_a_script_spans_lines() {
+        for line in MODULES.iter().flat_map(|module| module.lines()) {
+            assert_eq!(line.matches('`').count() % 2, 0, "{line}");
+        }
+    }
+
+    #[test]
     fn what_a_scene_says_ends_no_element() {
         let data = json!({ "text": "</script><script>alert(1)</script><!--" });
         let page = page("<b>&", &data, &json!({}));
@@ -174,7 +227,8 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let page = page("scene", &json!({}), &json!({}));
+        // Digits may look like anything.
+        let page = page("scene", &json!({}), &json!({})).replace(&dense(MODULE), "");
         for form in ["src=", "http://", "https://", "@import", "url(", " style=", "onclick=", "\nimport "] {
             let found = page.find(form);
             assert_eq!(found, None, "{form}: {:?}", found.map(|at| &page[at.saturating_sub(60)..at + 60]));

@@ -2,7 +2,9 @@
 
 use std::fmt::Display;
 
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
+use ninebit_lower::{Function, Language, Options, Textures};
 use ninebit_program::registers::{describe, encode};
 use ninebit_program::text::print;
 use ninebit_scene::outline::{Content, Node, outline};
@@ -53,6 +55,22 @@ fn input(input: &CombinerInput) -> Value {
 
 fn final_input(input: &FinalInput) -> Value {
     json!({ "register": input.register.name(), "component": input.component.name(), "invert": input.invert })
+}
+
+/// Returns a function of another language that computes the fragment of a draw, as `ninebit lower --fragment` prints it.
+pub(crate) fn lowered(scene: &Scene, number: usize, policies: Policies, language: &str) -> Result<String, Refused> {
+    let language = match language {
+        "c99" => Language::C99,
+        "glsl" => Language::Glsl,
+        other => return Err(format!("`{other}` is no language of functions")),
+    };
+    let plan = Plan::compile(scene, &PlanOptions { policies, prune: false });
+    let plan = plan.map_err(|errors| errors.into_iter().map(|error| error.message).collect::<String>())?;
+    let options = Options { policies, uniform: false, textures: Textures::Registers, fragment: true };
+    let draw = &scene.draws[number];
+    let function = Function::of_draw(scene, draw, &plan.draws()[number], &options);
+    let about = format!("draw {number} `{}`", ninebit::shown::name(&draw.name));
+    Ok(language.print(&[ninebit_lower::Named { name: format!("ninebit_draw{number}"), about, function: &function }]))
 }
 
 /// Returns the draw's program in the combiner language with one part changed. `path` is as in [`value`].

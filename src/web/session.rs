@@ -35,6 +35,7 @@ use crate::{Refused, frame, program, shader, tree};
 /// | `alternatives` | `target`, `pixel` | `rules`: what the pixel would be under each value of each rule |
 /// | `outline` | | `tree`: the values of the scene's text with their places |
 /// | `program` | `draw` | `program`: its state, its words, its text |
+/// | `lower` | `draw`, `language`: `c99` or `glsl` | `text`: a function of that language that computes the draw's fragment |
 /// | `edit` | `draw`, `path`, `value` | `text`: the scene's text with that part of the program changed; `rewritten` if the program was in another language before |
 /// | `paste` | `draw`, `language`, `program` | `text`: the scene's text with that program |
 ///
@@ -141,6 +142,11 @@ impl Session {
             "program" => {
                 let (scene, _) = self.loaded()?;
                 Ok(json!({ "program": program::value(scene, drawn(scene, number("draw")?)?) }))
+            }
+            "lower" => {
+                let (scene, _) = self.loaded()?;
+                drawn(scene, number("draw")?)?;
+                Ok(json!({ "text": program::lowered(scene, number("draw")?, self.policies, text("language")?)? }))
             }
             "edit" => {
                 let (scene, _) = self.loaded()?;

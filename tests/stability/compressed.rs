@@ -9,8 +9,8 @@ pub fn section() -> Section {
     let shown = |name: &str| draw(&plan(&scene(&format!("normals-{name}.ron"))));
     let whole = shown("uncompressed");
     let mut rows = vec![cells(["normal map as", "mean, steps", "rms", "largest"])];
-    let (mut panels, mut errors) = (vec![crop(&whole)], vec![crop(&whole)]);
-    errors[0].pixels.fill([0; 3]);
+    let blank = Picture::filled(256, 1, [255; 3]);
+    let (mut panels, mut errors) = (vec![crop(&whole).tile("A8R8G8B8")], vec![blank.tile("")]);
     for (name, label) in
         [("dxt3", "DXT3"), ("dxt5", "DXT5"), ("dxt1", "DXT1 on nv2a, dithered"), ("dxt1-nv10", "DXT1 on nv10, 565")]
     {
@@ -18,15 +18,15 @@ pub fn section() -> Section {
         rows.push(row(label, &frame, &whole));
         if name != "dxt5" {
             let error = |x, y| [frame.at(x, y)[0].abs_diff(whole.at(x, y)[0]).saturating_mul(8); 3];
-            errors.push(crop(&Picture::from(frame.width, frame.height, error)));
-            panels.push(crop(&frame));
+            errors.push(crop(&Picture::from(frame.width, frame.height, error)).tile("error, eight times"));
+            panels.push(crop(&frame).tile(label));
         }
     }
     rows.push(row("A8R8G8B8 of 16 x 16", &draw(&plan(&smaller())), &whole));
     Section {
         name: "compressed",
         tables: vec![rows],
-        pictures: vec![("normals-compressed.png", Picture::row(&panels).above(&Picture::row(&errors)))],
+        pictures: vec![("normals-compressed.svg", vec![panels, errors])],
         charts: vec![],
     }
 }

@@ -37,13 +37,18 @@ pub fn section() -> Section {
         let got = frame.at(x + 256, y);
         std::array::from_fn(|n| got[n].abs_diff(want[n]).saturating_mul(8))
     });
-    let panels = [frame.part(64, 64, 128, 128), frame.part(320, 64, 128, 128), error.part(64, 64, 128, 128)];
+    let panels = vec![
+        frame.part(64, 64, 128, 128).tile("nearest"),
+        frame.part(320, 64, 128, 128).tile("bilinear: seams between the faces"),
+        error.part(64, 64, 128, 128).tile("error of bilinear, eight times"),
+    ];
+    let ties_of_page = draw(&plan(&super::view::scene("cube-ties.ron")));
     Section {
         name: "cube",
         tables: vec![rows, ties()],
         pictures: vec![
-            ("cube-edge.png", Picture::row(&panels)),
-            ("cube-ties.png", draw(&plan(&super::view::scene("cube-ties.ron")))),
+            ("cube-edge.svg", vec![panels]),
+            ("cube-ties.svg", vec![vec![ties_of_page.tile("directions in the order of the table")]]),
         ],
         charts: vec![],
     }

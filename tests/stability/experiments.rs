@@ -61,7 +61,8 @@ pub fn both_sides() {
     assert_eq!(PINNED.len(), methods, "every method is pinned");
     for (name, method, works, fails) in PINNED {
         let (experiment, method) = find(&experiments, name, method);
-        let error = |value: f64| (method.measure)(value).unwrap_or_else(|error| panic!("{}", error.render(false)));
+        let error =
+            |value: f64| (method.measure)(value).unwrap_or_else(|error| panic!("{}", error.render(false))).error;
         let at = |value: f64| format!("{name}, {}, at {}: {}", method.name, plain(value), error(value));
         assert!(error(works) <= experiment.limit, "{}", at(works));
         match fails {
@@ -78,7 +79,7 @@ pub fn page() {
         let fails = one.thresholds.iter().any(|threshold| matches!(threshold, Threshold::Between { .. }));
         assert!(fails, "{}: nothing fails", one.experiment.name);
     }
-    let (section, files) = experiments::page::files(&measured);
+    let (section, files) = experiments::page::files(&measured).unwrap();
     assert!(!section.contains("{{"), "a place of the template was not filled");
     let page = fs::read_to_string(at("docs/lab/stability.md")).unwrap();
     let made = replace_section(&page, "sweeps", &section).unwrap();

@@ -1,12 +1,13 @@
 //! Coordinates far from the origin, drawn by `far-coordinates.ron`.
 
-use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
+use super::chart::{line, lines};
 use super::page::{Section, cells};
 use super::view::{Covered, draw, plan, scene, visit};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::Scene;
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
+use ninebit_lab::chart::picture::{Axis, Drawing};
 
 /// Exponent of the coordinate at which the first strip of a draw ends: strip n, from the top, ends at 2^(10 + n) texels.
 const FIRST: usize = 10;
@@ -39,29 +40,28 @@ pub fn section() -> Section {
     }
     refused(&scene);
 
-    let exponent = |error: i64| if error == 0 { -2.0 } else { (error as f64).log2() };
-    let line = |draw: usize, label: &'static str, color: &'static str| {
-        let points = (FIRST..=16).filter_map(|k| Some([k as f64, exponent(worst[draw][k - FIRST]?)])).collect();
-        Line { label, color, beneath: draw == 0, points }
+    let names = ["q = 1, equal w", "q = 1, in perspective", "through q, in perspective"];
+    let near = 16 - FIRST;
+    assert_eq!(worst[1][..=near], worst[2][..=near], "one line stands for both");
+    let series = [(0, "equal w"), (1, "in perspective, through q or not")].map(|(draw, name)| {
+        let points = (FIRST..=16).filter_map(|k| Some([f64::from(1_u32 << k), worst[draw][k - FIRST]? as f64]));
+        line(draw, name, points.collect())
+    });
+    let chart = Drawing {
+        title: "Coordinates lose their last bits far from the origin".to_string(),
+        x: Axis::logarithmic("texels from the origin", [1024.0, 65536.0].into_iter()),
+        y: Axis::linear("largest error of u, 1/256 texel", [0.0, 4.0].into_iter(), true),
+        ..lines(series.into())
     };
-    let lines = [
-        line(0, "q = 1, equal w", BLUE),
-        line(1, "q = 1, in perspective", GREEN),
-        line(2, "through q, in perspective", RED),
-    ];
-    let x = Axis {
-        label: "texels from the origin, texture of 16",
-        range: [10.0, 16.0],
-        ticks: ticks(10, 16, 1, |k| format!("2^{k}")),
-    };
-    let mut marks = ticks(0, 12, 2, |k| (1_i64 << k).to_string());
-    marks.insert(0, (-2.0, "0".to_string()));
-    let y = Axis { label: "largest error, 1/256 texel", range: [-2.0, 12.5], ticks: marks };
+    let frame = draw(&plan_of_page);
+    let third = frame.width / 3;
+    let strips = names.iter().enumerate().map(|(n, name)| frame.part(n * third, 0, third, frame.height).tile(*name));
+    let strips = strips.collect();
     Section {
         name: "far",
         tables: vec![rows],
-        pictures: vec![("far-coordinates.png", draw(&plan_of_page))],
-        charts: vec![("far-coordinates.svg", chart(&x, &y, &lines, false))],
+        pictures: vec![("far-coordinates.svg", vec![strips])],
+        charts: vec![("far-errors.svg", chart)],
     }
 }
 

@@ -1,11 +1,12 @@
 //! Normals that filtering shortens, drawn by `filtered-length.ron` and `seams.ron`.
 
-use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
+use super::chart::{line, lines};
 use super::content::{BALL, PAIRS, dot, length, pair, pair_angle, unit};
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene};
 use crate::repository::at;
 use ninebit::texture::filter::lerp;
+use ninebit_lab::chart::picture::{Axis, Drawing};
 
 pub fn section() -> Section {
     let frame = draw(&plan(&scene("filtered-length.ron")));
@@ -64,12 +65,19 @@ pub fn section() -> Section {
         ),
     ];
     let wanted = Picture::from(256, 256, |x, y| [exact[256 * y + x].round() as u8; 3]);
-    let panels = [balls.part(0, 0, 256, 256), balls.part(256, 0, 256, 256), wanted];
+    let panels = vec![
+        balls.part(0, 0, 256, 256).tile("as the filter gives it: creases"),
+        balls.part(256, 0, 256, 256).tile("one step of Newton's method"),
+        wanted.tile("renormalised exactly"),
+    ];
     Section {
         name: "lengths",
         tables: vec![rows, fixed, highlight],
-        pictures: vec![("filtered-length.png", frame), ("seams.png", Picture::row(&panels))],
-        charts: vec![("filtered-length.svg", length_chart())],
+        pictures: vec![
+            ("filtered-length.svg", vec![vec![frame.tile("N . N: weight across, angle down")]]),
+            ("seams.svg", vec![panels]),
+        ],
+        charts: vec![("filtered-lengths.svg", length_chart())],
     }
 }
 
@@ -114,35 +122,19 @@ fn renormalised() -> Vec<f64> {
     (0..256 * 256).map(value).collect()
 }
 
-fn length_chart() -> String {
-    let over = |length: &dyn Fn(usize) -> f64| (0..=240).map(|row| [pair_angle(row), length(row)]).collect::<Vec<_>>();
-    let newton = |l: f64| l * (3.0 - l * l) / 2.0;
-    let lines = [
-        Line { label: "half-way, float64", color: BLUE, beneath: true, points: over(&|row| exact_length(row, 128)) },
-        Line {
-            label: "half-way, the chip",
-            color: RED,
-            beneath: false,
-            points: over(&|row| fixed_length(mix(row, 128))),
-        },
-        Line {
-            label: "after one step of Newton's method",
-            color: GREEN,
-            beneath: false,
-            points: over(&|row| newton(exact_length(row, 128))),
-        },
-    ];
-    let x = Axis {
-        label: "angle between the two texels, degrees",
-        range: [0.0, 180.0],
-        ticks: ticks(0, 180, 30, |n| n.to_string()),
+fn length_chart() -> Drawing {
+    let over = |length: &dyn Fn(f64) -> f64| {
+        (0..=240).map(|row| [pair_angle(row), length(fixed_length(mix(row, 128)))]).collect::<Vec<_>>()
     };
-    let y = Axis {
-        label: "length",
-        range: [0.0, 1.05],
-        ticks: (0..=5).map(|n| (f64::from(n) / 5.0, format!("{:.1}", f64::from(n) / 5.0))).collect(),
-    };
-    chart(&x, &y, &lines, true)
+    Drawing {
+        title: "Half-way between two normals".to_string(),
+        x: Axis::linear("angle between the two texels, degrees", [0.0, 180.0].into_iter(), true),
+        y: Axis::linear("length", [0.0, 1.0].into_iter(), true),
+        ..lines(vec![
+            line(0, "after one step of Newton's method", over(&|length| length * (3.0 - length * length) / 2.0)),
+            line(1, "as the filter gives it", over(&|length| length)),
+        ])
+    }
 }
 
 /// CMB-3: returns the expanded byte in 255ths.

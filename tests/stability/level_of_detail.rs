@@ -48,13 +48,17 @@ pub fn section() -> Section {
         ],
         vec!["largest step of a channel from one quad to the next (right)".to_string(), format!("{} of 255", steps)],
     ];
-    let close = frame.part(80, 70, 64, 48).enlarged(4);
+    let close = frame.part(80, 70, 64, 48);
     Section {
         name: "lod",
         tables: vec![rows, counted],
         pictures: vec![(
-            "lod-plane.png",
-            Picture::row(&[frame.part(0, 0, 256, 192), frame.part(256, 0, 256, 192), close]),
+            "lod-plane.svg",
+            vec![vec![
+                frame.part(0, 0, 256, 192).tile("nearest level"),
+                frame.part(256, 0, 256, 192).tile("two levels mixed"),
+                close.tile("nearest level, a part four times as large"),
+            ]],
         )],
         charts: vec![],
     }

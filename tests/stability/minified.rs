@@ -46,11 +46,14 @@ pub fn section() -> Section {
         rows.push(vec![name.to_string(), count.to_string(), left, right]);
     }
     let difference = Picture::from(a.width, a.height, |x, y| [a.at(x, y)[0].abs_diff(b.at(x, y)[0]); 3]);
-    let halves = |of: &Picture| Picture::row(&[64, 320].map(|left| of.part(left, 0, 128, 128)));
+    let halves = |of: &Picture, what: &str| {
+        let half = |(name, left)| of.part(left, 0, 128, 128).tile(format!("{name}{what}"));
+        [("level 0 alone", 64), ("all levels", 320)].map(half).to_vec()
+    };
     Section {
         name: "minified",
         tables: vec![rows, levels(&scene)],
-        pictures: vec![("shimmer.png", halves(&a)), ("shimmer-difference.png", halves(&difference))],
+        pictures: vec![("shimmer.svg", vec![halves(&a, ""), halves(&difference, ", difference after half a pixel")])],
         charts: vec![],
     }
 }

@@ -1,6 +1,5 @@
 //! Vertices with w close to zero, drawn by `near-eye.ron`.
 
-use super::chart::{Axis, BLUE, Line, RED, chart, ticks};
 use super::page::{Section, cells};
 use super::view::{draw, plan, scene};
 use ninebit::plan::{Plan, PlanOptions};
@@ -47,29 +46,12 @@ pub fn section() -> Section {
     for k in [4, 8, 12, 16, 20] {
         rows.push(row(format!("2^-{k}, 1.1, 1.3 x 2^{k}"), both(k)));
     }
-    let over = |w: &dyn Fn(i32) -> [f64; 3]| {
-        (0..=20).map(|k| [f64::from(k), log(errors(EDGE, w(k))[1].u)]).collect::<Vec<_>>()
-    };
-    let lines = [
-        Line { label: "2^-k, 1.1, 1.3", color: BLUE, beneath: false, points: over(&near) },
-        Line { label: "2^-k, 1.1, 1.3 x 2^k", color: RED, beneath: false, points: over(&both) },
-    ];
-    let x = Axis { label: "k", range: [0.0, 20.0], ticks: ticks(0, 20, 4, |k| k.to_string()) };
-    let y = Axis {
-        label: "u on the edge, 1/256 texel",
-        range: [-16.0, 16.0],
-        ticks: ticks(-16, 16, 4, |k| match k {
-            -16 => "none".to_string(),
-            ..0 => format!("2^{k}"),
-            k => (1_i64 << k).to_string(),
-        }),
-    };
-    Section {
-        name: "near-eye",
-        tables: vec![rows],
-        pictures: vec![("near-eye.png", draw(&plan(&scene)))],
-        charts: vec![("near-eye.svg", chart(&x, &y, &lines, false))],
-    }
+    let frame = draw(&plan(&scene));
+    let side = frame.width / 7;
+    let triangle = |n: usize, name: String| frame.part(n * side, 0, side, frame.height).tile(name);
+    let mut triangles: Vec<_> = [0, 1, 5].map(|n| triangle(n, format!("w = 2^-{}", 4 * n))).into();
+    triangles.push(triangle(6, "behind the eye".to_string()));
+    Section { name: "near-eye", tables: vec![rows], pictures: vec![("near-eye.svg", vec![triangles])], charts: vec![] }
 }
 
 /// RAS-6: a triangle that is cut at w = 2^-20 reaches far outside the window there, so the guard band cuts it as well.
@@ -83,10 +65,6 @@ fn floor_below_the_eye_is_cut_off(scene: &Scene) {
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
     let planes: Vec<ClipPlane> = ClipPlane::in_set(plan.draws()[1].assembly.clipping.planes).collect();
     assert!(planes.first() == Some(&ClipPlane::W) && planes.contains(&ClipPlane::Bottom), "{planes:?}");
-}
-
-fn log(error: f64) -> f64 {
-    error.log2().clamp(-16.0, 16.0)
 }
 
 /// A triangle whose upper edge, opposite to its first vertex, passes exactly through the centres of a row of pixels that it covers.

@@ -1,9 +1,8 @@
 //! Compares tables, pictures and charts of the page with those that were measured.
 
-use super::view::Picture;
 use crate::repository::at;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
+use ninebit_lab::chart::picture::Drawing;
+use ninebit_lab::chart::tiles::{self, Tile};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -13,7 +12,7 @@ use crate::settings::bless;
 const PAGE: &str = "docs/lab/stability.md";
 const PICTURES: &str = "docs/lab/pictures/stability";
 /// Largest size of a picture in bytes, so that the page loads quickly.
-const MAX_IMAGE_BYTES: u64 = 40_000;
+const MAX_IMAGE_BYTES: usize = 70_000;
 
 /// The measured contents of one section of the page.
 pub struct Section {
@@ -21,8 +20,9 @@ pub struct Section {
     pub name: &'static str,
     /// For each table, the cells of the heading, then the cells of each row.
     pub tables: Vec<Vec<Vec<String>>>,
-    pub pictures: Vec<(&'static str, Picture)>,
-    pub charts: Vec<(&'static str, String)>,
+    /// Rows of pictures, each row by the name of its file.
+    pub pictures: Vec<(&'static str, Vec<Vec<Tile>>)>,
+    pub charts: Vec<(&'static str, Drawing)>,
 }
 
 /// Returns a row of cells.
@@ -45,16 +45,11 @@ fn marker(section: &Section, n: usize) -> String {
 /// Compares a section with the page, or writes it.
 pub fn check(section: &Section) {
     static WRITING: Mutex<()> = Mutex::new(());
-    for (name, picture) in &section.pictures {
-        check_picture(name, picture);
+    for (name, rows) in &section.pictures {
+        check_file(name, &tiles::svg(rows).unwrap());
     }
     for (name, chart) in &section.charts {
-        let path = at(PICTURES).join(name);
-        if bless() {
-            fs::write(&path, chart).unwrap();
-        }
-        let stored = fs::read_to_string(&path).unwrap_or_default();
-        assert!(stored == *chart, "{} is another; BLESS=1 writes it", path.display());
+        check_file(name, &chart.svg().unwrap());
     }
     let _writing = WRITING.lock();
     let mut page = fs::read_to_string(at(PAGE)).unwrap();
@@ -99,32 +94,15 @@ fn check_prose(section: &Section, page: &str) {
     }
 }
 
-/// Returns a small PNG. Grey pictures have one channel.
-fn png(picture: &Picture) -> Vec<u8> {
-    let grey = picture.pixels.iter().all(|[r, g, b]| r == g && g == b);
-    let (bytes, color) = if grey {
-        (picture.pixels.iter().map(|pixel| pixel[0]).collect(), ExtendedColorType::L8)
-    } else {
-        (picture.pixels.concat(), ExtendedColorType::Rgb8)
-    };
-    let mut out = Vec::new();
-    let encoder = PngEncoder::new_with_quality(&mut out, CompressionType::Best, FilterType::Adaptive);
-    encoder.write_image(&bytes, picture.width as u32, picture.height as u32, color).unwrap();
-    out
-}
-
-fn check_picture(name: &str, picture: &Picture) {
+fn check_file(name: &str, picture: &str) {
     let path = at(PICTURES).join(name);
     if bless() {
         fs::create_dir_all(at(PICTURES)).unwrap();
-        fs::write(&path, png(picture)).unwrap();
+        fs::write(&path, picture).unwrap();
     }
-    let bytes = fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert!(bytes.len() as u64 <= MAX_IMAGE_BYTES, "{} has {} bytes", path.display(), bytes.len());
-    let stored = image::load_from_memory(&bytes).unwrap().to_rgb8();
-    let same = stored.dimensions() == (picture.width as u32, picture.height as u32)
-        && stored.into_raw() == picture.pixels.as_flattened();
-    assert!(same, "{} is another; BLESS=1 writes it", path.display());
+    assert!(picture.len() <= MAX_IMAGE_BYTES, "{} has {} bytes", path.display(), picture.len());
+    let stored = fs::read_to_string(&path).unwrap_or_default();
+    assert!(stored == picture, "{} is another; BLESS=1 writes it", path.display());
 }
 
 /// Checks that the page shows every stored picture.

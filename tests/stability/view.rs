@@ -10,6 +10,7 @@ use ninebit::state::{Scene, TriangleVertices};
 use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
 use ninebit::texture::lod;
 use ninebit::texture::planned::PlannedUnit;
+use ninebit_lab::chart::tiles::Tile;
 use ninebit_scene as scene;
 
 /// Folder of the scenes.
@@ -47,29 +48,9 @@ impl Picture {
         Picture::from(self.width * times, self.height * times, |x, y| self.at(x / times, y / times))
     }
 
-    /// Returns this picture above another one of the same width, with a light gap.
-    pub fn above(&self, lower: &Picture) -> Picture {
-        const GAP: usize = 6;
-        let gap = vec![[255; 3]; GAP * self.width];
-        let pixels = [self.pixels.clone(), gap, lower.pixels.clone()].concat();
-        Picture { width: self.width, height: self.height + GAP + lower.height, pixels }
-    }
-
-    /// Returns pictures of the same height side by side, with light gaps between them.
-    pub fn row(parts: &[Picture]) -> Picture {
-        const GAP: usize = 6;
-        let width = parts.iter().map(|p| p.width).sum::<usize>() + GAP * (parts.len() - 1);
-        let mut whole = Picture::filled(width, parts[0].height, [255; 3]);
-        let mut left = 0;
-        for part in parts {
-            for y in 0..part.height {
-                for x in 0..part.width {
-                    whole.pixels[y * width + left + x] = part.at(x, y);
-                }
-            }
-            left += part.width + GAP;
-        }
-        whole
+    /// Returns the picture with a caption.
+    pub fn tile(self, caption: impl Into<String>) -> Tile {
+        Tile { caption: caption.into(), width: self.width, pixels: self.pixels }
     }
 }
 

@@ -92,6 +92,7 @@ export function overlapping() {
 
 // What a screen reader is told, of the browser's own tree: controls and landmarks without a name, landmarks that there are not one of.
 export function unnamed(nodes) {
+  if (!nodes) return { count: 0, landmarks: null, found: [] };
   const told = nodes.filter((node) => !node.ignored);
   const role = (node) => node.role?.value;
   const controls = ["button", "combobox", "textbox", "checkbox", "spinbutton", "tab", "tabpanel", "ColorWell", "application", "link", "radio", "slider", "DisclosureTriangle", "image", "dialog"];

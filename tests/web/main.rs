@@ -1,8 +1,8 @@
 //! Tests the page of `ninebit inspect`: in node the embedded module draws and finds the same as the program, and the page works in a
 //! browser. So does the report of `ninebit replay`.
 //!
-//! Tests that need node, Chromium (`CHROMIUM` names it) or Firefox are *ignored* if these are missing. Forty scenes are drawn;
-//! `NINEBIT_WEB_SCENES=0` draws all of them.
+//! Tests that need node, Chromium (`CHROMIUM` names it), Firefox or axe-core (`vectors/harness/install`) are *ignored* if these are missing. Forty
+//! scenes are drawn; `NINEBIT_WEB_SCENES=0` draws all of them.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]
 
 #[path = "../common/repository.rs"]
@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 const WASM: &str = "src/cli/page/module.wasm.gz";
+const AXE: &str = "target/harness/node_modules/axe-core/axe.min.js";
 
 fn main() {
     repository::enter();
@@ -37,9 +38,11 @@ fn main() {
     let trials = vec![
         Trial::test("frames_are_the_programs", frames).with_ignored_flag(!node),
         Trial::test("findings_are_the_programs", findings).with_ignored_flag(!node),
-        Trial::test("the_page_works_in_a_browser", page).with_ignored_flag(!browser),
+        Trial::test("the_page_works_in_chromium", || page("chromium")).with_ignored_flag(!browser),
+        Trial::test("the_page_works_in_firefox", || page("firefox"))
+            .with_ignored_flag(!node || !runs("firefox", "--version")),
         Trial::test("the_report_works_in_a_browser", report).with_ignored_flag(!browser),
-        Trial::test("the_page_opens_in_firefox", firefox).with_ignored_flag(!node || !runs("firefox", "--version")),
+        Trial::test("pages_meet_level_aa", accessible).with_ignored_flag(!browser || !Path::new(AXE).exists()),
         Trial::test("requests_that_make_no_sense_are_refused", refused),
         Trial::test("places_count_as_scripts_do", places),
         Trial::test("every_part_of_a_program_can_be_changed", edits),
@@ -197,7 +200,10 @@ impl Native {
     /// Returns the page's text for a comparison.
     fn differing(&mut self, against: Value, until: Option<usize>) -> String {
         let heat = self.ask(json!({ "do": "heat", "target": 0, "against": against, "until": until }));
-        let left = heat["diverged"].as_u64().filter(|n| *n > 0).map(|n| format!("; {n} more went another way"));
+        let left = heat["diverged"]
+            .as_u64()
+            .filter(|n| *n > 0)
+            .map(|n| format!("; {n} more are left out: a test or a choice differs"));
         let named = heat["regions"].as_array().unwrap().len() as u64;
         let regions = heat["region_count"].as_u64().filter(|all| *all > named);
         let regions = regions.map(|all| format!("; the {named} largest of {all} regions"));
@@ -273,6 +279,8 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"edit","draw":0,"path":["stages",0,"rgb","inputs",9,"mapping"],"value":"Zero"}"#,
         r#"{"do":"edit","draw":0,"path":["constants",0],"value":[1,2,300,4]}"#,
         r#"{"do":"paste","draw":0,"language":"Fortran","program":""}"#,
+        r#"{"do":"lower","draw":0,"language":"verilog"}"#,
+        r#"{"do":"lower","draw":9,"language":"glsl"}"#,
         r#"{"do":"picture","name":"","width":3,"height":2}"#,
     ] {
         assert!(ask(request)["error"].is_string(), "{request}");
@@ -395,23 +403,6 @@ fn four_off(surface: &Surface) -> Vec<u8> {
     encode_png(surface.width, surface.height, &pixels, Compression::Fast).unwrap()
 }
 
-/// Opens the page, clicks, edits, undoes, follows a link, and compares with float64 and with a picture.
-fn firefox() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let page = folder.path().join("stone.html");
-    let path = Path::new("vectors/scenes/dot3/lit-stone.ron");
-    inspect(path, &page);
-    let plan = load(path).unwrap().0.plan;
-    let word = trace(&plan, 0, (200, 300), None).unwrap().word;
-    let other = folder.path().join("other.png");
-    std::fs::write(&other, four_off(&render(&plan, &RenderOptions::default()).surfaces[0])).unwrap();
-    let ideal = Native::from_path(path).differing(json!("ideal"), None);
-    let arguments = [page.to_str().unwrap(), &digests(&plan)[0], &word.to_string(), &ideal, other.to_str().unwrap()];
-    let run = Command::new("node").arg("tests/web/firefox.mjs").args(arguments).output().unwrap();
-    print!("{}", String::from_utf8_lossy(&run.stdout));
-    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
-}
-
 /// A scene of two draws, of which the second lies behind the first in one corner and counts in the stencil buffer.
 const STEPS: &str = r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 64, height: 64, format: A8R8G8B8, depth: Z24S8)],
 draws: [
@@ -423,13 +414,32 @@ draws: [
         depth_test: (function: LessOrEqual), stencil_test: (function: Always, pass: IncrementSaturate)),
 ])"#;
 
-/// Runs a script of Chromium with a folder, further arguments, and perhaps a folder for pictures.
-fn chromium(script: &str, folder: &Path, arguments: &[PathBuf]) -> Result<(), Failed> {
+/// Runs a script of a browser. Its last argument is perhaps a folder for pictures.
+fn browse(script: &str, arguments: &[&Path]) -> Result<(), Failed> {
     let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));
-    let arguments = [folder.to_path_buf()].into_iter().chain(arguments.to_vec()).chain(pictures.map(PathBuf::from));
-    let run = Command::new("node").arg(script).args(arguments).output().unwrap();
+    let run = Command::new("node").arg(script).args(arguments).args(pictures).output().unwrap();
     print!("{}", String::from_utf8_lossy(&run.stdout));
     if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+}
+
+/// Has axe-core look at a page of each kind.
+fn accessible() -> Result<(), Failed> {
+    let folder = tempfile::tempdir().unwrap();
+    let [page, gallery] = ["stone.html", "gallery"].map(|name| folder.path().join(name));
+    inspect(Path::new("vectors/scenes/dot3/lit-stone.ron"), &page);
+    write_gallery(&gallery);
+    let run = Command::new("node").args(["tests/web/axe.mjs", AXE]).args([page, gallery.join("index.html")]).output();
+    let run = run.unwrap();
+    print!("{}", String::from_utf8_lossy(&run.stdout));
+    if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
+}
+
+fn write_gallery(folder: &Path) {
+    let status = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+        .args(["gallery", "vectors/scenes/fog", "vectors/scenes/dot3/lit-stone.ron", "-o"])
+        .arg(folder)
+        .status();
+    assert!(status.unwrap().success());
 }
 
 /// Replays three scenes: of one another value of a policy is expected, of one only a digest is known, one is broken.
@@ -466,10 +476,10 @@ fn report() -> Result<(), Failed> {
     }
     std::fs::write(at("scenes/broken.ron"), "(version: 1, profile: Nv11)").unwrap();
     assert_eq!(ninebit("replay scenes --report html=report.html"), Some(3));
-    chromium("tests/web/report.mjs", folder.path(), &[])
+    browse("tests/web/report.mjs", &[folder.path()])
 }
 
-fn page() -> Result<(), Failed> {
+fn page(browser: &str) -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let path = Path::new("vectors/scenes/dot3/lit-stone.ron");
@@ -496,11 +506,7 @@ fn page() -> Result<(), Failed> {
         inspect(&scene, &at(&format!("{name}.html")));
     }
 
-    let gallery = Command::new(env!("CARGO_BIN_EXE_ninebit"))
-        .args(["gallery", "vectors/scenes/fog", "vectors/scenes/dot3/lit-stone.ron", "-o"])
-        .arg(at("gallery"))
-        .status();
-    assert!(gallery.unwrap().success());
+    write_gallery(&at("gallery"));
 
     // The values that the page has to show, computed by the library.
     let pixel = (200, 300);
@@ -509,12 +515,20 @@ fn page() -> Result<(), Failed> {
     let ideal = native.differing(json!("ideal"), None);
     let against_literal = native.differing(json!({ "CMB-3": "literal" }), None);
     let asked = native.ask(json!({ "do": "alternatives", "target": 0, "pixel": [pixel.0, pixel.1], "until": null }));
-    let differs = |rule: &&Value| {
-        let words: Vec<&Value> = rule["values"].as_array().unwrap().iter().map(|value| &value["word"]).collect();
-        words.iter().any(|word| *word != words[0])
-    };
-    let open: Vec<&str> =
-        asked["rules"].as_array().unwrap().iter().filter(differs).map(|rule| rule["rule"].as_str().unwrap()).collect();
+    let mut open: Vec<&str> = Vec::new();
+    let mut readings: Vec<Value> = Vec::new();
+    for rule in asked["rules"].as_array().unwrap() {
+        let values = rule["values"].as_array().unwrap();
+        let chosen = values.iter().find(|value| value["chosen"] == json!(true)).unwrap();
+        for value in values.iter().filter(|value| value["word"] != chosen["word"]) {
+            let name = rule["rule"].as_str().unwrap();
+            let [r, g, b] = [0, 1, 2].map(|n| &value["shown"][n]);
+            let shown = if r == g && g == b { r.to_string() } else { format!("R {r} G {g} B {b}") };
+            readings.push(json!({ "name": format!("{name}={}", value["value"].as_str().unwrap()), "shown": shown }));
+            open.push(name);
+        }
+    }
+    open.dedup();
     let undecided = format!("Of the undecided rules {} would change this pixel.", open.join(", "));
     assert!(!open.is_empty());
     let (text, edited) = native.edited(json!(["stages", 0, "rgb", "inputs", 0, "mapping"]), "UnsignedIdentity");
@@ -566,6 +580,13 @@ fn page() -> Result<(), Failed> {
     );
     assert_eq!(steps[1]["digest"], digests(&load(&at("steps.ron")).unwrap().0.plan)[0]);
 
+    let lowered = |language: &str| {
+        let run = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+            .args(["lower", "--fragment", "--to", language])
+            .arg(path)
+            .output();
+        String::from_utf8(run.unwrap().stdout).unwrap()
+    };
     // Programs in other languages.
     let rewritten: Vec<Value> = ["dot3-pixel-shader", "dot3-texture-stages"]
         .map(|name| {
@@ -590,10 +611,11 @@ fn page() -> Result<(), Failed> {
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
         "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
-        "ideal": ideal, "undecided": undecided, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
+        "ideal": ideal, "undecided": undecided, "readings": readings, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
+        "lowered": { "glsl": lowered("glsl"), "c99": lowered("c99") },
         "pasted": native.digest(None), "texture": texture, "edited": edited, "text": text, "literal": digests(&literal)[0],
         "same": png(&pixels), "other": STANDARD.encode(four_off(frame)), "differing": "4 pixels differ", "bad": bad,
     });
     std::fs::write(at("expected.json"), expected.to_string()).unwrap();
-    chromium("tests/web/page.mjs", folder.path(), &[at("expected.json")])
+    browse("tests/web/page.mjs", &[Path::new(browser), folder.path(), &at("expected.json")])
 }

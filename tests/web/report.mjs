@@ -29,7 +29,7 @@ async function tests() {
       await opened({ width, height: 900, dark });
       const where = `${width}, ${dark ? "dark" : "light"}`;
       assert.ok((await browser.value("document.documentElement.scrollWidth - innerWidth")) <= 0, `${where} is wider`);
-      const told = unnamed((await browser.send("Accessibility.getFullAXTree")).nodes);
+      const told = unnamed(await browser.told());
       const [contrast, overlaps] = [await browser.value(`(${faint})()`), await browser.value(`(${overlapping})()`)];
       assert.deepEqual({ where, faint: contrast.found, overlaps: overlaps.found, unnamed: told.found }, { where, faint: [], overlaps: [], unnamed: [] });
       const ground = await browser.value("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).slice(0, 3).map(Number)");

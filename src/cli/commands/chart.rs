@@ -4,9 +4,12 @@ use super::*;
 use std::cell::Cell;
 
 use ninebit::diagnostic::DOCUMENTS;
+use ninebit::engine::Isa;
 use ninebit::limits::EVALUATORS;
 use ninebit_files::output::{make_folder, write_below, write_file};
 use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_lab::chart::curves::Curve;
+use ninebit_lab::chart::data::Times;
 use ninebit_lab::chart::evaluators::Evaluator;
 use ninebit_lab::chart::page::{File, replace_section};
 use ninebit_lab::chart::report::Measured;
@@ -52,6 +55,9 @@ pub(crate) struct Arguments {
     /// Further ways of evaluating a scene, measured elsewhere: a JSON file, as `benches/peers/evaluators.sh` writes
     #[arg(long, value_name = "FILE.json")]
     evaluators: Option<PathBuf>,
+    /// Take times from a `figures.json` that this command wrote: what no clock measures is computed again
+    #[arg(long, conflicts_with_all = ["quick", "evaluators"], value_name = "FIGURES.json")]
+    times: Option<PathBuf>,
     /// Make one page alone
     #[arg(long, value_enum, value_name = "PAGE")]
     only: Option<Page>,
@@ -82,10 +88,11 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         keep_versioned(&arguments.out, page)?;
     }
     let elsewhere = arguments.evaluators.as_deref().map_or(Ok(Vec::new()), measured_elsewhere)?;
+    let times = arguments.times.as_deref().map(known_times).transpose()?;
     let (mut files, mut page) = (Vec::new(), None);
     let mut failed = 0;
     if wanted(Page::Speed) {
-        let mut measured = speed(arguments, context)?;
+        let mut measured = speed(arguments, times, context)?;
         measured.evaluators.extend(elsewhere);
         failed += measured.failed.len();
         files.extend(measured.files()?);
@@ -94,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let progress = Progress::new("where methods fail", context.color);
         let report = |done: usize, total: usize| progress.report(done as u64, total as u64);
         let measured = experiments::page::measure(&report).map_err(|error| refused(*error))?;
-        let (section, pictures) = experiments::page::files(&measured);
+        let (section, pictures) = experiments::page::files(&measured)?;
         page = Some(stability_page(&arguments.out.join(STABILITY), &section));
         files.extend(pictures);
     }
@@ -114,17 +121,33 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 
 /// Reads evaluators from a file.
 fn measured_elsewhere(path: &Path) -> Result<Vec<Evaluator>, Failure> {
-    const HELP: &str = "`benches/peers/evaluators.sh` writes such a file";
+    parsed(path, "evaluators", "`benches/peers/evaluators.sh` writes such a file", evaluators::parse)
+}
+
+/// Reads the times of an earlier run.
+fn known_times(path: &Path) -> Result<Times, Failure> {
+    parsed(path, "times", TIMES_HELP, Times::parse)
+}
+
+const TIMES_HELP: &str = "`ninebit chart` without `--times` measures all of them, and writes such a file";
+
+/// Reads measurements from a file.
+fn parsed<T>(
+    path: &Path,
+    what: &str,
+    help: &str,
+    parse: impl FnOnce(&[u8]) -> Result<T, String>,
+) -> Result<T, Failure> {
     let bytes = read::bytes(path, Kind::Stream, EVALUATORS).map_err(|error| {
-        let message = format!("the evaluators of `{}` cannot be read: {error}", shown::path(path));
+        let message = format!("the {what} of `{}` cannot be read: {error}", shown::path(path));
         match error {
-            ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB0536", message, HELP) },
-            ReadError::TooLarge(_) => Failure { exit: Exit::Limit, ..Failure::invalid("NB0538", message, HELP) },
-            _ => Failure::invalid("NB0537", message, HELP),
+            ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB0536", message, help) },
+            ReadError::TooLarge(_) => Failure { exit: Exit::Limit, ..Failure::invalid("NB0538", message, help) },
+            _ => Failure::invalid("NB0537", message, help),
         }
     })?;
-    evaluators::parse(&bytes).map_err(|reason| {
-        Failure::invalid("NB0537", format!("`{}` holds no evaluators: {reason}", shown::path(path)), HELP)
+    parse(&bytes).map_err(|reason| {
+        Failure::invalid("NB0537", format!("`{}` holds no {what}: {reason}", shown::path(path)), help)
     })
 }
 
@@ -139,23 +162,32 @@ fn keep_versioned(folder: &Path, page: Page) -> Result<(), Failure> {
     if versioned && !ours { Err(OutputError::Versioned { path }.into()) } else { Ok(()) }
 }
 
-fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
+fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Result<Measured, Failure> {
     let fault = |error: Box<SceneError>| refused(*error);
     let entries = techniques::find(&arguments.scenes).map_err(technique_failure)?;
     let (effort, side) = if arguments.quick { (Effort::QUICK, QUICK_SIDE) } else { (Effort::FULL, SIDE) };
     let surfaces = surfaces::surfaces();
     let curves = curves::scenes(arguments.quick);
     let points: usize = curves.iter().map(|(_, scenes)| scenes.len()).sum();
-    let total = (entries.len() + evaluators::count() + surfaces.len() + points) as u64;
+    let timed = if times.is_some() { 0 } else { evaluators::count() + surfaces.len() + points };
+    let total = (entries.len() + timed) as u64;
     let progress = Progress::new("measuring", context.color);
     let done = Cell::new(0);
     let step = || {
         done.set(done.get() + 1);
         progress.report(done.get(), total);
     };
-    let mut measured = Measured { quick: arguments.quick, ..Measured::default() };
+    let isa = Isa::best().name().to_owned();
+    let mut measured = Measured { isa, quick: arguments.quick, ..Measured::default() };
     for entry in &entries {
-        let technique = isolated(&entry.path, || techniques::measure(entry, &effort).map_err(technique_failure));
+        let technique = isolated(&entry.path, || {
+            let known = times.as_ref().map(|times| times.of(entry));
+            let spread = known.as_ref().and_then(|known| known.as_ref().ok().copied());
+            match (techniques::measure(entry, &effort, spread).map_err(technique_failure)?, known) {
+                (Some(_), Some(Err(reason))) => Err(Failure::invalid("NB0537", reason, TIMES_HELP)),
+                (technique, _) => Ok(technique),
+            }
+        });
         if let Some(technique) = unless_internal(technique, entry.name(), &mut measured.failed, context)?.flatten() {
             let title = || techniques::title(&arguments.scenes, &entry.family);
             measured.titles.entry(entry.family.clone()).or_insert_with(title);
@@ -168,6 +200,12 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
         let help = format!("give scenes a `truth: (lights: [...])`; {DOCUMENTS}/scene-format.md describes it");
         return Err(Failure::invalid("NB0396", message, help));
     }
+    if let Some(Times { isa, quick, evaluators, surfaces, curves: known, .. }) = times {
+        // Names and texts are those of today.
+        let points = known.into_iter().map(|curve| curve.points);
+        let curves = curves.into_iter().zip(points).map(|((curve, _), points)| Curve { points, ..curve }).collect();
+        return Ok(Measured { isa, quick, evaluators, surfaces, curves, ..measured });
+    }
     for (name, surface) in &surfaces {
         let cost = isolated(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));
         measured.surfaces.extend(unless_internal(cost, (*name).to_owned(), &mut measured.failed, context)?);
@@ -175,7 +213,7 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     }
     for (mut curve, scenes) in curves {
         for scene in scenes {
-            let point = isolated(Path::new(curve.counted), || scene.point(curve.counted, &effort).map_err(fault));
+            let point = isolated(Path::new(&curve.counted), || scene.point(&curve.counted, &effort).map_err(fault));
             let name = format!("a point of {}", curve.counted);
             curve.points.extend(unless_internal(point, name, &mut measured.failed, context)?);
             step();

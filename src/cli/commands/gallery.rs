@@ -1,6 +1,6 @@
 //! The command `ninebit gallery`: a site of scenes, each of which opens in the inspector.
 
-use super::inspect::{Heading, Picture, common, first_picture, scene_data};
+use super::inspect::{Picture, common, first_picture, scene_data};
 use super::scene::isolated;
 use super::*;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use ninebit::state::{MipFilter, PolygonModes, ShaderStage, TextureFormat, Textur
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_scene::assets::Gathered;
-use ninebit_scene::load_with;
+use ninebit_scene::{Heading, load_with};
 
 use crate::page;
 use crate::replay::{EntryKind, find};

@@ -7,8 +7,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::render;
 use ninebit::state::POLICIES;
-use ninebit_scene::Loaded;
 use ninebit_scene::assets::Gathered;
+use ninebit_scene::{Heading, Loaded};
 use serde_json::Value;
 
 use super::scene::refused;
@@ -70,34 +70,6 @@ pub(super) fn scene_data(
     }))
 }
 
-/// What the comment at the head of a scene says: `// Title: text`.
-pub(super) struct Heading {
-    /// What stands before a colon, or the name of the file.
-    pub(super) title: String,
-    /// The first sentence of the text.
-    pub(super) about: String,
-}
-
-impl Heading {
-    /// Reads the comment. `file` is the name of the scene's file without its extension.
-    pub(super) fn new(text: &str, file: &str) -> Heading {
-        let lines = text.lines().map_while(|line| line.trim_start().strip_prefix("//"));
-        let comment = lines.map(str::trim).collect::<Vec<_>>().join(" ").replace('`', "");
-        // A colon later on is one of a sentence.
-        let named =
-            comment.split_once(": ").filter(|(title, _)| !title.contains(['.', ',', ';', '(']) && title.len() <= 60);
-        let (title, text) =
-            named.map_or((file.replace(['-', '_'], " "), comment.as_str()), |(title, rest)| (title.to_owned(), rest));
-        let first = text.split_inclusive(". ").next().unwrap_or_default();
-        Heading { title: capital(&title), about: capital(first.trim()) }
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
 /// Returns what all pages hold: the handbook and the policies.
 pub(super) fn common() -> Value {
     json!({
@@ -132,20 +104,4 @@ fn alternatives() -> Value {
 fn chosen(policies: &Policies) -> Value {
     let differing = POLICIES.iter().filter(|policy| policies.chosen(policy.rule) != 0);
     Value::Object(differing.map(|p| (p.rule.to_string(), json!(p.values[policies.chosen(p.rule)].0))).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Heading;
-
-    #[test]
-    fn headings() {
-        let said = |text: &str| {
-            let Heading { title, about } = Heading::new(text, "lit-stone");
-            [title, about]
-        };
-        assert_eq!(said("// A ring: it is `lit`.\n// Twice. More.\n("), ["A ring", "It is lit."]);
-        assert_eq!(said("// It is lit, as follows: twice.\n("), ["Lit stone", "It is lit, as follows: twice."]);
-        assert_eq!(said("("), ["Lit stone", ""]);
-    }
 }

@@ -1,6 +1,6 @@
 // The chain of integers of one pixel: a card for each unit, from the raster to the store.
 import { $, choice, colorField, el, hexadecimal, swatch } from "./elements.js";
-import { differs, strip } from "./strip.js";
+import { differs, markStrip, saidOf, strip } from "./strip.js";
 
 const CHANNELS = ["r", "g", "b", "a"];
 
@@ -62,9 +62,21 @@ export class Chain {
     const left = trace.left_out ? [el("p", { className: "quiet" }, `${trace.left_out} earlier fragments are not shown.`)] : [];
     const last = trace.draws.at(-1);
     const way = last ? [el("p", { className: "quiet caption" }, "The way of this pixel through the chip, unit by unit. 255 stands for 1.0, · is a dot product. ",
-      el("span", { className: "off" }, "float64 +1.2"), " is how far exact arithmetic would be from the chip's integer. A click opens the unit."), strip(last, (block) => this.reveal(block))] : [];
+      el("span", { className: "off" }, "float64 +1.2"), " is how far exact arithmetic would be from the chip's integer; ", el("span", { className: "reading" }, "CMB-8=each: 99"), " is what it would be under another reading of a rule that nothing decides. A click opens the unit."), strip(last, (block) => this.reveal(block))] : [];
     this.panel.replaceChildren(head, ...way, ...none, ...left, ...fragments);
     this.choose(null);
+  }
+
+  // Marks what other readings of rules would change: in the strip, and in the units.
+  read(readings) {
+    const list = this.panel.querySelector(".strip");
+    if (!list) return;
+    markStrip(list, readings);
+    const fragment = [...this.panel.querySelectorAll(".fragment")].at(-1);
+    for (const card of fragment.querySelectorAll(".unit")) {
+      const said = readings.flat().filter(({ block }) => block === card.getAttribute("aria-label")).map(saidOf);
+      if (said.length) card.querySelector(".title").after(el("ul", { className: "readings", "aria-label": "Other readings" }, [...new Set(said)].map((text) => el("li", {}, text))));
+    }
   }
 
   // Goes to a unit of the last fragment.
@@ -308,7 +320,9 @@ export class Chain {
       const cells = [...texels].map(([at, channels]) => {
         const rgb = ["r", "g", "b"].map((c) => Math.max(0, Math.min(255, channels[c]?.value ?? 0)));
         const fetch = steps.find((step) => step.texel && step.name.startsWith(`${prefix}texel${at}.`))?.texel;
-        const light = rgb[0] * 0.3 + rgb[1] * 0.59 + rgb[2] * 0.11 > 128;
+        // Where black stands out more than white does.
+        const linear8 = (byte) => (byte <= 10 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
+        const light = 0.2126 * linear8(rgb[0]) + 0.7152 * linear8(rgb[1]) + 0.0722 * linear8(rgb[2]) > 0.179;
         const cell = el("div", { className: `texel ${light ? "light" : "dark"}` },
           el("span", {}, fetch ? `(${fetch.x}, ${fetch.y})` : "border"), el("span", {}, value(`${prefix}texel${at}.word`)?.note ?? ""), el("span", {}, `${(weight(at) * 100).toFixed(1)} %`));
         cell.style.backgroundColor = `rgb(${rgb.join(",")})`;
@@ -371,7 +385,7 @@ export class Chain {
     this.slice = { fragment, bright, id };
     this.mark(this.panel);
     const step = steps[id];
-    const entry = (title, value) => (value === "" ? null : el("span", {}, el("dt", {}, title), el("dd", {}, value)));
+    const entry = (title, value) => (value === "" ? null : el("div", {}, el("dt", {}, title), el("dd", {}, value)));
     bar.replaceChildren(el("b", {}, step.name), el("dl", {}, entry("integer", integer(step)), entry("hex", hex(step)), entry("of", step.per_one > 1 ? String(step.per_one) : ""),
       entry("real", counts(step) ? "" : real(step.real)), entry("ideal", real(step.ideal)), entry("depends on", bright.size === 2 ? "1 value" : `${bright.size - 1} values`)),
       ...(step.rule ? [this.badge(step.rule)] : []), ...(step.note ? [el("span", { className: "quiet" }, step.note)] : []),

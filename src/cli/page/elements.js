@@ -51,11 +51,26 @@ export function bytesOf(base64) {
   return bytes;
 }
 
+// Bytes of digits of base 85, as `dense` of page.rs writes them.
+export function denseBytes(text) {
+  const digits = Uint8Array.from({ length: 128 }, (_, code) => ({ 33: 60, 35: 92, 36: 123 })[code] ?? code).map((code) => code - 40);
+  const bytes = new Uint8Array(Math.floor((text.length * 4) / 5));
+  for (let at = 0, to = 0; at < text.length; at += 5) {
+    let word = 0;
+    for (let n = 0; n < 5; n++) word = word * 85 + (at + n < text.length ? digits[text.charCodeAt(at + n)] : 84);
+    for (let shift = 24; shift >= 0 && to < bytes.length; shift -= 8) bytes[to++] = word >>> shift;
+  }
+  return bytes;
+}
+
 // Characters of bytes, in parts: arguments stand on the stack.
 export function base64Of(bytes) {
   let text = "";
   for (let at = 0; at < bytes.length; at += 0x4000) text += String.fromCharCode(...bytes.subarray(at, at + 0x4000));
   return btoa(text);
 }
+
+// Bytes as a stream compresses or inflates them.
+export const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 
 export const hexadecimal = (value, width = 2) => (value < 0 ? "-0x" : "0x") + Math.abs(value).toString(16).padStart(width, "0");

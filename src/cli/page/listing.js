@@ -4,8 +4,8 @@ import { channelsOf } from "./strip.js";
 
 const REGISTERS = { col0: "primary", col1: "secondary", fog: "fog", tex0: "texture0", tex1: "texture1", tex2: "texture2", tex3: "texture3", spare0: "spare0", spare1: "spare1" };
 
-// What each line of a program assigns: the block of a trace, and the name of a register or of a product.
-export function assignmentsOf(text) {
+// What each line of a program assigns, with the steps of a fragment.
+export function assignmentsOf(text, fragment) {
   const found = [];
   let [line, depth, stage, portion, product] = [0, 0, -1, "", 0];
   for (const [token, portioned, target, channel] of text.matchAll(/\/\/[^\n]*|\n|[{}]|\b(rgb|alpha)\s*\{|\b(out|\w+)(?:\.(\w+))?\s*=/g)) {
@@ -20,14 +20,23 @@ export function assignmentsOf(text) {
       product += 1;
     }
   }
-  return found;
+  const step = (block, name) => fragment?.steps.findLast((each) => each.block === block && each.name === name);
+  return found.map(({ line, block, name, channels }) => ({ line, block, name, found: channels.map((channel) => [channel, step(block, `${name}.${channel}`)]).filter(([, each]) => each) }));
+}
+
+// The same of a function of another language, whose variables are named after the steps.
+export function variablesOf(text, fragment) {
+  const steps = new Map((fragment?.steps ?? []).map((step) => [step.name.replaceAll(".", "_"), step]));
+  return text.split("\n").flatMap((code, line) => {
+    const step = steps.get(/^\s+(?:const )?\w+ (\w+) = /.exec(code)?.[1]);
+    return step ? [{ line, block: step.block, name: step.name, found: [["a", step]] }] : [];
+  });
 }
 
 // The values that a fragment has for them, as rows of one line each.
-function rows(text, fragment, reveal) {
+function rows(text, fragment, reveal, assignments) {
   const lines = text.split("\n").map(() => []);
-  for (const { line, block, name, channels } of assignmentsOf(text)) {
-    const found = channels.map((channel) => [channel, fragment?.steps.findLast((step) => step.block === block && step.name === `${name}.${channel}`)]).filter(([, step]) => step);
+  for (const { line, block, name, found } of assignments(text, fragment)) {
     if (!found.length) continue;
     const values = Object.fromEntries(found);
     const color = [values.r, values.g, values.b].map((step) => step?.value);
@@ -40,10 +49,11 @@ function rows(text, fragment, reveal) {
 }
 
 export class Listing {
-  // `changed` takes a text while somebody types, and returns the findings in it: lines of the program, and messages. `commit` takes it when they are done.
-  constructor({ text, label, fragment, changed, commit, reveal }) {
-    Object.assign(this, { fragment, changed, reveal });
-    this.area = el("textarea", { value: text, spellcheck: false, wrap: "off", "aria-label": label, oninput: () => this.typed(), onchange: () => commit(this.area.value) });
+  // `changed` takes a text while somebody types, and returns the findings in it: lines of the program, and messages. `commit` takes it when they are done;
+  // without it nobody types.
+  constructor({ text, label, fragment, changed, commit, reveal, assignments = assignmentsOf }) {
+    Object.assign(this, { fragment, changed, reveal, assignments });
+    this.area = el("textarea", { value: text, readOnly: !commit, spellcheck: false, wrap: "off", "aria-label": label, oninput: () => this.typed(), onchange: () => commit(this.area.value) });
     this.beside = el("div", { className: "beside", "aria-label": "Values of the pixel" });
     this.area.addEventListener("mousemove", (event) => this.light(this.lineAt(event)));
     this.area.addEventListener("mouseleave", () => this.light(-1));
@@ -69,7 +79,7 @@ export class Listing {
   show(findings = []) {
     const text = this.area.value;
     this.area.rows = Math.max(4, text.split("\n").length);
-    const lines = rows(text, this.fragment, this.reveal);
+    const lines = rows(text, this.fragment, this.reveal, this.assignments);
     for (const { line, message } of findings) lines[Math.max(0, Math.min(lines.length - 1, line))].push(el("span", { className: "wrong" }, `✗ ${message}`));
     this.beside.replaceChildren(...lines.map((line) => el("div", { className: "row" }, line)));
   }

@@ -1,28 +1,12 @@
 // The page: one scene, its changes, and what is looked at.
+import { Address } from "./address.js";
 import { Chain } from "./chain.js";
 import { Change } from "./change.js";
-import { $, base64Of, bytesOf, choice, colorField, el, swatch } from "./elements.js";
-import { Listing } from "./listing.js";
+import { $, bytesOf, denseBytes, el, swatch, through } from "./elements.js";
 import { Background, Model, serve } from "./model.js";
-import { View, sheetOf } from "./view.js";
-
-const addressOf = (bytes) => base64Of(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-const fromAddress = (text) => bytesOf(text.replaceAll("-", "+").replaceAll("_", "/"));
-const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-
-// A state as an address has it. A long one is compressed, and begins with a letter that no other does.
-const LONG_STATE = 2000;
-async function encoded(value) {
-  const bytes = new TextEncoder().encode(JSON.stringify(value));
-  return bytes.length < LONG_STATE ? addressOf(bytes) : `z${addressOf(await through(bytes, new CompressionStream("deflate-raw")))}`;
-}
-async function decoded(text) {
-  const bytes = text.startsWith("z") ? await through(fromAddress(text.slice(1)), new DecompressionStream("deflate-raw")) : fromAddress(text);
-  return JSON.parse(new TextDecoder().decode(bytes));
-}
-
-// Browsers open no address that is much longer.
-const LONGEST_ADDRESS = 1_000_000;
+import { Program } from "./program.js";
+import { Readings } from "./readings.js";
+import { View } from "./view.js";
 
 class Page {
   constructor(data, model, background, view) {
@@ -31,13 +15,16 @@ class Page {
     this.view = view;
     this.chain = new Chain(this);
     this.change = new Change(this);
+    this.listing = new Program(this);
+    this.readings = new Readings(this);
+    this.address = new Address(this);
     this.programs = new Map();
     for (const [name, bytes] of Object.entries(data.files)) model.file(name, bytesOf(bytes));
     this.wire();
   }
 
   async begin() {
-    this.apply(await this.fromAddress());
+    this.apply(await this.address.read());
   }
 
   wire() {
@@ -47,7 +34,7 @@ class Page {
     on("redo", () => this.step(this.future, this.past));
     on("reset", () => this.commit(this.data.text, { ...this.data.chosen }));
     on("save", () => this.save());
-    on("link", () => this.link());
+    on("link", () => this.address.share());
     on("help", () => $("guide").showModal());
     on("in", () => this.view.scale(1.25, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
     on("out", () => this.view.scale(0.8, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
@@ -79,7 +66,6 @@ class Page {
       const file = event.dataTransfer.files[0];
       if (file) this.dropped(file.name, new Uint8Array(await file.arrayBuffer()));
     });
-    window.addEventListener("hashchange", async () => { if (location.hash.slice(1) !== this.address) this.apply(await this.fromAddress()); });
   }
 
   say(text) {
@@ -168,6 +154,7 @@ class Page {
 
   follow(text, then = () => {}) {
     cancelAnimationFrame(this.pending);
+    this.readings.stop();
     this.pending = requestAnimationFrame(() => {
       const started = performance.now();
       const changed = text();
@@ -212,65 +199,12 @@ class Page {
     URL.revokeObjectURL(link.href);
   }
 
-  // --- the address: pixel, target, policies, and where the text differs from the one that was opened
-
-  async toAddress() {
-    const [was, is] = [this.data.text, this.text];
-    let start = 0;
-    while (start < Math.min(was.length, is.length) && was[start] === is[start]) start++;
-    let end = 0;
-    while (end < Math.min(was.length, is.length) - start && was[was.length - 1 - end] === is[is.length - 1 - end]) end++;
-    const state = {};
-    if (this.at) state.p = this.at;
-    if (this.target) state.t = this.target;
-    if (this.until !== null) state.u = this.until;
-    if (was !== is) state.e = [start, was.length - end, is.slice(start, is.length - end)];
-    const policies = Object.fromEntries(Object.entries(this.policies).filter(([rule, value]) => this.data.chosen[rule] !== value));
-    if (Object.keys(policies).length) state.v = policies;
-    const turn = (this.turn = (this.turn ?? 0) + 1);
-    const address = Object.keys(state).length ? await encoded(state) : "";
-    // What was asked for since is later.
-    if (turn !== this.turn) return;
-    this.linked = address.length <= LONGEST_ADDRESS;
-    this.address = this.linked ? address : "";
-    history.replaceState(null, "", `#${this.address}`);
-  }
-
-  // Takes what the address holds. Returns what is to be said of it.
-  async fromAddress() {
-    this.address = location.hash.slice(1);
-    if (!this.address || this.address === "pixel") return "";
-    try {
-      const { p, t = 0, u = null, e, v = {} } = await decoded(this.address);
-      const whole = (value) => Number.isInteger(value) && value >= 0;
-      if (Array.isArray(p) && p.length === 2 && p.every(whole)) this.at = p;
-      this.target = whole(t) ? t : 0;
-      this.until = whole(u) ? u : null;
-      if (Array.isArray(e) && whole(e[0]) && whole(e[1]) && typeof e[2] === "string") this.text = this.data.text.slice(0, e[0]) + e[2] + this.data.text.slice(e[1]);
-      this.policies = { ...this.data.chosen, ...v };
-      return "";
-    } catch {
-      return "The address is not one of this page; the scene is as it was saved.";
-    }
-  }
-
-  async link() {
-    await this.toAddress();
-    if (!this.linked) return this.say("The changes are too long for a link. Save RON keeps them.");
-    try {
-      await navigator.clipboard.writeText(location.href);
-      this.say("The link is on the clipboard: this pixel, these changes.");
-    } catch {
-      this.say("The address bar has the link: this pixel, these changes.");
-    }
-  }
-
   // --- what is shown
 
   refresh() {
     const { targets, draws } = this.scene;
     $("target").replaceChildren(...targets.map((target, n) => el("option", { value: n, selected: n === this.target }, `${target.name} ${target.width} × ${target.height} ${target.format}`)));
-    const alternatives = this.alternatives.flatMap(({ rule, values }) => values.filter(({ value }) => value !== (this.policies[rule] ?? values[0].value)).map(({ value }) => [`${rule}=${value}`, `policy ${rule}=${value}`]));
+    const alternatives = this.readings.others().map(({ name }) => [name, `policy ${name}`]);
     const shown = ["colour", "R", "G", "B", "A", ...(targets[this.target].depth ? ["depth", "stencil"] : [])];
     if (!shown.includes(this.view.channels)) this.view.channels = "colour";
     $("channels").replaceChildren(...shown.map((name) => el("option", { selected: name === this.view.channels }, name)));
@@ -341,8 +275,8 @@ class Page {
     return { ...this.policies, [rule]: value };
   }
 
-  // Draws another scene, or this one under other policies, and brings back what stands.
-  elsewhere({ policies = this.policies, text = null, name = this.data.name }) {
+  // Draws another scene, or this one under other policies, or does other work with it, and brings back what stands.
+  elsewhere({ policies = this.policies, text = null, name = this.data.name }, work = null) {
     const { target, until } = this;
     try {
       this.model.ask({ do: "policies", values: policies });
@@ -350,7 +284,7 @@ class Page {
         const { scene, findings } = this.model.ask({ do: "open", text, name });
         if (!scene) throw new Error(`${name} cannot be drawn: ${findings[0].message}`);
       }
-      return this.model.picture({ do: "draw", target, until });
+      return work ? work() : this.model.picture({ do: "draw", target, until });
     } finally {
       this.model.ask({ do: "policies", values: this.policies });
       if (text !== null) this.model.ask({ do: "open", text: this.text, name: this.data.name });
@@ -392,9 +326,9 @@ class Page {
 
   differences(heat) {
     $("regions-part").hidden = !heat;
-    $("legend").replaceChildren(...(heat ? heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label)) : []));
+    $("legend").replaceChildren(...(heat ? [el("span", {}, "Differences up to, in steps of 1/255:"), ...heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label))] : []));
     if (!heat) return $("regions-sum").replaceChildren();
-    const left = heat.diverged ? `; ${heat.diverged} more went another way` : "";
+    const left = heat.diverged ? `; ${heat.diverged} more are left out: a test or a choice differs` : "";
     $("regions-sum").textContent = `${heat.differing} pixels differ${heat.region_count > heat.regions.length ? `; the ${heat.regions.length} largest of ${heat.region_count} regions` : ""}${left}`;
     const item = (region) => el("li", {}, el("button", { onclick: () => { this.choose(region.first); this.view.reveal(); } }, region.worst
       ? `${region.first.join(", ")}: ${["R", "G", "B", "A"][region.worst.channel]} ${region.worst.shown}, ideal ${region.worst.ideal.toFixed(3)}`
@@ -446,7 +380,7 @@ class Page {
     const bytes = this.bytesAt(pixel);
     $("here").replaceChildren(swatch(bytes), `${pixel.join(", ")}: R ${bytes[0]} G ${bytes[1]} B ${bytes[2]} A ${bytes[3]}${this.depthAt(pixel)}`);
     this.panels();
-    this.toAddress();
+    this.address.write();
   }
 
   program(draw) {
@@ -465,10 +399,11 @@ class Page {
         this.times.trace = performance.now() - started;
         this.chain.show(trace, (draw) => this.program(draw));
         this.times.chain = performance.now() - started;
+        this.readings.mark(trace);
       },
-      rules: () => this.sides(this.model.ask({ do: "alternatives", target, until, pixel }).rules),
+      rules: () => this.readings.show(this.model.ask({ do: "alternatives", target, until, pixel }).rules),
       change: () => this.sound ? this.change.show(this.model.ask({ do: "outline" }).tree) : $("change").replaceChildren(el("p", {}, "The text has errors: mend it under Scene text, or undo.")),
-      program: () => this.programPanel(),
+      program: () => this.listing.show(),
       text: () => this.textPanel(),
     };
     // Who works by keyboard stays where they are when a panel is made anew.
@@ -479,92 +414,10 @@ class Page {
     if (at >= 0) fields()[at]?.focus();
   }
 
-  sides(rules) {
-    const rows = rules.flatMap(({ rule, question, values }) => {
-      const chosen = values.find((value) => value.chosen);
-      return values.map((value, n) => el("tr", { className: `${value.chosen ? "chosen" : ""} ${value.word !== chosen.word ? "differs" : ""}` },
-        el("td", {}, value.value), el("td", {}, n === 0 ? [this.chain.badge(rule), " ", question] : ""), el("td", {}, value.meaning), el("td", {}, swatch(value.shown), el("code", {}, value.shown.join(", "))),
-        el("td", {}, el("canvas", { className: "small", width: 0, height: 0, "data-policy": `${rule}=${value.value}`, role: "img", "aria-label": `the picture under ${rule}=${value.value}` })),
-        el("td", {}, value.chosen ? "" : el("button", { onclick: () => this.policy(rule, value.value) }, "Choose"))));
-    });
-    this.smallPictures();
-    const differing = new Set(rules.filter(({ values }) => values.some((value) => value.word !== values.find((each) => each.chosen).word)).map(({ rule }) => rule));
-    $("rules").replaceChildren(el("p", {}, differing.size ? this.data.undecided.some.replace("{}", [...differing].join(", ")) : this.data.undecided.none),
-      el("table", {}, el("thead", {}, el("tr", {}, ["value", "rule", "meaning", "pixel", "picture", ""].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, rows)));
-  }
-
-  // The pictures under each value of each rule, one after the other, as long as they are looked at.
-  smallPictures() {
-    const turn = (this.small = (this.small ?? 0) + 1);
-    const next = () => {
-      const canvas = turn === this.small && this.shown === "rules" ? document.querySelector("#rules canvas.small[width='0']") : null;
-      if (!canvas) return;
-      const { width, height, pixels } = this.elsewhere({ policies: this.under(canvas.dataset.policy) });
-      const sheet = sheetOf({ width, height, pixels });
-      const scale = 64 / Math.max(width, height);
-      [canvas.width, canvas.height] = [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
-      canvas.getContext("2d").drawImage(sheet, 0, 0, canvas.width, canvas.height);
-      setTimeout(next, 10);
-    };
-    setTimeout(next, 50);
-  }
-
-  programPanel() {
-    const draws = this.scene.draws;
-    this.programOf = Math.min(this.programOf ?? draws.length - 1, draws.length - 1);
-    if (draws.length === 0) return $("program").replaceChildren(el("p", {}, "The scene draws nothing."));
-    const draw = this.programOf;
-    const program = this.program(draw);
-    const constants = [0, 1].map((n) => el("div", { className: "field" }, el("span", { className: "label" }, `constant ${n}`),
-      colorField(program.final.constants[n], `constant ${n}`, (color, dragging) => this.edit(draw, ["constants", n], color, dragging))));
-    const area = el("textarea", { rows: 8, "aria-label": "Program to paste", placeholder: "rc_in_rgb0 = 0x..., or !!RC1.0 ..., or glCombinerInputNV(...)" });
-    let language = "RegisterWords";
-    const languages = { RegisterWords: "register words", CombinerText: "combiner language", CombinerCalls: "calls of OpenGL", scene: "as a scene writes it" };
-    const paste = () => { const answer = this.tried(() => this.model.ask({ do: "paste", draw, language, program: area.value })); if (answer) this.commit(answer.text); };
-    const words = program.words.map((word) => el("tr", {}, el("td", {}, word.method), el("td", {}, word.name), el("td", {}, word.value), el("td", {}, word.meaning)));
-    const origin = program.origin.length ? [el("p", { className: "quiet" }, "The program was written for an API. A change of its combiners writes it anew in the combiner language; Scene text has it as it was written.")] : [];
-    $("program").replaceChildren(
-      el("div", { className: "bar" }, el("label", {}, "Draw ", choice(draws.map((each) => `${each.number} ${each.name}`), `${draw} ${draws[draw].name}`, "Draw", (value) => { this.programOf = parseInt(value, 10); this.programPanel(); }))),
-      ...origin, el("h2", {}, "In the combiner language"), el("p", { className: "quiet" }, `Beside each line stands what it yields at pixel ${this.at.join(", ")}. The picture follows while you type.`), this.listing(draw, program.text), ...constants,
-      el("h2", {}, "As register words"), el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "register words" }, el("table", {}, el("thead", {}, el("tr", {}, ["method", "register", "value", "meaning"].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, words))),
-      el("h2", {}, "Paste a program"), area,
-      el("div", { className: "bar" }, el("select", { "aria-label": "Language", onchange: (event) => (language = event.target.value) }, Object.entries(languages).map(([value, name]) => el("option", { value }, name))), el("button", { onclick: paste }, "Use it")));
-  }
-
-  // The last fragment of a draw at the pixel.
-  fragmentOf(draw) {
-    const { target, until, at: pixel } = this;
-    return this.tried(() => this.model.ask({ do: "trace", target, until, pixel }).trace.draws.findLast((each) => each.draw === draw));
-  }
-
-  // A program as text, with the values of the pixel.
-  listing(draw, text) {
-    const pasted = (program) => this.tried(() => this.model.ask({ do: "paste", draw, language: "CombinerText", program }));
-    const changed = (program, then) => {
-      this.follow(() => {
-        // A text that could not be read stands in the model: the page's own is the one that is changed.
-        this.open(this.text);
-        return pasted(program)?.text ?? null;
-      }, (whole) => {
-        // The program stands on lines of its own in the scene's text.
-        const first = whole.slice(0, Math.max(0, whole.indexOf(program))).split("\n").length;
-        const findings = this.findings.filter(({ severity }) => severity === "error").map(({ line, message }) => ({ line: line - first, message }));
-        then(findings.length ? null : this.fragmentOf(draw), findings);
-      });
-    };
-    const commit = (program) => {
-      cancelAnimationFrame(this.pending);
-      this.open(this.text);
-      const answer = pasted(program);
-      if (answer) this.commit(answer.text);
-    };
-    return new Listing({ text, label: "The program in the combiner language", fragment: this.fragmentOf(draw), changed, commit, reveal: (block) => { this.tab("chain"); this.chain.reveal(block); } }).element;
-  }
-
   textPanel() {
-    const area = el("textarea", { value: this.text, spellcheck: false, "aria-label": "The scene", onchange: () => this.commit(area.value) });
+    const area = el("textarea", { value: this.text, spellcheck: false, "aria-label": "The scene", oninput: () => this.follow(() => area.value), onchange: () => { cancelAnimationFrame(this.pending); this.commit(area.value); } });
     this.area = area;
-    $("text").replaceChildren(el("p", { className: "quiet" }, "The scene in RON. What is wrong with it is said above, with its place."), area, el("div", { className: "bar" }, el("button", { onclick: () => this.commit(area.value) }, "Draw it")));
+    $("text").replaceChildren(el("p", { className: "quiet" }, "The scene in RON. The picture follows while you type; what is wrong is said above, with its place."), area);
   }
 
   mark({ span }) {
@@ -590,17 +443,18 @@ class Page {
   // A text of the handbook: code stands between back-ticks, and other rules lead to their own text.
   marked(text, own) {
     const other = (part) => (part !== own && this.rules[part] ? el("button", { className: "rule", onclick: () => this.rule(part) }, part) : part);
-    return text.split("`").flatMap((part, n) => (n % 2 ? el("code", {}, part) : part.split(/\b([A-Z]{3}-\d+[a-z]?)\b/).map(other)));
+    return text.split("\x60").flatMap((part, n) => (n % 2 ? el("code", {}, part) : part.split(/\b([A-Z]{3}-\d+[a-z]?)\b/).map(other)));
   }
 }
 
 async function openPage(script) {
   const started = performance.now();
   try {
-    const data = { ...JSON.parse($("common").textContent), ...JSON.parse($("data").textContent) };
+    const own = JSON.parse($("data").textContent);
     const view = new View(() => {}, () => {});
-    const preview = view.preview(data.picture);
-    const model = await Model.load(bytesOf($("module").textContent.trim()));
+    const preview = view.preview(own.picture);
+    const [model, common] = await Promise.all([Model.load(denseBytes($("module").textContent)), through(denseBytes($("common").textContent), new DecompressionStream("gzip"))]);
+    const data = { ...JSON.parse(new TextDecoder().decode(common)), ...own };
     const page = new Page(data, model, new Background(script), view);
     await page.begin();
     window.inspector = page;

@@ -108,21 +108,37 @@ export function channelsOf(values) {
   return (colors.length ? colors : COLORS.filter((channel) => values[channel])).map((channel) => [channel, values[channel]]);
 }
 
+// What a cell holds, as a text.
+export const told = ({ values, passed }) => (passed === undefined ? channelsOf(values).map(([channel, step]) => `${channel.toUpperCase()} ${step.value}`.trim()).join(" ") : passed ? "passed" : "not passed");
+
 const byte = (step) => Math.max(0, Math.min(255, step?.value ?? 0));
 
 export function strip(fragment, open) {
   const cells = cellsOf(fragment).map((cell) => {
-    const shown = channelsOf(cell.values);
     const wrong = Object.values(cell.values).filter(differs);
     const far = wrong.map((step) => step.ideal * step.per_one - step.value).sort((a, b) => Math.abs(b) - Math.abs(a))[0];
     const off = wrong.length ? `float64 ${far < 0 ? "−" : "+"}${Math.abs(far).toFixed(1)}` : "";
     const { r, g, b } = cell.values;
     const color = r || g || b ? [byte(r), byte(g), byte(b)] : null;
-    const told = wrong.length ? `; ${off}` : "";
     return el("li", {}, el("button", { className: `cell${cell.passed === false ? " dropped" : ""}`, "data-block": cell.block, onclick: () => open(cell.block),
-      title: `${cell.title} ${cell.how}: ${shown.map(([channel, step]) => `${channel.toUpperCase()} ${step.value}`.trim()).join(", ")}${told}` },
+      title: `${cell.title} ${cell.how}: ${told(cell)}${off && `; ${off}`}` },
       el("span", { className: "title" }, cell.title), el("span", { className: "how" }, cell.how),
-      el("span", { className: "value" }, color ? swatch(color) : null, shown.map(([channel, step]) => el("span", { className: `channel ${channel}` }, String(step.value))), off ? el("span", { className: "off" }, off) : null)));
+      el("span", { className: "value" }, color ? swatch(color) : null, channelsOf(cell.values).map(([channel, step]) => el("span", { className: `channel ${channel}` }, String(step.value))), off ? el("span", { className: "off" }, off) : null),
+      el("span", { className: "reading" })));
   });
   return el("ol", { className: "strip", "aria-label": "The pixel's way through the chip" }, cells);
 }
+
+// Marks the cells of a strip that would hold something else under another reading of a rule: for each cell its readings.
+export function markStrip(list, readings) {
+  [...list.querySelectorAll(".cell")].forEach((cell, n) => {
+    if (!readings[n]?.length) return;
+    const rules = [...new Set(readings[n].map(({ rule }) => rule))];
+    const [only] = readings[n];
+    cell.querySelector(".reading").textContent = readings[n].length === 1 ? `${only.name}: ${only.there}` : `${rules.slice(0, 3).join(", ")}${rules.length > 3 ? ", …" : ""}`;
+    cell.title += readings[n].map(saidOf).map((text) => `\n${text}`).join("");
+  });
+}
+
+// What a reading would change, in words.
+export const saidOf = ({ title, name, meaning, here, there }) => `${title} under ${name} (${meaning}): ${there} instead of ${here}`;

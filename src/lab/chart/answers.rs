@@ -24,7 +24,7 @@ fn describe(way: &Technique) -> String {
         n if what.ends_with("ss") || what.ends_with("ch") => format!("{n} {what}es"),
         n => format!("{n} {what}s"),
     });
-    format!("*{}*: {} rms for {passes}, {stages}, {fetches}", way.entry.name(), rms(way))
+    format!("*{}*: {} rms for {passes}, {stages}, {fetches}", way.title, rms(way))
 }
 
 /// Returns the error of a technique as text.
@@ -162,7 +162,7 @@ fn one_pass(light: &Light<'_>) -> Option<String> {
     let exact = ways().next()?;
     let cheap = ways().min_by(|a, b| work(a).total_cmp(&work(b)).then(a.rms().total_cmp(&b.rms())))?;
     let worst = ways().next_back()?;
-    Some(format!("{}. Most exact: {}. Furthest off: {}", capital(&describe(cheap)), describe(exact), describe(worst)))
+    Some(format!("Most exact: {}. Cheapest: {}. Furthest off: {}", describe(exact), describe(cheap), describe(worst)))
 }
 
 fn cube_map(light: &Light<'_>) -> Option<String> {

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
+use super::picture::{Axis, COLORS, Drawing, SHAPES, Series};
 use super::surfaces::read;
 use super::timing::{Effort, frames};
 use crate::stages::*;
@@ -34,7 +34,7 @@ pub struct Scene {
 const PLAIN: Scene = Scene { side: 256, grid: 0, draws: 1, stages: 1, unseen: 0 };
 
 /// A point of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// The counted quantity.
     pub count: u64,
@@ -45,14 +45,12 @@ pub struct Point {
 }
 
 /// A curve of a chart.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Name of its chart and of the chart's file.
-    pub chart: &'static str,
     /// Name of the counted quantity.
-    pub counted: &'static str,
-    /// Its label in the chart; may be empty.
-    pub label: &'static str,
+    pub counted: String,
+    /// Its label in the chart.
+    pub label: String,
     /// The points, sorted by count.
     pub points: Vec<Point>,
 }
@@ -60,8 +58,9 @@ pub struct Curve {
 /// Returns every curve, still without points, and the scenes of its points. With `quick` it has only the first two of each.
 pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     let most = if quick { 2 } else { usize::MAX };
-    let curve = |chart, counted, label, scenes: Vec<Scene>| {
-        (Curve { chart, counted, label, points: Vec::new() }, scenes.into_iter().take(most).collect())
+    let curve = |counted: &str, label: &str, scenes: Vec<Scene>| {
+        let [counted, label] = [counted, label].map(str::to_owned);
+        (Curve { counted, label, points: Vec::new() }, scenes.into_iter().take(most).collect())
     };
     let sizes = |all: &[usize], of: fn(usize) -> Scene| all.iter().map(|n| of(*n)).collect::<Vec<_>>();
     let pixels = sizes(&[32, 64, 128, 256, 512, 1024, 2048], |side| Scene { side, ..PLAIN });
@@ -71,11 +70,11 @@ pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
     let seen = sizes(&stages, |stages| Scene { stages, ..PLAIN });
     let unseen = sizes(&stages, |stages| Scene { unseen: stages - 1, ..PLAIN });
     vec![
-        curve("cost-pixels", "pixels", "", pixels),
-        curve("cost-draws", "draws", "", draws),
-        curve("cost-triangles", "triangles", "", triangles),
-        curve("cost-stages", "stages", "each is seen", seen),
-        curve("cost-stages", "stages", "only the first is", unseen),
+        curve("pixels", "pixels of a larger frame", pixels),
+        curve("draws", "draws of 64 x 64 pixels", draws),
+        curve("triangles", "triangles in the same 1024 x 1024", triangles),
+        curve("stages", "combiner stages", seen),
+        curve("stages", "stages, only the first of them seen", unseen),
     ]
 }
 
@@ -144,42 +143,25 @@ impl Scene {
     }
 }
 
-/// Returns the charts with the names of their files.
-pub(crate) fn drawings(curves: &[Curve]) -> Vec<(&'static str, Drawing)> {
-    let mut charts: Vec<&str> = curves.iter().map(|curve| curve.chart).collect();
-    charts.dedup();
-    charts
-        .into_iter()
-        .map(|chart| (chart, drawing(curves.iter().filter(|curve| curve.chart == chart).collect())))
-        .collect()
-}
-
-fn drawing(curves: Vec<&Curve>) -> Drawing {
-    let counted = curves.first().map_or("", |curve| curve.counted);
-    let stages = counted == "stages";
-    // Time is per pixel for stages, since each pixel runs all of them.
-    let value =
-        |point: &Point| if stages { point.microseconds * 1000.0 / point.pixels as f64 } else { point.microseconds };
-    let all = || curves.iter().flat_map(|curve| &curve.points);
-    let (counts, values) = (all().map(|point| point.count as f64), all().map(value));
+/// Returns the chart of all curves: what a pixel costs, over what is counted.
+pub(crate) fn drawing(curves: &[Curve]) -> Drawing {
+    let at = |point: &Point| [point.count as f64, point.microseconds * 1000.0 / point.pixels as f64];
+    let all = || curves.iter().flat_map(|curve| &curve.points).map(at);
     let series = curves.iter().enumerate().map(|(n, curve)| Series {
-        label: curve.label.to_owned(),
+        label: curve.label.clone(),
         color: COLORS[n % COLORS.len()],
         shape: Some(SHAPES[n % SHAPES.len()]),
-        join: Join::Solid,
-        marks: curve
-            .points
-            .iter()
-            .map(|point| Mark { x: point.count as f64, y: value(point), name: String::new() })
-            .collect(),
+        points: curve.points.iter().map(at).collect(),
     });
-    let series = series.collect();
-    let (x, y) = if stages {
-        (Axis::linear("general stages", counts, true), Axis::linear("ns per pixel, one thread", values, true))
-    } else {
-        (Axis::logarithmic(counted, counts), Axis::logarithmic("microseconds per frame, one thread", values))
-    };
-    Drawing { title: format!("Cost by {counted}"), x, y, series, levels: Vec::new(), size: [560.0, 400.0] }
+    Drawing {
+        title: "What a pixel costs as a scene grows".to_owned(),
+        x: Axis::logarithmic("number of them", all().map(|[count, _]| count)),
+        y: Axis::linear("ns per pixel, one thread", all().map(|[_, time]| time), true),
+        series: series.collect(),
+        levels: Vec::new(),
+        pictures: Vec::new(),
+        size: [940.0, 400.0],
+    }
 }
 
 #[cfg(test)]
@@ -190,15 +172,15 @@ mod tests {
     fn counts_are_what_the_scenes_have() {
         for (curve, scenes) in scenes(true) {
             for (n, scene) in scenes.iter().enumerate() {
-                let point = scene.point(curve.counted, &Effort::QUICK).unwrap();
-                let wanted = match curve.counted {
+                let point = scene.point(&curve.counted, &Effort::QUICK).unwrap();
+                let wanted = match curve.counted.as_str() {
                     "pixels" => point.pixels,
                     "draws" => [1, 4][n],
                     "triangles" => [2 * 4 * 4, 2 * 11 * 11][n],
                     _ => n as u64 + 1,
                 };
-                assert_eq!(point.count, wanted, "{}", curve.chart);
-                assert!(point.pixels > 0 && point.microseconds > 0.0, "{}", curve.chart);
+                assert_eq!(point.count, wanted, "{}", curve.counted);
+                assert!(point.pixels > 0 && point.microseconds > 0.0, "{}", curve.counted);
             }
         }
     }

@@ -1,15 +1,19 @@
 //! The measurements as data: a table as comma-separated values, and everything as one JSON document.
 
+use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::curves::Curve;
+use super::evaluators::Evaluator;
 use super::page::row;
 use super::questions::Light;
 use super::report::Measured;
+use super::surfaces::SurfaceCost;
 use super::tables::{cause, causes, degrees};
 use super::techniques::{Entry, Technique};
+use super::timing::Spread;
 use crate::accuracy::{FrameCost, HardwareCost, accuracy_value};
-use ninebit::engine::Isa;
-use ninebit::state::Named;
+use ninebit::shown;
 
 /// A column: its name, its meaning, and the function to its value, which may be empty.
 struct Column {
@@ -74,13 +78,16 @@ impl Measured {
     /// Returns a heading and one row per technique.
     pub(super) fn data_rows(&self, lights: &[Light<'_>]) -> Vec<Vec<String>> {
         let columns = self.columns();
-        let heading = ["family", "technique", "parameter", "truth"].into_iter().map(str::to_owned);
+        let heading = ["family", "technique", "parameter", "title", "truth"].into_iter().map(str::to_owned);
         let row = |technique: &Technique| {
             let entry = &technique.entry;
             let parameter = entry.parameter.map_or_else(String::new, |parameter| parameter.to_string());
             let truth = meant(lights, entry).unwrap_or_default().to_owned();
             let cells = columns.iter().map(|column| (column.of)(technique));
-            [entry.family.clone(), entry.technique.clone(), parameter, truth].into_iter().chain(cells).collect()
+            [entry.family.clone(), entry.technique.clone(), parameter, technique.title.clone(), truth]
+                .into_iter()
+                .chain(cells)
+                .collect()
         };
         let heading = heading.chain(columns.iter().map(|column| column.name.clone())).collect();
         std::iter::once(heading).chain(self.techniques.iter().map(row)).collect()
@@ -93,6 +100,7 @@ impl Measured {
             ["`family`", "the folder of the scene"],
             ["`technique`", "its file's name without the parameter"],
             ["`parameter`", "the number that the name ends in; empty if there is none"],
+            ["`title`", "the technique's name"],
             ["`truth`", "which light was meant: techniques of one truth are ways to the same picture"],
         ];
         let columns = self.columns().into_iter().map(|column| vec![format!("`{}`", column.name), column.meaning]);
@@ -107,14 +115,15 @@ impl Measured {
             value["family"] = entry.family.as_str().into();
             value["technique"] = entry.technique.as_str().into();
             value["parameter"] = entry.parameter.into();
+            value["title"] = technique.title.as_str().into();
             value["truth"] = meant(lights, entry).into();
             value["nanoseconds_per_pixel"] = json!(technique.time);
             value
         };
         let mut document = json!({
-            "format": "ninebit-chart-2",
+            "format": FORMAT,
             "version": env!("CARGO_PKG_VERSION"),
-            "isa": Isa::best().name(),
+            "isa": self.isa,
             "quick": self.quick,
             "techniques": self.techniques.iter().map(technique).collect::<Vec<Value>>(),
             "evaluators": self.evaluators,
@@ -124,6 +133,59 @@ impl Measured {
         });
         shorten(&mut document);
         document
+    }
+}
+
+/// Value of `format` in the document.
+const FORMAT: &str = "ninebit-chart-2";
+
+/// Everything in a document that takes a clock to measure.
+#[derive(Debug, Deserialize)]
+pub struct Times {
+    format: String,
+    /// Instruction set of the machine.
+    pub isa: String,
+    /// Whether only few frames were timed.
+    pub quick: bool,
+    techniques: Vec<TechniqueTime>,
+    /// Evaluators, those that were measured elsewhere included.
+    pub evaluators: Vec<Evaluator>,
+    /// Costs of surfaces.
+    pub surfaces: Vec<SurfaceCost>,
+    /// Cost curves.
+    pub curves: Vec<Curve>,
+}
+
+#[derive(Debug, Deserialize)]
+struct TechniqueTime {
+    family: String,
+    technique: String,
+    parameter: Option<u32>,
+    nanoseconds_per_pixel: Spread,
+}
+
+impl Times {
+    /// Reads a document that [`Measured`] wrote.
+    ///
+    /// # Errors
+    /// Returns a message if it is no such document.
+    pub fn parse(text: &[u8]) -> Result<Times, String> {
+        let times: Times = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        if times.format == FORMAT { Ok(times) } else { Err(format!("its format is not `{FORMAT}`")) }
+    }
+
+    /// Returns the time of a technique.
+    ///
+    /// # Errors
+    /// Returns a message if the document has none.
+    pub fn of(&self, entry: &Entry) -> Result<Spread, String> {
+        let is = |time: &&TechniqueTime| {
+            (&time.family, &time.technique, time.parameter) == (&entry.family, &entry.technique, entry.parameter)
+        };
+        let found = self.techniques.iter().find(is).map(|time| time.nanoseconds_per_pixel);
+        found.ok_or_else(|| {
+            format!("it has no time of `{}` in `{}`", shown::name(&entry.name()), shown::name(&entry.family))
+        })
     }
 }
 

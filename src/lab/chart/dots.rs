@@ -9,14 +9,14 @@ use super::techniques::Technique;
 
 /// The counted quantities. All but the passes are per final pixel.
 const COUNTS: [&str; 4] = ["passes", "stages", "fetches", "blends"];
-const WIDTH: f64 = 930.0;
+const WIDTH: f64 = 1010.0;
 const ROW: f64 = 23.0;
 /// Right end of the names, in pixels.
-const NAMES: f64 = 226.0;
+const NAMES: f64 = 318.0;
 /// Left and right end of the axis, in pixels.
-const AXIS: [f64; 2] = [242.0, 540.0];
+const AXIS: [f64; 2] = [334.0, 622.0];
 /// Left end of the first column of counts, and distance between columns, in pixels.
-const COLUMNS: [f64; 2] = [568.0, 84.0];
+const COLUMNS: [f64; 2] = [650.0, 88.0];
 /// Length of the longest bar, in pixels.
 const BAR: f64 = 30.0;
 const INK: &str = "#222222";
@@ -36,10 +36,8 @@ struct Group<'a> {
 pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let front = light.front_by_counts();
     let rows = light.shown().iter().enumerate().map(|(n, way)| (*way, front.contains(&n))).collect();
-    let says = [
-        "Filled: no other way asks no more of the chip and is as exact. Counts as the program asks; of a → b, b is left after pruning.",
-    ];
-    chart(&light.title, &says, &[Group { heading: None, rows }])
+    let other = "another way is as exact, and costs no more of anything";
+    chart(&light.title, "", other, &[Group { heading: None, rows }])
 }
 
 /// Returns the chart of several lights: for each its Pareto front and its least accurate method.
@@ -54,26 +52,44 @@ pub(super) fn overview(lights: &[&Light<'_>]) -> Canvas {
             Group { heading: Some(&light.title), rows: rows.collect() }
         })
         .collect();
-    let says = [
-        "Each block is one picture that was meant. Filled: no other way to it asks no more of the chip and is as exact.",
-        "Hollow: the way that is furthest off. Counts are for each final pixel, as the program asks; of a → b, b is left after pruning.",
-    ];
-    chart("What accuracy costs the chip", &says, &groups)
+    let about = "Ways to draw a picture, each with its error, and its cost for every pixel of the picture. ";
+    chart("What accuracy costs the chip", about, "the least exact way, for comparison", &groups)
 }
 
-fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
+/// Draws the legend.
+fn legend(canvas: &mut Canvas, y: f64, other: &str) {
+    let entries = [(true, "every other way is less exact, or costs more of something"), (false, other)];
+    let mut x = 22.0;
+    for (best, text) in entries {
+        canvas.disc([x, y - 4.0], 4.5, if best { BEST } else { PALE }, best);
+        canvas.text([x + 12.0, y], TextAnchor::Start, 11, INK, text);
+        x += text_width(text, 11.0) + 34.0;
+    }
+    let y = y + 18.0;
+    let mut x = 17.0;
+    for (color, text) in [
+        (BEST, "what the chip does"),
+        (SPARED, "what the program asks for, but nothing sees (5 → 3: of 5, 3 are left)"),
+    ] {
+        canvas.rectangle(Rect { x, y: y - 9.0, width: 10.0, height: 10.0 }, color);
+        canvas.text([x + 17.0, y], TextAnchor::Start, 11, INK, text);
+        x += text_width(text, 11.0) + 39.0;
+    }
+}
+
+fn chart(title: &str, about: &str, other: &str, groups: &[Group<'_>]) -> Canvas {
     let all = || groups.iter().flat_map(|group| &group.rows).map(|(way, _)| *way);
     let lines: usize = groups.iter().map(|group| group.rows.len() + usize::from(group.heading.is_some())).sum();
-    let top = 66.0 + 16.0 * says.len() as f64;
+    let says = if about.is_empty() { 0.0 } else { 18.0 };
+    let top = 100.0 + says;
     let bottom = top + ROW * lines as f64 + 6.0;
     let mut canvas = Canvas::new(WIDTH, bottom + 30.0);
     canvas.text([16.0, 26.0], TextAnchor::Start, 15, INK, title);
-    for (n, line) in says.iter().enumerate() {
-        canvas.text([16.0, 46.0 + 16.0 * n as f64], TextAnchor::Start, 11, PALE, line);
-    }
+    canvas.text([16.0, 46.0], TextAnchor::Start, 11, PALE, about);
+    legend(&mut canvas, 48.0 + says, other);
     let axis = Axis::logarithmic("", all().map(Technique::rms));
     let at = |value: f64| AXIS[0] + (AXIS[1] - AXIS[0]) * axis.share(value);
-    canvas.text([AXIS[0], top - 10.0], TextAnchor::Start, 11, INK, "rms error against the truth, 8-bit steps");
+    canvas.text([AXIS[0], top - 10.0], TextAnchor::Start, 11, INK, "rms error, 8-bit steps");
     for tick in ticks(&axis) {
         canvas.line([at(tick), top], [at(tick), bottom], GRID, 1.0);
         canvas.text([at(tick), bottom + 16.0], TextAnchor::Middle, 11, PALE, &plain(tick));
@@ -89,11 +105,6 @@ fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
             canvas.line([16.0, y + ROW / 2.0], [WIDTH - 16.0, y + ROW / 2.0], GRID, 1.0);
             y += ROW;
         }
-        let best = group.rows.iter().enumerate().filter(|(_, (_, best))| *best);
-        let best: Vec<[f64; 2]> = best.map(|(n, (way, _))| [at(way.rms()), y + ROW * n as f64]).collect();
-        for pair in best.windows(2) {
-            canvas.line(pair[0], pair[1], SPARED, 2.0);
-        }
         for (way, best) in &group.rows {
             row(&mut canvas, way, *best, at(way.rms()), y, most);
             y += ROW;
@@ -104,17 +115,10 @@ fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
 
 fn row(canvas: &mut Canvas, way: &Technique, best: bool, x: f64, y: f64, most: f64) {
     let color = if best { BEST } else { PALE };
-    canvas.text([NAMES, y + 4.0], TextAnchor::End, 11, color, &way.entry.name());
+    canvas.text([NAMES, y + 4.0], TextAnchor::End, 11, color, &way.title);
     canvas.disc([x, y], 4.5, color, best);
     let rms = number(way.rms());
-    let width = text_width(&rms, 10.0);
-    let (anchor, beside, left) = if x > AXIS[1] - 50.0 {
-        (TextAnchor::End, x - 9.0, x - 9.0 - width)
-    } else {
-        (TextAnchor::Start, x + 9.0, x + 9.0)
-    };
-    // Clears the background so that the line of the front does not cross the number.
-    canvas.rectangle(Rect { x: left, y: y - 6.0, width, height: 12.0 }, "#ffffff");
+    let (anchor, beside) = if x > AXIS[1] - 50.0 { (TextAnchor::End, x - 9.0) } else { (TextAnchor::Start, x + 9.0) };
     canvas.text([beside, y + 4.0], anchor, 10, INK, &rms);
     for (n, [asked, pruned]) in counts(way).into_iter().enumerate() {
         let x = column(n);

@@ -102,13 +102,18 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
         let (time, errors) = traced(&plan, &definition, side, effort);
         add("traced".to_owned(), "every integer of each pixel", time, errors);
         let (time, errors) = real::<f32>(&plan, &definition, pixels, effort);
-        add("float32".to_owned(), "the real-number text, single precision", time, errors);
+        add("float32".to_owned(), "real numbers, single precision", time, errors);
         let (time, errors) = real::<f64>(&plan, &definition, pixels, effort);
-        add("float64".to_owned(), "the real-number text", time, errors);
+        add("float64".to_owned(), "real numbers, double precision", time, errors);
         for mode in Mode::ALL {
             let options = CompareOptions { mode: *mode, target: 0, threads: 1, channels: 15 };
             let time = effort.measure(pixels, || drop(compare(&plan, &options)));
-            add(format!("compare {}", mode.name()), "both, and their differences", time, Statistics::default());
+            add(
+                format!("compare {}", mode.name()),
+                "the stored bytes, float64 and their differences",
+                time,
+                Statistics::default(),
+            );
         }
     }
     Ok(all)

@@ -95,11 +95,6 @@ impl<'a> Light<'a> {
         pareto_front(&self.shown().iter().map(point).collect::<Vec<_>>())
     }
 
-    /// Returns the indices of the shown techniques on the Pareto front of error and time, the fastest first.
-    pub(super) fn front_by_time(&self) -> Vec<usize> {
-        pareto_front(&self.shown().iter().map(|way| [way.time.median, way.rms()]).collect::<Vec<_>>())
-    }
-
     /// Returns the technique of the given name.
     pub(super) fn way(&self, name: &str) -> Option<&'a Technique> {
         self.ways.iter().copied().find(|way| way.entry.name() == name)

@@ -10,10 +10,12 @@ use ninebit_scene::generate::byte;
 /// Side of a picture in pixels.
 const TILE: f64 = 128.0;
 const GAP: f64 = 14.0;
-/// Number of pictures in a row.
-const ACROSS: usize = 6;
-/// Height in pixels of a caption: two lines for the name and one for the error.
-const CAPTION: f64 = 46.0;
+/// Maximum number of pictures in a row.
+const MOST_ACROSS: usize = 7;
+/// Number of lines for a name.
+const LINES: usize = 3;
+/// Height in pixels of a caption: the name, and a line for the error.
+const CAPTION: f64 = 60.0;
 const INK: &str = "#222222";
 const PALE: &str = "#767676";
 /// Error in steps that is shown in full colour.
@@ -23,14 +25,15 @@ const LEGEND: &str = "Below each picture its error: red is too bright, blue too 
 /// Returns the strip of a light: the truth, then its techniques from the most accurate on.
 pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let ways = light.shown();
-    let across = (ways.len() + 1).min(ACROSS);
-    let rows = (ways.len() + 1).div_ceil(ACROSS);
+    // Rows of about the same length: none ends with a single picture.
+    let rows = (ways.len() + 1).div_ceil(MOST_ACROSS);
+    let across = (ways.len() + 1).div_ceil(rows);
     let height = CAPTION + 2.0 * TILE + GAP + 10.0;
     let width = (2.0 * GAP + across as f64 * (TILE + GAP)).max(text_width(LEGEND, 11.0) + 32.0);
     let mut canvas = Canvas::new(width, 66.0 + rows as f64 * height);
     canvas.text([16.0, 26.0], TextAnchor::Start, 15, INK, &light.title);
     canvas.text([16.0, 46.0], TextAnchor::Start, 11, PALE, LEGEND);
-    let place = |n: usize| [16.0 + (n % ACROSS) as f64 * (TILE + GAP), 62.0 + (n / ACROSS) as f64 * height];
+    let place = |n: usize| [16.0 + (n % across) as f64 * (TILE + GAP), 62.0 + (n / across) as f64 * height];
     if let Some(first) = ways.first() {
         let [x, y] = place(0);
         caption(&mut canvas, [x, y], "the truth", "float64, rounded");
@@ -38,7 +41,7 @@ pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     }
     for (n, way) in ways.iter().enumerate() {
         let [x, y] = place(n + 1);
-        caption(&mut canvas, [x, y], &way.entry.name(), &format!("{} rms", number(way.rms())));
+        caption(&mut canvas, [x, y], &way.title, &format!("{} rms", number(way.rms())));
         canvas.image(tile(x, y + CAPTION), image(&way.accuracy.pictures, shown));
         canvas.image(tile(x, y + CAPTION + TILE + 4.0), image(&way.accuracy.pictures, error));
     }
@@ -49,7 +52,7 @@ fn tile(x: f64, y: f64) -> Rect {
     Rect { x, y, width: TILE, height: TILE }
 }
 
-/// Writes a name in up to two lines, and a line below.
+/// Writes a name, and a line below.
 fn caption(canvas: &mut Canvas, [x, y]: [f64; 2], name: &str, below: &str) {
     let mut lines = vec![String::new()];
     for word in name.split(' ') {
@@ -61,7 +64,7 @@ fn caption(canvas: &mut Canvas, [x, y]: [f64; 2], name: &str, below: &str) {
             lines.push(word.to_owned());
         }
     }
-    for (n, line) in lines.iter().take(2).enumerate() {
+    for (n, line) in lines.iter().take(LINES).enumerate() {
         canvas.text([x, y + 12.0 + 14.0 * n as f64], TextAnchor::Start, 11, INK, line);
     }
     canvas.text([x, y + CAPTION - 6.0], TextAnchor::Start, 11, PALE, below);
@@ -75,14 +78,16 @@ fn image(pictures: &Pictures, of: fn(&Pictures, usize) -> [u8; 3]) -> Image {
     Image { width: side, pixels: (0..side * side).map(|n| of(pictures, at(n))).collect() }
 }
 
+/// Colour of pixels without a truth, on which dark edges stand out.
+const GROUND: [u8; 3] = [150, 158, 168];
+
 fn shown(pictures: &Pictures, at: usize) -> [u8; 3] {
     let [r, g, b, _] = pictures.shown[at];
-    [r, g, b]
+    if pictures.truth[at].is_some() { [r, g, b] } else { GROUND }
 }
 
-/// Returns the truth of a pixel; black where there is none, like the frame.
 fn truth(pictures: &Pictures, at: usize) -> [u8; 3] {
-    pictures.truth[at].map_or([0; 3], |color| color.map(byte))
+    pictures.truth[at].map_or(GROUND, |color| color.map(byte))
 }
 
 /// Returns the colour of a pixel's largest channel error: white for none, red for too bright, blue for too dark.

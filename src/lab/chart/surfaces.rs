@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::timing::{Effort, Spread, frames};
 use crate::stages::*;
@@ -36,7 +36,7 @@ pub struct Surface {
 }
 
 /// Cost of a surface per pixel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceCost {
     /// Description of its state.
     pub name: String,

@@ -16,16 +16,15 @@ impl Measured {
     /// Returns the section of a light with its charts.
     pub(super) fn light_section(light: &Light<'_>) -> String {
         let (name, title) = (&light.name, &light.title);
-        let picture = |end: &str, what: &str| format!("![{title}: {what}]({FOLDER}/{name}-{end}.png)\n\n");
+        let picture = |end: &str, what: &str| format!("![{title}: {what}]({FOLDER}/{name}-{end})\n\n");
         let more = match light.ways.len() {
             n if n > MAX_SHOWN => format!("The {MAX_SHOWN} most exact of {n} ways.\n\n"),
             _ => String::new(),
         };
         format!(
-            "### {title}\n\n{more}{}{}{}",
-            picture("chip", "what the chip pays"),
-            picture("pictures", "the pictures and their errors"),
-            picture("here", "what this program takes")
+            "### {title}\n\n{more}{}{}",
+            picture("chip.svg", "error and cost of each way"),
+            picture("pictures.png", "the pictures and their errors")
         )
     }
 
@@ -50,7 +49,7 @@ impl Measured {
             let (errors, banding) = (&technique.accuracy.errors, &technique.accuracy.banding);
             let steps = [errors.rms(), errors.max(), errors.bias(), errors.psnr()].map(number);
             let counts = [banding.levels, banding.truth_levels, banding.flat_run].map(|count| count.to_string());
-            std::iter::once(technique.entry.name()).chain(steps).chain(counts).collect()
+            std::iter::once(technique.title.clone()).chain(steps).chain(counts).collect()
         };
         let names = ["technique", "rms", "max", "bias", "PSNR, dB", "levels", "of the truth", "flat run"];
         heading(&names).chain(self.of(family).map(row)).collect()
@@ -72,7 +71,7 @@ impl Measured {
                 both(|cost| cost.products),
                 both(|cost| cost.frame_buffer_bytes),
             ];
-            std::iter::once(technique.entry.name()).chain(counts).chain([spread(technique.time)]).collect()
+            std::iter::once(technique.title.clone()).chain(counts).chain([spread(technique.time)]).collect()
         };
         let names = ["technique", "passes", "stages", "fetches", "blends", "texels", "products", "bytes", "ns here"];
         heading(&names).chain(self.of(family).map(row)).collect()
@@ -86,27 +85,27 @@ impl Measured {
         let row = |technique: &Technique| {
             let of = |name: &&str| cause(technique, name).map_or("-".to_owned(), number);
             let degrees = degrees(technique).map_or("-".to_owned(), number);
-            std::iter::once(technique.entry.name()).chain(causes.iter().map(of)).chain([degrees]).collect()
+            std::iter::once(technique.title.clone()).chain(causes.iter().map(of)).chain([degrees]).collect()
         };
         heading(&names).chain(self.of(family).map(row)).collect()
     }
 
     /// Returns the fastest technique within each budget, for each light with several techniques.
     pub(super) fn budget_rows(lights: &[Light<'_>]) -> Vec<Row> {
-        let names = ["ways to the same light".to_owned(), "most exact".to_owned()]
+        let names = ["picture".to_owned(), "most exact way".to_owned()]
             .into_iter()
             .chain(BUDGETS.iter().map(|budget| format!("rms up to {}", number(*budget))));
-        let named =
-            |way: &Technique, value: f64, unit: &str| format!("{} ({} {unit})", way.entry.name(), number(value));
+        let named = |way: &Technique, value: f64, unit: &str| format!("{} ({} {unit})", way.title, number(value));
         let row = |light: &Light<'_>| {
-            let names: Vec<String> = light.ways.iter().map(|way| way.entry.name()).collect();
+            let titles: Vec<&str> = light.ways.iter().map(|way| way.title.as_str()).collect();
+            let name = if light.asked { light.title.clone() } else { titles.join(", ") };
             let exact = light.ways.first().map_or(String::new(), |best| named(best, best.rms(), "steps"));
             let fastest = |budget: &f64| {
                 let within = light.ways.iter().filter(|way| way.rms() <= *budget);
                 let best = within.min_by(|a, b| a.time.median.total_cmp(&b.time.median));
                 best.map_or("none".to_owned(), |best| named(best, best.time.median, "ns"))
             };
-            [names.join(", "), exact].into_iter().chain(BUDGETS.iter().map(fastest)).collect()
+            [name, exact].into_iter().chain(BUDGETS.iter().map(fastest)).collect()
         };
         let several = lights.iter().filter(|light| light.ways.len() > 1);
         std::iter::once(names.collect()).chain(several.map(row)).collect()

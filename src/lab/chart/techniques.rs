@@ -11,7 +11,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Positions, Scene};
 use ninebit_files::read::page;
 use ninebit_scene::truth::Truth;
-use ninebit_scene::{SceneError, load};
+use ninebit_scene::{Heading, SceneError, load};
 
 /// A scene to be measured.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,7 +27,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Returns technique and parameter, separated by spaces.
+    /// Returns technique and parameter, separated by spaces, by which the data name it.
     pub fn name(&self) -> String {
         let words = self.technique.replace('-', " ");
         self.parameter.map_or(words.clone(), |parameter| format!("{words} {parameter}"))
@@ -39,6 +39,8 @@ impl Entry {
 pub struct Technique {
     /// The scene that shows the technique.
     pub entry: Entry,
+    /// The scene's title, or else its name.
+    pub title: String,
     /// The ground truth without the part that describes the technique. Scenes with an equal truth are techniques for the same light.
     pub truth: Truth,
     /// Accuracy, and cost on the chip.
@@ -48,7 +50,7 @@ pub struct Technique {
 }
 
 /// Width of the pictures that are timed: so large that the setup of draws and triangles does not matter.
-pub(crate) const LARGE: u32 = 512;
+const LARGE: u32 = 512;
 
 impl Technique {
     /// Returns the rms error in 8-bit steps.
@@ -108,11 +110,11 @@ pub fn title(folder: &Path, family: &str) -> String {
     heading.unwrap_or_else(|| family.replace('-', " "))
 }
 
-/// Measures a scene. Returns `None` if it has no ground truth.
+/// Measures a scene; its time only if it is not known. Returns `None` if it has no ground truth.
 ///
 /// # Errors
 /// Returns an error if the scene is not valid, or no pixel with a truth is drawn.
-pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, TechniqueError> {
+pub fn measure(entry: &Entry, effort: &Effort, known: Option<Spread>) -> Result<Option<Technique>, TechniqueError> {
     let limits = Limits::default();
     let loaded = load(&entry.path, &limits).and_then(|loaded| loaded.affordable(limits.shaded_pixels).map(|()| loaded));
     let loaded = loaded.map_err(|error| TechniqueError::Scene(Box::new(error)))?;
@@ -120,13 +122,16 @@ pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, Tech
     let Some(accuracy) = accuracy::measure(&loaded.scene, &loaded.plan, truth) else {
         return Err(TechniqueError::Unseen(entry.path.clone()));
     };
-    let large = enlarged(&loaded.scene, LARGE);
-    let options = PlanOptions { policies: loaded.plan.policies, ..PlanOptions::default() };
-    let plan = large.and_then(|scene| Plan::compile(&scene, &options).ok());
-    let plan = plan.as_ref().unwrap_or(&loaded.plan);
-    let time = frames(plan, &RenderOptions::default(), final_pixels(plan), effort);
+    let time = known.unwrap_or_else(|| {
+        let large = enlarged(&loaded.scene, LARGE);
+        let options = PlanOptions { policies: loaded.plan.policies, ..PlanOptions::default() };
+        let plan = large.and_then(|scene| Plan::compile(&scene, &options).ok());
+        let plan = plan.as_ref().unwrap_or(&loaded.plan);
+        frames(plan, &RenderOptions::default(), final_pixels(plan), effort)
+    });
     let truth = Truth { shading_normal: None, meshes: Vec::new(), ..truth.clone() };
-    Ok(Some(Technique { entry: entry.clone(), truth, accuracy, time }))
+    let Heading { title, .. } = Heading::new(&loaded.source.text, &entry.name());
+    Ok(Some(Technique { entry: entry.clone(), title, truth, accuracy, time }))
 }
 
 /// Returns the scene enlarged to `width` pixels, or `None` if its other state does not scale in a known way.

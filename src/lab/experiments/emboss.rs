@@ -12,11 +12,11 @@ const AMPLITUDE: f64 = 0.4;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, back: f64| {
         Method::new(name, [1.0, 7.0], move |offset| {
-            let pixels = picture(offset, back)?;
+            let pixels = picture(offset, back);
             let steepest = 255.0 * offset * 0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE;
             // The slope alone gives one half, minus the rise over the offset.
             let ideal = |at: f64| 0.5 - offset * slope(at * TEXELS as f64);
-            Ok(100.0 * largest(&errors(&pixels, 0, ideal)) / steepest)
+            compared(pixels, 0, ideal, |errors| 100.0 * largest(errors) / steepest)
         })
     };
     Experiment::new("emboss", "Embossing with offsets of several texels")

@@ -4,7 +4,9 @@ use super::*;
 
 pub(super) fn behind() -> Experiment {
     let method = |name: &str, shadowed: bool, works: f64, fails: f64| {
-        Method::new(name, [works, fails], move |elevation| Ok(largest(&light(elevation, 30.0, shadowed)?.0)))
+        Method::new(name, [works, fails], move |elevation| {
+            light(elevation, 30.0, shadowed, |errors, _| largest(errors))
+        })
     };
     Experiment::new("light-behind", "A light that sinks below the surface")
         .moving("height of the light, degrees", Scale::Real(0.05), steps(-40.0, 40.0, 81))
@@ -15,8 +17,9 @@ pub(super) fn behind() -> Experiment {
 pub(super) fn grazing() -> Experiment {
     let method = |name: &str, bumps: f64| {
         Method::new(name, [60.0, 0.25], move |elevation| {
-            let (errors, ideal) = light(elevation, bumps, false)?;
-            Ok(100.0 * root_mean_square(&errors) / root_mean_square(&ideal).max(1e-9))
+            light(elevation, bumps, false, |errors, wanted| {
+                100.0 * root_mean_square(errors) / root_mean_square(wanted).max(1e-9)
+            })
         })
     };
     Experiment::new("light-grazing", "A light that grazes the surface")
@@ -25,9 +28,14 @@ pub(super) fn grazing() -> Experiment {
         .by([method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)])
 }
 
-/// Returns the errors and the expected values, in steps. With `shadowed`, light that comes from below the surface is multiplied by its height above
+/// Measures the light. `error` makes one number of the errors and the expected values, in steps. With `shadowed`, light that comes from below the surface is multiplied by its height above
 /// the surface, times four; otherwise it lights bumps.
-fn light(elevation: f64, bumps: f64, shadowed: bool) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
+fn light(
+    elevation: f64,
+    bumps: f64,
+    shadowed: bool,
+    error: impl FnOnce(&[f64], &[f64]) -> f64,
+) -> Result<Outcome, Box<SceneError>> {
     let elevation = elevation.to_radians();
     let tilt = |at: f64| angle(-bumps, bumps, at);
     let normals = leaning(WIDTH, |x| tilt(centre(x, WIDTH)));
@@ -43,9 +51,9 @@ fn light(elevation: f64, bumps: f64, shadowed: bool) -> Result<(Vec<f64>, Vec<f6
         stages.push(product(lit, CombinerInput { component: Component::Alpha, ..lit }));
     }
     let row = whole_row(WIDTH, 0, program([r, g, b], stages));
-    let pixels = drawn(Profile::Nv2a, WIDTH, vec![normals], vec![row])?;
+    let pixels = drawn(Profile::Nv2a, WIDTH, vec![normals], vec![row]);
     let ideal =
         |at: f64| if elevation <= 0.0 { 0.0 } else { cos(tilt(at) - (std::f64::consts::FRAC_PI_2 - elevation)) };
-    let wanted = (0..WIDTH).map(|x| 255.0 * ideal(centre(x, WIDTH)).max(0.0)).collect();
-    Ok((errors(&pixels, 0, ideal), wanted))
+    let wanted: Vec<f64> = (0..WIDTH).map(|x| 255.0 * ideal(centre(x, WIDTH)).max(0.0)).collect();
+    compared(pixels, 0, ideal, |errors| error(errors, &wanted))
 }

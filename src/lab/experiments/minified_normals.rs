@@ -12,9 +12,9 @@ const TILT: f64 = 35.0;
 pub(super) fn experiment() -> Experiment {
     let method = |name: &str, squarings: u32, mip_filter: MipFilter| {
         Method::new(name, [1.0, 12.0], move |texels| {
-            let pixels = picture(texels, squarings, mip_filter)?;
+            let pixels = picture(texels, squarings, mip_filter);
             let normals: Vec<[f64; 2]> = (0..TEXELS).map(tilt).map(|tilt| [sin(tilt), cos(tilt)]).collect();
-            Ok(root_mean_square(&errors(&pixels, 0, |at| seen(&normals, at, texels, squarings))))
+            compared(pixels, 0, |at| seen(&normals, at, texels, squarings), root_mean_square)
         })
     };
     Experiment::new("minified-normals", "A highlight on bumps that get smaller")

@@ -9,8 +9,8 @@ pub(super) fn experiment() -> Experiment {
     let method = |name: &str, vertices: fn() -> Vec<Vertex>| {
         Method::new(name, [0.05, 45.0], move |degrees: f64| {
             let tilt = degrees.to_radians();
-            let pixels = picture(tilt, vertices())?;
-            Ok(root_mean_square(&errors(&pixels, 0, |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2])))
+            let ideal = |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2];
+            compared(picture(tilt, vertices()), 0, ideal, root_mean_square)
         })
     };
     Experiment::new("mirrored-bases", "Tangent bases where a texture is mirrored")

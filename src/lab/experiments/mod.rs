@@ -27,8 +27,19 @@ use ninebit_scene::generate::normal_map::encode;
 use portable::*;
 use strip::*;
 
-/// Function from a value of the parameter to the picture's error.
-pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync>;
+/// A row of pixels that a method drew, and its error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// The error, in the unit of the experiment.
+    pub error: f64,
+    /// The channel that was drawn.
+    drawn: Vec<u8>,
+    /// What a formula in float64 gives for it.
+    exact: Vec<u8>,
+}
+
+/// Function from a value of the parameter to what a method draws.
+pub type Measure = Box<dyn Fn(f64) -> Result<Outcome, Box<SceneError>> + Send + Sync>;
 
 /// A method that an experiment measures.
 pub struct Method {
@@ -46,7 +57,7 @@ impl Method {
     fn new(
         name: impl Into<String>,
         [works, fails]: [f64; 2],
-        measure: impl Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync + 'static,
+        measure: impl Fn(f64) -> Result<Outcome, Box<SceneError>> + Send + Sync + 'static,
     ) -> Method {
         Method { name: name.into(), measure: Box::new(measure), works, fails }
     }
@@ -157,7 +168,7 @@ impl Scale {
 /// # Errors
 /// Returns an error if a scene is not valid, which is a fault of the experiment.
 pub fn threshold(experiment: &Experiment, method: &Method) -> Result<Threshold, Box<SceneError>> {
-    let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)? <= experiment.limit);
+    let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)?.error <= experiment.limit);
     if !works_at(method.works)? {
         return Ok(Threshold::Fails);
     }
@@ -205,7 +216,8 @@ mod tests {
     use super::*;
 
     fn found(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
-        let method = Method::new("", [works, fails], move |value| Ok(measure(value)));
+        let method =
+            Method::new("", [works, fails], move |value| Ok(Outcome { error: measure(value), ..Outcome::default() }));
         let experiment = Experiment::new("", "").moving("", scale, Vec::new()).measuring("", 4.0).by([method]);
         threshold(&experiment, &experiment.methods[0]).unwrap()
     }

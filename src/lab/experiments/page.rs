@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Experiment, Threshold, experiments, threshold};
+use super::{Experiment, Method, Outcome, Threshold, experiments, threshold};
 use crate::chart::page::{File, comma_separated, fill, number, plain, table};
-use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, SHAPES, Series};
+use crate::chart::picture::{Axis, COLORS, Drawing, Image, SHAPES, Series};
+use ninebit_files::output::OutputError;
 use ninebit_scene::SceneError;
 
 /// The section's template.
@@ -21,6 +22,8 @@ pub struct Measured {
     pub curves: Vec<Vec<f64>>,
     /// Threshold of each method.
     pub thresholds: Vec<Threshold>,
+    /// Method and value of the parameter of the chart's picture, and what is drawn there.
+    worst: (usize, f64, Outcome),
 }
 
 /// Runs all experiments. Calls `progress` with the number of finished methods and their total.
@@ -36,23 +39,55 @@ pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<Sce
         let (mut curves, mut thresholds) = (Vec::new(), Vec::new());
         for method in &experiment.methods {
             progress(done, total);
-            curves.push(experiment.shown.iter().map(|value| (method.measure)(*value)).collect::<Result<_, _>>()?);
+            let error = |value: &f64| (method.measure)(*value).map(|outcome| outcome.error);
+            curves.push(experiment.shown.iter().map(error).collect::<Result<_, _>>()?);
             thresholds.push(threshold(&experiment, method)?);
             done += 1;
         }
-        all.push(Measured { experiment, curves, thresholds });
+        let worst = worst(&experiment, &curves, &thresholds)?;
+        all.push(Measured { experiment, curves, thresholds, worst });
     }
     progress(done, total);
     Ok(all)
 }
 
+/// Returns the methods, the one that holds longest first.
+fn ranked(methods: &[Method], thresholds: &[Threshold]) -> Vec<usize> {
+    let share = |n: usize| match thresholds[n] {
+        Threshold::Between { works, .. } => {
+            let Method { works: from, fails: to, .. } = methods[n];
+            (works - from) / (to - from)
+        }
+        Threshold::Holds => 1.0,
+        Threshold::Fails => 0.0,
+    };
+    let mut order: Vec<usize> = (0..methods.len()).collect();
+    order.sort_by(|a, b| share(*b).total_cmp(&share(*a)));
+    order
+}
+
+/// Returns the method that fails first, and what it draws where it is furthest off.
+fn worst(
+    experiment: &Experiment,
+    curves: &[Vec<f64>],
+    thresholds: &[Threshold],
+) -> Result<(usize, f64, Outcome), Box<SceneError>> {
+    let method = ranked(&experiment.methods, thresholds).last().copied().unwrap_or_default();
+    let errors = experiment.shown.iter().zip(&curves[method]);
+    let value = errors.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(value, _)| *value);
+    Ok((method, value, (experiment.methods[method].measure)(value)?))
+}
+
 /// Returns the section of the page, and the files that it links to.
-pub fn files(all: &[Measured]) -> (String, Vec<File>) {
+///
+/// # Errors
+/// Returns an error if a picture cannot be encoded.
+pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
     let (mut parts, mut files) = (Vec::new(), Vec::new());
     for measured in all {
         let experiment = &measured.experiment;
         let path = format!("{FOLDER}/{}.svg", experiment.name);
-        files.push(File::text(path.clone(), drawing(measured).svg()));
+        files.push(File::text(path.clone(), drawing(measured).svg()?));
         let text = format!("![{}]({path})\n\n{}", experiment.title, table(&measured.rows()));
         parts.push((experiment.name.to_owned(), text));
         parts.push((format!("{}.limit", experiment.name), plain(experiment.limit)));
@@ -68,7 +103,7 @@ pub fn files(all: &[Measured]) -> (String, Vec<File>) {
         format!("{FOLDER}/thresholds.json"),
         serde_json::to_string_pretty(&document).unwrap_or_default() + "\n",
     ));
-    (fill(TEMPLATE, &parts), files)
+    Ok((fill(TEMPLATE, &parts), files))
 }
 
 impl Measured {
@@ -100,16 +135,29 @@ fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the chart of an experiment.
+/// Returns the chart of an experiment. Colours have an order: the first is that of the method that holds longest, the second that of the one that
+/// fails first.
 fn drawing(measured: &Measured) -> Drawing {
-    let Measured { experiment, curves, .. } = measured;
-    let series = experiment.methods.iter().zip(curves).enumerate().map(|(n, (method, curve))| Series {
-        label: method.name.clone(),
-        color: COLORS[n % COLORS.len()],
-        shape: (experiment.shown.len() <= 24).then(|| SHAPES[n % SHAPES.len()]),
-        join: Join::Solid,
-        marks: experiment.shown.iter().zip(curve).map(|(x, y)| Mark { x: *x, y: *y, name: String::new() }).collect(),
+    let Measured { experiment, curves, thresholds, worst: (first, value, outcome) } = measured;
+    let order = ranked(&experiment.methods, thresholds);
+    let series = order.iter().enumerate().map(|(rank, n)| {
+        let color = match rank {
+            0 => 0,
+            rank if rank + 1 == order.len() => 1,
+            rank => rank + 1,
+        };
+        Series {
+            label: experiment.methods[*n].name.clone(),
+            color: COLORS[color % COLORS.len()],
+            shape: (experiment.shown.len() <= 24).then(|| SHAPES[color % SHAPES.len()]),
+            points: experiment.shown.iter().zip(&curves[*n]).map(|(x, y)| [*x, *y]).collect(),
+        }
     });
+    let image = |row: &[u8]| Image { width: row.len(), pixels: row.iter().map(|byte| [*byte; 3]).collect() };
+    let pictures = vec![
+        (format!("Exact, at {}", plain(*value)), image(&outcome.exact)),
+        (format!("Drawn: {}", experiment.methods[*first].name), image(&outcome.drawn)),
+    ];
     let errors = || curves.iter().flatten().copied().chain([experiment.limit]);
     let x = match experiment.shown[..] {
         [low, .., high] if low > 0.0 && high / low > 30.0 => {
@@ -122,8 +170,9 @@ fn drawing(measured: &Measured) -> Drawing {
         x,
         y: Axis::linear(experiment.error, errors(), true),
         series: series.collect(),
-        levels: vec![(experiment.limit, format!("limit {}", plain(experiment.limit)))],
-        size: [860.0, 380.0],
+        levels: vec![(experiment.limit, format!("fails above {}", plain(experiment.limit)))],
+        pictures,
+        size: [940.0, 380.0],
     }
 }
 

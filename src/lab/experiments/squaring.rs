@@ -8,18 +8,17 @@ const PIXELS: usize = 4 * WIDTH;
 const TILT: f64 = 50.0;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| {
-        Method::new(name, [2.0, 128.0], move |exponent| Ok(of(&picture(log2(exponent).round() as usize)?, exponent)))
+    let method = |name: &str, rings: bool| {
+        Method::new(name, [2.0, 128.0], move |exponent| {
+            let pixels = picture(log2(exponent).round() as usize);
+            let found = largest_error(pixels, 0, |at| pow(cos(angle(-TILT, TILT, at)), exponent))?;
+            Ok(Outcome { error: if rings { ring(&found.drawn) } else { found.error }, ..found })
+        })
     };
     Experiment::new("squaring", "Highlight by repeated squaring")
         .moving("exponent", Scale::Doubling, (1..8).map(|n| f64::from(1 << n)).collect())
         .measuring("8-bit steps", 32.0)
-        .by([
-            method("largest step between neighbouring pixels", |pixels, _| band(pixels)),
-            method("largest error", |pixels, exponent| {
-                largest(&errors(pixels, 0, |at| pow(cos(angle(-TILT, TILT, at)), exponent)))
-            }),
-        ])
+        .by([method("largest step between neighbouring pixels", true), method("largest error", false)])
 }
 
 /// Draws N . H, squared `count` times.
@@ -30,6 +29,6 @@ fn picture(count: usize) -> Pixels {
 }
 
 /// Returns the largest difference of two neighbouring pixels.
-fn band(pixels: &[[u8; 4]]) -> f64 {
-    pixels.windows(2).map(|pair| f64::from(pair[0][0].abs_diff(pair[1][0]))).fold(0.0, f64::max)
+fn ring(pixels: &[u8]) -> f64 {
+    pixels.windows(2).map(|pair| f64::from(pair[0].abs_diff(pair[1]))).fold(0.0, f64::max)
 }

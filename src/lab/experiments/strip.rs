@@ -1,6 +1,6 @@
 //! Building blocks of the experiments' scenes: strips of pixels, rows of texels, and errors of pictures.
 
-use super::{cos, encode, sin};
+use super::{Outcome, cos, encode, sin};
 pub(super) use crate::stages::*;
 use ninebit::engine::{RenderOptions, render};
 pub(super) use ninebit::state::*;
@@ -93,12 +93,20 @@ pub(super) fn angle(low: f64, high: f64, share: f64) -> f64 {
     (low + (high - low) * share).to_radians()
 }
 
-/// Returns the errors of a channel in steps, against a formula of the pixel's centre whose values are clamped to 0..1.
-pub(super) fn errors(pixels: &[[u8; 4]], channel: usize, ideal: impl Fn(f64) -> f64) -> Vec<f64> {
+/// Compares a channel with a formula of the pixel's centre, whose values are clamped to 0..1. `error` makes one number of the errors, in steps.
+pub(super) fn compared(
+    pixels: Pixels,
+    channel: usize,
+    ideal: impl Fn(f64) -> f64,
+    error: impl FnOnce(&[f64]) -> f64,
+) -> Result<Outcome, Box<SceneError>> {
+    let pixels = pixels?;
     let width = pixels.len();
-    let error =
-        |(x, pixel): (usize, &[u8; 4])| f64::from(pixel[channel]) - 255.0 * ideal(centre(x, width)).clamp(0.0, 1.0);
-    pixels.iter().enumerate().map(error).collect()
+    let drawn: Vec<u8> = pixels.iter().map(|pixel| pixel[channel]).collect();
+    let wanted: Vec<f64> = (0..width).map(|x| ideal(centre(x, width)).clamp(0.0, 1.0)).collect();
+    let errors: Vec<f64> =
+        drawn.iter().zip(&wanted).map(|(drawn, wanted)| f64::from(*drawn) - 255.0 * wanted).collect();
+    Ok(Outcome { error: error(&errors), drawn, exact: wanted.into_iter().map(byte).collect() })
 }
 
 /// Returns the largest magnitude of the errors.
@@ -106,13 +114,13 @@ pub(super) fn largest(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()))
 }
 
-/// Returns the largest magnitude of a channel's errors.
+/// Measures the largest magnitude of a channel's errors.
 pub(super) fn largest_error(
     pixels: Pixels,
     channel: usize,
     ideal: impl Fn(f64) -> f64,
-) -> Result<f64, Box<SceneError>> {
-    Ok(largest(&errors(&pixels?, channel, ideal)))
+) -> Result<Outcome, Box<SceneError>> {
+    compared(pixels, channel, ideal, largest)
 }
 
 /// Returns `count` stages that square SPARE0.

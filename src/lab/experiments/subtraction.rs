@@ -17,11 +17,14 @@ pub(super) fn experiment() -> Experiment {
         .by([method("(ZERO, ONE_MINUS_SRC_COLOR)", approximate), method("reverse subtraction", subtracting)])
 }
 
-/// Returns the largest error of a - b, where b is `gap` below a, over all bytes a from `gap` on.
-fn error(gap: u8, blend: Blend) -> Result<f64, Box<ninebit_scene::SceneError>> {
+/// Measures the largest error of a - b, where b is `gap` below a, over all bytes a from `gap` on.
+fn error(gap: u8, blend: Blend) -> Result<Outcome, Box<SceneError>> {
     let textures = vec![bytes(0..=255), bytes((0..=255_u8).map(|a| a.saturating_sub(gap)))];
     let [first, second] = [0, 1].map(|n| whole_row(WIDTH, n, Combiners::showing(FinalRegister::Texture0)));
     let pixels = drawn(Profile::Nv2a, WIDTH, textures, vec![first, Draw { blend: Some(blend), ..second }])?;
-    let errors = pixels.iter().zip(0..=255_u8).filter(|(_, a)| *a >= gap).map(|(pixel, _)| pixel[0].abs_diff(gap));
-    Ok(errors.map(f64::from).fold(0.0, f64::max))
+    // Where a is less than the gap, b stops at zero.
+    let drawn: Vec<u8> = pixels.iter().map(|pixel| pixel[0]).collect();
+    let errors = drawn.iter().zip(0..=255_u8).filter(|(_, a)| *a >= gap).map(|(drawn, _)| drawn.abs_diff(gap));
+    let error = errors.map(f64::from).fold(0.0, f64::max);
+    Ok(Outcome { error, drawn, exact: (0..=255_u8).map(|a| a.min(gap)).collect() })
 }

@@ -42,7 +42,7 @@ const MARGIN: u32 = 8;
 const BOX: u32 = 16;
 
 /// Draws a heat map: the colour of a pixel shows the largest error of its channels. Below the frame is a legend with the upper end of each class in
-/// steps of 1/255, grey for pixels that nothing drew, and magenta for those that are left out.
+/// steps of 1/255, the colour of pixels that nothing drew, and that of those that are left out.
 ///
 /// # Errors
 /// Returns an error if no pixel differs, or the mode has no errors per pixel.
@@ -54,18 +54,22 @@ pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
         return Err(HeatError::NoDifference);
     }
     let mut entries: Vec<([u8; 3], &str)> = CLASSES.iter().map(|(_, color, label)| (*color, *label)).collect();
-    entries.push((EMPTY, "-"));
-    entries.push((DIVERGED, "x"));
+    entries.push((EMPTY, "none"));
+    entries.push((DIVERGED, "left out"));
+    const UNIT: &str = "steps";
     let text_width = |label: &str| label.chars().count() as u32 * 4 * DOT;
-    let needed = MARGIN + entries.iter().map(|(_, label)| BOX + 4 + text_width(label) + MARGIN).sum::<u32>();
+    let unit = MARGIN + text_width(UNIT);
+    let needed = unit + MARGIN + entries.iter().map(|(_, label)| BOX + 4 + text_width(label) + MARGIN).sum::<u32>();
     let (width, rows) = (comparison.width.max(needed), comparison.height);
     let mut pixels = vec![[16, 16, 16, 255]; (width * (rows + LEGEND_ROWS)) as usize];
     for (at, shown) in comparison.heat().into_iter().enumerate() {
         let (x, y) = (at as u32 % comparison.width, at as u32 / comparison.width);
         pixels[(y * width + x) as usize] = shown;
     }
-    let mut left = MARGIN;
     let top = rows + (LEGEND_ROWS - BOX) / 2;
+    let text = top + (BOX - 5 * DOT) / 2;
+    write(&mut pixels, width, (MARGIN, text), UNIT);
+    let mut left = unit + MARGIN;
     for (color, label) in entries {
         let [r, g, b] = color;
         for y in top..top + BOX {
@@ -75,7 +79,7 @@ pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
             }
         }
         left += BOX + 4;
-        write(&mut pixels, width, (left, top + (BOX - 5 * DOT) / 2), label);
+        write(&mut pixels, width, (left, text), label);
         left += text_width(label) + MARGIN;
     }
     Ok((width, rows + LEGEND_ROWS, pixels))
@@ -89,7 +93,7 @@ pub fn heat_color(error: f64) -> [u8; 3] {
 /// Returns the label and colour of each class of errors, then those for pixels that nothing drew and for pixels that are left out.
 pub fn heat_classes() -> Vec<(&'static str, [u8; 3])> {
     let classes = CLASSES.iter().map(|(_, color, label)| (*label, *color));
-    classes.chain([("nothing drawn", EMPTY), ("another decision", DIVERGED)]).collect()
+    classes.chain([("nothing drawn", EMPTY), ("left out: a test or a choice differs", DIVERGED)]).collect()
 }
 
 impl Comparison {
@@ -117,8 +121,15 @@ fn glyph(character: char) -> [u8; 5] {
         '6' => [7, 4, 7, 5, 7],
         '8' => [7, 5, 7, 5, 7],
         '+' => [0, 2, 7, 2, 0],
-        '-' => [0, 0, 7, 0, 0],
-        'x' => [0, 5, 2, 5, 0],
+        'e' => [7, 4, 6, 4, 7],
+        'f' => [7, 4, 6, 4, 4],
+        'l' => [4, 4, 4, 4, 7],
+        'n' => [7, 5, 5, 5, 5],
+        'o' => [7, 5, 5, 5, 7],
+        'p' => [7, 5, 7, 4, 4],
+        's' => [7, 4, 7, 1, 7],
+        't' => [7, 2, 2, 2, 2],
+        'u' => [5, 5, 5, 5, 7],
         '.' => [0, 0, 0, 0, 2],
         _ => [0; 5],
     }

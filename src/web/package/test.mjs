@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { Browser } from "../../../tests/web/browser.mjs";
+import { Chromium } from "../../../tests/web/chromium.mjs";
 import { check } from "./checks.mjs";
 
 const [, , folder, scenes] = process.argv;
@@ -34,7 +34,7 @@ if (spawnSync(chromium, ["--version"]).status === 0) {
     }
   });
   await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  const browser = await Browser.start(chromium);
+  const browser = await Chromium.start(chromium);
   try {
     await browser.open(`http://127.0.0.1:${server.address().port}/`);
     await browser.until("document.title === 'ninebit'");
