@@ -2,6 +2,8 @@
 
 use super::*;
 use ninebit::legality;
+use ninebit::raster::depth;
+use ninebit::rop::surface;
 
 /// Largest number of columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;
@@ -156,6 +158,18 @@ fn rectangle<'a>(
     Some(Rectangle { x, y, width: width?, height: height? })
 }
 
+/// Returns the depth, in steps of the buffer, that is stored as a word.
+fn stored_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u32>) -> Option<f32> {
+    let (word, format) = (target::depth_word(reader, target, raw)?, target.depth?.format);
+    let depth = depth::of_word(format, word);
+    if depth.is_none() {
+        let message = "a draw stores no float depth whose exponent is 0";
+        let help = "give it in the `clear` of the target, which stores any word";
+        reader.push(finding("NB0402", reader.span(raw), message, "0 would be stored", help).rule("DEP-3"));
+    }
+    depth
+}
+
 /// Lowers a clear among the draws to a draw: a rectangle of one colour and depth that passes every test.
 pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, draw: &mut Draw) -> Option<()> {
     let fields = reader.read(raw)?;
@@ -163,10 +177,19 @@ pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
-    let color = fields.color.as_ref().map(|raw| color::constant(reader, raw));
+    let mut color = fields.color.as_ref().map(|raw| color::constant(reader, raw));
+    if let Some(raw) = target::once(reader, &fields.color, &fields.word, "word") {
+        color = Some(reader.read(raw).map(|word| surface::read(target.format, word)));
+    }
     draw.color_mask = if color.is_some() { fields.color_mask(reader) } else { [false; 4] };
     let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
     draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));
+    let mut depth = depth.flatten();
+    if let Some(raw) = target::once(reader, &fields.depth, &fields.depth_word, "depth_word") {
+        depth = stored_depth(reader, target, raw);
+        draw.depth_test =
+            Some(DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) });
+    }
     let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));
     let every = stencil_test(reader, &source::StencilTest::default());
     draw.stencil_test = stencil.map(|reference| StencilTest {
@@ -174,7 +197,7 @@ pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw
         pass: StencilOperation::Replace,
         ..every
     });
-    let (color, z) = (color.flatten().unwrap_or_default(), depth.flatten().unwrap_or(0.0));
+    let (color, z) = (color.flatten().unwrap_or_default(), depth.unwrap_or(0.0));
     let columns = [area.x, area.x.saturating_add(area.width)];
     let rows = [area.y, area.y.saturating_add(area.height)];
     for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
