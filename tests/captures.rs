@@ -36,7 +36,7 @@ fn samples_are_spread() {
     };
     assert_eq!(names(captures::sample(all(), usize::MAX / 10_000)), names(all()));
     let sample = captures::sample(all(), 300);
-    assert!((300..340).contains(&sample.len()), "{}", sample.len());
+    assert!((300..370).contains(&sample.len()), "{}", sample.len());
     let mut suites: Vec<&str> = sample.iter().map(|frame| frame.suite).collect();
     suites.dedup();
     assert_eq!(suites, captures::suites().collect::<Vec<_>>());
@@ -45,6 +45,31 @@ fn samples_are_spread() {
     let count = sorted.len();
     sorted.dedup();
     assert_eq!(sorted.len(), count);
+}
+
+/// No suite has more frames than were captured.
+#[test]
+fn suites_have_captured_frames() {
+    let all = captures::frames(&[]).unwrap();
+    for suite in captures::suites() {
+        let drawn = all.iter().filter(|frame| frame.suite == suite).count();
+        assert!(captures::captured().any(|(name, captured)| name == suite && drawn <= captured), "{suite}: {drawn}");
+    }
+    assert_eq!(captures::captured().map(|(_, captured)| captured).sum::<usize>(), 5606);
+}
+
+/// Nothing but printed text is left out: every area lies within a line of the programs' text screen, whose characters of 16 rows stand 25 rows apart
+/// from row 25 on.
+#[test]
+fn only_printed_text_is_left_out() {
+    for frame in captures::frames(&[]).unwrap() {
+        for area in &frame.text {
+            let below = area.y.checked_sub(25).map(|y| y % 25);
+            let is_line = below.is_some_and(|below| below + area.height <= 16);
+            assert!(is_line && area.x >= 20 && area.x + area.width <= SIZE.0, "{frame:?}: {area:?}");
+        }
+        assert!(frame.text.iter().map(|area| area.width).sum::<u32>() < 16 * SIZE.0, "{frame:?}");
+    }
 }
 
 /// A single changed pixel is noticed, except under the printed text, which is not compared.

@@ -16,6 +16,9 @@ pub const SCHEMAS: [(&str, &str); 5] = [
 /// The captured frames with their digests, as a table whose columns are separated by tabs.
 pub const FRAMES: &str = include_str!("captures/frames.tsv");
 
+/// Names of all captured suites, and how many frames each has.
+pub const CAPTURED: &str = include_str!("captures/suites.tsv");
+
 /// Image files that the captured programs load (MIT), as they are: DDS and PNG.
 pub mod images {
     macro_rules! files {

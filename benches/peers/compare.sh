@@ -40,7 +40,7 @@ while [ "$round" -lt "$rounds" ]; do
     $pin "$work/llvmpipe" "$scenes" 60 2>/dev/null | tee "$work/peer.txt" | grep -v '^#' | while read -r name pixels median least; do
         echo "$name peer $pixels $median $least" >>"$work/all"
     done
-    for n in 1 2 3 4 5 6 7 8 9 10 11 12 13 policy; do
+    for n in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 policy; do
         # W13 under a policy takes the place of a peer: none has its stages.
         who=ours file=$n policy=
         case $n in
@@ -60,7 +60,7 @@ done
 grep '^#' "$work/peer.txt"
 printf '%d rounds, %s thread(s), isa %s; ns a shaded pixel\n' "$rounds" "$threads" "${isa:-widest}"
 printf '%-4s %10s %10s %10s %7s %18s\n' '' pixels llvmpipe ninebit ratio 'ratio of the least'
-for n in 1 2 3 4 5 6 7 8 9 10 11 12 13; do
+for n in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
     for who in peer ours; do
         awk -v name="w$n" -v who="$who" '$1 == name && $2 == who { print $4 }' "$work/all" | sort -n |
             awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }' >"$work/$who"

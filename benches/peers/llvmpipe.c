@@ -20,7 +20,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { WIDTH = 640, HEIGHT = 480, CELL = 10, CELLS = 5000, TEXTURES = 12, WORKLOADS = 12 };
+enum { WIDTH = 640, HEIGHT = 480, CELL = 10, CELLS = 5000, TEXTURES = 12, WORKLOADS = 15 };
 
 static void fail(const char *what)
 {
@@ -396,9 +396,15 @@ static void set_up_program(int workload)
     }
 }
 
+#include "grid.h"
+
 static void set_up(int workload)
 {
     GLuint normal = textures[NORMAL], color = textures[COLOR];
+    if (workload >= 14) {
+        set_up_grid(workload);
+        return;
+    }
     if (workload >= 7) {
         set_up_program(workload);
         return;
@@ -463,6 +469,10 @@ static void draw(int workload)
     case 11:
     case 12:
         shaded_quad(workload == 9 ? 4 : 1);
+        break;
+    case 14:
+    case 15:
+        glDrawArrays(GL_TRIANGLES, 0, grid_vertices);
         break;
     default:
         quad(workload == 3 || workload == 5 ? PLAIN : LIGHT, workload == 3, 1);
@@ -559,7 +569,7 @@ int main(int count, char **arguments)
     load_textures(arguments[1]);
     int only = count > 4 ? atoi(arguments[3]) : 0;
     for (int workload = 1; workload <= WORKLOADS; workload++)
-        if (!only || workload == only) measure(workload, frames);
+        if (workload != 13 && (!only || workload == only)) measure(workload, frames);
     if (only) compare(arguments[4]);
     return 0;
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::raster::depth;
 use ninebit::state::{
     CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, StencilOperation,
     StencilTest, Target, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
@@ -120,7 +121,7 @@ impl Builder {
         self.drawn.push(Drawn { line, number: None, draw, name, gaps: view.finish() });
     }
 
-    fn clear_target(&mut self, view: &mut View<'_>, (target, surface): (usize, &Surface), word: u32, (depth, stencil): (bool, bool)) {
+    fn clear_target(&mut self, view: &mut View<'_>, (target, surface): (usize, &Surface), word: u32, (clears_depth, clears_stencil): (bool, bool)) {
         // R, G, B, A.
         let mask = [4, 5, 6, 7].map(|bit| word >> bit & 1 != 0);
         let mut axis = |method, start: u32, length: u32| {
@@ -131,7 +132,7 @@ impl Builder {
         let clip = surface.clip;
         let (x, width) = axis(class::SET_CLEAR_RECT_HORIZONTAL, clip.x, clip.width);
         let (y, height) = axis(class::SET_CLEAR_RECT_VERTICAL, clip.y, clip.height);
-        let (colors, zeta) = (mask.contains(&true), depth || stencil);
+        let (colors, zeta) = (mask.contains(&true), clears_depth || clears_stencil);
         let color = if colors { view.get(class::SET_COLOR_CLEAR_VALUE) } else { 0 };
         let zstencil = if zeta { view.get(class::SET_ZSTENCIL_CLEAR_VALUE) } else { 0 };
         let (color, exact) = clear_color(surface.format, color);
@@ -148,7 +149,7 @@ impl Builder {
         if area == whole && all {
             self.known[target].has_contents = true;
         }
-        let complete = !zeta || depth && (stencil || !surface.depth.has_stencil());
+        let complete = !zeta || clears_depth && (clears_stencil || !surface.depth.has_stencil());
         if self.known[target].uses == 0 && area == whole && (all || !colors) && complete {
             if colors {
                 self.targets[target].clear_color = color;
@@ -166,13 +167,16 @@ impl Builder {
         let mut draw = rectangle(area, color);
         draw.target = target;
         draw.color_mask = mask;
-        if depth {
-            let z = if surface.depth.is_float() { float_depth(surface.depth, depth_word) } else { depth_word as f32 };
+        if clears_depth {
+            let z = depth::of_word(surface.depth, depth_word).unwrap_or_else(|| {
+                view.note(Gap::NotModelled(format!("a clear to the float depth 0x{depth_word:x}")));
+                0.0
+            });
             draw.depth_test =
                 Some(DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) });
             draw.vertices.map_positions(|[x, y, _, w]| [x, y, z, w]);
         }
-        if stencil {
+        if clears_stencil {
             draw.stencil_test = Some(StencilTest {
                 function: CompareFunction::Always,
                 reference: stencil_byte,
@@ -460,14 +464,4 @@ fn rectangle(area: Rectangle, color: [u8; 4]) -> Draw {
     };
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)].map(corner);
     Draw { name: String::new(), topology: Topology::Quads, indices: Arc::new([0, 1, 2, 3]), vertices: corners.into_iter().collect(), ..Draw::default() }
-}
-
-/// Returns the number that a word of a float depth buffer holds.
-pub(crate) fn float_depth(format: DepthFormat, word: u32) -> f32 {
-    match format {
-        // Four bits of exponent with a bias of 7, twelve of fraction.
-        DepthFormat::Z16F if word >> 12 == 0 => 0.0,
-        DepthFormat::Z16F => f32::from_bits(((word >> 12) + 120) << 23 | (word & 0xfff) << 11),
-        _ => f32::from_bits(word << 7),
-    }
 }

@@ -58,6 +58,8 @@ pub struct Batch {
     pub indices: Vec<u32>,
     /// The attributes of vertices that were sent one by one.
     pub immediate: Vec<[[f32; 4]; ATTRIBUTES]>,
+    /// The edge flag of each of these.
+    pub edge_flags: Vec<bool>,
     /// Words that the log does not have, by method.
     pub dropped: BTreeMap<u32, u64>,
     /// Whether it has more than [`LONGEST_DRAW`] of anything; the rest is left out.
@@ -253,6 +255,7 @@ impl State {
         {
             if batch.immediate.len() < LONGEST_DRAW / 4 {
                 batch.immediate.push(self.attributes);
+                batch.edge_flags.push(self.words.get(class::SET_EDGE_FLAG as usize / 4) != Some(0));
             } else {
                 batch.cut = true;
             }

@@ -13,8 +13,8 @@ pub(crate) struct Clear {
     pub(crate) color: Option<[u8; 4]>,
     /// Which channels of them, if there is a colour.
     pub(crate) color_mask: [bool; 4],
-    /// What the depths become; `None` if they stay.
-    pub(crate) depth: Option<f32>,
+    /// What the depths become, with its unit; `None` if they stay.
+    pub(crate) depth: Option<(VertexDepths, f32)>,
     /// What the stencils become; `None` if they stay.
     pub(crate) stencil: Option<u8>,
 }
@@ -24,7 +24,9 @@ impl Clear {
     pub(crate) fn draw(&self, name: String, target: usize) -> Draw {
         let mut draw = Draw { name, target, ..Draw::default() };
         draw.color_mask = if self.color.is_some() { self.color_mask } else { [false; 4] };
-        draw.depth_test = self.depth.map(|_| DepthTest::new(CompareFunction::Always, true));
+        draw.depth_test = self
+            .depth
+            .map(|(vertex_depths, _)| DepthTest { vertex_depths, ..DepthTest::new(CompareFunction::Always, true) });
         draw.stencil_test = self.stencil.map(|reference| StencilTest {
             function: CompareFunction::Always,
             reference,
@@ -34,7 +36,7 @@ impl Clear {
             depth_fail: StencilOperation::Keep,
             pass: StencilOperation::Replace,
         });
-        let (color, z) = (self.color.unwrap_or_default(), self.depth.unwrap_or(0.0));
+        let (color, z) = (self.color.unwrap_or_default(), self.depth.map_or(0.0, |(_, depth)| depth));
         let Rectangle { x, y, width, height } = self.area;
         let (columns, rows) = ([x, x.saturating_add(width)], [y, y.saturating_add(height)]);
         for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
@@ -60,7 +62,7 @@ impl Clear {
             area,
             color: (draw.color_mask != [false; 4] || color != [0; 4]).then_some(color),
             color_mask: draw.color_mask,
-            depth: draw.depth_test.map(|_| first[2]),
+            depth: draw.depth_test.map(|test| (test.vertex_depths, first[2])),
             stencil: draw.stencil_test.map(|test| test.reference),
         };
         (clear.draw(draw.name.clone(), draw.target) == *draw).then_some(clear)

@@ -287,6 +287,7 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         cull: if c.once_in(6) { c.any() } else { Cull::None },
         front_face: c.any(),
         polygon_modes: PolygonModes::FILL,
+        edge_flags: None,
         polygon_stipple: None,
         lines: Lines::default(),
         point_size: 8,

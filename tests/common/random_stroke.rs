@@ -19,7 +19,12 @@ pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), d
     };
     match c.below(6) {
         1 => draw.topology = c.pick(&[Topology::Lines, Topology::LineStrip, Topology::LineLoop, Topology::Points]),
-        2 => draw.polygon_modes = PolygonModes { front: c.any(), back: c.any() },
+        2 => {
+            draw.polygon_modes = PolygonModes { front: c.any(), back: c.any() };
+            if c.once_in(3) {
+                draw.edge_flags = Some((0..draw.vertices.len()).map(|_| c.once_in(2)).collect());
+            }
+        }
         _ => {}
     }
     draw.point_sprite = c.once_in(2) && profile == Profile::Nv2a && can_be_sprite(textures, draw);

@@ -245,7 +245,7 @@ pub fn figures(draw: &Draw) -> Vec<(Kind, [Vertex; 3], u16)> {
     let all = split_topology(draw);
     for (place, (corners, provoking)) in all.iter().enumerate() {
         let triangle = colored(corners.map(vertex), *provoking);
-        if let Some((kind, parts)) = stroke::of_triangle(draw, turn(draw, triangle), place, all.len()) {
+        if let Some((kind, parts)) = stroke::of_triangle(draw, (turn(draw, triangle), *corners), place, all.len()) {
             let part = |ends: [usize; 2]| placed(draw, kind, ends.map(|end| triangle[end]), size(corners[ends[0]]));
             out.extend(parts.into_iter().filter_map(part));
             continue;

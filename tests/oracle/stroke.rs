@@ -37,7 +37,14 @@ pub fn split(draw: &Draw) -> Option<Vec<(Kind, [usize; 3], usize)>> {
 
 /// POL-1: returns what is drawn of a triangle that turns by `cross` on the screen, as pairs of its vertices, or `None` if it is filled. `place` is its
 /// number among those of its draw, which are `count`.
-pub fn of_triangle(draw: &Draw, cross: i128, place: usize, count: usize) -> Option<(Kind, Vec<[usize; 2]>)> {
+///
+/// `corners` are the positions of the triangle's vertices in the index list.
+pub fn of_triangle(
+    draw: &Draw,
+    (cross, corners): (i128, [usize; 3]),
+    place: usize,
+    count: usize,
+) -> Option<(Kind, Vec<[usize; 2]>)> {
     let front = (cross > 0) == (draw.front_face == FrontFace::Clockwise);
     let hidden = match draw.cull {
         Cull::None => false,
@@ -48,7 +55,7 @@ pub fn of_triangle(draw: &Draw, cross: i128, place: usize, count: usize) -> Opti
     if draw.polygon_modes == PolygonModes::FILL || (mode == PolygonMode::Fill && cross != 0 && !hidden) {
         return None;
     }
-    if cross == 0 || hidden {
+    if hidden || mode == PolygonMode::Fill {
         return Some((Kind::Line, Vec::new()));
     }
     let even = place.is_multiple_of(2);
@@ -59,7 +66,13 @@ pub fn of_triangle(draw: &Draw, cross: i128, place: usize, count: usize) -> Opti
         Topology::Polygon => ([from, to] == [2, 0] && place + 1 < count) || ([from, to] == [0, 1] && place > 0),
         _ => false,
     };
-    let edges = [[1, 2], [2, 0], [0, 1]].into_iter().filter(|[from, to]| !inner(*from, *to));
+    let flag = |from: usize| match (&draw.edge_flags, draw.topology) {
+        (Some(flags), Topology::Triangles | Topology::Quads | Topology::Polygon) => {
+            flags[draw.indices[corners[from]] as usize]
+        }
+        _ => true,
+    };
+    let edges = [[1, 2], [2, 0], [0, 1]].into_iter().filter(|[from, to]| !inner(*from, *to) && flag(*from));
     Some(match mode {
         PolygonMode::Line => (Kind::Line, edges.collect()),
         _ => (Kind::Point, edges.map(|[from, _]| [from, from]).collect()),

@@ -16,7 +16,7 @@ use ninebit_scene::diff::{self, Difference, Options};
 /// Frames of a real NV2A, drawn again.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// List the suites: how many frames of each are drawn here
+    /// List all captured suites: how many frames each has, and how many of these are drawn here, exactly or not
     List,
     /// Draw captured frames and compare them with the captures
     ///
@@ -70,11 +70,15 @@ fn frames(suites: &[&str]) -> Result<Vec<Frame>, Failure> {
 
 fn list() -> Result<(), Failure> {
     let all = frames(&[])?;
-    let mut text = format!("source  {SOURCE}\n\n{:<32}frames\n", "suite");
-    for suite in captures::suites() {
-        let count = all.iter().filter(|frame| frame.suite == suite).count();
-        let _ = writeln!(text, "{suite:<32}{count:>6}");
+    let mut text = format!("source  {SOURCE}\n\n{:<34}captured   drawn   exact\n", "suite");
+    let mut line = |suite: &str, captured: usize, drawn: &[&Frame]| {
+        let exact = drawn.iter().filter(|frame| frame.open.is_none()).count();
+        let _ = writeln!(text, "{suite:<34}{captured:>8}{:>8}{exact:>8}", drawn.len());
+    };
+    for (suite, captured) in captures::captured() {
+        line(suite, captured, &all.iter().filter(|frame| frame.suite == suite).collect::<Vec<_>>());
     }
+    line("all", captures::captured().map(|(_, captured)| captured).sum(), &all.iter().collect::<Vec<_>>());
     Ok(write_text(&text)?)
 }
 
@@ -141,10 +145,13 @@ fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Optio
     if !outcome.frame.is(capture.pixels()) {
         return Err(invalid(format!("`{}` is not the picture that was measured", shown::path(&path))));
     }
-    // The areas of text are copied, so that they are equal.
+    // Printed letters are copied, so that they are equal.
     let mut masked = Rgba::new(SIZE.0, pixels);
     for at in outcome.frame.text.iter().flat_map(captures::pixels) {
-        masked.pixels_mut()[at] = capture.pixels()[at];
+        let captured = capture.pixels()[at];
+        if captured == captures::LETTERS {
+            masked.pixels_mut()[at] = captured;
+        }
     }
     let difference = diff::compare(&masked, &capture, &Options { regions: 1, ..Options::default() });
     let difference = difference.map_err(|error| invalid(error.to_string()))?;

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use ninebit::state::{ClipDepth, DepthFormat, Draw, Positions, Profile, Vertex, VertexColor, VertexDepths, Vertices, Viewport};
+use ninebit::state::{ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Profile, Vertex, VertexColor, VertexDepths, Vertices, Viewport};
 use ninebit::vertex::fog;
 use ninebit::vertex::point::eighths;
 
@@ -59,6 +59,11 @@ pub(crate) fn vertices_of(view: &mut View<'_>, memory: &Memory, batch: &Batch, d
         }
     };
     draw.vertices = outputs.iter().zip(places).map(vertex).collect::<Vertices>();
+    // POL-1: flags count for edges alone.
+    let edges = [draw.polygon_modes.front, draw.polygon_modes.back].contains(&PolygonMode::Line);
+    if edges && batch.edge_flags.contains(&false) && batch.edge_flags.len() == draw.vertices.len() {
+        draw.edge_flags = Some(batch.edge_flags.as_slice().into());
+    }
     draw.indices = indices.into();
     !draw.indices.is_empty()
 }

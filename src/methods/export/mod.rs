@@ -123,6 +123,7 @@ fn program(words: &mut Words) {
         // A float of no component: nothing comes from arrays.
         words.set(class::SET_VERTEX_DATA_ARRAY_FORMAT + 4 * attribute, 2);
     }
+    words.set(class::SET_EDGE_FLAG, 1);
     // The program reads these whether or not a draw has them.
     words.number(vertices::SET_FOG_COORD, 0.0);
     let point_size = class::SET_VERTEX_DATA4F_M + 16 * attribute::POINT_SIZE as u32;

@@ -26,6 +26,8 @@ pub(super) fn vertices(words: &mut Words, scene: &Scene, draw: &Draw, assembly: 
         sender.begin(draw.topology);
         for index in draw.indices.iter() {
             let size = draw.point_sizes.as_ref().map(|sizes| sizes[*index as usize]);
+            let flag = draw.edge_flags.as_ref().is_none_or(|flags| flags[*index as usize]);
+            sender.words.set(class::SET_EDGE_FLAG, flag.into());
             sender.vertex(&draw.vertices.at(*index as usize), None, size)?;
         }
         sender.end();

@@ -119,6 +119,17 @@ pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
     }
 }
 
+/// Returns the depth in steps that is stored as a word, or `None` if none is: a float whose exponent is 0, or beyond the numbers.
+pub fn of_word(format: DepthFormat, word: u32) -> Option<f32> {
+    let (kept, above) = match format {
+        DepthFormat::Z16 | DepthFormat::Z24S8 => return Some(word as f32),
+        DepthFormat::Z16F => (12, 0x78000),
+        DepthFormat::Z24S8F => (16, 0),
+    };
+    let is_number = word >> kept != 0 && word <= format.largest() && !(kept == 16 && word >> kept == 255);
+    (is_number || word == 0).then(|| f32::from_bits(if word == 0 { 0 } else { (word + above) << (23 - kept) }))
+}
+
 /// Bits of the larger of a depth and its offset that their sum keeps: so many that nothing is lost where they cancel.
 const SUM_BITS: i32 = 62;
 
@@ -214,6 +225,23 @@ mod tests {
                 word if word >> 12 == 0 => 0,
                 word => word,
             },
+        }
+    }
+
+    /// DEP-3: every word of 16 bits, and some of 24, that a depth is stored as.
+    #[test]
+    fn depths_of_words_are_stored_as_them() {
+        for format in DepthFormat::ALL {
+            let all = (0..=0xffff_u32).chain((0..=0xffff).map(|n| n << 8 | n >> 8));
+            for word_here in all.filter(|word| *word <= format.largest()) {
+                let exponent = word_here >> if *format == DepthFormat::Z16F { 12 } else { 16 };
+                match of_word(*format, word_here) {
+                    Some(depth) => assert_eq!(word(*format, Binary::new(depth)), word_here, "{format:?}"),
+                    None => {
+                        assert!(format.is_float() && (exponent == 0 || exponent == 255), "{format:?} {word_here:x}")
+                    }
+                }
+            }
         }
     }
 

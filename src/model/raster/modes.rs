@@ -7,8 +7,8 @@ use super::triangles::{Assembled, Triangles};
 use crate::number::convert::snap;
 use crate::state::{Cull, Draw, PolygonMode, PolygonModes, Positions, Topology};
 
-/// Returns what a draw's polygon modes make of its triangles, before these are clipped. Faces that are culled, or without area, are left out where
-/// any is not filled.
+/// Returns what a draw's polygon modes make of its triangles, before these are clipped. Faces that are culled, and filled ones without area,
+/// are left out where any is not filled.
 pub(super) fn figures(draw: &Draw, triangles: Triangles) -> Triangles {
     if draw.polygon_modes == PolygonModes::FILL || !draw.topology.has_faces() {
         return triangles;
@@ -23,6 +23,9 @@ pub(super) fn figures(draw: &Draw, triangles: Triangles) -> Triangles {
                 // Edge k lies opposite to vertex k.
                 for k in (0..3).filter(|k| outer[*k]) {
                     let [from, to] = [1, 2].map(|n| triangle.vertices[(k + n) % 3]);
+                    if !is_flagged(draw, from) {
+                        continue;
+                    }
                     figures.push(match mode {
                         PolygonMode::Line => Assembled::line([from, to], triangle.provoking),
                         _ => Assembled::point(from, triangle.provoking),
@@ -42,10 +45,11 @@ fn mode(draw: &Draw, triangle: &Assembled) -> Option<PolygonMode> {
         return Some(PolygonMode::Fill);
     };
     let front = is_front(area, draw.front_face);
-    if area == 0 || draw.cull == if front { Cull::Front } else { Cull::Back } {
+    if draw.cull == if front { Cull::Front } else { Cull::Back } {
         return None;
     }
-    Some(if front { draw.polygon_modes.front } else { draw.polygon_modes.back })
+    let mode = if front { draw.polygon_modes.front } else { draw.polygon_modes.back };
+    (area != 0 || mode != PolygonMode::Fill).then_some(mode)
 }
 
 /// Returns twice the area that is left of a triangle on the screen, positive if it turns clockwise, or `None` if it lies outside of RAS-0.
@@ -64,6 +68,12 @@ fn area(draw: &Draw, vertices: [u32; 3]) -> Option<i64> {
     let at = |n: usize, axis: usize| snap(polygon[n][axis]);
     let part = |n: usize| clockwise_area([0, n, n + 1].map(|n| at(n, 0)), [0, n, n + 1].map(|n| at(n, 1)));
     Some((1..polygon.len().max(1) - 1).map(part).sum())
+}
+
+/// Returns whether a draw has the edges that begin at a vertex. Strips and fans have all.
+fn is_flagged(draw: &Draw, vertex: u32) -> bool {
+    let has_flags = matches!(draw.topology, Topology::Triangles | Topology::Quads | Topology::Polygon);
+    draw.edge_flags.as_ref().filter(|_| has_flags).is_none_or(|flags| flags[vertex as usize])
 }
 
 /// Returns which edges of a triangle are edges of its primitive: those opposite to its vertices, in order.
@@ -108,11 +118,47 @@ mod tests {
     }
 
     #[test]
+    fn flags_belong_to_first_ends() {
+        let flagged = |topology| Draw {
+            edge_flags: Some([true, false, true, false].into()),
+            ..draw(topology, PolygonMode::Line)
+        };
+        let sides = [[0, 1], [2, 3]].map(|ends| (Figure::Line, ends));
+        assert_eq!(shapes(flagged(Topology::Quads)), sides);
+        assert_eq!(shapes(flagged(Topology::Polygon)), sides);
+        assert_eq!(shapes(flagged(Topology::TriangleFan)).len(), 6);
+        let corners = Draw {
+            polygon_modes: PolygonModes { front: PolygonMode::Point, back: PolygonMode::Fill },
+            ..flagged(Topology::Quads)
+        };
+        assert_eq!(shapes(corners), [0, 2].map(|corner| (Figure::Point, [corner; 2])));
+    }
+
+    #[test]
     fn each_side_has_its_mode() {
         let clockwise = Draw { front_face: FrontFace::Clockwise, ..draw(Topology::Quads, PolygonMode::Line) };
         assert!(shapes(clockwise.clone()).iter().all(|(figure, _)| *figure == Figure::Triangle));
         assert!(shapes(Draw { cull: Cull::Back, ..clockwise }).is_empty());
         assert!(shapes(Draw { cull: Cull::Front, ..draw(Topology::Quads, PolygonMode::Line) }).is_empty());
         assert_eq!(shapes(Draw { cull: Cull::Back, ..draw(Topology::Quads, PolygonMode::Line) }).len(), 4);
+    }
+
+    /// POL-1: three corners in one place, and front faces of either winding.
+    #[test]
+    fn no_area_is_counterclockwise() {
+        let flat = |front_face, cull| {
+            let vertices = vec![Vertex::at(4.0, 4.0); 3].into();
+            let draw = Draw {
+                vertices,
+                indices: (0..3).collect(),
+                cull,
+                front_face,
+                ..draw(Topology::Triangles, PolygonMode::Line)
+            };
+            assemble(&draw).expect("legal").triangles.len()
+        };
+        assert_eq!(flat(FrontFace::CounterClockwise, Cull::Back), 3);
+        assert_eq!(flat(FrontFace::CounterClockwise, Cull::Front), 0);
+        assert_eq!(flat(FrontFace::Clockwise, Cull::None), 0, "the back is filled");
     }
 }

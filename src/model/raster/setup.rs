@@ -179,10 +179,10 @@ pub(crate) fn clockwise_area<T: Whole>(x: [T; 3], y: [T; 3]) -> T {
     (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
 }
 
-/// Returns whether a triangle of that [area](clockwise_area) shows its front.
+/// Returns whether a triangle of that [area](clockwise_area) shows its front. One without area counts as counterclockwise (POL-1).
 #[inline(always)]
 pub(crate) fn is_front(clockwise_area: i64, front_face: FrontFace) -> bool {
-    (clockwise_area < 0) == (front_face == FrontFace::CounterClockwise)
+    (clockwise_area <= 0) == (front_face == FrontFace::CounterClockwise)
 }
 
 /// INT-6: returns the three w as a chip takes them.

@@ -131,6 +131,11 @@ pub fn pack(format: SurfaceFormat, rgba: [u8; 4]) -> u32 {
     packed(format, rgba.map(u32::from))
 }
 
+/// CLR-1: returns the word that a surface holds after a clear to a word: its unused bits are the format's.
+pub fn cleared(format: SurfaceFormat, word: u32) -> u32 {
+    pack(format, read(format, word))
+}
+
 /// Packs R, G, B, A, each 0 to 255, into a stored word.
 #[inline(always)]
 pub fn packed<W: Word>(format: SurfaceFormat, [r, g, b, a]: [W; 4]) -> W {
@@ -179,6 +184,30 @@ pub fn show_all(format: SurfaceFormat, words: &[u32]) -> Vec<[u8; 4]> {
 mod tests {
     use super::*;
     use crate::state::Named;
+
+    /// CLR-1
+    #[test]
+    fn clears_keep_all_bits_but_unused_ones() {
+        for format in SurfaceFormat::ALL {
+            let (bits, unused, ones) = match format {
+                SurfaceFormat::A8R8G8B8 => (u32::MAX, 0, false),
+                SurfaceFormat::X8R8G8B8Z => (u32::MAX, 0xff00_0000, false),
+                SurfaceFormat::X8R8G8B8O => (u32::MAX, 0xff00_0000, true),
+                SurfaceFormat::X1A7R8G8B8Z => (u32::MAX, 0x8000_0000, false),
+                SurfaceFormat::X1A7R8G8B8O => (u32::MAX, 0x8000_0000, true),
+                SurfaceFormat::R5G6B5 | SurfaceFormat::G8B8 => (0xffff, 0, false),
+                SurfaceFormat::X1R5G5B5Z => (0xffff, 0x8000, false),
+                SurfaceFormat::X1R5G5B5O => (0xffff, 0x8000, true),
+                SurfaceFormat::B8 => (0xff, 0, false),
+            };
+            for n in 0..=0xffff_u32 {
+                for word in [n, n << 16, n.wrapping_mul(0x9e37_79b1)] {
+                    let kept = word & bits & !unused;
+                    assert_eq!(cleared(*format, word), if ones { kept | unused } else { kept }, "{format:?} {word:x}");
+                }
+            }
+        }
+    }
 
     /// Stored colours come back with the bits that the format keeps.
     #[test]

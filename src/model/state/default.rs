@@ -46,6 +46,7 @@ impl Default for Draw {
             cull: Cull::None,
             front_face: FrontFace::CounterClockwise,
             polygon_modes: PolygonModes::FILL,
+            edge_flags: None,
             polygon_stipple: None,
             lines: Lines::default(),
             point_size: 8,

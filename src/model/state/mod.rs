@@ -122,6 +122,8 @@ pub struct Draw {
     pub front_face: FrontFace,
     /// What is drawn of triangles: their pixels, edges or corners.
     pub polygon_modes: PolygonModes,
+    /// The edge flag of each vertex: whether its edge to the next one of a triangle, quad or polygon is drawn (POL-1). `None` means that all are.
+    pub edge_flags: Option<Arc<[bool]>>,
     /// The pattern that filled triangles have. `None` means that all of their pixels are drawn.
     pub polygon_stipple: Option<PolygonStipple>,
     /// State of lines.

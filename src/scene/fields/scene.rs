@@ -172,10 +172,12 @@ source! {
     struct Clear {
         /// what the colours become
         color: Color [color] = [0, 0, 0, 255],
+        /// or the stored word, `0x7f3c2c1c`, of the format's bits (CLR-1)
+        word: u32 [or "`color`"],
         /// the depths, 0 to 1, of a float buffer 0 or more
         depth: f32 [or "all ones"],
-        /// instead: the word of a depth, as the buffer holds it
-        depth_word: u32 [or "of `depth`"],
+        /// or the stored word, without a stencil
+        depth_word: u32 [or "`depth`"],
         /// the stencils
         stencil: u8 [or "`0`"],
     }
@@ -183,10 +185,14 @@ source! {
     struct ClearDraw {
         /// what the colours become
         color: Color [or "they stay"],
+        /// or the word that is stored, `0x7f3c2c1c`, of the format's bits (CLR-1)
+        word: u32 [or "`color`"],
         /// `(red, green, blue, alpha)`: which of them
         color_mask: Tuple<'a, bool> [flags "four", help(CHANNELS)] = [true; 4],
         /// what the depths become, 0 to 1, of a float buffer 0 or more
         depth: f32 [or "they stay"],
+        /// or the word that is stored, without a stencil; of a float buffer one whose exponent is not 0
+        depth_word: u32 [or "`depth`"],
         /// what the stencils become
         stencil: u8 [or "they stay"],
         /// a [rectangle](#rectangles) within the target: where
@@ -234,6 +240,8 @@ source! {
         front_face: Name<state::FrontFace> = FrontFace::CounterClockwise,
         /// what is drawn of front faces, and of the others: pixels, edges or corners (POL-1)
         front_polygon_mode: Name<state::PolygonMode> = PolygonMode::Fill, back_polygon_mode: Name<state::PolygonMode> = PolygonMode::Fill,
+        /// numbers of the vertices whose edge flag is off: the edge from each to the next vertex of a triangle, quad or polygon is not drawn
+        hidden_edges: Vec<u32> [or "all are drawn"],
         /// 32 words, `0xff00ff00`, the last of the top row: where a bit is 0, filled triangles have no pixel (STP-1)
         polygon_stipple: Vec<u32> [or "none"],
         /// width of lines in 1/8 pixel; 0 draws none (LIN-1)

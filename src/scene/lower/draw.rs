@@ -157,6 +157,7 @@ fn draw<'a>(
     let geometry = geometry?;
     draw.point_sizes = point::sizes(reader, &fields.point_parameters, &geometry, draw.point_size);
     draw.vertices = geometry.vertices;
+    draw.edge_flags = edge_flags(reader, &fields.hidden_edges, draw.vertices.len());
     draw.vertex_program = geometry.program;
     draw.indices = indices(reader, fields, geometry.mesh.as_deref(), draw.vertices.len(), topology)?;
     target?;
@@ -217,6 +218,22 @@ fn stipple<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>) -> Opti
         return reader.refuse(found.rule("STP-1"));
     };
     Some(PolygonStipple(words))
+}
+
+/// Reads the edge flags of a draw's vertices.
+fn edge_flags<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>, count: usize) -> Option<Arc<[bool]>> {
+    let raw = raw.as_ref()?;
+    let mut flags = vec![true; count];
+    for vertex in reader.read(raw)? {
+        let Some(flag) = flags.get_mut(vertex as usize) else {
+            let message = format!("vertex {vertex} does not exist");
+            let help = "vertices count from 0";
+            let found = finding("NB0212", reader.span(raw), message, format!("this draw has {count} vertices"), help);
+            return reader.refuse(found.rule("POL-1"));
+        };
+        *flag = false;
+    }
+    Some(flags.into())
 }
 
 /// Reads the scissor of a draw.

@@ -3,6 +3,8 @@
 use super::*;
 use crate::clear::Clear;
 use ninebit::legality;
+use ninebit::raster::depth;
+use ninebit::rop::surface;
 
 /// Largest number of columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;
@@ -157,6 +159,18 @@ fn rectangle<'a>(
     Some(Rectangle { x, y, width: width?, height: height? })
 }
 
+/// Returns the depth, in steps of the buffer, that is stored as a word.
+fn stored_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u32>) -> Option<f32> {
+    let (word, format) = (target::clear_depth_word(reader, target, raw)?, target.depth?.format);
+    let depth = depth::of_word(format, word);
+    if depth.is_none() {
+        let message = "a draw stores no float depth whose exponent is 0";
+        let help = "give it in the `clear` of the target, which stores any word";
+        reader.push(finding("NB0402", reader.span(raw), message, "0 would be stored", help).rule("DEP-3"));
+    }
+    depth
+}
+
 /// Reads a clear among the draws, into a target.
 pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw<'a>>, target: usize) -> Option<Clear> {
     let fields = reader.read(raw)?;
@@ -164,9 +178,16 @@ pub(super) fn clear<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ClearDraw
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
-    let color = fields.color.as_ref().map(|raw| color::constant(reader, raw).unwrap_or_default());
+    let mut color = fields.color.as_ref().map(|raw| color::constant(reader, raw).unwrap_or_default());
+    if let Some(raw) = target::once(reader, &fields.color, &fields.word, "word") {
+        color = Some(reader.read(raw).map_or([0; 4], |word| surface::read(target.format, word)));
+    }
     let color_mask = fields.color_mask(reader);
-    let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw).unwrap_or(0.0));
+    let fraction = |raw| (VertexDepths::Fractions, target::clear_depth(reader, target, raw).unwrap_or(0.0));
+    let mut depth = fields.depth.as_ref().map(fraction);
+    if let Some(raw) = target::once(reader, &fields.depth, &fields.depth_word, "depth_word") {
+        depth = Some((VertexDepths::Steps, stored_depth(reader, target, raw).unwrap_or(0.0)));
+    }
     let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw).unwrap_or_default());
     Some(Clear { area, color, color_mask, depth, stencil })
 }

@@ -8,6 +8,7 @@ use ninebit::legality;
 use ninebit::number::convert;
 use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
+use ninebit::rop::surface;
 
 impl Targets<'_> {
     /// Adds the place of the target to a finding.
@@ -91,15 +92,18 @@ fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String
     let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     target.depth = depth.map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     target.clear_color = color::bytes(clear.color(reader));
+    if let Some(raw) = once(reader, &clear.color, &clear.word, "word") {
+        target.clear_color = reader.read(raw).map_or([0; 4], |word| surface::read(format, word));
+    }
+    if let Some(raw) = once(reader, &clear.depth, &clear.depth_word, "depth_word")
+        && let (Some(word), Some(buffer)) = (clear_depth_word(reader, &target, raw), &mut target.depth)
+    {
+        buffer.clear = word;
+    }
     if let Some(raw) = &clear.depth
         && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
     {
         buffer.clear = depth_word(buffer.format, depth);
-    }
-    if let Some(raw) = &clear.depth_word
-        && let (Some(word), Some(buffer)) = (clear_word(reader, &target, &clear, raw), &mut target.depth)
-    {
-        buffer.clear = word;
     }
     if let Some(raw) = &clear.stencil
         && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
@@ -160,7 +164,7 @@ pub(super) fn contents(reader: &mut Reader<'_>) {
 /// Reads the depth that a clear stores into a target with a depth buffer: 0 to 1, or for a float buffer any depth that is not negative.
 pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
-    let buffer = cleared_buffer(reader, target, place.clone())?;
+    let Some(buffer) = target.depth else { return without_depth(reader, place) };
     let highest = if buffer.format.is_float() { f32::MAX } else { 1.0 };
     if !(0.0..=highest).contains(&value) {
         let range = if buffer.format.is_float() { "write 0.0 or more" } else { "write 0.0 (near) to 1.0 (far)" };
@@ -169,31 +173,32 @@ pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Ra
     Some(value)
 }
 
-/// Returns the depth buffer that a clear at `place` stores into.
-fn cleared_buffer(reader: &mut Reader<'_>, target: &Target, place: Span) -> Option<DepthBuffer> {
-    if target.depth.is_none() {
-        let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
-        let message = "this target has no depth buffer to clear";
-        return reader.refuse(finding("NB0216", place, message, "no depth buffer", help));
-    }
-    target.depth
+/// Reads the word that a clear stores as the depth of a target with a depth buffer.
+pub(super) fn clear_depth_word<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u32>) -> Option<u32> {
+    let Some(buffer) = target.depth else { return without_depth(reader, reader.span(raw)) };
+    reader.within(raw, "the word of a depth", 0..=buffer.format.largest(), |finding| finding.rule("CLR-1"))
 }
 
-/// Reads the word of a depth that a clear stores into a target with a depth buffer.
-fn clear_word<'a>(
+/// Refuses to clear the depths of a target without a depth buffer.
+fn without_depth<T>(reader: &mut Reader<'_>, place: Span) -> Option<T> {
+    let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
+    reader.refuse(finding("NB0216", place, "this target has no depth buffer to clear", "no depth buffer", help))
+}
+
+/// Returns a word of a clear, unless the value that it takes the place of is written too.
+pub(super) fn once<'b, 'a, T>(
     reader: &mut Reader<'a>,
-    target: &Target,
-    clear: &source::Clear<'a>,
-    raw: &Raw<'a, u32>,
-) -> Option<u32> {
-    let place = reader.span(raw);
-    if let Some(depth) = &clear.depth {
-        let message = "the depth is given as a number and as a word";
-        let found = finding("NB0203", place, message, "again here", "keep one of `depth` and `depth_word`");
-        return reader.refuse(found.related(reader.span(depth), "first here"));
+    value: &Option<Raw<'a, T>>,
+    word: &'b Option<Raw<'a, u32>>,
+    name: &str,
+) -> Option<&'b Raw<'a, u32>> {
+    let word = word.as_ref()?;
+    if value.is_some() {
+        let message = format!("`{name}` takes the place of what is written beside it");
+        let help = "keep one of the two";
+        return reader.refuse(finding("NB0225", reader.span(word), message, "not both", help).rule("CLR-1"));
     }
-    let buffer = cleared_buffer(reader, target, place)?;
-    reader.within(raw, "the word of a depth", 0..=buffer.format.largest(), |finding| finding.rule("DEP-2"))
+    Some(word)
 }
 
 /// Reads the stencil that a clear stores into a target with a stencil.

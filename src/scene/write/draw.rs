@@ -4,6 +4,8 @@ use super::node::{Fields, Node};
 use super::texture::{Palettes, Textures};
 use super::unit;
 use crate::clear::Clear;
+use ninebit::raster::binary::Binary;
+use ninebit::raster::depth;
 use ninebit::state::*;
 
 /// The parts of a draw that several draws may share: as they are, or by name.
@@ -27,8 +29,16 @@ pub(super) fn blend(draw: &Draw) -> Option<Node> {
 pub(super) fn clear(draw: &Draw, target: &Target) -> Option<Fields> {
     let Clear { area, color, color_mask, depth, stencil } = Clear::from_draw(draw)?;
     let float = target.depth.is_some_and(|buffer| buffer.format.is_float());
-    let in_range = |depth: f32| (0.0..=if float { f32::MAX } else { 1.0 }).contains(&depth);
-    if within(&area, target) != area || !depth.is_none_or(in_range) {
+    let word = |depth: f32| {
+        let format = target.depth?.format;
+        let word = depth::word(format, Binary::new(depth));
+        (depth::of_word(format, word).map(f32::to_bits) == Some(depth.to_bits())).then_some(word)
+    };
+    let is_stated = |(unit, depth): (VertexDepths, f32)| match unit {
+        VertexDepths::Fractions => (0.0..=if float { f32::MAX } else { 1.0 }).contains(&depth),
+        VertexDepths::Steps => word(depth).is_some(),
+    };
+    if within(&area, target) != area || !depth.is_none_or(is_stated) {
         return None;
     }
     let mut fields = Fields::new("");
@@ -36,8 +46,10 @@ pub(super) fn clear(draw: &Draw, target: &Target) -> Option<Fields> {
         fields.put("color", Node::color(color));
         mask(&mut fields, color_mask);
     }
-    if let Some(depth) = depth {
-        fields.put("depth", Node::number(depth));
+    match depth {
+        Some((VertexDepths::Fractions, depth)) => fields.put("depth", Node::number(depth)),
+        Some((VertexDepths::Steps, depth)) => fields.put("depth_word", Node::word(format!("0x{:x}", word(depth)?))),
+        None => {}
     }
     if let Some(stencil) = stencil {
         fields.put("stencil", Node::whole(stencil));
@@ -127,6 +139,10 @@ fn primitives(fields: &mut Fields, draw: &Draw) {
     fields.word("front_face", draw.front_face, default.front_face);
     fields.word("front_polygon_mode", draw.polygon_modes.front, default.polygon_modes.front);
     fields.word("back_polygon_mode", draw.polygon_modes.back, default.polygon_modes.back);
+    if let Some(flags) = &draw.edge_flags {
+        let hidden = (0_i64..).zip(flags.iter()).filter(|(_, flag)| !**flag).map(|(vertex, _)| Node::whole(vertex));
+        fields.put("hidden_edges", Node::filled(hidden));
+    }
     if let Some(PolygonStipple(words)) = &draw.polygon_stipple {
         fields.put("polygon_stipple", Node::filled(words.iter().map(|word| Node::word(format!("0x{word:08x}")))));
     }

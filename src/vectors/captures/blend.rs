@@ -248,16 +248,14 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
     before.draw(Draw { blend, ..without_alpha(draw(184.0), FinalRegister::Texture3) });
     before.draw(Draw { blend, ..draw(328.0) });
     let mut canvas = Canvas::new(0);
-    // A placeholder: the memory of `before` takes its place.
-    let whole = images::in_texels(images::texture(TextureFormat::A8R8G8B8, [1, 1], solid([0; 4])));
-    let shown = nearest(canvas.texture(&whole));
+    let shown = nearest(canvas.texture(&images::blank(TextureFormat::A8R8G8B8, SIZE.into())));
     let fields = checker([abgr(0xff20_2020), abgr(0xff00_0000)], 8);
     let words = images::words(TextureFormat::A8B8G8R8, [640, 480], fields);
     canvas.frame_buffer().contents = Some(words.into());
     let half = |top: f32| pasted(sized([0.0, top], [640.0, 240.0]), 0, shown, [0.0, 0.0, 640.0, 240.0]);
     canvas.draw(half(0.0));
     canvas.draw(without_alpha(half(240.0), FinalRegister::Texture0));
-    let before = Some(before.colors().scene);
+    let before = vec![before.colors().scene];
     Drawn { before, ..canvas.colors() }
 }
 

@@ -98,8 +98,11 @@ fn image([x, y, width, height]: Area, clip: Area) -> Vec<Draw> {
     draws.into_iter().map(|draw| Draw { scissor, blend: None, ..draw }).collect()
 }
 
-/// Adds the frames of Surface_clip: on the frame buffer, on views of it in narrower formats, and on a texture.
+/// Adds the frames of Surface_clip: on the frame buffer, twice with nothing but text, on views of it in narrower formats, and on a texture.
 pub(super) fn surface_clip(frames: &mut Frames) {
+    for name in ["DebugTextShouldClip", "XemuBug420"] {
+        frames.push(name, Canvas::new(0xfc11_1155).colors());
+    }
     for area in CLIPS {
         let [x, y, width, height] = area;
         let name = format!("x{x}y{y}_w{width}h{height}");
@@ -110,7 +113,7 @@ pub(super) fn surface_clip(frames: &mut Frames) {
             [("", SurfaceFormat::R5G6B5), ("_B8", SurfaceFormat::B8), ("_G8B8", SurfaceFormat::G8B8)]
         {
             let view = scene(vec![Target::new(SIZE.0, SIZE.1, format)], vec![], image(area, area));
-            let drawn = Drawn { scene: of(vec![]), before: None, view: Some(view), shown: Shown::Colors };
+            let drawn = Drawn { scene: of(vec![]), before: vec![], view: Some(view), shown: Shown::Colors };
             frames.push(format!("{name}{suffix}"), drawn);
         }
         // On a texture, the programs replace a clip width or height of 0 by the whole width or height.

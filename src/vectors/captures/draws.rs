@@ -12,6 +12,9 @@ pub(super) const OVER: Option<Blend> = Some(Blend {
     destination: BlendFactor::OneMinusSourceAlpha,
 });
 
+/// Both sides of faces as lines.
+pub(super) const WIREFRAME: PolygonModes = PolygonModes { front: PolygonMode::Line, back: PolygonMode::Line };
+
 /// Returns the frame buffer as a target, cleared to an A8R8G8B8 word.
 pub(super) fn frame_buffer(clear: u32) -> Target {
     Target { clear_color: argb(clear), ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::A8R8G8B8) }

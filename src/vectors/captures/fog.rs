@@ -29,7 +29,7 @@ fn mixed(full: &str, none: &str) -> Combiners {
 }
 
 /// Returns a draw in fog, given each vertex with its fog coordinate.
-fn foggy(
+pub(super) fn foggy(
     topology: Topology,
     vertices: impl Iterator<Item = (Vertex, f32)>,
     function: FogFunction,

@@ -43,6 +43,11 @@ pub(super) fn in_texels(texture: Texture) -> Texture {
     Texture { kind: TextureKind::Rectangle, ..texture }
 }
 
+/// Returns a texture in texels that is all zeros, for memory that takes its place.
+pub(super) fn blank(format: TextureFormat, size: [u32; 2]) -> Texture {
+    of_words(TextureKind::Rectangle, format, size, 1, vec![0; (size[0] * size[1]) as usize])
+}
+
 /// Returns the texture with its words read in another format of as many bytes.
 pub(super) fn read_as(texture: Texture, format: TextureFormat) -> Texture {
     let TextureImage::Texels(image) = texture.image else { return Texture { format, ..texture } };

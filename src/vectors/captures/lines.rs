@@ -89,8 +89,7 @@ pub(super) fn widths(frames: &mut Frames) {
     for width in widths {
         let name = if width == u32::MAX { "Line_FFFFFFFF".to_owned() } else { named_width("Line", width) };
         let width = if width > u32::from(LARGEST_SIZE) { 8 } else { width as u16 };
-        let modes = PolygonModes { front: PolygonMode::Line, back: PolygonMode::Line };
-        frames.paint(name, 0xff20_2224, move |canvas| shapes(canvas, width, modes));
+        frames.paint(name, 0xff20_2224, move |canvas| shapes(canvas, width, WIREFRAME));
     }
     for width in [0, 8, 256] {
         let name = named_width("Fill", width);
@@ -103,13 +102,83 @@ fn named_width(kind: &str, width: u32) -> String {
 }
 
 fn shapes(canvas: &mut Canvas, width: u16, polygon_modes: PolygonModes) {
+    let lines = Lines { width, ..Lines::default() };
     for (topology, places) in SHAPES {
-        let colored = |(place, color): (&[f32; 2], u32)| {
-            vertex([ORIGIN[0] + place[0], ORIGIN[1] + place[1]], VertexColor::Bytes(abgr(color)))
-        };
-        let vertices = places.iter().zip(COLORS.into_iter().cycle()).map(colored).collect();
-        let lines = Lines { width, ..Lines::default() };
-        canvas.draw(Draw { lines, polygon_modes, ..draw(topology, vertices) });
+        canvas.draw(Draw { lines, polygon_modes, ..shape(topology, places, ORIGIN) });
+    }
+}
+
+/// Returns a shape of many colours.
+fn shape(topology: Topology, places: &[[f32; 2]], [x, y]: [f32; 2]) -> Draw {
+    let colored =
+        |(place, color): (&[f32; 2], u32)| vertex([x + place[0], y + place[1]], VertexColor::Bytes(abgr(color)));
+    draw(topology, places.iter().zip(COLORS.into_iter().cycle()).map(colored).collect())
+}
+
+/// Adds the frame of Smoothing_control in which the chip smooths nothing, whatever is enabled.
+pub(super) fn smoothing(frames: &mut Frames) {
+    frames.paint("0xFFFF0001", 0xff32_343a, |canvas| {
+        for origin in places([0.0; 2], [320.0, 240.0], 2).take(4) {
+            // Line_width's last shape does not occur.
+            for (topology, places) in &SHAPES[..6] {
+                canvas.draw(shape(*topology, places, origin));
+            }
+        }
+    });
+}
+
+/// The shapes that Edge_flag draws a second time, with flags that change from vertex to vertex: whether the first vertex has one.
+const FLAGGED: [(Topology, &[[f32; 2]], bool); 3] = [
+    (
+        Topology::Triangles,
+        &[[365.185_94, 35.0], [349.778_84, 22.523_718], [410.0, 19.0], [344.0, 48.0], [404.0, 37.0], [332.0, 103.0]],
+        false,
+    ),
+    (Topology::Polygon, &[[320.0, 232.0], [340.0, 142.1], [361.0, 120.0], [405.0, 169.3], [419.0, 230.5]], true),
+    (Topology::Quads, &[[100.0, 350.0], [160.0, 340.0], [158.5, 425.4], [112.75, 407.5]], true),
+];
+
+/// Adds the frames of Edge_flag.
+pub(super) fn edge_flags(frames: &mut Frames) {
+    for (name, enabled) in [("Enabled", true), ("Disabled", false)] {
+        frames.paint(name, 0xff30_3234, move |canvas| {
+            let plain = SHAPES.map(|(topology, places)| (shape(topology, places, ORIGIN), vec![enabled; places.len()]));
+            let flagged = FLAGGED.map(|(topology, places, first)| {
+                let flags = (0..places.len()).map(|n| enabled || (n % 2 == 0) == first);
+                (shape(topology, places, ORIGIN), flags.collect())
+            });
+            for (shape, flags) in plain.into_iter().chain(flagged) {
+                canvas.draw(Draw { polygon_modes: WIREFRAME, edge_flags: Some(flags.into()), ..shape });
+            }
+        });
+    }
+}
+
+/// Returns the patterns of Stipple_tests.
+fn patterns() -> [(&'static str, Option<[u32; 32]>); 6] {
+    let rows = |word: fn(usize) -> u32| Some(std::array::from_fn(word));
+    let checkered = rows(|row| if row % 8 < 4 { 0x0f0f_0f0f } else { 0xf0f0_f0f0 });
+    [
+        ("Checkered_Off", None),
+        ("Checkered_On", checkered),
+        ("Zero_On", Some([0; 32])),
+        ("Border_On", rows(|row| if row % 31 == 0 { 0 } else { 0x7fff_fffe })),
+        ("Alternating_On", Some([0xaaaa_aaaa; 32])),
+        ("Asymmetric_On", rows(|row| [0xc0c0_ffff, 0x3030_ffff, 0x0000_8cef, 0x0f00_0f0f][row / 8])),
+    ]
+}
+
+/// Adds the frames of Stipple_tests.
+pub(super) fn stipples(frames: &mut Frames) {
+    for (name, pattern) in patterns() {
+        frames.paint(name, 0xff20_2224, move |canvas| {
+            let polygon_stipple = pattern.map(PolygonStipple);
+            let square = rectangle([288.0, 384.0, 352.0, 448.0], VertexColor::Bytes([255; 4]));
+            let shapes = SHAPES.map(|(topology, places)| shape(topology, places, ORIGIN));
+            for shape in shapes.into_iter().chain([square]) {
+                canvas.draw(Draw { polygon_stipple, ..shape });
+            }
+        });
     }
 }
 

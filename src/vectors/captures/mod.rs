@@ -6,17 +6,23 @@
 #![allow(clippy::float_arithmetic, reason = "positions that programs gave the chip")]
 
 mod assets;
+mod attributes;
 mod blend;
 mod borders;
+mod clears;
 mod clip;
 mod color_key;
 mod combiner;
+mod counting;
 mod depth;
 mod depth_range;
 mod draws;
+mod faces;
 mod fog;
+mod fog_carryover;
 mod images;
 mod lines;
+mod points;
 mod polygon_offset;
 mod primitives;
 mod rounding;
@@ -27,6 +33,7 @@ mod space;
 mod stencil;
 mod texel_formats;
 mod texgen;
+mod transfers;
 
 use draws::*;
 use images::checker;
@@ -36,7 +43,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::*;
-use ninebit_data::FRAMES;
+use ninebit_data::{CAPTURED, FRAMES};
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -48,6 +55,9 @@ pub const SIZE: (u32, u32) = (640, 480);
 
 /// The repository and commit that the captures come from.
 pub const SOURCE: &str = "abaire/nxdk_pgraph_tests_golden_results (CC0-1.0), commit 902343e2";
+
+/// R, G, B and A of the letters that the programs printed.
+pub const LETTERS: [u8; 4] = [255, 255, 255, 0];
 
 /// The part of the frame buffer that a capture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,8 +71,8 @@ enum Shown {
 #[derive(Clone, Debug)]
 struct Drawn {
     scene: Scene,
-    /// A scene that is drawn first. The memory of its first target becomes the first texture of `scene`, A8R8G8B8 and as large as the frame buffer.
-    before: Option<Scene>,
+    /// Scenes that are drawn first. The memory of the first target of each becomes the texels of the texture of the same number.
+    before: Vec<Scene>,
     /// Draws on the frame buffer's memory in a narrower format. Each row begins at the same address as before.
     view: Option<Scene>,
     shown: Shown,
@@ -71,7 +81,7 @@ struct Drawn {
 impl Drawn {
     /// Returns a frame that shows the colours of a scene's first target.
     fn colors(scene: Scene) -> Drawn {
-        Drawn { scene, before: None, view: None, shown: Shown::Colors }
+        Drawn { scene, before: Vec::new(), view: None, shown: Shown::Colors }
     }
 }
 
@@ -120,6 +130,12 @@ pub fn suites() -> impl Iterator<Item = &'static str> {
     SUITES.iter().map(|(name, _)| *name)
 }
 
+/// Returns the names of all captured suites, drawn or not, and how many frames each has.
+pub fn captured() -> impl Iterator<Item = (&'static str, usize)> {
+    let line = |line: &'static str| line.split_once('\t').and_then(|(name, count)| Some((name, count.parse().ok()?)));
+    CAPTURED.lines().filter_map(line)
+}
+
 /// Builds a frame's scenes on demand: all frames together would take much memory.
 type Make = Arc<dyn Fn() -> Drawn + Send + Sync>;
 
@@ -160,37 +176,50 @@ type Suite = (&'static str, fn(&mut Frames));
 const SUITES: &[Suite] = &[
     ("3D_primitive", primitives::solids),
     ("Alpha_func", blend::alpha_function),
+    ("Attrib_carryover", attributes::carryover),
     ("Attrib_float", primitives::float_colors),
-    ("Attrib_setter", primitives::setters),
+    ("Attrib_setter", attributes::setters),
     ("Blend_surface", blend::surfaces),
     ("Blend_tests", blend::tests),
     ("Bump_env_lum", shader::bump_maps_with_luminance),
     ("Bump_map", shader::bump_maps),
+    ("Clear", clears::frames),
     ("Color_key", color_key::frames),
     ("Color_mask_blend", blend::color_mask),
     ("Combiner", combiner::frames),
     ("Depth_Clamp", depth_range::clamped),
     ("Depth_buffer", depth::formats),
+    ("Depth_function", clears::functions),
+    ("Edge_flag", lines::edge_flags),
     ("Fog", fog::planar),
+    ("Fog_carryover", fog_carryover::frames),
     ("Fog_coord_vec4", fog::of_components),
     ("Fog_exceptional_value", fog::exceptional),
     ("Fog_gen", fog::generated),
     ("Fog_inf_coord", fog::infinite),
     ("Fog_param", fog::parameters_varied),
     ("Fog_vsh", fog::of_program),
+    ("Front_face", faces::frames),
     ("High_vertex_count", primitives::many_vertices),
     ("Line_width", lines::widths),
+    ("Overlapping_draw_modes", primitives::mixed_modes),
     ("Pixel_shader", shader::programs),
+    ("Point_params", points::parameters_varied),
     ("Point_size", lines::sizes),
+    ("Point_sprite", points::sprites),
     ("Shade_model", primitives::shade_model),
+    ("Smoothing_control", lines::smoothing),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
+    ("Stipple_tests", lines::stipples),
     ("Surface_clip", clip::surface_clip),
     ("Surface_format", blend::surface_formats),
     ("Texgen", texgen::generation),
     ("Texgen_with_texture_matrix", texgen::generation_and_matrices),
     ("TextureWrapMode", sampling::wrap_modes),
+    ("Texture_CPU_Update", transfers::updates),
     ("Texture_DXT", texel_formats::compressed),
+    ("Texture_Framebuffer_Blit", transfers::blits),
     ("Texture_LOD_Bias", texel_formats::lod_bias),
     ("Texture_Matrix", texgen::texture_matrices),
     ("Texture_anisotropy", sampling::anisotropy),
@@ -201,13 +230,19 @@ const SUITES: &[Suite] = &[
     ("Texture_palette", texel_formats::palettes),
     ("Texture_perspective", primitives::perspective),
     ("Texture_render_target", texel_formats::render_targets),
+    ("Texture_render_update_in_place", transfers::in_place),
     ("Texture_shadow_comparator", shadow::frames),
     ("Texture_signed_component_tests", texel_formats::signed),
+    ("Vertex_shader_independence_tests", transfers::independence),
     ("Vertex_shader_rounding_tests", rounding::frames),
+    ("Vertex_shader_swizzle_tests", attributes::swizzles),
+    ("Viewport", rounding::viewports),
     ("Volume_texture", sampling::volumes),
     ("W_buffering", polygon_offset::buffers),
     ("Window_clip", clip::window_clip),
     ("ZMinMaxControl", depth_range::controls),
+    ("ZPass_pixel_count", counting::frames),
+    ("Zero_stride", primitives::one_color),
 ];
 
 /// Returns the frames of the named suites in the order of the table, or of all suites if none is named.
@@ -310,15 +345,15 @@ impl Frame {
     /// Returns the frame's scenes, of which none is left to be drawn before.
     fn drawn(&self, options: &RenderOptions, policies: Policies) -> Result<Drawn, Vec<PlanError>> {
         let mut drawn = (self.make)();
-        if let Some(before) = drawn.before.take() {
-            let frames = render(&compile(&before, policies)?, options);
-            drawn.scene.textures[0] = memory(&frames.surfaces[0]);
+        for (before, texture) in std::mem::take(&mut drawn.before).iter().zip(&mut drawn.scene.textures) {
+            let frames = render(&compile(before, policies)?, options);
+            put_memory(&frames.surfaces[0], texture);
         }
         Ok(drawn)
     }
 
     /// Returns the frame as one scene, whose first target is the frame buffer; `None` if the program drew on that memory in two formats. What was
-    /// drawn before is the scene's first texture.
+    /// drawn before is in the scene's first textures.
     ///
     /// # Errors
     /// Returns the plan's errors if a scene that is drawn before cannot be planned.
@@ -369,13 +404,13 @@ fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     hexadecimal(&Sha256::digest(bytes.as_flattened())[..8])
 }
 
-/// Returns the beginning of a surface's memory as a 32-bit texture of a frame's size.
-fn memory(surface: &Surface) -> Texture {
+/// Puts the beginning of a surface's memory into a texture of 32-bit texels.
+fn put_memory(surface: &Surface, texture: &mut Texture) {
+    let TextureImage::Texels(texels) = &mut texture.image else { return };
     let bytes = surface.format.bytes() as usize;
     let memory: Vec<u8> = surface.words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
-    let words: Vec<u32> = memory.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
-    let words = words[..(SIZE.0 * SIZE.1) as usize].to_vec();
-    images::of_words(TextureKind::Rectangle, TextureFormat::A8R8G8B8, [SIZE.0, SIZE.1], 1, words)
+    let words = memory.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four));
+    texels.words = words.take(texels.words.len()).collect();
 }
 
 /// Reads the beginning of each row of 32-bit words as words of a narrower format.

@@ -13,9 +13,6 @@ const FORMATS: [(DepthFormat, &str); 4] = [
 const BIAS: f32 = 16.0;
 const FACTOR: f32 = 16.0;
 
-/// The scissor: the programs draw to the right of their text.
-const DRAWN: Rectangle = Rectangle { x: 150, y: 0, width: SIZE.0 - 150, height: SIZE.1 };
-
 /// The far depth of the long quads, and its w.
 const FAR: [f32; 2] = [16_809_768.0, 325.805_8];
 /// The near depth of the long quads, and its w.
@@ -30,7 +27,7 @@ const UP: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 type Shape = (&'static str, Topology, Vec<[f32; 4]>, [[f32; 2]; 4]);
 
 /// Returns the shapes of W_buffering. The w of triangles equals their z.
-fn shapes() -> [Shape; 6] {
+fn shapes() -> [Shape; 7] {
     let quads = Topology::Quads;
     let (mut horizontal, mut vertical) = (Vec::new(), Vec::new());
     for n in 0..24_u8 {
@@ -57,8 +54,15 @@ fn shapes() -> [Shape; 6] {
     let wall = [[637.3125, -26.8125], [637.3125, 506.75], [150.0, 1728.6875], [150.0, -1248.6875]];
     let (large, larger) = ([LARGE, LARGE / 32.0], [LARGE + 1.0, (LARGE + 1.0) / 32.0]);
     let screen = [[0.0, 0.0], [640.0, 0.0], [640.0, 480.0], [0.0, 480.0]];
+    let strip = vec![
+        [321.0, 0.5, 16_777_210.0, NEAR[1]],
+        [159.5, 0.5, 16_777_210.0, FAR[1]],
+        [159.5, 448.5, 16_572_698.0, NEAR[1]],
+        [321.0, 448.5, 16_572_698.0, FAR[1]],
+    ];
     [
         ("FloorQuad", quads, quad(floor, far_first), DOWN),
+        ("LineStrip", Topology::LineStrip, strip, DOWN),
         ("LargeZ", quads, quad(screen, [large, large, larger, larger]), DOWN),
         ("RoofQuad", quads, quad(roof, near_first), UP),
         ("TriH", Topology::Triangles, horizontal, DOWN),
@@ -70,49 +74,113 @@ fn shapes() -> [Shape; 6] {
 /// Almost the deepest depth. The programs give it the same w, which is beyond the limit of a scene; a 32nd of that draws the same pixels.
 const LARGE: f32 = 16_777_046.0;
 
-fn frame(format: DepthFormat, shape: &Shape, offset: PolygonOffset, w_buffer: bool, shown: Shown) -> Drawn {
-    let (_, topology, positions, coordinates) = shape;
+/// What a frame shows of a shape.
+#[derive(Clone)]
+struct Setup {
+    format: DepthFormat,
+    shape: Shape,
+    offset: PolygonOffset,
+    w_buffer: bool,
+    /// Column and row from which on the shape is drawn: to the right of the programs' text, unless a frame is about them.
+    clip: [u32; 2],
+}
+
+/// Column and row from which on most frames are drawn.
+const CLIP: [u32; 2] = [150, 0];
+
+fn frame(setup: &Setup, shown: Shown) -> Drawn {
+    let (_, topology, positions, coordinates) = &setup.shape;
+    let coordinates = &coordinates[..if *topology == Topology::Triangles { 3 } else { 4 }];
     let vertex = |(position, at): (&[f32; 4], &[f32; 2])| placed(*position, *at);
     let vertices = positions.iter().zip(coordinates.iter().cycle()).map(vertex).collect();
     let mut target = frame_buffer(0xff25_1135);
-    target.depth = Some(DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
+    target.depth = Some(DepthBuffer { format: setup.format, clear: setup.format.largest(), clear_stencil: 0 });
     let range = DepthRange { lowest: 0.0, highest: 16_777_215.0 * 16.0, clamps: true, drops_triangles: false };
-    let depth_test = DepthTest { offset, w_buffer, ..in_steps(CompareFunction::LessOrEqual, true, Some(range)) };
+    let depth_test = in_steps(CompareFunction::LessOrEqual, true, Some(range));
+    let depth_test = DepthTest { offset: setup.offset, w_buffer: setup.w_buffer, ..depth_test };
     let unit = TextureUnit { address_s: AddressMode::Wrap, address_t: AddressMode::Wrap, ..nearest(0) };
     let draw = fetching(draw(*topology, vertices), 0, unit);
-    let draw = Draw { scissor: Some(DRAWN), depth_test: Some(depth_test), blend: None, ..draw };
+    let [x, y] = setup.clip;
+    let scissor = Some(Rectangle { x, y, width: SIZE.0 - x, height: SIZE.1 - y });
+    let mut draws = vec![Draw { scissor, depth_test: Some(depth_test), blend: None, ..draw }];
+    draws.push(pointers(setup));
+    draws.extend(marks(setup.clip));
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
     let texture = images::texture(TextureFormat::A8R8G8B8, [256; 2], fields);
-    Drawn { scene: scene(vec![target], vec![texture], vec![draw]), before: None, view: None, shown }
+    Drawn { shown, ..Drawn::colors(scene(vec![target], vec![texture], draws)) }
 }
 
-/// Adds the frames of W_buffering: the words of depth, and the colours where no line of the programs lies over them. A slope of w has no effect on
-/// colours, because every depth passes.
+/// Returns the pixels whose depths the programs print.
+fn printed(shape: &Shape) -> Vec<[u16; 2]> {
+    let (name, _, positions, _) = shape;
+    let pixel = |[x, y, ..]: &[f32; 4]| [x.floor() as u16, y.floor() as u16];
+    match *name {
+        "LineStrip" => {
+            let (columns, rows) = ([320, 267, 214], [56, 112, 168, 224, 280, 336, 392]);
+            let top = columns.map(|x| [x, 0]).into_iter().chain([[159, 0]]);
+            let down = rows.map(|y| [159, y]).into_iter().chain([[159, 448]]);
+            top.chain(down).chain([[214, 448], [267, 448], [320, 448]]).collect()
+        }
+        "TriH" | "TriV" => positions.iter().step_by(3).map(pixel).collect(),
+        "WallQuad" => (0..15).map(|n| [159 + 34 * n, 5]).collect(),
+        _ => (0..15).map(|n| [159, 32 * n]).collect(),
+    }
+}
+
+/// Returns the yellow lines from the printed depths to their pixels.
+fn pointers(setup: &Setup) -> Draw {
+    let left = if setup.format.bits() == 16 { 102.0 } else { 122.0 };
+    let yellow = VertexColor::Floats([1.0, 1.0, 0.0, 1.0]);
+    let rows = (0..15).map(|n: u8| 32.0 + 25.0 * f32::from(n));
+    let line = |([x, y], row): ([u16; 2], f32)| {
+        let [x, y] = [x, y].map(f32::from);
+        let (across, down) = (x - left, y - row);
+        let half = 0.5 / across.abs().max(down.abs());
+        [[left + 0.5, row + 0.5], [x + 0.5 + half * across, y + 0.5 + half * down]]
+    };
+    let ends = printed(&setup.shape).into_iter().zip(rows).flat_map(line);
+    draw(Topology::Lines, ends.map(|at| vertex(at, yellow)).collect())
+}
+
+/// Returns red lines, drawn as rectangles, along a clip that differs from that of most frames.
+fn marks([x, y]: [u32; 2]) -> Vec<Draw> {
+    let [left, top] = [x, y].map(|at| f32::from(at as u16));
+    let [right, bottom] = [SIZE.0, SIZE.1].map(|at| f32::from(at as u16));
+    let red = |edges| rectangle(edges, VertexColor::Bytes([255, 0, 0, 255]));
+    let across = (y != CLIP[1]).then(|| red([left, top, right, top + 1.0]));
+    let down = (x != CLIP[0]).then(|| red([left, top, left + 1.0, bottom]));
+    across.into_iter().chain(down).collect()
+}
+
+/// Adds the frames of W_buffering: colours, and the words of depth. A slope of w has no effect on colours, because every depth passes.
 pub(super) fn buffers(frames: &mut Frames) {
     let named =
         |prefix: &str, name: &str, [biased, sloped]: [u8; 2]| format!("{prefix}_{name}_V1_ZB{biased}_ZS{sloped}");
     for (format, prefix) in FORMATS {
         for shape in shapes() {
             let name = shape.0;
-            let has_colors = !name.starts_with("Tri") && name != "WallQuad";
             for [biased, sloped] in [[0_u8, 0_u8], [0, 1], [1, 0], [1, 1]] {
-                let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor: FACTOR * f32::from(sloped) };
-                let of_w = PolygonOffset { factor: 0.0, ..offset };
-                let (z, w) = (
-                    named(prefix, name, [biased, sloped]),
-                    named(&format!("W{}", &prefix[1..]), name, [biased, sloped]),
-                );
-                if has_colors {
-                    frames.push(z.clone(), frame(format, &shape, offset, false, Shown::Colors));
-                    frames.push(w.clone(), frame(format, &shape, of_w, true, Shown::Colors));
-                }
-                frames.push(format!("{z}_ZB"), frame(format, &shape, offset, false, Shown::DepthStencil));
-                if sloped == 0 && name != "LargeZ" {
-                    frames.push(format!("{w}_ZB"), frame(format, &shape, of_w, true, Shown::DepthStencil));
+                for w_buffer in [false, true] {
+                    let prefix = if w_buffer { format!("W{}", &prefix[1..]) } else { prefix.to_owned() };
+                    let factor = if w_buffer { 0.0 } else { FACTOR * f32::from(sloped) };
+                    let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor };
+                    let setup = Setup { format, shape: shape.clone(), offset, w_buffer, clip: CLIP };
+                    let name_of_frame = named(&prefix, name, [biased, sloped]);
+                    frames.push(name_of_frame.clone(), frame(&setup, Shown::Colors));
+                    if !w_buffer || (sloped == 0 && name != "LargeZ") {
+                        frames.push(format!("{name_of_frame}_ZB"), frame(&setup, Shown::DepthStencil));
+                    }
                 }
             }
         }
     }
+    let plain = |shape: Shape, w_buffer: bool, clip: [u32; 2]| Setup {
+        format: DepthFormat::Z24S8,
+        shape,
+        offset: PolygonOffset::default(),
+        w_buffer,
+        clip,
+    };
     for (name, top) in [("Trunc0", -1.0 / 16.0 + 0.001), ("TruncNeg", -1.0 / 16.0)] {
         let [near, far] = [NEAR[1], FAR[1]];
         let positions = vec![
@@ -121,10 +189,20 @@ pub(super) fn buffers(frames: &mut Frames) {
             [586.75, 487.3125, 500_000.0, far],
             [53.1875, 487.3125, 500_000.0, far],
         ];
-        let shape = (name, Topology::Quads, positions, UP);
+        let setup = plain((name, Topology::Quads, positions, UP), false, CLIP);
         for (suffix, shown) in [("", Shown::Colors), ("_ZB", Shown::DepthStencil)] {
-            let drawn = frame(DepthFormat::Z24S8, &shape, PolygonOffset::default(), false, shown);
-            frames.push(format!("{}{suffix}", named("ZBuf24D", name, [0, 0])), drawn);
+            frames.push(format!("{}{suffix}", named("ZBuf24D", name, [0, 0])), frame(&setup, shown));
+        }
+    }
+    for shape in shapes() {
+        let clips: [[u32; 2]; 3] = match shape.0 {
+            "FloorQuad" => [[150, 32], [150, 128], [150, 224]],
+            "WallQuad" => [[159, 0], [261, 0], [363, 0]],
+            _ => continue,
+        };
+        for clip @ [x, y] in clips {
+            let name = named("WBuf24D", &format!("Clip{}-{x:03}-{y:03}", &shape.0[..1]), [0, 1]);
+            frames.push(name, frame(&plain(shape.clone(), true, clip), Shown::Colors));
         }
     }
 }

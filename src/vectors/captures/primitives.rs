@@ -123,6 +123,8 @@ pub(super) fn shade_model(frames: &mut Frames) {
             for (vertex, provoking_vertex) in [("First", ProvokingVertex::First), ("Last", ProvokingVertex::Last)] {
                 let suffix = format!("{name}_{mode}_{vertex}");
                 let colored = Draw { shade_model, provoking_vertex, ..shaded.clone() };
+                let lines = Draw { polygon_modes: WIREFRAME, ..colored.clone() };
+                frames.push(format!("ProgLM_{suffix}"), one(0xff2c_302e, None, lines));
                 frames.push(format!("Prog_{suffix}"), one(0xff2c_302e, None, colored));
                 frames.push(format!("ProgTex_{suffix}"), program.clone());
                 frames.push(format!("FixedTex_{suffix}"), flat_w.clone());
@@ -161,23 +163,64 @@ pub(super) fn perspective(frames: &mut Frames) {
     }
 }
 
-/// Adds the frames of Attrib_float: colours outside 0 to 1, as they are, times 1, and times 0. The programs' products with infinity are not drawn.
+/// The values that the frames of Attrib_float give to colours, from the top to the bottom.
+const FLOATS: [(&str, [f32; 2]); 11] = [
+    ("0_1", [0.0, 1.0]),
+    ("-1_1", [-1.0, 1.0]),
+    ("-8_1", [-8.0, 1.0]),
+    ("0_8", [0.0, 8.0]),
+    ("-NaNq_NaNq", [-f32::NAN, f32::NAN]),
+    ("-NaNs_NaNs", [-f32::NAN, f32::NAN]),
+    ("-INF_INF", [f32::NEG_INFINITY, f32::INFINITY]),
+    ("-Max_Max", [f32::MIN, f32::MAX]),
+    ("-MinN_MinN", [-f32::MIN_POSITIVE, f32::MIN_POSITIVE]),
+    ("-MaxSN_MaxSN", [f32::from_bits(0x807f_ffff), f32::from_bits(0x007f_ffff)]),
+    ("-Min_Min", [f32::from_bits(0x8000_0001), f32::from_bits(1)]),
+];
+
+/// Returns the product that a vertex program makes: 0 of 0 and whatever it is, else a positive NaN of one.
+fn product(a: f32, b: f32) -> f32 {
+    let [a, b] = [a, b].map(|factor| if factor.is_subnormal() { 0.0 } else { factor });
+    match () {
+        () if a == 0.0 || b == 0.0 => 0.0,
+        () if a.is_nan() || b.is_nan() => f32::NAN,
+        () => a * b,
+    }
+}
+
+/// Returns the colour of a float as a scene may have it: a positive NaN is all of a colour, a negative one nothing.
+fn limited(value: f32) -> f32 {
+    if value.is_nan() { f32::from(u8::from(value.is_sign_positive())) } else { value.clamp(-8.0, 8.0) }
+}
+
+/// Adds the frames of Attrib_float: colours outside 0 to 1, as they are, and times numbers, infinities and NaN.
 pub(super) fn float_colors(frames: &mut Frames) {
-    for (name, lowest, highest) in [("0_1", 0.0, 1.0), ("-1_1", -1.0, 1.0), ("-8_1", -8.0, 1.0), ("0_8", 0.0, 8.0)] {
+    for (name, values) in FLOATS {
         let mut canvas = Canvas::new(0xff64_95ed);
         let inset = 0.2_f32;
         let tall = 1.0 - 2.0 * inset;
         let wide = tall / 6.0;
-        for (column, factor) in [(0.0_f32, 1.0), (1.0, 1.0), (2.0, 0.0)] {
-            let (x, y) = ((inset + column * wide) * 640.0, (inset + 0.1) * 480.0);
+        let factors = [1.0, 0.0, f32::NEG_INFINITY, f32::INFINITY, -f32::NAN, f32::NAN];
+        let factors = [None].into_iter().chain(factors.map(Some)).zip(0_u8..);
+        for (factor, column) in factors {
+            let (x, y) = ((inset + f32::from(column) * wide) * 640.0, (inset + 0.1) * 480.0);
             let (right, bottom) = (x + wide * 0.8 * 640.0, y + tall * 480.0);
-            let color = |value: f32| VertexColor::Floats([value * factor, value * factor, value * factor, 1.0]);
-            let corners = corners([x, y, right, bottom]).into_iter().zip([lowest, lowest, highest, highest]);
-            let corners = corners.map(|(corner, value)| vertex(corner, color(value)));
+            let shades = values.map(|value| limited(factor.map_or(value, |factor| product(value, factor))));
+            let corners = corners([x, y, right, bottom]).into_iter().zip([shades[0], shades[0], shades[1], shades[1]]);
+            let corners =
+                corners.map(|(corner, shade)| vertex(corner, VertexColor::Floats([shade, shade, shade, 1.0])));
             canvas.draw(draw(Topology::Quads, corners.collect()));
         }
         frames.push(name, canvas.colors());
     }
+    frames.paint("Colors", 0xff33_3333, |canvas| {
+        // The secondary colour is not enabled.
+        for (left, [r, g, b]) in [(128.0, [255, 0, 255]), (384.0, [0; 3])] {
+            for top in [64.0, 208.0] {
+                canvas.draw(rectangle(sized([left, top], [128.0; 2]), VertexColor::Bytes([r, g, b, 255])));
+            }
+        }
+    });
 }
 
 /// Adds the frames of High_vertex_count: 34,952 vertices of small squares over each other. The way that vertices reach the chip changes no pixel.
@@ -214,8 +257,28 @@ pub(super) fn many_vertices(frames: &mut Frames) {
     }
 }
 
+/// The ends of the lines of 3D_primitive.
+const SOLID_LINES: &[Corner] = &[
+    [-2.75, 1.75, 1.0, 0.75, 0.75, 0.75, 0.0, 0.0],
+    [2.75, 1.75, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0],
+    [-2.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [2.0, 0.0, 5.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.5, 0.5, 5.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+    [-1.5, 0.75, 5.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+    [2.75, 0.25, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0],
+    [1.75, 1.25, 1.0, 0.15, 0.15, 0.15, 0.0, 0.0],
+    [-2.75, 1.0, 1.0, 0.25, 0.25, 1.0, 0.0, 0.0],
+    [-2.75, -1.0, 1.0, 0.65, 0.65, 1.0, 0.0, 0.0],
+    [-2.75, -1.75, 5.0, 0.0, 1.0, 1.0, 0.0, 0.0],
+    [2.75, -1.75, 5.0, 0.5, 0.5, 1.0, 0.0, 0.0],
+];
+
 /// The shapes of 3D_primitive.
-const SOLIDS: [Shape; 6] = [
+const SOLIDS: [Shape; 10] = [
+    ("Points", Topology::Points, SOLID_LINES),
+    ("Lines", Topology::Lines, SOLID_LINES),
+    ("LineLoop", Topology::LineLoop, SOLID_LINES),
+    ("LineStrip", Topology::LineStrip, SOLID_LINES),
     ("Triangles", Topology::Triangles, TRIANGLES),
     ("TriStrip", Topology::TriangleStrip, STRIP),
     ("TriFan", Topology::TriangleFan, FAN),
@@ -224,38 +287,89 @@ const SOLIDS: [Shape; 6] = [
     ("Polygon", Topology::Polygon, POLYGON),
 ];
 
-/// Adds the frames of 3D_primitive. The way that vertices reach the chip changes no pixel.
+/// Adds those frames of 3D_primitive that show nothing smooth. The way that vertices reach the chip changes no pixel.
+///
+/// The programs draw with smooth lines (`-ls`) and polygons (`-ps`) on a surface of two samples a pixel, and show the sample in the pixel's centre.
 pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
-        let vertex = |[x, y, z, r, g, b, ..]: &Corner| {
-            let [x, y, z, w] = space::fixed_function([*x, *y, *z, 1.0]);
-            let diffuse = VertexColor::Floats([*r, *g, *b, 1.0]);
-            Vertex { position: [x, y, z / 65535.0, w], diffuse, ..Vertex::default() }
-        };
         let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
-        let shape = Draw { depth_test, ..draw(topology, vertices.iter().map(vertex).collect()) };
+        let lines = Lines { rasterization: LineRasterization::Bresenham, ..Lines::default() };
+        let shape = Draw { depth_test, lines, ..draw(topology, vertices.iter().map(solid).collect()) };
         let drawn = one(0xff30_3030, None, shape);
+        let unaffected: &[&str] = match topology {
+            Topology::Points => &["", "-ls", "-ps", "-ls-ps"],
+            Topology::Lines | Topology::LineStrip | Topology::LineLoop => &["", "-ps"],
+            _ => &["", "-ls"],
+        };
         for kind in ["", "-inlinebuf", "-inlinearrays", "-inlineelements"] {
-            frames.push(format!("{name}{kind}"), drawn.clone());
+            for smooth in unaffected {
+                frames.push(format!("{name}{kind}{smooth}"), drawn.clone());
+            }
         }
     }
 }
 
-/// Adds the frame of Attrib_setter: those triangles whose colours are plain bytes or floats.
-pub(super) fn setters(frames: &mut Frames) {
-    let bytes = |words: [u32; 3]| words.map(|word| VertexColor::Bytes(abgr(word)));
-    let floats = |colors: [[f32; 4]; 3]| colors.map(VertexColor::Floats);
-    let mut canvas = Canvas::new(0xff33_3333);
-    for ([column, row], colors) in [
-        ([2.0, 0.0], bytes([0xffff_0000, 0xff00_00ff, 0xff00_ff00])),
-        ([3.0, 0.0], floats([[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]])),
-        ([4.0, 0.0], floats([[0.0, 0.0, 1.0, 0.75], [1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.45]])),
-        ([0.0, 1.0], floats([[0.0, 1.0, 0.0, 0.75], [0.0, 0.0, 1.0, 0.5], [1.0, 0.0, 0.0, 0.45]])),
-    ] {
-        let (x, y) = (128.0 + 52.0 * column, 80.0 + 72.0 * row);
-        let corners = [[x, y], [x + 45.0, y], [x + 22.5, y + 40.0]];
-        let corners = corners.into_iter().zip(colors).map(|(corner, color)| vertex(corner, color));
-        canvas.draw(draw(Topology::Triangles, corners.collect()));
+/// Adds the frames of Zero_stride: colours that lie no bytes apart are all the first one.
+pub(super) fn one_color(frames: &mut Frames) {
+    let diffuse = VertexColor::Floats([0.25, 0.25, 0.25, 1.0]);
+    let vertex = |corner: &Corner| Vertex { diffuse, ..solid(corner) };
+    let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
+    let shape = Draw { depth_test, ..draw(Topology::Triangles, TRIANGLES.iter().map(vertex).collect()) };
+    let drawn = one(0xff30_3030, None, shape);
+    for name in ["DrawArrays", "InlineElements"] {
+        frames.push(name, drawn.clone());
     }
-    frames.push("Setters-alpha", canvas.colors());
+}
+
+/// Returns a vertex of the fixed function, and its colour.
+fn solid([x, y, z, r, g, b, ..]: &Corner) -> Vertex {
+    let [x, y, z, w] = space::fixed_function([*x, *y, *z, 1.0]);
+    Vertex { position: [x, y, z / 65535.0, w], diffuse: VertexColor::Floats([*r, *g, *b, 1.0]), ..Vertex::default() }
+}
+
+/// The strip of Overlapping_draw_modes.
+const MIXED_STRIP: &[Corner] = &[
+    [-2.75, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [-1.75, 1.75, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+    [-2.25, -1.75, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    [-1.25, 1.25, 1.0, 0.25, 0.0, 0.8, 0.0, 0.0],
+    [-0.75, -1.25, 1.0, 0.75, 0.0, 0.25, 0.0, 0.0],
+    [-0.25, 0.75, 1.0, 0.33, 0.33, 0.33, 0.0, 0.0],
+    [0.25, -0.75, 1.0, 0.7, 0.7, 0.7, 0.0, 0.0],
+    [0.75, 1.75, 1.0, 0.5, 0.5, 0.6, 0.0, 0.0],
+];
+/// Its triangles.
+const MIXED_TRIANGLES: [[Corner; 3]; 4] = [
+    [
+        [-2.75, 1.75, 1.0, 0.25, 0.25, 0.25, 0.0, 0.0],
+        [0.0, 1.75, 1.0, 0.55, 0.55, 0.55, 0.0, 0.0],
+        [-2.75, 0.0, 1.0, 0.75, 0.75, 0.75, 0.0, 0.0],
+    ],
+    [
+        [2.75, 1.75, 1.0, 0.8, 0.25, 0.1, 0.0, 0.0],
+        [0.1, -1.75, 1.0, 0.1, 0.85, 0.1, 0.0, 0.0],
+        [0.25, 0.0, 1.0, 0.1, 0.25, 0.9, 0.0, 0.0],
+    ],
+    [
+        [-0.4, -1.75, 1.0, 0.8, 0.25, 0.9, 0.0, 0.0],
+        [-1.4, -1.4, 1.0, 0.1, 0.85, 0.9, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.85, 0.95, 0.1, 0.0, 0.0],
+    ],
+    [
+        [-2.75, -1.75, 1.0, 0.2, 0.4, 0.8, 0.0, 0.0],
+        [-2.75, 0.0, 1.0, 0.3, 0.5, 0.9, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.4, 0.3, 0.7, 0.0, 0.0],
+    ],
+];
+
+/// Adds the frames of Overlapping_draw_modes: vertices that reach the chip in several ways between one begin and its end.
+pub(super) fn mixed_modes(frames: &mut Frames) {
+    let strip = draw(Topology::TriangleStrip, MIXED_STRIP.iter().map(solid).collect());
+    frames.push("ArrElm_DrwArr_ArrElm", one(0xfe24_2424, None, strip));
+    for (name, numbers) in
+        [("DrwArr_DrwArr", &[0, 2][..]), ("SquashOpt", &[0, 1, 2, 3]), ("SquashOptSingleArray", &[2, 3, 0, 1])]
+    {
+        let vertices = numbers.iter().flat_map(|number: &usize| MIXED_TRIANGLES[*number].iter().map(solid));
+        frames.push(name, one(0xfe24_2424, None, draw(Topology::Triangles, vertices.collect())));
+    }
 }

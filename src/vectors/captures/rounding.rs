@@ -153,6 +153,50 @@ pub(super) fn frames(frames: &mut Frames) {
         frames.paint(format!("GeometrySubscreen_{name}"), 0xfe41_4041, move |canvas| on_textures(canvas, bias, false));
         frames.paint(format!("GeometrySuperscreen_{name}"), 0xfe41_4041, move |canvas| on_textures(canvas, bias, true));
     }
+    for (name, bias) in BIASES {
+        frames.paint(format!("ProjAdjacentGeometry_{name}"), 0xfe40_4040, move |canvas| {
+            transformed(canvas, bias, UNPROJECTED, [GREEN, 0xff00_bb00]);
+        });
+    }
+    transfers::composites(frames);
     frames.paint("TopLeftRaster", 0xff20_2224, edges);
     frames.paint("TopLeftRaster_Fixed", 0xff20_2224, edges);
+}
+
+/// Returns edges as they come out of the transform: those from the centre to the right, and all rows, lack a last bit.
+fn projected(edges: [f32; 4], moved: f32) -> [f32; 4] {
+    let [left, top, right, bottom] = edges.map(|edge| edge + moved);
+    let low = |edge: f32| edge - 1.0 / 16384.0;
+    let column = |edge: f32| if edge < 319.0 { edge } else { low(edge) };
+    [column(left), low(top), column(right), low(bottom)]
+}
+
+/// Draws squares through a vertex program, and others through the fixed function, which alone is moved by `offset`.
+fn transformed(canvas: &mut Canvas, bias: f32, offset: f32, colors: [u32; 2]) {
+    canvas.draw(patch(projected([120.0, 140.0, 520.0, 340.0], 0.0), 0xffe0_e0e0));
+    let squares: Vec<[f32; 4]> =
+        places([120.0, 140.0], [100.0; 2], 4).take(8).map(|corner| sized(corner, [100.0; 2])).collect();
+    for number in [0, 2, 5, 7] {
+        canvas.draw(patch(projected(squares[number], bias), colors[0]));
+    }
+    for number in [1, 3, 4, 6] {
+        canvas.draw(patch(projected(squares[number], bias + offset), colors[1]));
+    }
+}
+
+/// Adds the frames of Viewport: only the fixed function reads the offset, and nothing reads the scale.
+pub(super) fn viewports(frames: &mut Frames) {
+    let offsets = [("-1.000", -1.0), ("-0.531", -0.53125), ("0.000", 0.0), ("0.531", 0.53125), ("1.000", 1.0)];
+    for (name, offset) in offsets {
+        for scale in ["0.000", "2.000"] {
+            frames.paint(format!("{name}_{name}-{scale}_0.000"), 0xfe40_4040, move |canvas| {
+                transformed(canvas, 0.0, offset, [0xff00_1199, 0xff00_33bb]);
+            });
+        }
+    }
+    for (name, offset) in [("0.562", 0.5625), ("-0.438", -0.4375)] {
+        frames.paint(format!("{name}_{name}-0.000_0.000"), 0xfe40_4040, move |canvas| {
+            transformed(canvas, 0.0, offset, [0xff00_1199, 0xff00_33bb]);
+        });
+    }
 }

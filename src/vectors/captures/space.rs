@@ -124,3 +124,8 @@ pub(super) const STRAIGHT: [f32; 2] = [0.0, 1.0];
 pub(super) const DEGREES_45: [f32; 2] = [FRAC_1_SQRT_2; 2];
 pub(super) const DEGREES_90: [f32; 2] = [1.0, -4.371_139e-8];
 pub(super) const DEGREES_225: [f32; 2] = [f32::from_bits(0xbf35_04f2), f32::from_bits(0xbf35_04f4)];
+
+/// Returns x and y of a point in eye space with depth 1 that the fixed function shows at a place of the screen.
+pub(super) fn eye_slope([x, y]: [f32; 2]) -> [f32; 2] {
+    [(x - 320.0) / 320.0 * (640.0 / 480.0) / COTANGENT, (240.0 - y) / 240.0 / COTANGENT]
+}

@@ -261,9 +261,8 @@ pub(super) fn signed(frames: &mut Frames) {
     };
     let texture = images::texture(TextureFormat::A8R8G8B8, SIZE, image);
     // The programs multiply by 1 in a general stage.
-    let combiners = program(
-        "{ rgb { spare0 = unsigned(tex0); } alpha { spare0 = unsigned(tex0.a); } } out.rgb = spare0; out.a = spare0.a;",
-    );
+    let combiners = program(SPARE);
+    blended_ramps(frames);
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
         let draw = square(1.0, TextureUnit { signed, ..nearest(0) });
@@ -271,6 +270,43 @@ pub(super) fn signed(frames: &mut Frames) {
         frames.push(format!("A8R8G8B8_0x{flags:04X}"), one(0xfe20_2020, Some(&texture), draw));
     }
 }
+
+/// Adds the frames of Texture_signed_component_tests that blend ramps of each channel, unsigned and signed, with a chequered frame buffer.
+fn blended_ramps(frames: &mut Frames) {
+    for (name, equation) in [
+        ("ADD", BlendEquation::Add),
+        ("SADD", BlendEquation::SignedAdd),
+        ("SREVSUB", BlendEquation::SignedReverseSubtract),
+    ] {
+        frames.paint(format!("txt_A8R8G8B8_{name}"), 0, move |canvas| {
+            let fields = checker([abgr(0xffff_ffff), abgr(0xff7f_7f7f)], 12);
+            canvas.frame_buffer().contents =
+                Some(images::words(TextureFormat::A8B8G8R8, super::SIZE.into(), fields).into());
+            let sections = places([64.0, 0.0], [256.0, 240.0], 2);
+            for (channel, [left, top]) in (0..TEXTURE_UNITS).zip(sections) {
+                let bands = [(0xff, false), (0xff, true), (0x7f, false), (0x7f, true)];
+                for ((alpha, signed), n) in bands.into_iter().zip(0_u8..) {
+                    let ramp = move |x: u32, _| {
+                        let mut color = if channel == 3 { [255; 4] } else { [0, 0, 0, alpha] };
+                        color[channel] = x as u8;
+                        color
+                    };
+                    let texture = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [256; 2], ramp));
+                    let signed = std::array::from_fn(|n| signed && (n == channel));
+                    let unit = TextureUnit { signed, ..nearest(texture) };
+                    let band = sized([left, top + 60.0 * f32::from(n)], [256.0, 60.0]);
+                    let blend = OVER.map(|blend| Blend { equation, ..blend });
+                    let combiners = program(SPARE);
+                    canvas.draw(Draw { blend, combiners, ..pasted(band, 0, unit, WHOLE) });
+                }
+            }
+        });
+    }
+}
+
+/// Passes texture 0 through a general stage.
+const SPARE: &str =
+    "{ rgb { spare0 = unsigned(tex0); } alpha { spare0 = unsigned(tex0.a); } } out.rgb = spare0; out.a = spare0.a;";
 
 /// Returns a unit with trilinear minification.
 fn levels(texture: usize) -> TextureUnit {

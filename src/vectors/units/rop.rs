@@ -117,7 +117,7 @@ pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
     known_as!(
-        "surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct;
+        "surface-store", &["ROP-5", "CLR-1"], "a colour as the word that a surface of this format keeps", Direct;
         takes [Column::choice::<SurfaceFormat>("cfg.format"), channels("in", CHANNELS, Column::byte)];
         gives [Column::result("out.word", Kind::Hex(32))]
     );
@@ -132,7 +132,7 @@ pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {
     known_as!(
-        "surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct;
+        "surface-load", &["ROP-5", "CLR-1"], "the word of a surface as the colour that a blend reads", Direct;
         takes [Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)];
         gives [color_results(["out"])]
     );

@@ -219,6 +219,7 @@ pub(super) fn scene(
         cull: Cull::None,
         front_face: FrontFace::CounterClockwise,
         polygon_modes: PolygonModes::FILL,
+        edge_flags: None,
         polygon_stipple: None,
         lines: Lines::default(),
         point_size: 8,

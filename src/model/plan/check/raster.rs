@@ -38,6 +38,10 @@ impl Check<'_> {
             let message = format!("{} sizes of points for {} vertices", sizes.len(), draw.vertices.len());
             self.refuse("NB0211", "PNT-3", message, "give one for each vertex");
         }
+        if let Some(flags) = draw.edge_flags.as_ref().filter(|flags| flags.len() != draw.vertices.len()) {
+            let message = format!("{} edge flags for {} vertices", flags.len(), draw.vertices.len());
+            self.refuse("NB0211", "POL-1", message, "give one for each vertex");
+        }
         self.sprites(draw);
     }
 
