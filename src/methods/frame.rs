@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, StencilOperation,
+    CompareFunction, DepthBuffer, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, StencilOperation,
     StencilTest, Target, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
 };
 
