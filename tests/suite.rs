@@ -70,6 +70,7 @@ mod rule;
 mod scene_format;
 mod scene_hostile;
 mod scene_in_code;
+mod score;
 mod stability;
 mod tables;
 mod techniques;
